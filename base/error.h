@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <utility>
+
+namespace sextant {
+
+/// What kind of thing went wrong. The message of an Error says which input and what to do.
+enum class ErrorCode {
+  kMissingData,    ///< The problem lacks a kind of data that the solver needs at all.
+  kTooFewPairs,    ///< The data is there, but fewer than the minimum.
+  kNonFinite,      ///< An input number is NaN or infinite.
+  kInvalidInput,   ///< An input is finite but outside its domain (negative sigma, no focal length).
+  kDegenerate,     ///< The geometry leaves a direction of the pose undetermined.
+  kMirrored,       ///< One point set is a mirror image of the other: no rotation maps them.
+  kNoConsensus,    ///< No pose gathers enough inliers.
+  kNoConvergence,  ///< An iteration did not reach its stopping inequality.
+  kUnknownName,    ///< No solver, option or choice of that name.
+  kInvalidOption,  ///< An option's value is outside its range or of the wrong type.
+  kParse,          ///< A file's content is not what its format says.
+  kIo,             ///< A file cannot be opened, read or written.
+};
+
+/// "too_few_pairs" and so on: stable, for logs and JSON.
+std::string_view ToString(ErrorCode code);
+
+struct Error {
+  ErrorCode code;
+  std::string message;
+};
+
+/// A value or the reason why there is none. No exception crosses the public API.
+template <class T>
+using Expected = tl::expected<T, Error>;
+
+inline tl::unexpected<Error> MakeError(ErrorCode code, std::string message) {
+  return tl::unexpected<Error>(Error{code, std::move(message)});
+}
+
+}  // namespace sextant

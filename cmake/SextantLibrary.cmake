@@ -1,0 +1,19 @@
+# Defines a library of one folder: sextant_library(<folder> PUBLIC ... PRIVATE ...).
+#
+# Sources are globbed, so that a new solver is one new file; CONFIGURE_DEPENDS looks again at each
+# build. The link line is the layering: tests/layering reads the includes against it.
+function(sextant_library name)
+  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
+  string(REPLACE "/" "_" target ${name})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
+  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
+  add_library(sextant_${target} STATIC ${sources})
+  add_library(sextant::${target} ALIAS sextant_${target})
+  target_sources(sextant_${target} PUBLIC
+    FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
+  target_link_libraries(sextant_${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:sextant_options>)
+  set_target_properties(sextant_${target} PROPERTIES EXPORT_NAME ${target})
+  install(TARGETS sextant_${target} EXPORT sextantTargets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sextant)
+endfunction()

@@ -1,0 +1,31 @@
+# Language, warnings and sanitizers, for every target of ours and for nobody who links us.
+option(SEXTANT_WARNINGS_AS_ERRORS "Fail the build on a warning" ON)
+option(SEXTANT_BENCH "Build the benchmarks" ON)
+set(SEXTANT_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined")
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+find_program(CCACHE ccache)
+if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+add_library(sextant_options INTERFACE)
+target_compile_options(sextant_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Wold-style-cast
+  # Fused multiply-add would round differently from machine to machine: same seed, same bits.
+  -ffp-contract=off
+  $<$<BOOL:${SEXTANT_WARNINGS_AS_ERRORS}>:-Werror>)
+if(SEXTANT_SANITIZE)
+  target_compile_options(sextant_options INTERFACE
+    -fsanitize=${SEXTANT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(sextant_options INTERFACE -fsanitize=${SEXTANT_SANITIZE})
+endif()

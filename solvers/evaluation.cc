@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/evaluation.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+
+#include "solvers/residuals.h"
+
+namespace sextant {
+namespace {
+
+double SquaredWhitened(const Pair3d3d& pair, const Eigen::Vector3d& residual) {
+  if (pair.covariance_in_cam) return residual.dot(pair.covariance_in_cam->llt().solve(residual));
+  const double sigma = pair.sigma_m > 0.0 ? pair.sigma_m : 1.0;
+  return residual.squaredNorm() / (sigma * sigma);
+}
+
+void EvaluatePairs3d3d(const CalibrationProblem& problem, const Rigid3d& cam_from_lidar,
+                       Evaluation& evaluation) {
+  if (problem.pairs_3d3d.empty()) return;
+  double sum = 0.0;
+  for (const Pair3d3d& pair : problem.pairs_3d3d) {
+    const Eigen::Vector3d residual = PointResidual(cam_from_lidar, pair);
+    evaluation.per_pair_m.push_back(residual.norm());
+    evaluation.cost += 0.5 * SquaredWhitened(pair, residual);
+    sum += residual.squaredNorm();
+  }
+  evaluation.rmse_m = std::sqrt(sum / static_cast<double>(problem.pairs_3d3d.size()));
+}
+
+void EvaluatePairs2d3d(const CalibrationProblem& problem, const Rigid3d& cam_from_lidar,
+                       Evaluation& evaluation) {
+  if (!problem.camera) return;
+  double sum = 0.0;
+  int projected = 0;
+  for (const Pair2d3d& pair : problem.pairs_2d3d) {
+    const auto residual = ReprojectionResidual(*problem.camera, cam_from_lidar, pair);
+    if (!residual) {
+      evaluation.per_pair_px.push_back(std::numeric_limits<double>::infinity());
+      continue;
+    }
+    const double sigma = pair.sigma_px > 0.0 ? pair.sigma_px : 1.0;
+    evaluation.per_pair_px.push_back(residual->norm());
+    evaluation.cost += 0.5 * residual->squaredNorm() / (sigma * sigma);
+    sum += residual->squaredNorm();
+    ++projected;
+  }
+  if (projected > 0) evaluation.rmse_px = std::sqrt(sum / projected);
+}
+
+}  // namespace
+
+Evaluation Evaluate(const CalibrationProblem& problem, const Rigid3d& cam_from_lidar) {
+  Evaluation evaluation;
+  EvaluatePairs3d3d(problem, cam_from_lidar, evaluation);
+  EvaluatePairs2d3d(problem, cam_from_lidar, evaluation);
+  return evaluation;
+}
+
+}  // namespace sextant

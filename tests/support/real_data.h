@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <optional>
+
+namespace sextant::test {
+
+/// Folder of the real data: SEXTANT_DATA, else ../shared/data beside the checkout; none if absent.
+std::optional<std::filesystem::path> RealDataFolder();
+
+}  // namespace sextant::test
+
+/// Declares `path` as a file of the real data, or skips the test and says loudly why.
+#define SEXTANT_REAL_DATA(path, relative)                                                  \
+  const auto path##_folder = sextant::test::RealDataFolder();                              \
+  if (!path##_folder) {                                                                    \
+    GTEST_SKIP() << "REAL DATA ABSENT: set SEXTANT_DATA to the folder that has " relative; \
+  }                                                                                        \
+  const std::filesystem::path path = *path##_folder / relative
