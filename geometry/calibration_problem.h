@@ -43,7 +43,7 @@ struct Pair2d3d {
   PairId id;
 };
 
-/// Points of the same objects in both frames, their pairing not known. Metres.
+/// Points of the same objects in both frames. Metres.
 struct PointSets {
   std::vector<Eigen::Vector3d> in_cam;
   std::vector<Eigen::Vector3d> in_lidar;
@@ -54,10 +54,13 @@ struct CalibrationProblem {
   std::optional<Camera> camera;
   std::vector<Pair3d3d> pairs_3d3d;
   std::vector<Pair2d3d> pairs_2d3d;
-  PointSets point_sets;
+  PointSets point_sets;       ///< Their pairing is not known.
   std::vector<Board> boards;  ///< Known boards, by the id that pairs name; may be empty.
   std::optional<Rigid3d> initial_cam_from_lidar;
 };
+
+/// The points of the pairs, still paired by index.
+PointSets PointsOf(std::span<const Pair3d3d> pairs);
 
 /// The points of the pairs as unpaired sets, each sorted by coordinates so that the order tells
 /// nothing of the pairing.

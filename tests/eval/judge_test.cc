@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/judge.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "eval/simulate_pairs.h"
+
+namespace sextant {
+namespace {
+
+using testing::HasSubstr;
+
+CalibrationProblem CleanProblem(int views) {
+  PairSimulation simulation;
+  simulation.views = views;
+  simulation.outliers = 0;
+  return SimulatePairs(simulation)->problem;
+}
+
+void RotateLabels(CalibrationProblem& problem, int view, int board, int turns) {
+  std::vector<Pair3d3d>& pairs = problem.pairs_3d3d;
+  const auto first = std::find_if(pairs.begin(), pairs.end(), [&](const Pair3d3d& p) {
+    return p.id.view == view && p.id.board == board;
+  });
+  std::vector<Eigen::Vector3d> lidar;
+  for (auto it = first; it != first + 4; ++it) lidar.push_back(it->point_in_lidar);
+  std::rotate(lidar.begin(), lidar.begin() + turns, lidar.end());
+  for (int i = 0; i < 4; ++i) (first + i)->point_in_lidar = lidar[static_cast<std::size_t>(i)];
+}
+
+TEST(Judge, SaysNothingOfGoodData) {
+  const Judgement judgement = JudgePairs(CleanProblem(3));
+  EXPECT_FALSE(judgement.order);
+  EXPECT_FALSE(judgement.mirrored_rmse_m);
+  EXPECT_THAT(judgement.edges, testing::IsEmpty());
+}
+
+TEST(Judge, FindsRotatedLabelsOfOneBoard) {
+  for (int turns = 1; turns < 4; ++turns) {
+    const CalibrationProblem truth = CleanProblem(1);
+    CalibrationProblem problem = truth;
+    RotateLabels(problem, 0, 1, turns);
+    const Judgement judgement = JudgePairs(problem);
+    ASSERT_TRUE(judgement.order);
+    EXPECT_FALSE(judgement.order->boards_swapped);
+    EXPECT_EQ(judgement.order->moved.size(), 4U);
+    EXPECT_LT(judgement.order->rmse_reordered_m, 0.03);
+    const CalibrationProblem reordered = Reordered(problem, *judgement.order);
+    for (std::size_t i = 0; i < truth.pairs_3d3d.size(); ++i) {
+      EXPECT_EQ(reordered.pairs_3d3d[i].point_in_lidar, truth.pairs_3d3d[i].point_in_lidar);
+    }
+    EXPECT_THAT(Describe(judgement).front(), HasSubstr("--reorder takes it"));
+  }
+}
+
+TEST(Judge, FindsSwappedBoardsAndReversedOrders) {
+  const CalibrationProblem truth = CleanProblem(2);
+  CalibrationProblem problem = truth;
+  std::vector<Pair3d3d>& pairs = problem.pairs_3d3d;
+  for (std::size_t i = 0; i < 4; ++i)
+    std::swap(pairs[i].point_in_lidar, pairs[i + 4].point_in_lidar);
+  std::swap(pairs[9].point_in_lidar, pairs[11].point_in_lidar);
+  const Judgement judgement = JudgePairs(problem);
+  ASSERT_TRUE(judgement.order);
+  EXPECT_TRUE(judgement.order->boards_swapped);
+  const CalibrationProblem reordered = Reordered(problem, *judgement.order);
+  for (std::size_t i = 0; i < truth.pairs_3d3d.size(); ++i) {
+    EXPECT_EQ(reordered.pairs_3d3d[i].point_in_lidar, truth.pairs_3d3d[i].point_in_lidar);
+  }
+}
+
+TEST(Judge, NamesTheBoardWhoseEdgesDisagree) {
+  CalibrationProblem problem = CleanProblem(2);
+  problem.pairs_3d3d[13].point_in_lidar.z() += 0.3;
+  const Judgement judgement = JudgePairs(problem);
+  ASSERT_EQ(judgement.edges.size(), 1U);
+  EXPECT_EQ(judgement.edges[0].view, 1);
+  EXPECT_EQ(judgement.edges[0].board, 1);
+  EXPECT_THAT(Describe(judgement), testing::Contains(HasSubstr("board 1 of view 1")));
+}
+
+TEST(Judge, NamesABoardFileThatDisagreesWithBothSensors) {
+  CalibrationProblem problem = CleanProblem(1);
+  problem.boards[0].top_right_m = 0.60;
+  const Judgement judgement = JudgePairs(problem);
+  ASSERT_FALSE(judgement.edges.empty());
+  EXPECT_EQ(judgement.edges[0].board, 0);
+  EXPECT_EQ(judgement.edges[0].known_m, 0.60);
+}
+
+TEST(Judge, NamesTheTurnThatAlmostCollinearPointsLeaveWeak) {
+  CalibrationProblem problem = CleanProblem(1);
+  const Rigid3d truth = SimulatePairs({.seed = 1, .outliers = 0})->true_cam_from_lidar;
+  for (Pair3d3d& pair : problem.pairs_3d3d) {
+    pair.point_in_cam = Eigen::Vector3d(pair.point_in_cam.x() * 4.0, 0.02 * pair.id.corner,
+                                        2.0 + 0.01 * (pair.id.corner % 2));
+    pair.point_in_lidar = truth.Inverse() * pair.point_in_cam;
+    pair.point_in_cam.z() += 1e-3 * (pair.id.corner - 1.5);
+  }
+  const Judgement judgement = JudgePairs(problem);
+  ASSERT_TRUE(judgement.weak_rotation);
+  EXPECT_GT(std::abs(judgement.weak_rotation->axis_in_cam.x()), 0.99);
+  EXPECT_THAT(Describe(judgement), testing::Contains(HasSubstr("rotation about")));
+}
+
+TEST(SimulatePairs, SameSeedSameBytes) {
+  const SimulatedSession a = *SimulatePairs({.seed = 3, .views = 2});
+  const SimulatedSession b = *SimulatePairs({.seed = 3, .views = 2});
+  const SimulatedSession c = *SimulatePairs({.seed = 4, .views = 2});
+  for (std::size_t i = 0; i < a.problem.pairs_3d3d.size(); ++i) {
+    EXPECT_EQ(a.problem.pairs_3d3d[i].point_in_lidar, b.problem.pairs_3d3d[i].point_in_lidar);
+    EXPECT_NE(a.problem.pairs_3d3d[i].point_in_lidar, c.problem.pairs_3d3d[i].point_in_lidar);
+  }
+}
+
+TEST(SimulatePairs, ResidualsUnderTheTruthHaveTheStatedCovariance) {
+  const SimulatedSession session = *SimulatePairs({.seed = 5, .views = 250, .outliers = 0});
+  double chi2 = 0.0;
+  for (const Pair3d3d& pair : session.problem.pairs_3d3d) {
+    const Eigen::Vector3d r = pair.point_in_cam - session.true_cam_from_lidar * pair.point_in_lidar;
+    chi2 += r.dot(pair.covariance_in_cam->inverse() * r);
+  }
+  const double freedom = 3.0 * static_cast<double>(session.problem.pairs_3d3d.size());
+  EXPECT_NEAR(chi2 / freedom, 1.0, 5.0 * std::sqrt(2.0 / freedom));
+}
+
+TEST(SimulatePairs, CornersRunClockwiseFromTheTop) {
+  const SimulatedSession session = *SimulatePairs({.seed = 6, .views = 20, .outliers = 0});
+  const std::vector<Pair3d3d>& pairs = session.problem.pairs_3d3d;
+  for (std::size_t i = 0; i < pairs.size(); i += 4) {
+    EXPECT_LT(pairs[i].point_in_cam.y(), pairs[i + 2].point_in_cam.y());      // top above bottom
+    EXPECT_GT(pairs[i + 1].point_in_cam.x(), pairs[i + 3].point_in_cam.x());  // right of left
+  }
+}
+
+TEST(SimulatePairs, RefusesNonsense) {
+  EXPECT_EQ(SimulatePairs({.views = 0}).error().code, ErrorCode::kInvalidOption);
+  EXPECT_EQ(SimulatePairs({.outliers = 9}).error().code, ErrorCode::kInvalidOption);
+  EXPECT_EQ(SimulatePairs({.lidar_sigma_m = -1.0}).error().code, ErrorCode::kInvalidOption);
+}
+
+}  // namespace
+}  // namespace sextant
