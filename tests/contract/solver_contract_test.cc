@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every registered solver promises, alone and composed. A new line in the table of solvers is
+// tested here without a change.
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "base/random.h"
+#include "solvers/registry.h"
+#include "support/scenes.h"
+
+namespace sextant {
+namespace {
+
+using test::MakeScene;
+using test::Scene;
+using test::SceneOptions;
+
+// Each entry's own example, and each combinator around the closed form of each kind of pairs.
+std::vector<std::string> AllSpecs() {
+  const SolverRegistry registry = BuiltinSolvers();
+  std::vector<std::string> specs;
+  const auto add = [&](const std::string& spec) {
+    const Expected<SolverPtr> solver = registry.Make(spec);
+    if (!solver) return;
+    const std::string& name = (*solver)->spec().name;
+    if (std::find(specs.begin(), specs.end(), name) == specs.end()) specs.push_back(name);
+  };
+  for (const SolverEntry& entry : registry.entries()) {
+    add(entry.example);
+    if (!entry.wraps_solver) continue;
+    for (const char* inner : {"kabsch", "epnp"}) add(entry.name + "(" + inner + ")");
+  }
+  return specs;
+}
+
+class SolverContract : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    Expected<SolverPtr> made = BuiltinSolvers().Make(GetParam());
+    ASSERT_TRUE(made) << made.error().message;
+    solver_ = *made;
+  }
+
+  const SolverSpec& spec() const { return solver_->spec(); }
+
+  // A scene that holds only the kind of data that the solver says it needs.
+  Scene SceneFor(SceneOptions options, Random& random) const {
+    if (!spec().is_global) options.max_rotation_rad = 0.1;
+    if (!spec().estimates_rotation) options.max_rotation_rad = 0.0;
+    Scene scene = MakeScene(options, random);
+    if (!spec().is_global) scene.problem.initial_cam_from_lidar = scene.cam_from_lidar;
+    Restrict(scene.problem);
+    return scene;
+  }
+
+  void Restrict(CalibrationProblem& problem) const {
+    const DataNeeds& needs = spec().needs;
+    if (needs.pairs_3d3d == 0) problem.pairs_3d3d.clear();
+    if (needs.pairs_2d3d == 0) problem.pairs_2d3d.clear();
+    if (needs.points_per_set == 0) problem.point_sets = {};
+  }
+
+  static constexpr SceneOptions Noisy() { return {.pairs = 12, .sigma_m = 0.01, .sigma_px = 1.0}; }
+
+  // The same session with the LiDAR mounted elsewhere: points of frame lidar seen from frame other.
+  static CalibrationProblem MoveLidar(CalibrationProblem problem, const Rigid3d& other_from_lidar) {
+    for (Pair3d3d& pair : problem.pairs_3d3d) {
+      pair.point_in_lidar = other_from_lidar * pair.point_in_lidar;
+    }
+    for (Pair2d3d& pair : problem.pairs_2d3d) {
+      pair.point_in_lidar = other_from_lidar * pair.point_in_lidar;
+    }
+    for (Eigen::Vector3d& point : problem.point_sets.in_lidar) point = other_from_lidar * point;
+    if (problem.initial_cam_from_lidar) {
+      problem.initial_cam_from_lidar = *problem.initial_cam_from_lidar * other_from_lidar.Inverse();
+    }
+    return problem;
+  }
+
+  SolverPtr solver_;
+};
+
+// Properties that hold for some solvers only; the instantiations below say for which.
+class GlobalPointPairContract : public SolverContract {};
+class PairContract : public SolverContract {};
+class PairNoiseContract : public SolverContract {};
+class RotationContract : public SolverContract {};
+class MinimumContract : public SolverContract {};
+
+void ExpectSamePose(const Rigid3d& a, const Rigid3d& b, double tolerance) {
+  const PoseDistance distance = DistanceBetween(a, b);
+  EXPECT_LT(distance.rotation_rad, tolerance);
+  EXPECT_LT(distance.translation_m, tolerance);
+}
+
+void ExpectSameBits(const SolveReport& a, const SolveReport& b) {
+  EXPECT_EQ(a.cam_from_lidar.rotation.coeffs(), b.cam_from_lidar.rotation.coeffs());
+  EXPECT_EQ(a.cam_from_lidar.translation, b.cam_from_lidar.translation);
+  EXPECT_EQ(a.inliers, b.inliers);
+  EXPECT_EQ(a.iterations, b.iterations);
+  ASSERT_TRUE(a.covariance && b.covariance);
+  EXPECT_EQ(*a.covariance, *b.covariance);
+}
+
+TEST_P(SolverContract, CanonicalNameMakesTheSameSolver) {
+  const Expected<SolverPtr> again = BuiltinSolvers().Make(spec().name);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ((*again)->spec().name, spec().name);
+}
+
+TEST_P(SolverContract, RecoversExactData) {
+  Random random(1);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Scene scene = SceneFor({.pairs = 12}, random);
+    const Expected<SolveReport> report = solver_->Solve(scene.problem);
+    ASSERT_TRUE(report) << report.error().message;
+    ExpectSamePose(report->cam_from_lidar, scene.cam_from_lidar, 1e-7);
+    EXPECT_EQ(report->solver, spec().name);
+  }
+}
+
+TEST_P(SolverContract, AnswerMovesWithTheLidarFrame) {
+  Random random(2);
+  const Scene scene = SceneFor(Noisy(), random);
+  Rigid3d other_from_lidar{Eigen::Quaterniond::Identity(), {0.3, -0.2, 0.1}};
+  if (spec().is_global && spec().estimates_rotation) {
+    other_from_lidar.rotation = ExpSo3({0.4, -1.1, 0.7});
+  }
+  const Expected<SolveReport> here = solver_->Solve(scene.problem);
+  const Expected<SolveReport> there = solver_->Solve(MoveLidar(scene.problem, other_from_lidar));
+  ASSERT_TRUE(here) << here.error().message;
+  ASSERT_TRUE(there) << there.error().message;
+  ExpectSamePose(there->cam_from_lidar * other_from_lidar, here->cam_from_lidar, 1e-5);
+}
+
+TEST_P(GlobalPointPairContract, AnswerMovesWithTheCameraFrame) {
+  Random random(3);
+  const Scene scene = SceneFor(Noisy(), random);
+  const Rigid3d other_from_cam{ExpSo3({0.4, -1.1, 0.7}), {0.3, -0.2, 0.1}};
+  CalibrationProblem moved = scene.problem;
+  for (Pair3d3d& pair : moved.pairs_3d3d) pair.point_in_cam = other_from_cam * pair.point_in_cam;
+  const Expected<SolveReport> here = solver_->Solve(scene.problem);
+  const Expected<SolveReport> there = solver_->Solve(moved);
+  ASSERT_TRUE(here && there);
+  ExpectSamePose(there->cam_from_lidar, other_from_cam * here->cam_from_lidar, 1e-5);
+}
+
+TEST_P(SolverContract, OrderOfThePairsDoesNotMatter) {
+  Random random(4);
+  const Scene scene = SceneFor(Noisy(), random);
+  CalibrationProblem reversed = scene.problem;
+  std::reverse(reversed.pairs_3d3d.begin(), reversed.pairs_3d3d.end());
+  std::reverse(reversed.pairs_2d3d.begin(), reversed.pairs_2d3d.end());
+  std::reverse(reversed.point_sets.in_cam.begin(), reversed.point_sets.in_cam.end());
+  const Expected<SolveReport> forward = solver_->Solve(scene.problem);
+  const Expected<SolveReport> backward = solver_->Solve(reversed);
+  ASSERT_TRUE(forward && backward);
+  ExpectSamePose(forward->cam_from_lidar, backward->cam_from_lidar, 1e-5);
+}
+
+TEST_P(SolverContract, SameProblemSameBits) {
+  Random random(5);
+  const Scene scene = SceneFor(Noisy(), random);
+  const Expected<SolveReport> first = solver_->Solve(scene.problem);
+  const Expected<SolveReport> second = solver_->Solve(scene.problem);
+  ASSERT_TRUE(first && second);
+  ExpectSameBits(*first, *second);
+}
+
+TEST_P(SolverContract, FourThreadsGetTheSameBits) {
+  Random random(6);
+  const Scene scene = SceneFor(Noisy(), random);
+  const Expected<SolveReport> alone = solver_->Solve(scene.problem);
+  ASSERT_TRUE(alone) << alone.error().message;
+  std::vector<Expected<SolveReport>> reports(4, Expected<SolveReport>(SolveReport{}));
+  {
+    std::vector<std::jthread> threads;
+    for (Expected<SolveReport>& report : reports) {
+      threads.emplace_back([&] { report = solver_->Solve(scene.problem); });
+    }
+  }
+  for (const Expected<SolveReport>& report : reports) {
+    ASSERT_TRUE(report);
+    ExpectSameBits(*report, *alone);
+  }
+}
+
+TEST_P(SolverContract, CovarianceIsSymmetricAndPositive) {
+  Random random(7);
+  const Scene scene = SceneFor(Noisy(), random);
+  const Expected<SolveReport> report = solver_->Solve(scene.problem);
+  ASSERT_TRUE(report) << report.error().message;
+  ASSERT_TRUE(report->covariance);
+  EXPECT_TRUE(report->covariance->allFinite());
+  EXPECT_TRUE(report->covariance->isApprox(report->covariance->transpose(), 1e-12));
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(*report->covariance);
+  EXPECT_GE(eigen.eigenvalues()(0), -1e-12);
+}
+
+// Mean normalised estimation error squared over its 6 degrees of freedom is 1 for an honest
+// covariance; 200 trials leave a standard error of sqrt(2 / 1200) = 0.041, and five of these are
+// allowed beside 5 percent for what a covariance of first order leaves out.
+TEST_P(PairNoiseContract, CovarianceIsHonest) {
+  constexpr int kTrials = 200;
+  double sum = 0.0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Random random(DeriveSeed(8, spec().name, 0, static_cast<std::uint64_t>(trial)));
+    const Scene scene = SceneFor({.pairs = 20, .sigma_m = 0.005, .sigma_px = 0.5}, random);
+    const Expected<SolveReport> report = solver_->Solve(scene.problem);
+    ASSERT_TRUE(report) << report.error().message;
+    ASSERT_TRUE(report->covariance);
+    const Vector6d error = PoseDifference(report->cam_from_lidar, scene.cam_from_lidar);
+    sum += error.dot(report->covariance->ldlt().solve(error)) / 6.0;
+  }
+  EXPECT_NEAR(sum / kTrials, 1.0, 5.0 * std::sqrt(2.0 / (6.0 * kTrials)) + 0.05);
+}
+
+TEST_P(SolverContract, SaysWhatIsMissing) {
+  const Expected<SolveReport> report = solver_->Solve(CalibrationProblem{});
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, ErrorCode::kMissingData);
+  EXPECT_NE(report.error().message.find(spec().name), std::string::npos);
+}
+
+TEST_P(MinimumContract, SaysHowManyItNeeds) {
+  const DataNeeds& needs = spec().needs;
+  const int least = std::max({needs.pairs_3d3d, needs.pairs_2d3d, needs.points_per_set});
+  Random random(9);
+  const Scene scene = SceneFor({.pairs = least - 1}, random);
+  const Expected<SolveReport> report = solver_->Solve(scene.problem);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, ErrorCode::kTooFewPairs);
+}
+
+TEST_P(SolverContract, RefusesNumbersThatAreNotFinite) {
+  Random random(10);
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    Scene scene = SceneFor({.pairs = 12}, random);
+    CalibrationProblem& problem = scene.problem;
+    if (!problem.pairs_3d3d.empty()) problem.pairs_3d3d[5].point_in_cam.y() = bad;
+    if (!problem.pairs_2d3d.empty()) problem.pairs_2d3d[5].pixel.y() = bad;
+    if (!problem.point_sets.in_cam.empty()) problem.point_sets.in_cam[5].y() = bad;
+    const Expected<SolveReport> report = solver_->Solve(problem);
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().code, ErrorCode::kNonFinite);
+  }
+}
+
+TEST_P(PairContract, RefusesNegativeSigmas) {
+  Random random(11);
+  Scene scene = SceneFor({.pairs = 12}, random);
+  for (Pair3d3d& pair : scene.problem.pairs_3d3d) pair.sigma_m = -0.1;
+  for (Pair2d3d& pair : scene.problem.pairs_2d3d) pair.sigma_px = -0.1;
+  const Expected<SolveReport> report = solver_->Solve(scene.problem);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, ErrorCode::kInvalidInput);
+}
+
+TEST_P(RotationContract, RefusesPointsOnALineOrAllAlike) {
+  Random random(12);
+  for (const double length : {1.0, 0.0}) {
+    Scene scene = SceneFor({.pairs = 12}, random);
+    CalibrationProblem& problem = scene.problem;
+    const Rigid3d lidar_from_cam = scene.cam_from_lidar.Inverse();
+    const auto on_line = [length](std::size_t i) {
+      return Eigen::Vector3d(length * static_cast<double>(i) / 12.0, 0.2, 3.0);
+    };
+    for (std::size_t i = 0; i < problem.pairs_3d3d.size(); ++i) {
+      problem.pairs_3d3d[i].point_in_cam = on_line(i);
+      problem.pairs_3d3d[i].point_in_lidar = lidar_from_cam * on_line(i);
+    }
+    for (std::size_t i = 0; i < problem.pairs_2d3d.size(); ++i) {
+      problem.pairs_2d3d[i].pixel = *Project(*problem.camera, on_line(i));
+      problem.pairs_2d3d[i].point_in_lidar = lidar_from_cam * on_line(i);
+    }
+    for (std::size_t i = 0; i < problem.point_sets.in_cam.size(); ++i) {
+      problem.point_sets.in_cam[i] = on_line(i);
+      problem.point_sets.in_lidar[i] = lidar_from_cam * on_line(i);
+    }
+    const Expected<SolveReport> report = solver_->Solve(problem);
+    ASSERT_FALSE(report) << "length " << length;
+    EXPECT_TRUE(report.error().code == ErrorCode::kDegenerate ||
+                report.error().code == ErrorCode::kNoConsensus)
+        << ToString(report.error().code) << ": " << report.error().message;
+  }
+}
+
+TEST_P(SolverContract, NeverAnswersWithNumbersThatAreNotFinite) {
+  Random random(13);
+  for (const double scale : {1e-200, 1e-12, 1e12, 1e150, 1e300}) {
+    Scene scene = SceneFor({.pairs = 12}, random);
+    for (Pair3d3d& pair : scene.problem.pairs_3d3d) {
+      pair.point_in_cam *= scale;
+      pair.point_in_lidar *= scale;
+    }
+    for (Pair2d3d& pair : scene.problem.pairs_2d3d) pair.point_in_lidar *= scale;
+    for (Eigen::Vector3d& point : scene.problem.point_sets.in_cam) point *= scale;
+    for (Eigen::Vector3d& point : scene.problem.point_sets.in_lidar) point *= scale;
+    const Expected<SolveReport> report = solver_->Solve(scene.problem);
+    if (report) {
+      EXPECT_TRUE(report->cam_from_lidar.IsFinite()) << "scale " << scale;
+      EXPECT_NEAR(report->cam_from_lidar.rotation.norm(), 1.0, 1e-9) << "scale " << scale;
+    }
+  }
+}
+
+std::string TestName(const testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  std::replace_if(
+      name.begin(), name.end(),
+      [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+  return name;
+}
+
+std::vector<std::string> SpecsWhere(bool (*holds)(const SolverSpec&)) {
+  std::vector<std::string> specs = AllSpecs();
+  const SolverRegistry registry = BuiltinSolvers();
+  std::erase_if(specs,
+                [&](const std::string& spec) { return !holds((*registry.Make(spec))->spec()); });
+  return specs;
+}
+
+bool UsesPairs(const SolverSpec& spec) { return spec.needs.points_per_set == 0; }
+bool IsGlobalOnPointPairs(const SolverSpec& spec) {
+  return spec.needs.pairs_3d3d > 0 && spec.is_global && spec.estimates_rotation;
+}
+// The covariance of a solver that takes the rotation as given is conditional on it.
+bool HasFullCovariance(const SolverSpec& spec) {
+  return UsesPairs(spec) && spec.estimates_rotation;
+}
+bool EstimatesRotation(const SolverSpec& spec) { return spec.estimates_rotation; }
+bool NeedsTwoOrMore(const SolverSpec& spec) {
+  return std::max({spec.needs.pairs_3d3d, spec.needs.pairs_2d3d, spec.needs.points_per_set}) > 1;
+}
+
+#define SEXTANT_INSTANTIATE(suite, specs) \
+  INSTANTIATE_TEST_SUITE_P(Every, suite, testing::ValuesIn(specs), TestName)
+SEXTANT_INSTANTIATE(SolverContract, AllSpecs());
+SEXTANT_INSTANTIATE(GlobalPointPairContract, SpecsWhere(IsGlobalOnPointPairs));
+SEXTANT_INSTANTIATE(PairContract, SpecsWhere(UsesPairs));
+SEXTANT_INSTANTIATE(PairNoiseContract, SpecsWhere(HasFullCovariance));
+SEXTANT_INSTANTIATE(RotationContract, SpecsWhere(EstimatesRotation));
+SEXTANT_INSTANTIATE(MinimumContract, SpecsWhere(NeedsTwoOrMore));
+
+TEST(Registry, EveryExampleWorks) {
+  const SolverRegistry registry = BuiltinSolvers();
+  for (const SolverEntry& entry : registry.entries()) {
+    const Expected<SolverPtr> solver = registry.Make(entry.example);
+    EXPECT_TRUE(solver) << entry.name << ": " << solver.error().message;
+    EXPECT_FALSE(entry.summary.empty() || entry.needs.empty() || entry.reference.empty())
+        << entry.name;
+  }
+}
+
+TEST(Registry, NamesTheNearestKnownName) {
+  const SolverRegistry registry = BuiltinSolvers();
+  const Expected<SolverPtr> solver = registry.Make("kabsh");
+  ASSERT_FALSE(solver);
+  EXPECT_EQ(solver.error().code, ErrorCode::kUnknownName);
+  EXPECT_NE(solver.error().message.find("'kabsch'"), std::string::npos);
+}
+
+TEST(Registry, RefusesOptionsItDoesNotKnow) {
+  const SolverRegistry registry = BuiltinSolvers();
+  EXPECT_EQ(registry.Make("kabsch(weight=1)").error().code, ErrorCode::kUnknownName);
+  EXPECT_EQ(registry.Make("kabsch(kabsch)").error().code, ErrorCode::kInvalidOption);
+}
+
+}  // namespace
+}  // namespace sextant
