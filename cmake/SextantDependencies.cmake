@@ -1,12 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
 # Every library, with the Debian package and the reason, is listed in scripts/packages.txt.
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(tl-expected REQUIRED)
-find_package(fmt 9 REQUIRED)
-find_package(Ceres 2.1 REQUIRED)
-find_package(nanoflann REQUIRED)
-find_package(yaml-cpp REQUIRED)
-find_package(nlohmann_json REQUIRED)
+# A version is the oldest that works; newer majors of fmt, Ceres and OpenCV pass these checks.
+
+# find_package for a library that our static libraries link: for us now and, where it was found,
+# through sextantConfig.cmake for whoever calls find_package(sextant).
+macro(sextant_dependency package)
+  find_package(${package} ${ARGN})
+  if(${package}_FOUND)
+    string(JOIN " " arguments ${package} ${ARGN})
+    string(APPEND SEXTANT_FIND_DEPENDENCIES "find_dependency(${arguments})
+")
+  endif()
+endmacro()
+
+sextant_dependency(Eigen3 3.4 REQUIRED NO_MODULE)
+sextant_dependency(tl-expected REQUIRED)
+sextant_dependency(fmt 9 REQUIRED)
+sextant_dependency(Ceres 2.1 REQUIRED)
+sextant_dependency(nanoflann REQUIRED)
+sextant_dependency(yaml-cpp REQUIRED)
+sextant_dependency(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
+
+# yaml-cpp 0.7 (Debian 12) exports its target without the namespace that 0.8 gives it.
+if(NOT TARGET yaml-cpp::yaml-cpp)
+  add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
+endif()
+
 if(BUILD_TESTING)
   find_package(GTest REQUIRED)
 endif()

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Defines a library of one folder: sextant_library(<folder> PUBLIC ... PRIVATE ...).
 #
 # Sources are globbed, so that a new solver is one new file; CONFIGURE_DEPENDS looks again at each
@@ -11,7 +12,10 @@ function(sextant_library name)
   add_library(sextant::${target} ALIAS sextant_${target})
   target_sources(sextant_${target} PUBLIC
     FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
-  target_link_libraries(sextant_${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:sextant_options>)
+  target_compile_features(sextant_${target} PUBLIC cxx_std_20)
+  target_link_libraries(sextant_${target}
+    PUBLIC ${ARG_PUBLIC}
+    PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:sextant_options>)
   set_target_properties(sextant_${target} PROPERTIES EXPORT_NAME ${target})
   install(TARGETS sextant_${target} EXPORT sextantTargets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}

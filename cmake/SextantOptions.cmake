@@ -1,5 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
 # Language, warnings and sanitizers, for every target of ours and for nobody who links us.
-option(SEXTANT_WARNINGS_AS_ERRORS "Fail the build on a warning" ON)
+# A newer compiler warns of more; only those that we hold clean may stop a build for it.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13
+   OR CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 15)
+  set(known_compiler ON)
+else()
+  set(known_compiler OFF)
+endif()
+option(SEXTANT_WARNINGS_AS_ERRORS "Fail the build on a warning" ${known_compiler})
 option(SEXTANT_BENCH "Build the benchmarks" ON)
 set(SEXTANT_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined")
 
