@@ -29,6 +29,8 @@ endif()
 add_library(sextant_options INTERFACE)
 target_compile_options(sextant_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Wold-style-cast
+  # g++ 12 warns falsely of `"text" + string` (its bug 105651).
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   # Fused multiply-add would round differently from machine to machine: same seed, same bits.
   -ffp-contract=off
   $<$<BOOL:${SEXTANT_WARNINGS_AS_ERRORS}>:-Werror>)

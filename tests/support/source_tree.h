@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace sextant::test {
+
+/// A text file of the project.
+struct SourceFile {
+  std::string path;    ///< From the project's root: "solvers/kabsch.cc".
+  std::string folder;  ///< "solvers"; empty for the root itself.
+  std::vector<std::string> lines;
+};
+
+/// Every text file of the project by path: sources, build files, scripts and pages; not what was
+/// built, nor hidden folders.
+std::vector<SourceFile> ReadSourceTree();
+
+/// Whether it is a C++ file.
+bool IsCpp(const SourceFile& file);
+
+/// Whether the project has this file.
+bool Exists(const std::string& path_from_root);
+
+}  // namespace sextant::test
