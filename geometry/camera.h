@@ -17,6 +17,10 @@ enum class CameraModel {
 
 /// Intrinsics. Pixel (0, 0) is the centre of the top-left pixel. Camera frame: x right, y down,
 /// z forward.
+///
+/// Domain: points in front of the camera (z > 0, so less than 90 degrees from the axis also for a
+/// fisheye), up to the radius at which the distorted image first stops growing. Beyond it two
+/// points share a pixel and the polynomial means nothing. Equations: geometry/distortion.h.
 struct Camera {
   CameraModel model = CameraModel::kPinhole;
   int width_px = 0;   ///< 0 where unknown.
@@ -28,7 +32,9 @@ struct Camera {
   std::array<double, 8> distortion{};  ///< Unused entries are zero.
 };
 
-/// Refuses focal lengths that are not positive and numbers that are not finite.
+/// Errors: kNonFinite; kInvalidInput for focal lengths that are not positive, a negative image
+/// size, distortion of a pinhole, and distortion that folds near the centre: within half of the
+/// shorter half side of the image, or within 0.05 rad of the axis where the image size is unknown.
 Expected<void> ValidateCamera(const Camera& camera);
 
 /// Pixel of a point in the camera frame [m]; none for a point behind the camera or where the
@@ -43,8 +49,8 @@ struct ProjectionWithJacobian {
 std::optional<ProjectionWithJacobian> ProjectWithJacobian(const Camera& camera,
                                                           const Eigen::Vector3d& point_in_cam);
 
-/// Unit ray in the camera frame through a pixel, by Newton's method on the distortion; none for a
-/// pixel outside the image of the model's domain.
+/// Unit ray in the camera frame through a pixel, by Newton's method on the distortion to rounding;
+/// none for a pixel outside the image of the model's domain.
 std::optional<Eigen::Vector3d> Unproject(const Camera& camera, const Eigen::Vector2d& pixel);
 
 }  // namespace sextant
