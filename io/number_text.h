@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+
+namespace sextant {
+
+/// Where in a file something stands; every message of a reader begins with it.
+struct Place {
+  std::string_view file;
+  int line = 0;                ///< From 1; 0 for the file as a whole.
+  std::size_t field = 0;       ///< From 1; 0 for the line as a whole.
+  std::string_view name = {};  ///< Of the field, where the format gives it one.
+};
+
+/// "points.txt:5: field 2 (camx)".
+std::string ToString(const Place& place);
+
+/// The text in single quotes on one line: cut to 40 bytes, unprintable bytes as \xNN.
+std::string Quoted(std::string_view text);
+
+/// The text without line breaks or unprintable bytes, cut to `most` bytes.
+std::string Printable(std::string_view text, std::size_t most);
+
+/// The whole text as a number, whatever the locale. Errors: kParse; kNonFinite.
+Expected<double> ParseFinite(std::string_view text, const Place& place);
+
+/// The whole text as an integer within [low, high]. Error: kParse.
+Expected<std::int64_t> ParseInteger(std::string_view text, std::int64_t low, std::int64_t high,
+                                    const Place& place);
+
+}  // namespace sextant

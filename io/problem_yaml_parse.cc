@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+
+#include "io/number_text.h"
+#include "io/problem_yaml.h"
+#include "io/text_file.h"
+#include "io/yaml_fields.h"
+
+namespace sextant {
+namespace {
+
+using Keys = std::vector<std::string>;
+
+constexpr int kMostId = 1'000'000'000;
+
+Camera ReadCamera(YamlFields& in, const YamlNode& node) {
+  static const Keys kKeys = {"model", "width_px", "height_px", "fx_px",
+                             "fy_px", "cx_px",    "cy_px",     "distortion"};
+  static const Keys kModels = {"pinhole", "brown_conrady", "equidistant"};
+  Camera camera;
+  if (!in.IsMap(node, "camera", kKeys)) return camera;
+  const std::string model = in.TextAt(node, "model");
+  if (model == "pinhole") {
+    camera.model = CameraModel::kPinhole;
+  } else if (model == "brown_conrady") {
+    camera.model = CameraModel::kBrownConrady;
+  } else if (model == "equidistant") {
+    camera.model = CameraModel::kEquidistant;
+  } else {
+    in.Fail(node.line, "model",
+            fmt::format("expected {}, got {}", fmt::join(kModels, " or "), Quoted(model)));
+  }
+  constexpr int kMostPixels = 1'000'000;
+  if (node.Find("width_px") != nullptr)
+    camera.width_px = in.IntegerAt(node, "width_px", 0, kMostPixels);
+  if (node.Find("height_px") != nullptr)
+    camera.height_px = in.IntegerAt(node, "height_px", 0, kMostPixels);
+  camera.fx_px = in.RealAt(node, "fx_px");
+  camera.fy_px = in.RealAt(node, "fy_px");
+  camera.cx_px = in.RealAt(node, "cx_px");
+  camera.cy_px = in.RealAt(node, "cy_px");
+  if (const YamlNode* list = node.Find("distortion")) {
+    const std::vector<double> values = in.RealList(*list, "distortion", camera.distortion.size());
+    std::copy(values.begin(), values.end(), camera.distortion.begin());
+  }
+  if (!in.ok()) return camera;
+  if (Expected<void> valid = ValidateCamera(camera); !valid) {
+    in.Fail(node.line, "camera", valid.error().message);
+  }
+  return camera;
+}
+
+// Untouched where it is of unit length to rounding, so that a file round-trips to the bit.
+Eigen::Quaterniond ReadQuaternion(YamlFields& in, const YamlNode& node) {
+  std::array<double, 4> wxyz{};
+  in.Reals(node, "quaternion_wxyz", wxyz);
+  const Eigen::Quaterniond rotation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  const double excess = rotation.norm() - 1.0;
+  if (in.ok() && !(std::abs(excess) < 1e-5)) {
+    in.Fail(node.line, "quaternion_wxyz",
+            fmt::format("expected length 1, got {:g}", rotation.norm()));
+  }
+  return std::abs(excess) < 1e-15 ? rotation : rotation.normalized();
+}
+
+Rigid3d ReadMatrix(YamlFields& in, const YamlNode& node) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  if (!in.IsSequence(node, "matrix")) return {};
+  if (node.items.size() != 4) {
+    in.Fail(node.line, "matrix", fmt::format("expected 4 rows, got {}", node.items.size()));
+    return {};
+  }
+  for (int i = 0; i < 4; ++i) {
+    Eigen::Vector4d row;
+    in.Reals(node.items[static_cast<std::size_t>(i)], "matrix", {row.data(), 4});
+    matrix.row(i) = row;
+  }
+  const Eigen::Matrix3d r = matrix.topLeftCorner<3, 3>();
+  const bool rigid = (r * r.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-5 &&
+                     r.determinant() > 0.0 && matrix.row(3) == Eigen::RowVector4d(0, 0, 0, 1);
+  if (in.ok() && !rigid) {
+    in.Fail(node.line, "matrix", "expected a rotation and a translation over the row 0 0 0 1");
+  }
+  return {Eigen::Quaterniond(r).normalized(), matrix.topRightCorner<3, 1>()};
+}
+
+Rigid3d ReadPose(YamlFields& in, const YamlNode& node, std::string_view what) {
+  static const Keys kKeys = {"translation_m", "quaternion_wxyz", "matrix"};
+  if (!in.IsMap(node, what, kKeys)) return {};
+  if (const YamlNode* matrix = node.Find("matrix")) {
+    if (node.items.size() > 1) {
+      in.Fail(node.line, what, "expected either matrix or translation_m and quaternion_wxyz");
+    }
+    return ReadMatrix(in, *matrix);
+  }
+  Rigid3d pose;
+  pose.translation = in.PointAt(node, "translation_m");
+  pose.rotation = ReadQuaternion(in, in.Require(node, "quaternion_wxyz"));
+  return pose;
+}
+
+// Board i / 4, corner i mod 4 where the pair names none, as in points.txt.
+PairId ReadId(YamlFields& in, const YamlNode& pair, std::size_t index) {
+  const YamlNode* node = pair.Find("id");
+  if (node == nullptr) {
+    const int i = static_cast<int>(index);
+    return {.view = 0, .board = i / kCornersPerBoard, .corner = i % kCornersPerBoard};
+  }
+  static const Keys kKeys = {"view", "board", "corner"};
+  PairId id;
+  if (!in.IsMap(*node, "id", kKeys)) return id;
+  if (node->Find("view") != nullptr) id.view = in.IntegerAt(*node, "view", 0, kMostId);
+  id.board = in.IntegerAt(*node, "board", 0, kMostId);
+  id.corner = in.IntegerAt(*node, "corner", 0, kMostId);
+  return id;
+}
+
+void ReadPairs3d3d(YamlFields& in, const YamlNode& list, std::vector<Pair3d3d>& pairs) {
+  static const Keys kKeys = {"id", "point_in_cam", "point_in_lidar", "sigma_m",
+                             "covariance_in_cam_m2"};
+  if (!in.IsSequence(list, "pairs_3d3d")) return;
+  for (const YamlNode& node : list.items) {
+    if (!in.IsMap(node, "pairs_3d3d", kKeys)) return;
+    Pair3d3d pair;
+    pair.point_in_cam = in.PointAt(node, "point_in_cam");
+    pair.point_in_lidar = in.PointAt(node, "point_in_lidar");
+    pair.sigma_m = in.NonNegativeAt(node, "sigma_m", 0.0);
+    if (const YamlNode* covariance = node.Find("covariance_in_cam_m2")) {
+      in.Reals(*covariance, "covariance_in_cam_m2", {pair.covariance_in_cam.emplace().data(), 9});
+    }
+    pair.id = ReadId(in, node, pairs.size());
+    pairs.push_back(pair);
+  }
+}
+
+void ReadPairs2d3d(YamlFields& in, const YamlNode& list, std::vector<Pair2d3d>& pairs) {
+  static const Keys kKeys = {"id", "pixel", "point_in_lidar", "sigma_px"};
+  if (!in.IsSequence(list, "pairs_2d3d")) return;
+  for (const YamlNode& node : list.items) {
+    if (!in.IsMap(node, "pairs_2d3d", kKeys)) return;
+    Pair2d3d pair;
+    in.Reals(in.Require(node, "pixel"), "pixel", {pair.pixel.data(), 2});
+    pair.point_in_lidar = in.PointAt(node, "point_in_lidar");
+    pair.sigma_px = in.NonNegativeAt(node, "sigma_px", 0.0);
+    pair.id = ReadId(in, node, pairs.size());
+    pairs.push_back(pair);
+  }
+}
+
+std::vector<Eigen::Vector3d> ReadPointList(YamlFields& in, const YamlNode& list,
+                                           std::string_view what) {
+  std::vector<Eigen::Vector3d> points;
+  if (!in.IsSequence(list, what)) return points;
+  for (const YamlNode& node : list.items) points.push_back(in.Point(node, what));
+  return points;
+}
+
+void ReadBoards(YamlFields& in, const YamlNode& list, std::vector<Board>& boards) {
+  static const Keys kKeys = {"id", "top_right_m", "right_bottom_m"};
+  if (!in.IsSequence(list, "boards")) return;
+  for (const YamlNode& node : list.items) {
+    if (!in.IsMap(node, "boards", kKeys)) return;
+    in.Require(node, "top_right_m");
+    in.Require(node, "right_bottom_m");
+    Board board;
+    board.id = in.IntegerAt(node, "id", 0, kMostId);
+    board.top_right_m = in.NonNegativeAt(node, "top_right_m", 0.0);
+    board.right_bottom_m = in.NonNegativeAt(node, "right_bottom_m", 0.0);
+    boards.push_back(board);
+  }
+}
+
+void ReadHeader(YamlFields& in, const YamlNode& root) {
+  static const Keys kKeys = {"sextant_problem", "comment",    "camera",
+                             "boards",          "pairs_3d3d", "pairs_2d3d",
+                             "point_sets",      "truth",      "initial_cam_from_lidar"};
+  if (root.kind == YamlNode::Kind::kMap && root.Find("sextant_problem") == nullptr) {
+    in.Fail(root.line, {},
+            "expected a problem file with the key sextant_problem: 1; is this another kind of "
+            "YAML, such as a camera file?");
+  }
+  if (!in.IsMap(root, "sextant_problem", kKeys)) return;
+  in.IntegerAt(root, "sextant_problem", 1, 1);
+}
+
+}  // namespace
+
+Expected<ProblemFile> ReadProblemYaml(const std::filesystem::path& path) {
+  return ReadWith(path, ParseProblemYaml);
+}
+
+Expected<ProblemFile> ParseProblemYaml(std::string_view text, const std::string& file) {
+  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
+  if (!root) return tl::unexpected<Error>(root.error());
+  YamlFields in(file);
+  ReadHeader(in, *root);
+  if (!in.ok()) return in.TakeError();
+
+  ProblemFile read;
+  CalibrationProblem& problem = read.problem;
+  if (root->Find("comment") != nullptr) read.comment = in.TextAt(*root, "comment");
+  if (const YamlNode* node = root->Find("camera")) problem.camera = ReadCamera(in, *node);
+  if (const YamlNode* node = root->Find("boards")) ReadBoards(in, *node, problem.boards);
+  if (const YamlNode* node = root->Find("initial_cam_from_lidar")) {
+    problem.initial_cam_from_lidar = ReadPose(in, *node, "initial_cam_from_lidar");
+  }
+  if (const YamlNode* node = root->Find("pairs_3d3d")) ReadPairs3d3d(in, *node, problem.pairs_3d3d);
+  if (const YamlNode* node = root->Find("pairs_2d3d")) ReadPairs2d3d(in, *node, problem.pairs_2d3d);
+  problem.point_sets = WithholdPairing(problem.pairs_3d3d);
+  if (const YamlNode* node = root->Find("point_sets")) {
+    static const Keys kKeys = {"in_cam", "in_lidar"};
+    if (in.IsMap(*node, "point_sets", kKeys)) {
+      problem.point_sets.in_cam = ReadPointList(in, in.Require(*node, "in_cam"), "in_cam");
+      problem.point_sets.in_lidar = ReadPointList(in, in.Require(*node, "in_lidar"), "in_lidar");
+    }
+  }
+  if (const YamlNode* node = root->Find("truth")) {
+    static const Keys kKeys = {"cam_from_lidar"};
+    if (in.IsMap(*node, "truth", kKeys)) {
+      read.true_cam_from_lidar =
+          ReadPose(in, in.Require(*node, "cam_from_lidar"), "cam_from_lidar");
+    }
+  }
+  if (!in.ok()) return in.TakeError();
+  return read;
+}
+
+}  // namespace sextant

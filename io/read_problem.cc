@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/read_problem.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "io/line_reader.h"
+#include "io/number_text.h"
+#include "io/points_file.h"
+#include "io/text_file.h"
+
+namespace sextant {
+namespace {
+
+bool IsNumber(std::string_view text) { return ParseFinite(text, {}).has_value(); }
+
+std::optional<ProblemFormat> Detect(std::string_view text, const std::string& file) {
+  const std::string extension = std::filesystem::path(file).extension().string();
+  if (extension == ".yaml" || extension == ".yml") return ProblemFormat::kYaml;
+  LineReader in(file, text);
+  if (!in.Next()) return std::nullopt;
+  if (in.field_count() == 1 && IsNumber(in.Field(0))) return ProblemFormat::kPoints;
+  if (in.Field(0).ends_with(':')) return ProblemFormat::kYaml;
+  return std::nullopt;
+}
+
+tl::unexpected<Error> UnknownFormat(const std::string& file) {
+  return MakeError(
+      ErrorCode::kParse,
+      fmt::format("{}:1: not a problem in a known format; expected points.txt (first line: the "
+                  "number of points alone) or YAML (first line: sextant_problem: 1)",
+                  ToString(Place{.file = file})));
+}
+
+}  // namespace
+
+std::string_view ToString(ProblemFormat format) {
+  switch (format) {
+    case ProblemFormat::kYaml:
+      return "yaml";
+    case ProblemFormat::kPoints:
+      return "points";
+    case ProblemFormat::kPairsCsv:
+      return "csv";
+    case ProblemFormat::kAcfrPoses:
+      return "acfr_poses";
+  }
+  return "unknown";
+}
+
+Expected<DetectedProblem> ReadProblem(const std::filesystem::path& path) {
+  return ReadWith(path, ParseProblem);
+}
+
+Expected<DetectedProblem> ParseProblem(std::string_view text, const std::string& file) {
+  const std::optional<ProblemFormat> format = Detect(text, file);
+  if (!format) return UnknownFormat(file);
+  DetectedProblem detected;
+  detected.format = *format;
+  const auto keep_problem = [&](CalibrationProblem&& problem) {
+    detected.problem = std::move(problem);
+  };
+  Expected<void> ok;
+  switch (*format) {
+    case ProblemFormat::kYaml:
+      ok = ParseProblemYaml(text, file).map([&](ProblemFile&& read) {
+        static_cast<ProblemFile&>(detected) = std::move(read);
+      });
+      break;
+    case ProblemFormat::kPoints:
+      ok = ParsePoints(text, file).map(keep_problem);
+      break;
+    case ProblemFormat::kPairsCsv:
+    case ProblemFormat::kAcfrPoses:
+      return UnknownFormat(file);
+  }
+  if (!ok) return tl::unexpected<Error>(std::move(ok.error()));
+  return detected;
+}
+
+}  // namespace sextant

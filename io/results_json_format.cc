@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "io/results_json.h"
+
+namespace sextant {
+namespace {
+
+// Keeps the keys in the order in which they are documented.
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+template <int kRows, int kCols>
+Json Rows(const Eigen::Matrix<double, kRows, kCols>& matrix) {
+  Json rows = Json::array();
+  for (int i = 0; i < kRows; ++i) {
+    Json row = Json::array();
+    for (int j = 0; j < kCols; ++j) row.push_back(matrix(i, j));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+Json Pose(const Rigid3d& pose) {
+  const Eigen::Quaterniond& q = pose.rotation;
+  const Eigen::Vector3d& t = pose.translation;
+  const EulerZyx euler = ToEulerZyx(q);
+  return {
+      {"matrix", Rows<4, 4>(pose.Matrix())},
+      {"translation_m", {t.x(), t.y(), t.z()}},
+      {"quaternion_wxyz", {q.w(), q.x(), q.y(), q.z()}},
+      {"euler_zyx_deg",
+       {euler.yaw * kDegPerRad, euler.pitch * kDegPerRad, euler.roll * kDegPerRad}},
+  };
+}
+
+template <class T>
+Json OrNull(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json Poses(const std::vector<Rigid3d>& poses) {
+  Json list = Json::array();
+  for (const Rigid3d& pose : poses) list.push_back(Pose(pose));
+  return list;
+}
+
+// Every key stands in every result, so that a tool need not ask whether it is there.
+Json Result(const SolverResult& result) {
+  const SolveReport* report = result.report ? &*result.report : nullptr;
+  Json json;
+  json["solver"] = result.solver;
+  json["ok"] = report != nullptr;
+  json["error"] = report ? Json(nullptr) : Json(result.report.error().message);
+  json["error_code"] = report ? Json(nullptr) : Json(ToString(result.report.error().code));
+  if (report == nullptr) {
+    for (const char* key :
+         {"cam_from_lidar", "covariance", "rmse_m", "rmse_px", "per_pair_m", "per_pair_px",
+          "inliers", "alternatives", "iterations", "termination", "wall_time_us"}) {
+      json[key] = nullptr;
+    }
+    return json;
+  }
+  json["cam_from_lidar"] = Pose(report->cam_from_lidar);
+  json["covariance"] = report->covariance ? Rows<6, 6>(*report->covariance) : Json(nullptr);
+  json["rmse_m"] = OrNull(report->evaluation.rmse_m);
+  json["rmse_px"] = OrNull(report->evaluation.rmse_px);
+  json["per_pair_m"] = report->evaluation.per_pair_m;
+  json["per_pair_px"] = report->evaluation.per_pair_px;
+  json["inliers"] = report->inliers;
+  json["alternatives"] = Poses(report->alternatives);
+  json["iterations"] = report->iterations;
+  json["termination"] = ToString(report->termination);
+  json["wall_time_us"] = report->wall_time_us;
+  return json;
+}
+
+}  // namespace
+
+std::string FormatResults(const ResultFile& results) {
+  const ResultInput& input = results.input;
+  Json json;
+  json["sextant"] = results.version;
+  json["input"] = {{"path", input.path},
+                   {"format", input.format},
+                   {"pairs_3d3d", input.pairs_3d3d},
+                   {"pairs_2d3d", input.pairs_2d3d},
+                   {"points_in_cam", input.points_in_cam},
+                   {"points_in_lidar", input.points_in_lidar}};
+  json["results"] = Json::array();
+  for (const SolverResult& result : results.results) json["results"].push_back(Result(result));
+  // A path may hold bytes that are not UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace sextant

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+
+namespace sextant {
+
+/// Larger files are refused: four million pairs fit, a scan given by mistake does not fill memory.
+inline constexpr std::size_t kMaxTextBytes = std::size_t{256} << 20;
+
+/// The bytes of a regular file. Error: kIo, with the path and the system's reason.
+Expected<std::string> ReadTextFile(const std::filesystem::path& path);
+
+/// Writes the file whole or not at all: a temporary in the same folder, flushed to the disk, then
+/// renamed over `path`. Keeps the permissions of a file that it replaces and follows links;
+/// devices and pipes are written directly. Error: kIo; nothing is left behind then.
+Expected<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view text);
+
+/// parse(text, name) of the file's content; the path as given names it in messages.
+template <class Parse>
+auto ReadWith(const std::filesystem::path& path, Parse parse)
+    -> decltype(parse(std::string_view(), std::string())) {
+  const Expected<std::string> text = ReadTextFile(path);
+  if (!text) return tl::unexpected<Error>(text.error());
+  return parse(std::string_view(*text), path.string());
+}
+
+}  // namespace sextant

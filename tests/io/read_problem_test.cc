@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/read_problem.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/real_data.h"
+
+namespace sextant {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(ReadProblem, TellsTheFormatByTheContent) {
+  const std::tuple<const char*, const char*, ProblemFormat> cases[] = {
+      {"points.txt", "1\n1 2 3\n4 5 6\n", ProblemFormat::kPoints},
+      {"points", "\xef\xbb\xbf\r\n1\r\n1 2 3\r\n4 5 6\r\n", ProblemFormat::kPoints},
+      {"a.yaml", "sextant_problem: 1\n", ProblemFormat::kYaml},
+      {"a.txt", "# by hand\nsextant_problem: 1\n", ProblemFormat::kYaml},
+  };
+  for (const auto& [file, text, format] : cases) {
+    const Expected<DetectedProblem> read = ParseProblem(text, file);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->format, format);
+  }
+}
+
+TEST(ReadProblem, NamesTheFormatsWhereNoneFits) {
+  for (const char* text : {"", "\n\n", "hello world\n", "1 2 3\n", "\x7f\x45LF", "%PDF-1.4"}) {
+    const Expected<DetectedProblem> read = ParseProblem(text, "some.file");
+    ASSERT_FALSE(read) << text;
+    EXPECT_EQ(read.error().code, ErrorCode::kParse);
+    EXPECT_THAT(read.error().message, HasSubstr("some.file:1: not a problem in a known format"));
+    EXPECT_THAT(read.error().message, HasSubstr("points.txt"));
+  }
+}
+
+TEST(ReadProblem, ReadsTheRealPoints) {
+  SEXTANT_REAL_DATA(path, "dhall/points_head.txt");
+  const Expected<DetectedProblem> read = ReadProblem(path);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->format, ProblemFormat::kPoints);
+  EXPECT_EQ(read->problem.pairs_3d3d.size(), 8U);
+}
+
+}  // namespace
+}  // namespace sextant
