@@ -6,7 +6,8 @@
 #define SEXTANT_SOLVERS(X) \
   X(MeanOffset)            \
   X(Kabsch)                \
-  X(EigenUmeyama)
+  X(EigenUmeyama)          \
+  X(Icp)
 
 namespace sextant {
 
