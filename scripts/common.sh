@@ -17,7 +17,7 @@ fail() {
   exit 1
 }
 
-trap 'fail "failed while $doing (exit code $?). What to do: $advice."' ERR
+trap 'fail "failed while $doing (exit code $?). What to do: $advice"' ERR
 
 # step <what, as "doing this"> <what to do if it fails>: announces, and is named by a failure.
 step() {
@@ -33,7 +33,7 @@ quietly() {
   mkdir -p "$logs"
   if ! "$@" >"$log" 2>&1 </dev/null; then
     tail -n 40 "$log" >&2
-    fail "failed while $doing. What to do: $advice. The whole log: $log"
+    fail "failed while $doing (log: $log). What to do: $advice"
   fi
 }
 
@@ -88,8 +88,7 @@ install_packages() {
   fi
   step "installing ${#missing[@]} missing packages, which takes a few minutes: ${missing[*]}" \
     "check the network and the package sources, then run as root:
-  $by_hand
-"
+  $by_hand"
   quietly dpkg-repair repair_dpkg
   quietly apt-update refresh_package_lists
   quietly apt-install apt install --no-install-recommends "${missing[@]}"
