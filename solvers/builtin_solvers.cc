@@ -7,7 +7,8 @@
   X(MeanOffset)            \
   X(Kabsch)                \
   X(EigenUmeyama)          \
-  X(Icp)
+  X(Icp)                   \
+  X(Refine)
 
 namespace sextant {
 

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/consensus.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "solvers/subset.h"
+
+namespace sextant {
+namespace {
+
+constexpr double kMaxFalseAlarms = 0.01;
+constexpr int kMaxRefits = 10;
+// Quantiles at 0.99 of chi-square with 2 and 3 degrees of freedom.
+constexpr double kChiSquare2 = 9.210340371976184;
+constexpr double kChiSquare3 = 11.344866730144373;
+
+// Volume within the threshold over the volume of the box of the measurements, the box grown by
+// the threshold so that flat data has a volume.
+double ChanceOfAgreement(const PairTerms& terms, double max_squared) {
+  const double threshold = std::sqrt(max_squared);
+  if (terms.pixels.empty()) {
+    Eigen::AlignedBox3d box;
+    double radius = 0.0;
+    for (const PointTerm& term : terms.points) {
+      box.extend(term.in_cam);
+      radius += threshold / std::cbrt(std::abs(term.whitener.determinant()));
+    }
+    radius /= static_cast<double>(terms.points.size());
+    const double ball = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+    return std::min(1.0, ball / (box.sizes().array() + 2.0 * radius).prod());
+  }
+  Eigen::AlignedBox2d box;
+  double radius = 0.0;
+  for (const PixelTerm& term : terms.pixels) {
+    box.extend(term.pixel);
+    radius += threshold / term.inverse_sigma;
+  }
+  radius /= static_cast<double>(terms.pixels.size());
+  const double disc = std::numbers::pi * radius * radius;
+  return std::min(1.0, disc / (box.sizes().array() + 2.0 * radius).prod());
+}
+
+double LogChoose(int n, int k) {
+  return std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0);
+}
+
+// P(Binomial(trials, p) >= successes).
+double BinomialTail(int trials, int successes, double p) {
+  if (successes <= 0 || p >= 1.0) return 1.0;
+  double tail = 0.0;
+  for (int k = successes; k <= trials; ++k) {
+    tail += std::exp(LogChoose(trials, k) + k * std::log(p) + (trials - k) * std::log1p(-p));
+  }
+  return tail;
+}
+
+}  // namespace
+
+double InlierOptions::MaxSquared(PairKind kind) const {
+  if (threshold > 0.0) return threshold * threshold;
+  return kind == PairKind::k3d3d ? kChiSquare3 : kChiSquare2;
+}
+
+Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer, int inlier_count,
+                              int least) {
+  const int count = static_cast<int>(terms.size());
+  const int absorbed = terms.pixels.empty() ? 2 : 3;
+  const double p = ChanceOfAgreement(terms, scorer.max_squared());
+  const double tail = BinomialTail(count - absorbed, inlier_count - absorbed, p);
+  const double false_alarms = std::exp(LogChoose(count, std::min(absorbed, count))) * tail;
+  if (inlier_count >= least && false_alarms < kMaxFalseAlarms) return {};
+  return MakeError(
+      ErrorCode::kNoConsensus,
+      fmt::format("the best pose gathers {} of {} pairs, expected at least {} and more than chance "
+                  "explains ({:.2g} such poses, fewer than {:g} wanted); check the pairing and the "
+                  "sigmas",
+                  inlier_count, count, least, false_alarms, kMaxFalseAlarms));
+}
+
+Expected<Estimate> SolveSubset(const Solver& inner, const CalibrationProblem& problem,
+                               std::span<const int> indices) {
+  Expected<SolveReport> report = inner.Solve(SubsetOf(problem, inner.spec().needs, indices));
+  if (!report) return tl::unexpected<Error>(std::move(report.error()));
+  Estimate estimate = std::move(static_cast<Estimate&>(*report));
+  for (int& i : estimate.inliers) i = indices[static_cast<std::size_t>(i)];
+  estimate.stages.push_back(
+      {report->solver, report->cam_from_lidar, report->iterations, report->wall_time_us});
+  return estimate;
+}
+
+Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem& problem,
+                                  const PoseScorer& scorer, const Rigid3d& pose) {
+  const DataNeeds& needs = inner.spec().needs;
+  const std::size_t least = static_cast<std::size_t>(std::max(needs.pairs_3d3d, needs.pairs_2d3d));
+  std::vector<int> inliers;
+  std::vector<int> next;
+  scorer.Inliers(pose, inliers);
+  for (int refit = 0;; ++refit) {
+    if (inliers.size() < least) {
+      return MakeError(ErrorCode::kNoConsensus,
+                       fmt::format("{} pairs agree on a pose, expected at least {}; check the "
+                                   "pairing and the sigmas",
+                                   inliers.size(), least));
+    }
+    Expected<Estimate> estimate = SolveSubset(inner, problem, inliers);
+    if (!estimate) return estimate;
+    scorer.Inliers(estimate->cam_from_lidar, next);
+    if (next == inliers || refit + 1 == kMaxRefits) return estimate;
+    std::swap(inliers, next);
+  }
+}
+
+}  // namespace sextant

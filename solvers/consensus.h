@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "solvers/options.h"
+#include "solvers/pose_scorer.h"
+#include "solvers/solver.h"
+
+namespace sextant {
+
+/// When a pair counts as an inlier; shared by every combinator that tells inliers from outliers.
+struct InlierOptions {
+  double threshold = 0.0;  ///< Sigmas; 0: 99 percent of true pairs are within.
+  double sigma_m = AssumedNoise{}.sigma_m;
+  double sigma_px = AssumedNoise{}.sigma_px;
+
+  AssumedNoise Assumed() const { return {sigma_m, sigma_px}; }
+
+  /// Largest squared whitened residual of an inlier: the 0.99 quantile of chi-square with 3 or 2
+  /// degrees of freedom, or threshold^2.
+  double MaxSquared(PairKind kind) const;
+};
+
+/// Adds threshold, sigma_m and sigma_px to a combinator's options.
+template <class Options>
+OptionSet<Options>& AddInlierOptions(OptionSet<Options>& options) {
+  return options
+      .Real(
+          "threshold", &Options::threshold, "sigma", 0.0, 1e6,
+          "largest residual of an inlier; 0: 3.37 (3D-3D) or 3.03 (2D-3D), the 99 percent quantile")
+      .Real("sigma_m", &Options::sigma_m, "m", 1e-9, 1e6, "assumed of pairs that state no sigma")
+      .Real("sigma_px", &Options::sigma_px, "px", 1e-6, 1e6,
+            "assumed of pairs that state no sigma");
+}
+
+/// Whether `inlier_count` pairs that agree on one pose are more than chance.
+///
+/// A contrario (Moisan and Stival 2004): were all measurements uniform in their bounding box, a
+/// pair would meet a given pose with probability p = volume within the threshold / volume of the
+/// box. A pose absorbs m pairs (2 of 3D-3D, 3 of 2D-3D), so the expected number of poses that k of
+/// n pairs agree on is about C(n, m) P(Binomial(n - m, p) >= k - m); it must be under 0.01.
+/// Error: kNoConsensus, for fewer than `least` inliers too.
+Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer, int inlier_count,
+                              int least);
+
+/// `inner` on all inliers of `pose`, again and again until the inliers stay the same (at most ten
+/// times). The estimate's inliers are those it was solved from, as indices of the whole problem;
+/// `inner` is added to its stages. Errors: kNoConsensus for fewer inliers than `inner` needs, and
+/// those of `inner`.
+Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem& problem,
+                                  const PoseScorer& scorer, const Rigid3d& pose);
+
+/// `inner` on the pairs at `indices` only; the estimate speaks of the whole problem's indices and
+/// has `inner` as its last stage.
+Expected<Estimate> SolveSubset(const Solver& inner, const CalibrationProblem& problem,
+                               std::span<const int> indices);
+
+}  // namespace sextant

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/pair_terms.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+
+#include "solvers/subset.h"
+
+namespace sextant {
+namespace {
+
+// W with W^T W the inverse of the pair's covariance.
+Eigen::Matrix3d Whitener(const Pair3d3d& pair, double assumed_sigma_m) {
+  if (pair.covariance_in_cam) {
+    const Eigen::LLT<Eigen::Matrix3d> factor(*pair.covariance_in_cam);
+    return factor.matrixL().solve(Eigen::Matrix3d::Identity().eval());
+  }
+  return Eigen::Matrix3d::Identity() / (pair.sigma_m > 0.0 ? pair.sigma_m : assumed_sigma_m);
+}
+
+}  // namespace
+
+Expected<PairKind> KindOfPairs(const Solver& inner, const std::string& outer) {
+  const DataNeeds& needs = inner.spec().needs;
+  if (needs.points_per_set > 0 || (needs.pairs_3d3d == 0 && needs.pairs_2d3d == 0)) {
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        fmt::format("{}: '{}' works on point sets, expected a solver of pairs such as kabsch",
+                    outer, inner.spec().name));
+  }
+  if (needs.pairs_3d3d > 0 && needs.pairs_2d3d > 0) {
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        fmt::format("{}: '{}' needs both kinds of pairs, expected a solver of one; put {} inside",
+                    outer, inner.spec().name, outer));
+  }
+  return needs.pairs_3d3d > 0 ? PairKind::k3d3d : PairKind::k2d3d;
+}
+
+void PairTerms::Add(std::span<const Pair3d3d> pairs, const AssumedNoise& assumed) {
+  points.reserve(points.size() + pairs.size());
+  for (const Pair3d3d& pair : pairs) {
+    points.push_back({pair.point_in_cam, pair.point_in_lidar, Whitener(pair, assumed.sigma_m)});
+    noise_known = noise_known && HasKnownNoise(pair);
+  }
+}
+
+void PairTerms::Add(std::span<const Pair2d3d> pairs, const Camera& of_pairs,
+                    const AssumedNoise& assumed) {
+  camera = of_pairs;
+  pixels.reserve(pixels.size() + pairs.size());
+  for (const Pair2d3d& pair : pairs) {
+    const double sigma = pair.sigma_px > 0.0 ? pair.sigma_px : assumed.sigma_px;
+    pixels.push_back({pair.pixel, pair.point_in_lidar, 1.0 / sigma});
+    noise_known = noise_known && HasKnownNoise(pair);
+  }
+}
+
+void PairTerms::AssignSubset(const PairTerms& all, std::span<const int> indices) {
+  points.clear();
+  pixels.clear();
+  camera = all.camera;
+  noise_known = all.noise_known;
+  for (const int i : indices) {
+    const auto index = static_cast<std::size_t>(i);
+    if (all.pixels.empty()) {
+      points.push_back(all.points[index]);
+    } else {
+      pixels.push_back(all.pixels[index]);
+    }
+  }
+}
+
+PairTerms MakeTerms(const CalibrationProblem& problem, PairKind kind, const AssumedNoise& assumed) {
+  PairTerms terms;
+  if (kind == PairKind::k3d3d) {
+    terms.Add(problem.pairs_3d3d, assumed);
+  } else {
+    terms.Add(problem.pairs_2d3d, *problem.camera, assumed);
+  }
+  return terms;
+}
+
+}  // namespace sextant
