@@ -8,6 +8,9 @@
   X(Kabsch)                \
   X(EigenUmeyama)          \
   X(Icp)                   \
+  X(Ransac)                \
+  X(Gnc)                   \
+  X(DropWorst)             \
   X(Refine)
 
 namespace sextant {

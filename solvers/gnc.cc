@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/consensus.h"
+#include "solvers/refine_pose.h"
+#include "solvers/registry.h"
+
+namespace sextant {
+namespace {
+
+struct GncOptions : InlierOptions {
+  double mu_factor = 1.4;
+  int max_iterations = 200;
+};
+
+// Pairs of less weight are left out: their sigma would be over a thousand times the stated one.
+constexpr double kMinWeight = 1e-6;
+// The weights are settled when none is further than this from 0 or 1.
+constexpr double kBinary = 1e-3;
+
+// The weight that minimises the graduated surrogate of truncated least squares at r^2 = squared
+// (Yang et al. 2020, eq. 14).
+double Weight(double squared, double max_squared, double mu) {
+  if (squared <= mu / (mu + 1.0) * max_squared) return 1.0;
+  if (!(squared < (mu + 1.0) / mu * max_squared)) return 0.0;
+  return std::sqrt(max_squared * mu * (mu + 1.0) / squared) - mu;
+}
+
+Pair3d3d Weighted(Pair3d3d pair, double weight, const AssumedNoise& assumed) {
+  if (pair.covariance_in_cam) {
+    *pair.covariance_in_cam /= weight;
+  } else {
+    pair.sigma_m = (pair.sigma_m > 0.0 ? pair.sigma_m : assumed.sigma_m) / std::sqrt(weight);
+  }
+  return pair;
+}
+
+Pair2d3d Weighted(Pair2d3d pair, double weight, const AssumedNoise& assumed) {
+  pair.sigma_px = (pair.sigma_px > 0.0 ? pair.sigma_px : assumed.sigma_px) / std::sqrt(weight);
+  return pair;
+}
+
+template <class Pair>
+std::vector<Pair> WeightedPairs(const std::vector<Pair>& pairs, const std::vector<double>& weights,
+                                const AssumedNoise& assumed) {
+  std::vector<Pair> weighted;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (weights[i] >= kMinWeight) weighted.push_back(Weighted(pairs[i], weights[i], assumed));
+  }
+  return weighted;
+}
+
+/// Graduated non-convexity with truncated least squares (Yang, Antonante, Tzoumas and Carlone
+/// 2020, RA-L 5): min sum_i min(r_i^2, threshold^2), reached from a convex surrogate that mu
+/// bends, a step of mu_factor at a time, towards the truncated cost.
+///
+/// The weights go to the inner solver as sigma / sqrt(w); least squares from its answer follows,
+/// since not every closed form heeds sigmas. At the end the inner solver gets the inliers with
+/// their true sigmas. Errors: kNoConsensus (see CheckConsensus), those of the inner solver.
+class GncSolver final : public Solver {
+ public:
+  GncSolver(const SolverArguments& arguments, PairKind kind, const GncOptions& options)
+      : Solver({.name = arguments.name,
+                .needs = arguments.inner->spec().needs,
+                .estimates_rotation = arguments.inner->spec().estimates_rotation,
+                .is_global = arguments.inner->spec().is_global}),
+        inner_(arguments.inner),
+        kind_(kind),
+        options_(options) {}
+
+ private:
+  Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
+    const PairTerms terms = MakeTerms(problem, kind_, options_.Assumed());
+    const PoseScorer scorer(terms, options_.MaxSquared(kind_));
+    int iterations = 0;
+    const Expected<Rigid3d> pose = Anneal(problem, terms, scorer, iterations);
+    if (!pose) return tl::unexpected<Error>(pose.error());
+    Expected<Estimate> estimate = RefitOnInliers(*inner_, problem, scorer, *pose);
+    if (!estimate) return estimate;
+    const int inlier_count = static_cast<int>(estimate->inliers.size());
+    if (Expected<void> ok = CheckConsensus(terms, scorer, inlier_count, Least() + 1); !ok) {
+      return tl::unexpected<Error>(std::move(ok.error()));
+    }
+    estimate->iterations = iterations;
+    estimate->termination = iterations < options_.max_iterations ? Termination::kConverged
+                                                                 : Termination::kMaxIterations;
+    return estimate;
+  }
+
+  Expected<Rigid3d> Anneal(const CalibrationProblem& problem, const PairTerms& terms,
+                           const PoseScorer& scorer, int& iterations) const {
+    std::vector<double> weights(terms.size(), 1.0);
+    std::vector<double> squared(terms.size());
+    Expected<Rigid3d> pose = SolveWeighted(problem, terms, weights);
+    double mu = 0.0;
+    for (iterations = 1; pose && iterations < options_.max_iterations; ++iterations) {
+      scorer.SquaredResiduals(*pose, squared);
+      if (iterations == 1) {
+        mu = FirstMu(squared, scorer.max_squared());
+        if (mu <= 0.0) break;
+      }
+      if (!UpdateWeights(squared, scorer.max_squared(), mu, weights)) break;
+      pose = SolveWeighted(problem, terms, weights);
+      mu *= options_.mu_factor;
+    }
+    return pose;
+  }
+
+  // Where the surrogate is convex at the largest residual; none needed if that is an inlier's.
+  static double FirstMu(const std::vector<double>& squared, double max_squared) {
+    double largest = 0.0;
+    for (const double s : squared) largest = std::isfinite(s) ? std::max(largest, s) : largest;
+    return largest <= max_squared ? 0.0 : max_squared / (2.0 * largest - max_squared);
+  }
+
+  // False where every weight was, and is, 0 or 1.
+  static bool UpdateWeights(const std::vector<double>& squared, double max_squared, double mu,
+                            std::vector<double>& weights) {
+    bool settled = true;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const double weight = Weight(squared[i], max_squared, mu);
+      settled = settled && std::min(weight, 1.0 - weight) < kBinary &&
+                std::abs(weight - weights[i]) < kBinary;
+      weights[i] = weight;
+    }
+    return !settled;
+  }
+
+  Expected<Rigid3d> SolveWeighted(const CalibrationProblem& problem, const PairTerms& terms,
+                                  const std::vector<double>& weights) const {
+    CalibrationProblem weighted;
+    weighted.camera = problem.camera;
+    weighted.initial_cam_from_lidar = problem.initial_cam_from_lidar;
+    if (kind_ == PairKind::k3d3d) {
+      weighted.pairs_3d3d = WeightedPairs(problem.pairs_3d3d, weights, options_.Assumed());
+    } else {
+      weighted.pairs_2d3d = WeightedPairs(problem.pairs_2d3d, weights, options_.Assumed());
+    }
+    const std::size_t left = std::max(weighted.pairs_3d3d.size(), weighted.pairs_2d3d.size());
+    if (left < static_cast<std::size_t>(Least())) {
+      return MakeError(ErrorCode::kNoConsensus,
+                       fmt::format("{} of {} pairs keep a weight, expected at least {}; check the "
+                                   "pairing and the sigmas",
+                                   left, terms.size(), Least()));
+    }
+    const Expected<SolveReport> report = inner_->Solve(weighted);
+    if (!report) return tl::unexpected<Error>(report.error());
+    if (!spec().estimates_rotation) return report->cam_from_lidar;
+    const PairTerms weighted_terms = MakeTerms(weighted, kind_, options_.Assumed());
+    return RefinePose(weighted_terms.View(), report->cam_from_lidar, {}).cam_from_lidar;
+  }
+
+  int Least() const { return std::max(spec().needs.pairs_3d3d, spec().needs.pairs_2d3d); }
+
+  SolverPtr inner_;
+  PairKind kind_;
+  GncOptions options_;
+};
+
+OptionSet<GncOptions> GncOptionSet() {
+  OptionSet<GncOptions> options;
+  options
+      .Real("mu_factor", &GncOptions::mu_factor, "1", 1.01, 10.0,
+            "how much less convex the cost becomes each iteration")
+      .Count("max_iterations", &GncOptions::max_iterations, 1, 100'000,
+             "most times the inner solver is called with weights");
+  return AddInlierOptions(options);
+}
+
+}  // namespace
+
+SolverEntry GncEntry() {
+  return {
+      .name = "gnc",
+      .summary = "truncated least squares by graduated non-convexity: outliers fade out by weight",
+      .needs = "what the inner solver needs and at least one pair more; up to 80 percent outliers",
+      .reference = "Yang, Antonante, Tzoumas and Carlone 2020",
+      .example = "gnc(kabsch)",
+      .wraps_solver = true,
+      .options = GncOptionSet().Describe(),
+      .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
+        const Expected<GncOptions> options = GncOptionSet().Parse(arguments.options);
+        if (!options) return tl::unexpected<Error>(options.error());
+        const Expected<PairKind> kind = KindOfPairs(*arguments.inner, "gnc");
+        if (!kind) return tl::unexpected<Error>(kind.error());
+        return std::make_shared<GncSolver>(arguments, *kind, *options);
+      },
+  };
+}
+
+}  // namespace sextant
