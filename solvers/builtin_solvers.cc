@@ -10,6 +10,7 @@
   X(Icp)                   \
   X(Ransac)                \
   X(Gnc)                   \
+  X(Clique)                \
   X(DropWorst)             \
   X(Refine)
 

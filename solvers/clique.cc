@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/consensus.h"
+#include "solvers/max_clique.h"
+#include "solvers/pair_noise.h"
+#include "solvers/registry.h"
+#include "solvers/subset.h"
+
+namespace sextant {
+namespace {
+
+struct CliqueOptions : InlierOptions {
+  std::int64_t max_nodes = 20'000;
+};
+
+// The graph, twice, takes 100 MB.
+constexpr std::size_t kMostPairs = 20'000;
+
+/// The largest set of 3D-3D pairs that agree on all distances, then the inner solver on it.
+///
+/// A rigid motion keeps distances: true pairs i and j have | |c_i - c_j| - |l_i - l_j| | within
+/// `threshold` of its sigma sqrt(u^T (S_i + S_j) u), u along c_i - c_j. Outliers agree with each
+/// other by chance only, so the true pairs are the maximum clique of the graph of agreements even
+/// at 95 percent outliers (Leordeanu and Hebert 2005; Shi, Yang and Carlone 2021, ROBIN). The inner
+/// solver's pose then gathers its inliers anew. Exact up to max_nodes nodes of the search; after
+/// that the largest so far, and termination kMaxIterations. Memory N^2 / 4 bytes, time N^2 to
+/// build. Errors: kNoConsensus (see CheckConsensus), those of the inner solver.
+class CliqueSolver final : public Solver {
+ public:
+  CliqueSolver(const SolverArguments& arguments, const CliqueOptions& options)
+      : Solver({.name = arguments.name,
+                .needs = arguments.inner->spec().needs,
+                .estimates_rotation = arguments.inner->spec().estimates_rotation,
+                .is_global = arguments.inner->spec().is_global}),
+        inner_(arguments.inner),
+        options_(options) {}
+
+ private:
+  Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
+    if (problem.pairs_3d3d.size() > kMostPairs) {
+      return MakeError(ErrorCode::kInvalidInput,
+                       fmt::format("{} pairs, expected at most {}: the graph would not fit; use "
+                                   "ransac or gnc",
+                                   problem.pairs_3d3d.size(), kMostPairs));
+    }
+    const Clique clique = FindMaximumClique(AgreementGraph(problem.pairs_3d3d), options_.max_nodes);
+    const PairTerms terms = MakeTerms(problem, PairKind::k3d3d, options_.Assumed());
+    const PoseScorer scorer(terms, options_.MaxSquared(PairKind::k3d3d));
+    const int clique_size = static_cast<int>(clique.vertices.size());
+    const int least = spec().needs.pairs_3d3d + 1;
+    if (Expected<void> ok = CheckConsensus(terms, scorer, clique_size, least); !ok) {
+      return tl::unexpected<Error>(std::move(ok.error()));
+    }
+    const Expected<Estimate> on_clique = SolveSubset(*inner_, problem, clique.vertices);
+    if (!on_clique) return on_clique;
+    Expected<Estimate> estimate =
+        RefitOnInliers(*inner_, problem, scorer, on_clique->cam_from_lidar);
+    if (!estimate) return estimate;
+    const int inlier_count = static_cast<int>(estimate->inliers.size());
+    if (Expected<void> ok = CheckConsensus(terms, scorer, inlier_count, least); !ok) {
+      return tl::unexpected<Error>(std::move(ok.error()));
+    }
+    estimate->iterations = static_cast<int>(std::min<std::int64_t>(clique.nodes, 1'000'000'000));
+    estimate->termination =
+        clique.is_maximum ? Termination::kConverged : Termination::kMaxIterations;
+    return estimate;
+  }
+
+  BitGraph AgreementGraph(const std::vector<Pair3d3d>& pairs) const {
+    const double max_squared = options_.MaxSquared(PairKind::k3d3d);
+    std::vector<Eigen::Matrix3d> noise;
+    noise.reserve(pairs.size());
+    for (const Pair3d3d& pair : pairs) {
+      noise.push_back(HasKnownNoise(pair) ? StatedCovariance(pair)
+                                          : Eigen::Matrix3d(Eigen::Matrix3d::Identity() *
+                                                            options_.sigma_m * options_.sigma_m));
+    }
+    BitGraph graph(static_cast<int>(pairs.size()));
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const Eigen::Vector3d in_cam = pairs[i].point_in_cam - pairs[j].point_in_cam;
+        const double lidar_length = (pairs[i].point_in_lidar - pairs[j].point_in_lidar).norm();
+        const double cam_squared = in_cam.squaredNorm();
+        const double excess = std::sqrt(cam_squared) - lidar_length;
+        // excess^2 <= max_squared u^T S u, without the division by |c|^2.
+        const double spread = in_cam.dot((noise[i] + noise[j]) * in_cam);
+        if (excess * excess * cam_squared <= max_squared * spread) {
+          graph.Connect(static_cast<int>(i), static_cast<int>(j));
+        }
+      }
+    }
+    return graph;
+  }
+
+  SolverPtr inner_;
+  CliqueOptions options_;
+};
+
+OptionSet<CliqueOptions> CliqueOptionSet() {
+  OptionSet<CliqueOptions> options;
+  options.Count("max_nodes", &CliqueOptions::max_nodes, 1, 1'000'000'000'000,
+                "of the search tree; after them the largest clique so far is taken");
+  return AddInlierOptions(options);
+}
+
+}  // namespace
+
+SolverEntry CliqueEntry() {
+  return {
+      .name = "clique",
+      .summary = "the largest set of pairs that agree on all distances, the inner solver on it",
+      .needs = "what the inner solver of 3D-3D pairs needs and one more; up to 95 percent outliers",
+      .reference = "Shi, Yang and Carlone 2021 (ROBIN); Tomita and Seki 2003",
+      .example = "clique(kabsch)",
+      .wraps_solver = true,
+      .options = CliqueOptionSet().Describe(),
+      .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
+        const Expected<CliqueOptions> options = CliqueOptionSet().Parse(arguments.options);
+        if (!options) return tl::unexpected<Error>(options.error());
+        const Expected<PairKind> kind = KindOfPairs(*arguments.inner, "clique");
+        if (!kind) return tl::unexpected<Error>(kind.error());
+        if (*kind != PairKind::k3d3d) {
+          return MakeError(
+              ErrorCode::kInvalidOption,
+              fmt::format(
+                  "clique: '{}' works on pixels, which have no distances; expected a solver "
+                  "of 3D-3D pairs such as kabsch, or use ransac",
+                  arguments.inner->spec().name));
+        }
+        return std::make_shared<CliqueSolver>(arguments, *options);
+      },
+  };
+}
+
+}  // namespace sextant
