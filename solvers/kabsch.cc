@@ -3,67 +3,94 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
+#include "solvers/max_trace_rotation.h"
 #include "solvers/pair_noise.h"
 #include "solvers/registry.h"
 
 namespace sextant {
 namespace {
 
-// Points within 1e-5 of their length of a line leave the turn about it to rounding.
-constexpr double kMinRelativeGap = 1e-10;
-
 // Five in RMSE: noise on four coplanar points reaches this less than once in a thousand.
 constexpr double kMirrorRatio = 25.0;
 
-struct CentredMoments {
-  Eigen::Vector3d mean_a = Eigen::Vector3d::Zero();
-  Eigen::Vector3d mean_b = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();  // sum w (a - mean_a) (b - mean_b)^T
-  double squares_a = 0.0;
-  double squares_b = 0.0;
+// Two points at a time: what the SIMD registers of every 64-bit machine hold.
+using Lanes = Eigen::Array2d;
+
+struct Lanes3 {
+  Lanes x, y, z;
 };
 
-CentredMoments ComputeMoments(std::span<const Eigen::Vector3d> b,
-                              std::span<const Eigen::Vector3d> a, std::span<const double> weights) {
-  CentredMoments m;
-  // The first point as provisional origin keeps the digits of small sets far from the sensor.
-  const Eigen::Vector3d origin_a = a[0];
-  const Eigen::Vector3d origin_b = b[0];
-  double total = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double w = weights.empty() ? 1.0 : weights[i];
-    const Eigen::Vector3d da = a[i] - origin_a;
-    const Eigen::Vector3d db = b[i] - origin_b;
-    total += w;
-    m.mean_a += w * da;
-    m.mean_b += w * db;
-    m.cross += (w * da) * db.transpose();
-    m.squares_a += w * da.squaredNorm();
-    m.squares_b += w * db.squaredNorm();
-  }
-  m.cross -= m.mean_a * m.mean_b.transpose() / total;
-  m.squares_a -= m.mean_a.squaredNorm() / total;
-  m.squares_b -= m.mean_b.squaredNorm() / total;
-  m.mean_a = origin_a + m.mean_a / total;
-  m.mean_b = origin_b + m.mean_b / total;
-  return m;
+struct CentredMoments {
+  Eigen::Vector3d mean_a;
+  Eigen::Vector3d mean_b;
+  Eigen::Matrix3d cross;  // sum w (a - mean_a) (b - mean_b)^T
+  double squares = 0.0;   // sum w (|a - mean_a|^2 + |b - mean_b|^2)
+};
+
+Lanes3 OffsetOfTwo(const Eigen::Vector3d* points, const Eigen::Vector3d& origin) {
+  return {Lanes(points[0].x(), points[1].x()) - origin.x(),
+          Lanes(points[0].y(), points[1].y()) - origin.y(),
+          Lanes(points[0].z(), points[1].z()) - origin.z()};
 }
 
-// Horn's matrix: q^T K q = trace(R(q) * cross) for q = (x, y, z, w).
-Eigen::Matrix4d HornMatrix(const Eigen::Matrix3d& cross) {
-  Eigen::Matrix4d k;
-  k.topLeftCorner<3, 3>() = cross + cross.transpose() - cross.trace() * Eigen::Matrix3d::Identity();
-  const Eigen::Vector3d skew(cross(1, 2) - cross(2, 1), cross(2, 0) - cross(0, 2),
-                             cross(0, 1) - cross(1, 0));
-  k.topRightCorner<3, 1>() = skew;
-  k.bottomLeftCorner<1, 3>() = skew.transpose();
-  k(3, 3) = cross.trace();
-  return k;
+template <bool kWeighted>
+CentredMoments ComputeMoments(std::span<const Eigen::Vector3d> points_in_b,
+                              std::span<const Eigen::Vector3d> points_in_a,
+                              std::span<const double> weights) {
+  // The first point as provisional origin keeps the digits of small sets far from the sensor.
+  const Eigen::Vector3d origin_a = points_in_a[0];
+  const Eigen::Vector3d origin_b = points_in_b[0];
+  const std::size_t count = points_in_a.size();
+  Lanes total = Lanes::Zero();
+  Lanes squares = Lanes::Zero();
+  Lanes ax = Lanes::Zero(), ay = Lanes::Zero(), az = Lanes::Zero();
+  Lanes bx = Lanes::Zero(), by = Lanes::Zero(), bz = Lanes::Zero();
+  Lanes xx = Lanes::Zero(), xy = Lanes::Zero(), xz = Lanes::Zero();
+  Lanes yx = Lanes::Zero(), yy = Lanes::Zero(), yz = Lanes::Zero();
+  Lanes zx = Lanes::Zero(), zy = Lanes::Zero(), zz = Lanes::Zero();
+  // An odd count leaves out the first point: it is the origin and adds to the total only.
+  for (std::size_t i = count % 2; i < count; i += 2) {
+    const Lanes3 a = OffsetOfTwo(&points_in_a[i], origin_a);
+    Lanes3 b = OffsetOfTwo(&points_in_b[i], origin_b);
+    Lanes both = a.x * a.x + a.y * a.y + a.z * a.z + (b.x * b.x + b.y * b.y + b.z * b.z);
+    if constexpr (kWeighted) {
+      const Lanes w(weights[i], weights[i + 1]);
+      total += w;
+      both *= w;
+      ax += w * a.x, ay += w * a.y, az += w * a.z;
+      b = {w * b.x, w * b.y, w * b.z};
+    } else {
+      ax += a.x, ay += a.y, az += a.z;
+    }
+    squares += both;
+    bx += b.x, by += b.y, bz += b.z;
+    xx += a.x * b.x, xy += a.x * b.y, xz += a.x * b.z;
+    yx += a.y * b.x, yy += a.y * b.y, yz += a.y * b.z;
+    zx += a.z * b.x, zy += a.z * b.y, zz += a.z * b.z;
+  }
+  const double first = kWeighted && count % 2 == 1 ? weights[0] : 0.0;
+  const double inverse_total = 1.0 / (kWeighted ? first + total.sum() : static_cast<double>(count));
+  const Eigen::Vector3d sum_a(ax.sum(), ay.sum(), az.sum());
+  const Eigen::Vector3d sum_b(bx.sum(), by.sum(), bz.sum());
+  const Eigen::Vector3d mean_a = sum_a * inverse_total;
+  const Eigen::Vector3d mean_b = sum_b * inverse_total;
+  CentredMoments m;
+  m.cross(0, 0) = xx.sum() - mean_a.x() * sum_b.x();
+  m.cross(0, 1) = xy.sum() - mean_a.x() * sum_b.y();
+  m.cross(0, 2) = xz.sum() - mean_a.x() * sum_b.z();
+  m.cross(1, 0) = yx.sum() - mean_a.y() * sum_b.x();
+  m.cross(1, 1) = yy.sum() - mean_a.y() * sum_b.y();
+  m.cross(1, 2) = yz.sum() - mean_a.y() * sum_b.z();
+  m.cross(2, 0) = zx.sum() - mean_a.z() * sum_b.x();
+  m.cross(2, 1) = zy.sum() - mean_a.z() * sum_b.y();
+  m.cross(2, 2) = zz.sum() - mean_a.z() * sum_b.z();
+  m.squares = squares.sum() - mean_a.dot(sum_a) - mean_b.dot(sum_b);
+  m.mean_a = origin_a + mean_a;
+  m.mean_b = origin_b + mean_b;
+  return m;
 }
 
 }  // namespace
@@ -75,24 +102,24 @@ Expected<KabschFit> FitKabsch(std::span<const Eigen::Vector3d> points_in_b,
     return MakeError(ErrorCode::kTooFewPairs,
                      fmt::format("kabsch needs at least 3 pairs, got {}", points_in_a.size()));
   }
-  const CentredMoments m = ComputeMoments(points_in_b, points_in_a, weights);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(HornMatrix(m.cross));
-  const Eigen::Vector4d& lambda = eigen.eigenvalues();
-  const double squares = m.squares_a + m.squares_b;
-  if (!(lambda(3) - lambda(2) > kMinRelativeGap * 0.5 * squares)) {
+  const CentredMoments m = weights.empty()
+                               ? ComputeMoments<false>(points_in_b, points_in_a, weights)
+                               : ComputeMoments<true>(points_in_b, points_in_a, weights);
+  const std::optional<MaxTraceRotation> best = MaximizeTrace(m.cross, 0.5 * m.squares);
+  if (!best) {
     return MakeError(ErrorCode::kDegenerate,
                      "the points of a sensor coincide or lie on one line, which leaves a rotation "
                      "undetermined; use points that span a plane");
   }
   KabschFit fit;
-  fit.sum_squares = std::max(0.0, squares - 2.0 * lambda(3));
-  fit.mirrored_sum_squares = std::max(0.0, squares + 2.0 * lambda(0));
-  if (fit.sum_squares > kMirrorRatio * fit.mirrored_sum_squares + 1e-9 * squares) {
+  fit.sum_squares = std::max(0.0, m.squares - 2.0 * best->trace);
+  fit.mirrored_sum_squares = std::max(0.0, m.squares - 2.0 * best->mirrored_trace);
+  if (fit.sum_squares > kMirrorRatio * fit.mirrored_sum_squares + 1e-9 * m.squares) {
     return MakeError(ErrorCode::kMirrored,
                      "one point set is a mirror image of the other: no rotation maps them; check "
                      "the order of the corners and the sign of the axes");
   }
-  fit.b_from_a.rotation = Eigen::Quaterniond(eigen.eigenvectors().col(3)).normalized();
+  fit.b_from_a.rotation = best->rotation;
   fit.b_from_a.translation = m.mean_b - fit.b_from_a.rotation * m.mean_a;
   return fit;
 }

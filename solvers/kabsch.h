@@ -13,7 +13,8 @@ namespace sextant {
 struct KabschFit {
   Rigid3d b_from_a;
   double sum_squares = 0.0;  ///< sum_i w_i |b_i - R a_i - t|^2 at the optimum.
-  /// The same over R with determinant -1: far smaller where one set mirrors the other.
+  /// The same over R with determinant -1, to 1e-7 of sum_i w_i (|a_i|^2 + |b_i|^2) about the means:
+  /// far smaller where one set mirrors the other.
   double mirrored_sum_squares = 0.0;
 };
 

@@ -38,6 +38,63 @@ TEST(Kabsch, RecoversExactPosesFarFromTheOrigin) {
   }
 }
 
+TEST(Kabsch, RecoversExactPosesOfEveryShapeAndScale) {
+  Random random(4);
+  for (const double scale_m : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
+    for (const double flatness : {0.0, 1e-3, 0.3, 1.0}) {
+      for (int trial = 0; trial < 40; ++trial) {
+        const Rigid3d truth{ExpSo3({random.Normal(), random.Normal(), random.Normal()}),
+                            scale_m * Eigen::Vector3d(1, -2, 3)};
+        Points a = RandomPoints(4 + trial % 20, random);
+        for (Eigen::Vector3d& p : a) p = scale_m * p.cwiseProduct(Eigen::Vector3d(1, 1, flatness));
+        const Expected<KabschFit> fit = FitKabsch(Moved(truth, a), a);
+        ASSERT_TRUE(fit) << fit.error().message;
+        EXPECT_LT(RotationDistance(fit->b_from_a.rotation, truth.rotation), 1e-12);
+        EXPECT_LT((fit->b_from_a.translation - truth.translation).norm(), 2e-12 * scale_m);
+      }
+    }
+  }
+}
+
+// The digits that the coordinates themselves lose at 1 km are all that may be lost.
+TEST(Kabsch, KeepsItsDigitsAKilometreFromBothOrigins) {
+  Random random(5);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Rigid3d truth{ExpSo3({random.Normal(), random.Normal(), random.Normal()}),
+                        {1000.0, 2000.0, -1000.0}};
+    Points a = RandomPoints(8, random);
+    for (Eigen::Vector3d& p : a) p += Eigen::Vector3d(1000.0, -1000.0, 1000.0);
+    const Expected<KabschFit> fit = FitKabsch(Moved(truth, a), a);
+    ASSERT_TRUE(fit) << fit.error().message;
+    EXPECT_LT(RotationDistance(fit->b_from_a.rotation, truth.rotation), 2e-11);
+    EXPECT_LT((*fit).sum_squares, 1e-13 * 48.0);
+  }
+}
+
+// The sums of squares are those of the residuals, of the rotation and of the best reflection.
+TEST(Kabsch, ReportsTheSumsOfSquaresOfBothKinds) {
+  Random random(6);
+  for (int trial = 0; trial < 300; ++trial) {
+    const Points a = RandomPoints(3 + trial % 12, random);
+    Points b = a;
+    for (Eigen::Vector3d& p : b) {
+      for (int k = 0; k < 3; ++k) p[k] += 0.3 * random.Normal();
+    }
+    const Expected<KabschFit> fit = FitKabsch(b, a);
+    ASSERT_TRUE(fit) << fit.error().message;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += (b[i] - fit->b_from_a * a[i]).squaredNorm();
+    EXPECT_NEAR(fit->sum_squares, sum, 1e-12 * static_cast<double>(a.size()));
+
+    Points inverted = a;
+    for (Eigen::Vector3d& p : inverted) p = -p;
+    const Expected<KabschFit> mirrored = FitKabsch(b, inverted);
+    if (!mirrored) continue;
+    EXPECT_NEAR(fit->mirrored_sum_squares, mirrored->sum_squares,
+                1e-6 * static_cast<double>(a.size()));
+  }
+}
+
 TEST(Kabsch, RefusesCollinearCoincidentAndMirroredSets) {
   Random random(2);
   const Points a = RandomPoints(8, random);
