@@ -12,7 +12,8 @@
   X(Gnc)                   \
   X(Clique)                \
   X(DropWorst)             \
-  X(Refine)
+  X(Refine)                \
+  X(Average)
 
 namespace sextant {
 
