@@ -34,8 +34,7 @@ TEST(PointsFile, TakesLineEndsMarksAndBlanksOfEveryKind) {
       "1\n1 2 3\n4 5 6\n",
       "1\n1 2 3\n4 5 6",
       "1\r\n1 2 3\r\n4 5 6\r\n",
-      "\xef\xbb\xbf"
-      "1\n\n  1\t 2   3 \n\n4 +5 6e0\n\n",
+      "\357\273\2771\n\n  1\t 2   3 \n\n4 +5 6e0\n\n",
       "# by hand\n1\n1 2 3\n# camera\n4 5 6\n",
   };
   for (const char* form : forms) {
