@@ -33,7 +33,7 @@ const std::map<std::string_view, Folders>& MayInclude() {
         "features/lidar", "io"}},
       {"bench",
        {"base", "geometry", "solvers", "solvers/opencv", "features", "features/camera",
-        "features/lidar", "io", "eval"}},
+        "features/lidar", "io", "eval", "tests"}},
       {"cli",
        {"base", "geometry", "solvers", "solvers/opencv", "features", "features/camera",
         "features/lidar", "io", "eval"}},

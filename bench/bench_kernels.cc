@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernels beside those of Eigen, on the same points.
+#include <benchmark/benchmark.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+#include "base/random.h"
+#include "bench/check.h"
+#include "geometry/so3.h"
+#include "solvers/kabsch.h"
+
+namespace sextant::bench {
+namespace {
+
+struct PointPairs {
+  std::vector<Eigen::Vector3d> in_cam;
+  std::vector<Eigen::Vector3d> in_lidar;
+  Rigid3d cam_from_lidar;
+};
+
+constexpr double kSigma = 0.01;
+
+// Ten sigmas of a single point: only a wrong answer is farther off.
+constexpr Tolerance kTolerance = {.rotation_rad = 0.1, .translation_m = 0.1};
+
+Eigen::Vector3d NormalVector(Random& random) {
+  Eigen::Vector3d v;
+  for (int i = 0; i < 3; ++i) v[i] = random.Normal();
+  return v;
+}
+
+std::vector<PointPairs> MakePointPairs(const benchmark::State& state) {
+  const auto count = static_cast<std::size_t>(state.range(0));
+  Random random(1);
+  std::vector<PointPairs> all(SceneCount(state.range(0)));
+  for (PointPairs& points : all) {
+    points.cam_from_lidar.rotation = ExpSo3(NormalVector(random));
+    points.cam_from_lidar.translation = NormalVector(random);
+    for (std::size_t i = 0; i < count; ++i) {
+      points.in_lidar.push_back(NormalVector(random));
+      points.in_cam.push_back(points.cam_from_lidar * points.in_lidar.back() +
+                              kSigma * NormalVector(random));
+    }
+  }
+  return all;
+}
+
+void Kabsch(benchmark::State& state) {
+  const std::vector<PointPairs> problems = MakePointPairs(state);
+  for (const PointPairs& points : problems) {
+    const Expected<KabschFit> fit = FitKabsch(points.in_cam, points.in_lidar);
+    if (!fit) return state.SkipWithError(fit.error().message.c_str());
+    if (!CheckPose(state, fit->b_from_a, points.cam_from_lidar, kTolerance)) return;
+  }
+  std::size_t next = 0;
+  for (auto _ : state) {
+    const PointPairs& points = problems[next];
+    benchmark::DoNotOptimize(FitKabsch(points.in_cam, points.in_lidar));
+    next = next + 1 < problems.size() ? next + 1 : 0;
+  }
+}
+
+// Matrix: how the points are stored, which decides what Eigen may keep on the stack.
+template <class Matrix>
+Matrix Columns(const std::vector<Eigen::Vector3d>& points) {
+  return Eigen::Map<const Eigen::Matrix3Xd>(points[0].data(), 3,
+                                            static_cast<Eigen::Index>(points.size()));
+}
+
+template <class Matrix>
+void Umeyama(benchmark::State& state) {
+  std::vector<Matrix> in_cam;
+  std::vector<Matrix> in_lidar;
+  for (const PointPairs& points : MakePointPairs(state)) {
+    in_cam.push_back(Columns<Matrix>(points.in_cam));
+    in_lidar.push_back(Columns<Matrix>(points.in_lidar));
+    const Eigen::Matrix4d matrix = Eigen::umeyama(in_lidar.back(), in_cam.back(), false);
+    const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
+    const Rigid3d answer{Eigen::Quaterniond(rotation), matrix.topRightCorner<3, 1>()};
+    if (!CheckPose(state, answer, points.cam_from_lidar, kTolerance)) return;
+  }
+  std::size_t next = 0;
+  for (auto _ : state) {
+    const Eigen::Matrix4d answer = Eigen::umeyama(in_lidar[next], in_cam[next], false);
+    benchmark::DoNotOptimize(answer);
+    next = next + 1 < in_lidar.size() ? next + 1 : 0;
+  }
+}
+
+template <int kCount>
+void UmeyamaFixed(benchmark::State& state) {
+  Umeyama<Eigen::Matrix<double, 3, kCount>>(state);
+}
+
+void AllCounts(benchmark::internal::Benchmark* benchmark) {
+  for (const int count : {3, 4, 8, 20, 100, 1000, 1000000}) benchmark->Arg(count);
+}
+
+// Names are task/implementation/N: the report compares those that differ in the second only.
+BENCHMARK(Kabsch)->Name("kabsch/sextant")->Apply(AllCounts);
+BENCHMARK(Umeyama<Eigen::Matrix3Xd>)->Name("kabsch/umeyama_3xN")->Apply(AllCounts);
+BENCHMARK(Umeyama<Eigen::MatrixXd>)->Name("kabsch/umeyama_dynamic")->Apply(AllCounts);
+BENCHMARK(UmeyamaFixed<3>)->Name("kabsch/umeyama_fixed")->Arg(3);
+BENCHMARK(UmeyamaFixed<4>)->Name("kabsch/umeyama_fixed")->Arg(4);
+BENCHMARK(UmeyamaFixed<8>)->Name("kabsch/umeyama_fixed")->Arg(8);
+BENCHMARK(UmeyamaFixed<20>)->Name("kabsch/umeyama_fixed")->Arg(20);
+BENCHMARK(UmeyamaFixed<100>)->Name("kabsch/umeyama_fixed")->Arg(100);
+
+}  // namespace
+}  // namespace sextant::bench
+
+BENCHMARK_MAIN();

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// bench_report <folder of JSON files> : writes docs/performance.md's text to standard output.
+// Names of benchmarks are task/implementation/N; ours is `sextant`, the others are peers.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+struct Timing {
+  std::optional<double> median_ns;  // None where the answer was wrong.
+  double spread = 0.0;              // Standard deviation over mean of the repetitions.
+  std::string error;
+};
+
+struct Key {
+  std::string task;
+  long count = 0;
+  friend auto operator<=>(const Key&, const Key&) = default;
+};
+
+using Row = std::map<std::string, Timing>;  // By implementation.
+
+// How many times faster than a peer a kernel is to be.
+struct Goal {
+  const char* task;
+  long count;
+  const char* peer;
+  double ratio;
+};
+
+constexpr Goal kGoals[] = {
+    {"kabsch", 8, "umeyama_fixed", 6.0},
+    {"kabsch", 8, "umeyama_dynamic", 12.0},
+    {"kabsch", 100, "umeyama_dynamic", 6.0},
+    {"kabsch", 1000000, "umeyama_dynamic", 5.0},
+};
+
+double Nanoseconds(const json& benchmark) {
+  static const std::map<std::string, double> kUnits = {
+      {"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}};
+  return benchmark.at("cpu_time").get<double>() *
+         kUnits.at(benchmark.at("time_unit").get<std::string>());
+}
+
+struct Parsed {
+  Key key;
+  std::string implementation;
+};
+
+// task/implementation/N, where the implementation may itself hold no slash.
+std::optional<Parsed> ParseName(const std::string& name) {
+  const std::size_t first = name.find('/');
+  const std::size_t last = name.rfind('/');
+  if (first == std::string::npos || first == last) return std::nullopt;
+  return Parsed{{name.substr(0, first), std::atol(name.c_str() + last + 1)},
+                name.substr(first + 1, last - first - 1)};
+}
+
+void Add(const json& benchmark, std::map<Key, Row>& rows) {
+  const std::optional<Parsed> parsed = ParseName(benchmark.at("run_name").get<std::string>());
+  if (!parsed) return;
+  Timing& timing = rows[parsed->key][parsed->implementation];
+  if (benchmark.value("error_occurred", false)) {
+    timing.error = benchmark.value("error_message", "failed");
+    return;
+  }
+  const std::string aggregate = benchmark.value("aggregate_name", "");
+  if (aggregate == "median") timing.median_ns = Nanoseconds(benchmark);
+  if (aggregate == "cv") timing.spread = benchmark.at("cpu_time").get<double>();
+}
+
+std::string FormatTime(double ns) {
+  if (ns < 1e3) return fmt::format("{:.0f} ns", ns);
+  if (ns < 1e6) return fmt::format("{:.2f} us", ns * 1e-3);
+  return fmt::format("{:.2f} ms", ns * 1e-6);
+}
+
+// The fastest of the peers; none where there is none.
+std::optional<double> BestPeer(const Row& row) {
+  std::optional<double> best;
+  for (const auto& [name, timing] : row) {
+    if (name == "sextant" || !timing.median_ns) continue;
+    best = std::min(best.value_or(*timing.median_ns), *timing.median_ns);
+  }
+  return best;
+}
+
+void PrintRow(const Key& key, const Row& row) {
+  const bool compared = row.contains("sextant");
+  const std::optional<double> best = compared ? BestPeer(row) : std::nullopt;
+  for (const auto& [name, timing] : row) {
+    if (!timing.median_ns) {
+      fmt::print("| {} | {} | {} | not timed: {} | | |\n", key.task, key.count, name, timing.error);
+      continue;
+    }
+    const std::string ratio = best && name == "sextant"
+                                  ? fmt::format("{:.1f}x", *best / *timing.median_ns)
+                                  : std::string();
+    fmt::print("| {} | {} | {} | {} | {:.1f} % | {} |\n", key.task, key.count, name,
+               FormatTime(*timing.median_ns), 100.0 * timing.spread, ratio);
+  }
+}
+
+void PrintGoals(const std::map<Key, Row>& rows) {
+  fmt::print(
+      "\n## Goals\n\n| task | N | against | goal | measured | |\n|---|--:|---|--:|--:|---|\n");
+  for (const Goal& goal : kGoals) {
+    const auto row = rows.find({goal.task, goal.count});
+    if (row == rows.end()) continue;
+    const auto ours = row->second.find("sextant");
+    const auto peer = row->second.find(goal.peer);
+    if (ours == row->second.end() || peer == row->second.end()) continue;
+    if (!ours->second.median_ns || !peer->second.median_ns) continue;
+    const double ratio = *peer->second.median_ns / *ours->second.median_ns;
+    fmt::print("| {} | {} | {} | {:.1f}x | {:.1f}x | {} |\n", goal.task, goal.count, goal.peer,
+               goal.ratio, ratio, ratio >= goal.ratio ? "reached" : "not reached");
+  }
+}
+
+std::string FirstLineWith(const std::string& path, const std::string& mark) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with(mark)) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+std::string ReadLine(const fs::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  return line;
+}
+
+void PrintMachine(const json& context, const fs::path& folder) {
+  fmt::print("- machine: {}, {} cores; load at the start {:.1f}\n",
+             FirstLineWith("/proc/cpuinfo", "model name"), context.at("num_cpus").get<int>(),
+             context.at("load_avg").at(0).get<double>());
+  fmt::print("- compiler and flags: {}\n", ReadLine(folder / "flags.txt"));
+  const std::string absent = ReadLine(folder / "absent_peers.txt");
+  if (!absent.empty()) fmt::print("- peers not installed: {}\n", absent);
+  for (const json& cache : context.at("caches")) {
+    if (cache.at("type") == "Instruction") continue;
+    fmt::print("- L{} cache: {} KiB\n", cache.at("level").get<int>(),
+               cache.at("size").get<long>() / 1024);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fputs("usage: bench_report <folder of the JSON files>\n", stderr);
+    return 2;
+  }
+  const fs::path folder = argv[1];
+  std::map<Key, Row> rows;
+  json context;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != ".json") continue;
+    std::ifstream file(entry.path());
+    const json run = json::parse(file, nullptr, /*allow_exceptions=*/false);
+    if (run.is_discarded()) {
+      fmt::print(stderr, "{} is not JSON: run scripts/bench again\n", entry.path().string());
+      return 1;
+    }
+    context = run.at("context");
+    for (const json& benchmark : run.at("benchmarks")) Add(benchmark, rows);
+  }
+  if (rows.empty()) {
+    fmt::print(stderr, "{} has no benchmark: run scripts/bench\n", folder.string());
+    return 1;
+  }
+  fmt::print(
+      "# Performance\n\nWritten by `scripts/bench`; do not edit. One thread, CPU time, medians of "
+      "repetitions; the spread is their standard deviation over their mean. Every answer was "
+      "checked against the truth before it was timed. Ratios are to the fastest peer of the same "
+      "run.\n\n");
+  PrintMachine(context, folder);
+  PrintGoals(rows);
+  fmt::print(
+      "\n## Medians\n\n| task | N | implementation | median | spread | faster than the best peer "
+      "|\n|---|--:|---|--:|--:|--:|\n");
+  for (const auto& [key, row] : rows) PrintRow(key, row);
+  return 0;
+}
