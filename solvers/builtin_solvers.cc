@@ -7,6 +7,7 @@
   X(MeanOffset)            \
   X(Kabsch)                \
   X(EigenUmeyama)          \
+  X(P3p)                   \
   X(Icp)                   \
   X(Ransac)                \
   X(Gnc)                   \

@@ -20,6 +20,17 @@ double Variance(const Pair2d3d& pair, double unstated) {
 
 }  // namespace
 
+std::optional<Eigen::Matrix<double, 2, 6>> ReprojectionJacobian(const Camera& camera,
+                                                                const Rigid3d& pose,
+                                                                const Pair2d3d& pair) {
+  const Eigen::Vector3d arm = pose.rotation * pair.point_in_lidar;
+  const auto projection = ProjectWithJacobian(camera, arm + pose.translation);
+  if (!projection) return std::nullopt;
+  Eigen::Matrix<double, 2, 6> jacobian;
+  jacobian << -projection->pixel_by_point * Hat(arm), projection->pixel_by_point;
+  return jacobian;
+}
+
 std::optional<double> UnstatedVariance(const Camera& camera, std::span<const Pair2d3d> pairs,
                                        const Rigid3d& pose) {
   if (pairs.empty()) return std::nullopt;
@@ -42,13 +53,10 @@ std::optional<Matrix6d> ReprojectionCovariance(const Camera& camera,
   if (!unstated) return std::nullopt;
   Matrix6d information = Matrix6d::Zero();
   for (const Pair2d3d& pair : pairs) {
-    const Eigen::Vector3d arm = pose.rotation * pair.point_in_lidar;
-    const auto projection = ProjectWithJacobian(camera, arm + pose.translation);
-    if (!projection) return std::nullopt;
-    Eigen::Matrix<double, 2, 6> jacobian;
-    jacobian << -projection->pixel_by_point * Hat(arm), projection->pixel_by_point;
+    const auto jacobian = ReprojectionJacobian(camera, pose, pair);
+    if (!jacobian) return std::nullopt;
     // Of unit variance first, where it is common: that of exact data is zero and must not divide.
-    information += jacobian.transpose() * jacobian / Variance(pair, 1.0);
+    information += jacobian->transpose() * *jacobian / Variance(pair, 1.0);
   }
   const Eigen::LDLT<Matrix6d> factor(information);
   if (factor.info() != Eigen::Success || !factor.isPositive() || factor.rcond() < 1e-15) {

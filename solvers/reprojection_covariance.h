@@ -9,6 +9,12 @@
 
 namespace sextant {
 
+/// Derivative of a pair's projection [px] by (dphi, dt) of the pose; none where it does not
+/// project.
+std::optional<Eigen::Matrix<double, 2, 6>> ReprojectionJacobian(const Camera& camera,
+                                                                const Rigid3d& pose,
+                                                                const Pair2d3d& pair);
+
 /// Variance [px^2] per axis of pixels that state none: sum |r|^2 / (2 n - 6) over the residuals at
 /// `pose`; 0 where all pairs state theirs. None where n <= 3 or a point does not project.
 std::optional<double> UnstatedVariance(const Camera& camera, std::span<const Pair2d3d> pairs,
