@@ -83,10 +83,10 @@ install_packages() {
   fi
   local by_hand="apt-get update && apt-get install --no-install-recommends ${missing[*]}"
   if [ "$(id -u)" != 0 ] && ! command -v sudo >/dev/null; then
-    fail "${#missing[@]} packages are missing, and there is no sudo to install them. As root, run:
+    fail "packages are missing, and there is no sudo to install them. As root, run:
   $by_hand"
   fi
-  step "installing ${#missing[@]} missing packages, which takes a few minutes: ${missing[*]}" \
+  step "installing what is missing, a few minutes at most: ${missing[*]}" \
     "check the network and the package sources, then run as root:
   $by_hand"
   quietly dpkg-repair repair_dpkg
