@@ -18,6 +18,9 @@ struct CliqueOptions : InlierOptions {
   std::int64_t max_nodes = 20'000;
 };
 
+// In a larger clique one false pair does little harm.
+constexpr std::size_t kSmallClique = 16;
+
 // The graph, twice, takes 100 MB.
 constexpr std::size_t kMostPairs = 20'000;
 
@@ -48,11 +51,35 @@ class CliqueSolver final : public Solver {
                                    "ransac or gnc",
                                    problem.pairs_3d3d.size(), kMostPairs));
     }
-    const Clique clique = FindMaximumClique(AgreementGraph(problem.pairs_3d3d), options_.max_nodes);
     const PairTerms terms = MakeTerms(problem, PairKind::k3d3d, options_.Assumed());
     const PoseScorer scorer(terms, options_.MaxSquared(PairKind::k3d3d));
-    const int clique_size = static_cast<int>(clique.vertices.size());
+    const BitGraph graph = AgreementGraph(problem.pairs_3d3d);
+    const Clique clique = FindMaximumClique(graph, options_.max_nodes);
+    Expected<Estimate> best = AnswerFrom(problem, terms, scorer, clique);
+    if (clique.vertices.size() > kSmallClique) return best;
+    // Distances do not tell a point from its mirror image: a false pair may have taken the place
+    // of a true one. So each is left out in turn, and the best pose counts.
+    for (const int suspect : clique.vertices) {
+      BitGraph without = graph;
+      without.Isolate(suspect);
+      Expected<Estimate> other =
+          AnswerFrom(problem, terms, scorer, FindMaximumClique(without, options_.max_nodes));
+      if (other &&
+          (!best || scorer.Cost(other->cam_from_lidar) < scorer.Cost(best->cam_from_lidar))) {
+        best = std::move(other);
+      }
+    }
+    if (best || 2 * clique.vertices.size() > problem.pairs_3d3d.size()) return best;
+    return MakeError(ErrorCode::kNoConsensus,
+                     fmt::format("at most {} of {} pairs agree on their distances, and on no pose; "
+                                 "check the pairing and the sigmas",
+                                 clique.vertices.size(), problem.pairs_3d3d.size()));
+  }
+
+  Expected<Estimate> AnswerFrom(const CalibrationProblem& problem, const PairTerms& terms,
+                                const PoseScorer& scorer, const Clique& clique) const {
     const int least = spec().needs.pairs_3d3d + 1;
+    const int clique_size = static_cast<int>(clique.vertices.size());
     if (Expected<void> ok = CheckConsensus(terms, scorer, clique_size, least); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }

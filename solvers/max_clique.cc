@@ -141,6 +141,15 @@ void BitGraph::Connect(int a, int b) {
   bits_[static_cast<std::size_t>(b) * words_ + WordOf(a)] |= BitOf(a);
 }
 
+void BitGraph::Isolate(int vertex) {
+  for (int v = 0; v < vertices_; ++v) {
+    bits_[static_cast<std::size_t>(v) * words_ + WordOf(vertex)] &= ~BitOf(vertex);
+  }
+  std::fill_n(
+      bits_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(vertex) * words_),
+      words_, 0);
+}
+
 bool BitGraph::AreConnected(int a, int b) const { return (Row(a)[WordOf(b)] & BitOf(b)) != 0; }
 
 Clique FindMaximumClique(const BitGraph& graph, std::int64_t max_nodes) {

@@ -13,6 +13,8 @@ class BitGraph {
 
   int vertices() const { return vertices_; }
   void Connect(int a, int b);
+  /// Removes every edge of `vertex`.
+  void Isolate(int vertex);
   bool AreConnected(int a, int b) const;
 
   /// The row of `vertex`: bit j of the row is set where j is a neighbour. `words()` words.

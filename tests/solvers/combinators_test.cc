@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is particular to each combinator; outliers_test.cc has what they share.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "solvers/max_clique.h"
+#include "solvers/registry.h"
+#include "support/outliers.h"
+
+namespace sextant {
+namespace {
+
+using test::AddOutliers;
+using test::MakeScene;
+using test::Scene;
+using test::SceneOptions;
+
+Expected<SolveReport> Solve(const std::string& spec, const CalibrationProblem& problem) {
+  const Expected<SolverPtr> solver = BuiltinSolvers().Make(spec);
+  if (!solver) return tl::unexpected<Error>(solver.error());
+  return (*solver)->Solve(problem);
+}
+
+Scene SceneWithOutliers(std::uint64_t seed, int pairs, double share) {
+  Random random(seed);
+  const SceneOptions options{.pairs = pairs, .sigma_m = 0.01, .sigma_px = 1.0};
+  Scene scene = MakeScene(options, random);
+  AddOutliers(share, options, random, scene);
+  return scene;
+}
+
+TEST(Ransac, AnotherSeedFindsTheSamePose) {
+  const Scene scene = SceneWithOutliers(1, 40, 0.5);
+  const Expected<SolveReport> first = Solve("ransac(kabsch,seed=1)", scene.problem);
+  const Expected<SolveReport> again = Solve("ransac(kabsch,seed=1)", scene.problem);
+  const Expected<SolveReport> other = Solve("ransac(kabsch,seed=2)", scene.problem);
+  ASSERT_TRUE(first && again && other);
+  EXPECT_EQ(first->cam_from_lidar.translation, again->cam_from_lidar.translation);
+  EXPECT_EQ(first->inliers, other->inliers);
+  EXPECT_LT(DistanceBetween(first->cam_from_lidar, other->cam_from_lidar).translation_m, 1e-9);
+}
+
+TEST(Ransac, StopsEarlyOnCleanDataAndAtItsLimitOnPoor) {
+  const Expected<SolveReport> clean =
+      Solve("ransac(kabsch)", SceneWithOutliers(2, 40, 0.0).problem);
+  ASSERT_TRUE(clean);
+  EXPECT_LE(clean->iterations, 3);
+  EXPECT_EQ(clean->termination, Termination::kConverged);
+  const Expected<SolveReport> poor =
+      Solve("ransac(kabsch,max_iterations=300)", SceneWithOutliers(3, 40, 0.7).problem);
+  ASSERT_TRUE(poor);
+  EXPECT_EQ(poor->iterations, 300);
+  EXPECT_EQ(poor->termination, Termination::kMaxIterations);
+}
+
+TEST(Ransac, SaysThatTheSampleIsTooLargeOrTooSmall) {
+  const Scene scene = SceneWithOutliers(4, 10, 0.0);
+  const Expected<SolveReport> large = Solve("ransac(kabsch,sample_size=15)", scene.problem);
+  ASSERT_FALSE(large);
+  EXPECT_EQ(large.error().code, ErrorCode::kTooFewPairs);
+  const Expected<SolveReport> small = Solve("ransac(kabsch,sample_size=2)", scene.problem);
+  ASSERT_FALSE(small);
+  EXPECT_EQ(small.error().code, ErrorCode::kInvalidOption);
+}
+
+TEST(Ransac, KeepsToItsThresholdAndLeastInliers) {
+  const Scene scene = SceneWithOutliers(5, 30, 0.3);
+  const Expected<SolveReport> strict = Solve("ransac(kabsch,min_inliers=25)", scene.problem);
+  ASSERT_FALSE(strict);
+  EXPECT_EQ(strict.error().code, ErrorCode::kNoConsensus);
+  const Expected<SolveReport> report = Solve("ransac(kabsch,threshold=2)", scene.problem);
+  ASSERT_TRUE(report);
+  EXPECT_LT(report->inliers.size(), 21U);
+  for (const int i : report->inliers) {
+    EXPECT_LE(report->evaluation.per_pair_m[static_cast<std::size_t>(i)], 2.0 * 0.01 + 1e-9);
+  }
+}
+
+TEST(Ransac, WithoutRefitReturnsTheBestSample) {
+  const Scene scene = SceneWithOutliers(6, 30, 0.3);
+  const Expected<SolveReport> report =
+      Solve("ransac(kabsch,refit=none,local_optimisation=0)", scene.problem);
+  ASSERT_TRUE(report);
+  EXPECT_TRUE(report->stages.empty());
+  EXPECT_TRUE(report->covariance);
+}
+
+TEST(DropWorst, KeepsAsManyAsAskedAndDropsTheOutliersFirst) {
+  Random random(7);
+  const SceneOptions options{.pairs = 20, .sigma_m = 0.01};
+  Scene scene = MakeScene(options, random);
+  const std::vector<int> inliers = AddOutliers(0.2, options, random, scene);
+  for (const std::size_t keep : {16U, 11U, 8U}) {
+    const Expected<SolveReport> report =
+        Solve("drop_worst(kabsch,keep=" + std::to_string(keep) + ")", scene.problem);
+    ASSERT_TRUE(report);
+    EXPECT_EQ(report->inliers.size(), keep);
+    EXPECT_EQ(report->iterations, static_cast<int>(20 - keep) + 1);
+    EXPECT_TRUE(std::includes(inliers.begin(), inliers.end(), report->inliers.begin(),
+                              report->inliers.end()));
+  }
+  EXPECT_EQ(Solve("drop_worst(kabsch,keep=2)", scene.problem).error().code,
+            ErrorCode::kInvalidOption);
+  EXPECT_EQ(Solve("drop_worst(kabsch,keep=21)", scene.problem).error().code,
+            ErrorCode::kTooFewPairs);
+}
+
+TEST(Gnc, LeavesCleanDataAlone) {
+  const Scene scene = SceneWithOutliers(8, 8, 0.0);
+  const Expected<SolveReport> plain = Solve("kabsch", scene.problem);
+  const Expected<SolveReport> gnc = Solve("gnc(kabsch,threshold=6)", scene.problem);
+  ASSERT_TRUE(plain && gnc);
+  EXPECT_EQ(gnc->inliers.size(), 8U);
+  EXPECT_EQ(gnc->iterations, 1);
+  EXPECT_EQ(gnc->cam_from_lidar.translation, plain->cam_from_lidar.translation);
+}
+
+// Every subset of a small graph, to hold the search to exactness.
+std::size_t LargestCliqueByBruteForce(const BitGraph& graph) {
+  std::size_t largest = 0;
+  for (unsigned subset = 0; subset < (1U << graph.vertices()); ++subset) {
+    std::vector<int> members;
+    for (int v = 0; v < graph.vertices(); ++v) {
+      if ((subset >> v & 1U) != 0) members.push_back(v);
+    }
+    bool connected = members.size() > largest;
+    for (std::size_t i = 0; connected && i < members.size(); ++i) {
+      for (std::size_t j = 0; connected && j < i; ++j) {
+        connected = graph.AreConnected(members[i], members[j]);
+      }
+    }
+    if (connected) largest = members.size();
+  }
+  return largest;
+}
+
+TEST(MaximumClique, IsTheLargestOfSmallGraphs) {
+  Random random(9);
+  for (int trial = 0; trial < 60; ++trial) {
+    const double density = random.Uniform(0.1, 0.95);
+    BitGraph graph(12);
+    for (int a = 0; a < 12; ++a) {
+      for (int b = 0; b < a; ++b) {
+        const double draw = random.Uniform();
+        if (draw < density) graph.Connect(a, b);
+      }
+    }
+    const Clique clique = FindMaximumClique(graph, 1'000'000);
+    EXPECT_TRUE(clique.is_maximum);
+    EXPECT_EQ(clique.vertices.size(), LargestCliqueByBruteForce(graph));
+    for (const int a : clique.vertices) {
+      for (const int b : clique.vertices) EXPECT_TRUE(a == b || graph.AreConnected(a, b));
+    }
+  }
+}
+
+TEST(MaximumClique, OfNoEdgesIsOneVertexAndOfNothingNone) {
+  EXPECT_EQ(FindMaximumClique(BitGraph(100), 1000).vertices.size(), 1U);
+  EXPECT_TRUE(FindMaximumClique(BitGraph(0), 1000).vertices.empty());
+}
+
+TEST(CliqueSolver, StaysWithinItsNodesOnAThousandPairs) {
+  for (const double share : {0.0, 0.5}) {
+    const Scene scene = SceneWithOutliers(10, 1000, share);
+    const Expected<SolveReport> report = Solve("clique(kabsch,max_nodes=2000)", scene.problem);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_LE(report->iterations, 2000);
+    EXPECT_LT(DistanceBetween(report->cam_from_lidar, scene.cam_from_lidar).translation_m, 0.005);
+  }
+}
+
+}  // namespace
+}  // namespace sextant

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// What ransac, gnc, clique and drop_worst promise in common, against the inner solver on the true
+// inliers: the oracle that no combinator can beat.
+#include "support/outliers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+#include "solvers/registry.h"
+
+namespace sextant {
+namespace {
+
+using test::AddOutliers;
+using test::MakeScene;
+using test::Only;
+using test::Scene;
+using test::SceneOptions;
+
+struct OutlierCase {
+  std::string combinator;  ///< With % for the inner solver.
+  std::string inner;
+  int pairs;
+  double share;  ///< Of outliers.
+  int trials;
+};
+
+void PrintTo(const OutlierCase& c, std::ostream* out) { *out << c.combinator << " " << c.inner; }
+
+std::string SpecOf(const OutlierCase& c) {
+  std::string spec = c.combinator;
+  return spec.replace(spec.find('%'), 1, c.inner);
+}
+
+class Outliers : public testing::TestWithParam<OutlierCase> {};
+
+double SquaredError(const SolveReport& report, const Rigid3d& truth, const Matrix6d& scale) {
+  const Vector6d error = PoseDifference(report.cam_from_lidar, truth);
+  return error.dot(scale * error);
+}
+
+// Every trial finds the pose, and the RMS error is near the oracle's: what is lost are the true
+// pairs beyond the 99 percent threshold, which weigh more where there are few.
+TEST_P(Outliers, AnswersNearlyAsWellAsOnTheTrueInliers) {
+  const OutlierCase& c = GetParam();
+  const SceneOptions options{.pairs = c.pairs, .sigma_m = 0.005, .sigma_px = 1.0};
+  const SolverRegistry registry = BuiltinSolvers();
+  const Expected<SolverPtr> solver = registry.Make(SpecOf(c));
+  const Expected<SolverPtr> oracle = registry.Make(c.inner);
+  ASSERT_TRUE(solver && oracle) << SpecOf(c);
+  double squares = 0.0;
+  double oracle_squares = 0.0;
+  for (int trial = 0; trial < c.trials; ++trial) {
+    Random random(DeriveSeed(1, "outliers", static_cast<std::uint64_t>(c.pairs),
+                             static_cast<std::uint64_t>(trial)));
+    Scene scene = MakeScene(options, random);
+    const std::vector<int> inliers = AddOutliers(c.share, options, random, scene);
+    const Expected<SolveReport> report = (*solver)->Solve(scene.problem);
+    ASSERT_TRUE(report) << "trial " << trial << ": " << report.error().message;
+    const PoseDistance distance = DistanceBetween(report->cam_from_lidar, scene.cam_from_lidar);
+    EXPECT_LT(distance.rotation_rad, 0.05) << "trial " << trial;
+    EXPECT_LT(distance.translation_m, 0.15) << "trial " << trial;
+    EXPECT_TRUE(std::is_sorted(report->inliers.begin(), report->inliers.end()));
+    EXPECT_FALSE(report->stages.empty());
+
+    const Expected<SolveReport> best = (*oracle)->Solve(Only(scene.problem, inliers));
+    ASSERT_TRUE(best && best->covariance);
+    const Matrix6d scale = best->covariance->inverse();
+    squares += SquaredError(*report, scene.cam_from_lidar, scale);
+    oracle_squares += SquaredError(*best, scene.cam_from_lidar, scale);
+  }
+  const double true_pairs = std::round((1.0 - c.share) * c.pairs);
+  EXPECT_LT(std::sqrt(squares / oracle_squares), 1.0 + 2.0 / true_pairs);
+}
+
+std::vector<OutlierCase> OutlierCases() {
+  return {
+      {"ransac(%)", "kabsch", 20, 0.0, 100},
+      {"ransac(%)", "kabsch", 20, 0.5, 100},
+      {"ransac(%)", "kabsch", 100, 0.8, 40},
+      {"ransac(%,sample_size=15,max_iterations=10000,local_optimisation=0,refit=inliers)", "kabsch",
+       20, 0.1, 40},
+      {"gnc(%)", "kabsch", 20, 0.0, 100},
+      {"gnc(%)", "kabsch", 20, 0.3, 100},
+      {"gnc(%)", "kabsch", 100, 0.6, 40},
+      {"drop_worst(%)", "kabsch", 20, 0.0, 100},
+      {"drop_worst(%)", "kabsch", 20, 0.2, 100},
+      {"clique(%)", "kabsch", 20, 0.0, 100},
+      {"clique(%)", "kabsch", 20, 0.5, 100},
+      {"clique(%)", "kabsch", 100, 0.95, 100},
+      {"clique(%)", "kabsch", 300, 0.9, 10},
+  };
+}
+
+std::string CaseName(const testing::TestParamInfo<OutlierCase>& info) {
+  std::string name = std::to_string(info.index) + "_" + SpecOf(info.param) + "_" +
+                     std::to_string(info.param.pairs) + "_" +
+                     std::to_string(std::lround(100.0 * info.param.share));
+  std::replace_if(
+      name.begin(), name.end(),
+      [](char ch) { return std::isalnum(static_cast<unsigned char>(ch)) == 0; }, '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Outliers, testing::ValuesIn(OutlierCases()), CaseName);
+
+class NoConsensus : public testing::TestWithParam<std::string> {};
+
+// Were chance accepted at the stated 0.01 per problem, 40 problems would give more than 3 false
+// answers once in a thousand runs.
+TEST_P(NoConsensus, IsSaidWhereEveryPairIsAnOutlier) {
+  const Expected<SolverPtr> solver = BuiltinSolvers().Make(GetParam());
+  ASSERT_TRUE(solver) << solver.error().message;
+  int answers = 0;
+  for (const int pairs : {6, 8, 20, 100}) {
+    const SceneOptions options{.pairs = pairs, .sigma_m = 0.01, .sigma_px = 1.0};
+    for (std::uint64_t trial = 0; trial < 10; ++trial) {
+      Random random(DeriveSeed(2, "no consensus", static_cast<std::uint64_t>(pairs), trial));
+      Scene scene = MakeScene(options, random);
+      AddOutliers(1.0, options, random, scene);
+      const Expected<SolveReport> report = (*solver)->Solve(scene.problem);
+      if (report) {
+        ++answers;
+        continue;
+      }
+      EXPECT_EQ(report.error().code, ErrorCode::kNoConsensus) << report.error().message;
+    }
+  }
+  EXPECT_LE(answers, 3);
+}
+
+std::string OuterName(const testing::TestParamInfo<std::string>& spec) {
+  return spec.param.substr(0, spec.param.find('('));
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, NoConsensus,
+                         testing::Values("ransac(kabsch)", "gnc(kabsch)", "clique(kabsch)",
+                                         "drop_worst(kabsch)"),
+                         OuterName);
+
+}  // namespace
+}  // namespace sextant

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "support/scenes.h"
+
+namespace sextant::test {
+
+/// Replaces the measurements of a random share of the pairs by others of the same kind that have
+/// nothing to do with the LiDAR point: camera points anywhere in the scene's cube, pixels anywhere
+/// in the image. Returns the indices, ascending, of the pairs left true.
+std::vector<int> AddOutliers(double share, const SceneOptions& options, Random& random,
+                             Scene& scene);
+
+/// The scene with only the pairs at `indices`.
+CalibrationProblem Only(const CalibrationProblem& problem, const std::vector<int>& indices);
+
+}  // namespace sextant::test
