@@ -24,17 +24,27 @@ LineReader::LineReader(std::string file, std::string_view text, Separator separa
   if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
 }
 
+std::string_view LineReader::TakeLine() {
+  const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+  const std::string_view line = Trim(rest_.substr(0, end));
+  rest_.remove_prefix(std::min(end + 1, rest_.size()));
+  ++line_;
+  return line;
+}
+
 bool LineReader::Next() {
   while (ok() && !rest_.empty()) {
-    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-    const std::string_view line = Trim(rest_.substr(0, end));
-    rest_.remove_prefix(std::min(end + 1, rest_.size()));
-    ++line_;
+    const std::string_view line = TakeLine();
     if (line.empty() || line.starts_with('#')) continue;
     Split(line);
     return true;
   }
   return false;
+}
+
+bool LineReader::AtEnd() const {
+  LineReader ahead = *this;
+  return !ahead.Next();
 }
 
 void LineReader::Split(std::string_view line) {
@@ -65,9 +75,13 @@ bool LineReader::HasFields(std::size_t count, std::string_view what) {
 }
 
 double LineReader::Real(std::size_t index, std::string_view name) {
+  return ok() ? RealOf(fields_[index], index, name) : 0.0;
+}
+
+double LineReader::RealOf(std::string_view text, std::size_t index, std::string_view name) {
   if (!ok()) return 0.0;
   Expected<double> value =
-      ParseFinite(fields_[index], {.file = file_, .line = line_, .field = index + 1, .name = name});
+      ParseFinite(text, {.file = file_, .line = line_, .field = index + 1, .name = name});
   if (value) return *value;
   Fail(std::move(value.error()));
   return 0.0;
@@ -75,9 +89,14 @@ double LineReader::Real(std::size_t index, std::string_view name) {
 
 std::int64_t LineReader::Integer(std::size_t index, std::int64_t low, std::int64_t high,
                                  std::string_view name) {
+  return ok() ? IntegerOf(fields_[index], index, low, high, name) : 0;
+}
+
+std::int64_t LineReader::IntegerOf(std::string_view text, std::size_t index, std::int64_t low,
+                                   std::int64_t high, std::string_view name) {
   if (!ok()) return 0;
   Expected<std::int64_t> value = ParseInteger(
-      fields_[index], low, high, {.file = file_, .line = line_, .field = index + 1, .name = name});
+      text, low, high, {.file = file_, .line = line_, .field = index + 1, .name = name});
   if (value) return *value;
   Fail(std::move(value.error()));
   return 0;

@@ -25,6 +25,8 @@ class LineReader {
 
   /// Goes to the next line; false at the end or after an error.
   bool Next();
+  /// Whether nothing but blank lines and comments follows.
+  bool AtEnd() const;
   /// As Next, but the end is an error: "the file ends, expected <what>".
   bool Require(std::string_view what);
   /// Whether the line has `count` fields; else an error that names what was expected.
@@ -38,6 +40,10 @@ class LineReader {
   double Real(std::size_t index, std::string_view name = {});
   std::int64_t Integer(std::size_t index, std::int64_t low, std::int64_t high,
                        std::string_view name = {});
+  /// The same of a text that is part of field `index`.
+  double RealOf(std::string_view text, std::size_t index, std::string_view name = {});
+  std::int64_t IntegerOf(std::string_view text, std::size_t index, std::int64_t low,
+                         std::int64_t high, std::string_view name = {});
 
   /// Of this line, unless an error came before.
   void Fail(ErrorCode code, std::string_view message);
@@ -48,6 +54,7 @@ class LineReader {
 
  private:
   void Split(std::string_view line);
+  std::string_view TakeLine();
 
   std::string file_;
   std::string_view rest_;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <array>
 #include <cmath>
 
 #include "io/number_text.h"
 #include "io/problem_yaml.h"
+#include "io/rigid_matrix.h"
 #include "io/text_file.h"
 #include "io/yaml_fields.h"
 
@@ -79,13 +79,11 @@ Rigid3d ReadMatrix(YamlFields& in, const YamlNode& node) {
     in.Reals(node.items[static_cast<std::size_t>(i)], "matrix", {row.data(), 4});
     matrix.row(i) = row;
   }
-  const Eigen::Matrix3d r = matrix.topLeftCorner<3, 3>();
-  const bool rigid = (r * r.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-5 &&
-                     r.determinant() > 0.0 && matrix.row(3) == Eigen::RowVector4d(0, 0, 0, 1);
-  if (in.ok() && !rigid) {
+  const std::optional<Rigid3d> pose = RigidFromMatrix(matrix);
+  if (in.ok() && !pose) {
     in.Fail(node.line, "matrix", "expected a rotation and a translation over the row 0 0 0 1");
   }
-  return {Eigen::Quaterniond(r).normalized(), matrix.topRightCorner<3, 1>()};
+  return pose.value_or(Rigid3d{});
 }
 
 Rigid3d ReadPose(YamlFields& in, const YamlNode& node, std::string_view what) {

@@ -5,8 +5,10 @@
 
 #include <optional>
 
+#include "io/acfr_poses.h"
 #include "io/line_reader.h"
 #include "io/number_text.h"
+#include "io/pairs_csv.h"
 #include "io/points_file.h"
 #include "io/text_file.h"
 
@@ -20,6 +22,12 @@ std::optional<ProblemFormat> Detect(std::string_view text, const std::string& fi
   if (extension == ".yaml" || extension == ".yml") return ProblemFormat::kYaml;
   LineReader in(file, text);
   if (!in.Next()) return std::nullopt;
+  LineReader commas(file, text, LineReader::Separator::kCommas);
+  commas.Next();
+  if (commas.field_count() >= 3) {
+    if (!IsNumber(commas.Field(0))) return ProblemFormat::kPairsCsv;
+    if (commas.field_count() == 3) return ProblemFormat::kAcfrPoses;
+  }
   if (in.field_count() == 1 && IsNumber(in.Field(0))) return ProblemFormat::kPoints;
   if (in.Field(0).ends_with(':')) return ProblemFormat::kYaml;
   return std::nullopt;
@@ -29,7 +37,9 @@ tl::unexpected<Error> UnknownFormat(const std::string& file) {
   return MakeError(
       ErrorCode::kParse,
       fmt::format("{}:1: not a problem in a known format; expected points.txt (first line: the "
-                  "number of points alone) or YAML (first line: sextant_problem: 1)",
+                  "number of points alone), YAML (first line: sextant_problem: 1), a CSV of pairs "
+                  "(first line: u,v,x,y,z or camx,camy,camz,lidarx,lidary,lidarz) or poses.csv "
+                  "(lines of three numbers)",
                   ToString(Place{.file = file})));
 }
 
@@ -72,8 +82,14 @@ Expected<DetectedProblem> ParseProblem(std::string_view text, const std::string&
       ok = ParsePoints(text, file).map(keep_problem);
       break;
     case ProblemFormat::kPairsCsv:
+      ok = ParsePairsCsv(text, file).map(keep_problem);
+      break;
     case ProblemFormat::kAcfrPoses:
-      return UnknownFormat(file);
+      ok = ParseAcfrPoses(text, file)
+               .and_then(
+                   [](const std::vector<AcfrPose>& poses) { return ProblemFromAcfrPoses(poses); })
+               .map(keep_problem);
+      break;
   }
   if (!ok) return tl::unexpected<Error>(std::move(ok.error()));
   return detected;

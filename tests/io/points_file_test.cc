@@ -5,13 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "solvers/kabsch.h"
+#include "support/bad_text.h"
 #include "support/real_data.h"
 #include "support/scenes.h"
 
 namespace sextant {
 namespace {
 
-using testing::HasSubstr;
+using test::BadText;
 
 TEST(PointsFile, RoundTripsToTheBit) {
   Random random(1);
@@ -45,62 +46,48 @@ TEST(PointsFile, TakesLineEndsMarksAndBlanksOfEveryKind) {
   }
 }
 
-struct BadPoints {
-  const char* name;
-  std::string text;
-  ErrorCode code;
-  const char* message;
-};
-
-void PrintTo(const BadPoints& bad, std::ostream* out) { *out << bad.name; }
-
-class BadPointsTest : public testing::TestWithParam<BadPoints> {};
+class BadPointsTest : public testing::TestWithParam<BadText> {};
 
 TEST_P(BadPointsTest, EndsInOneLineThatSaysWhereAndWhat) {
-  const Expected<CalibrationProblem> read = ParsePoints(GetParam().text, "points.txt");
-  ASSERT_FALSE(read);
-  EXPECT_EQ(read.error().code, GetParam().code);
-  EXPECT_THAT(read.error().message, HasSubstr(GetParam().message));
-  EXPECT_THAT(read.error().message, testing::Not(HasSubstr("\n")));
-  EXPECT_LT(read.error().message.size(), 300U);
+  ExpectRefused(ParsePoints(GetParam().text, "points.txt"), GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Inputs, BadPointsTest,
     testing::Values(
-        BadPoints{"Empty", "", ErrorCode::kParse, "points.txt:1: the file ends here"},
-        BadPoints{"Blank", " \n\r\n", ErrorCode::kParse, "expected the number of points"},
-        BadPoints{"CountOnly", "2\n", ErrorCode::kParse, "LiDAR point 1 of 2"},
-        BadPoints{"Truncated", "2\n1 2 3\n4 5 6\n7 8 9\n", ErrorCode::kParse,
-                  "points.txt:4: the file ends here, expected x y z of camera point 2 of 2 (m)"},
-        BadPoints{"TruncatedInALine", "1\n1 2 3\n4 5\n", ErrorCode::kParse,
-                  "points.txt:3: expected x y z of camera point 1 of 1 (m), got 2 fields"},
-        BadPoints{"DecimalComma", "1\n1 0,5 3\n4 5 6\n", ErrorCode::kParse,
-                  "points.txt:2: field 2: expected a number, got '0,5' (decimal comma? use a "
-                  "point)"},
-        BadPoints{"Word", "1\n1 2 x3\n4 5 6\n", ErrorCode::kParse, "field 3: expected a number"},
-        BadPoints{"HalfNumber", "1\n1 2 3m\n4 5 6\n", ErrorCode::kParse, "got '3m'"},
-        BadPoints{"NotANumber", "1\n1 nan 3\n4 5 6\n", ErrorCode::kNonFinite,
-                  "points.txt:2: field 2: expected a finite number, got 'nan'"},
-        BadPoints{"Infinite", "1\n1 2 3\n4 -inf 6\n", ErrorCode::kNonFinite, "got '-inf'"},
-        BadPoints{"Overflow", "1\n1 2 1e999\n4 5 6\n", ErrorCode::kNonFinite, "got '1e999'"},
-        BadPoints{"ZeroCount", "0\n", ErrorCode::kParse, "got '0'"},
-        BadPoints{"NegativeCount", "-8\n", ErrorCode::kParse, "got '-8'"},
-        BadPoints{"RealCount", "8.0\n", ErrorCode::kParse, "expected a whole number"},
-        BadPoints{"HugeCount", "1000000000000\n1 2 3\n", ErrorCode::kParse,
-                  "points.txt:2: the file ends here, expected x y z of LiDAR point 2 of"},
-        BadPoints{"CountBeyondIntegers", "99999999999999999999999\n1 2 3\n", ErrorCode::kParse,
-                  "expected a whole number"},
-        BadPoints{"TooManyRows", "1\n1 2 3\n4 5 6\n7 8 9\n", ErrorCode::kParse,
-                  "points.txt:4: expected the end of the file"},
-        BadPoints{"NoCount", "1 2 3\n4 5 6\n", ErrorCode::kParse, "the number of points alone"},
-        BadPoints{"Binary",
-                  std::string("\x7f"
-                              "ELF\x02\x01\x00\xff\xfe",
-                              9),
-                  ErrorCode::kParse, "got '\\x7fELF\\x02\\x01\\x00\\xff\\xfe'"},
-        BadPoints{"LongToken", "1\n1 2 " + std::string(100'000, '9') + "x\n", ErrorCode::kParse,
-                  "9999..."}),
+        BadText{"Empty", "", ErrorCode::kParse, "points.txt:1: the file ends here"},
+        BadText{"Blank", " \n\r\n", ErrorCode::kParse, "expected the number of points"},
+        BadText{"CountOnly", "2\n", ErrorCode::kParse, "LiDAR point 1 of 2"},
+        BadText{"Truncated", "2\n1 2 3\n4 5 6\n7 8 9\n", ErrorCode::kParse,
+                "points.txt:4: the file ends here, expected x y z of camera point 2 of 2 (m)"},
+        BadText{"TruncatedInALine", "1\n1 2 3\n4 5\n", ErrorCode::kParse,
+                "points.txt:3: expected x y z of camera point 1 of 1 (m), got 2 fields"},
+        BadText{"DecimalComma", "1\n1 0,5 3\n4 5 6\n", ErrorCode::kParse,
+                "points.txt:2: field 2: expected a number, got '0,5' (decimal comma? use a "
+                "point)"},
+        BadText{"Word", "1\n1 2 x3\n4 5 6\n", ErrorCode::kParse, "field 3: expected a number"},
+        BadText{"HalfNumber", "1\n1 2 3m\n4 5 6\n", ErrorCode::kParse, "got '3m'"},
+        BadText{"NotANumber", "1\n1 nan 3\n4 5 6\n", ErrorCode::kNonFinite,
+                "points.txt:2: field 2: expected a finite number, got 'nan'"},
+        BadText{"Infinite", "1\n1 2 3\n4 -inf 6\n", ErrorCode::kNonFinite, "got '-inf'"},
+        BadText{"Overflow", "1\n1 2 1e999\n4 5 6\n", ErrorCode::kNonFinite, "got '1e999'"},
+        BadText{"ZeroCount", "0\n", ErrorCode::kParse, "got '0'"},
+        BadText{"NegativeCount", "-8\n", ErrorCode::kParse, "got '-8'"},
+        BadText{"RealCount", "8.0\n", ErrorCode::kParse, "expected a whole number"},
+        BadText{"HugeCount", "1000000000000\n1 2 3\n", ErrorCode::kParse,
+                "points.txt:2: the file ends here, expected x y z of LiDAR point 2 of"},
+        BadText{"CountBeyondIntegers", "99999999999999999999999\n1 2 3\n", ErrorCode::kParse,
+                "expected a whole number"},
+        BadText{"TooManyRows", "1\n1 2 3\n4 5 6\n7 8 9\n", ErrorCode::kParse,
+                "points.txt:4: expected the end of the file"},
+        BadText{"NoCount", "1 2 3\n4 5 6\n", ErrorCode::kParse, "the number of points alone"},
+        BadText{"Binary",
+                std::string("\x7f"
+                            "ELF\x02\x01\x00\xff\xfe",
+                            9),
+                ErrorCode::kParse, "got '\\x7fELF\\x02\\x01\\x00\\xff\\xfe'"},
+        BadText{"LongToken", "1\n1 2 " + std::string(100'000, '9') + "x\n", ErrorCode::kParse,
+                "9999..."}),
     [](const auto& bad) { return bad.param.name; });
 
 TEST(PointsFile, RealFileGivesThePublishedFit) {

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+#include "geometry/rigid3d.h"
+
+namespace sextant {
+
+/// `config_file.txt` of the original package, in any of its historical forms.
+struct OriginalConfig {
+  int width_px = 0;
+  int height_px = 0;
+  std::array<double, 2> x_range_m{};  ///< Kept LiDAR points, least and greatest.
+  std::array<double, 2> y_range_m{};
+  std::array<double, 2> z_range_m{};
+  double intensity_threshold = 0.0;
+  int markers = 0;
+  bool use_camera_info = false;
+  /// [K | t] of the camera, pixels.
+  Eigen::Matrix<double, 3, 4> projection = Eigen::Matrix<double, 3, 4>::Zero();
+  std::optional<int> max_iterations;
+  /// Turn about x, y, z [rad]: R0 = Rz Ry Rx.
+  std::optional<Eigen::Vector3d> initial_rotation_rad;
+  std::optional<Eigen::Vector3d> initial_translation_m;
+  std::optional<int> lidar_type;  ///< 0 Velodyne, 1 Hesai.
+
+  /// The initial pose as a transform; the identity for what the form does not have. The package
+  /// applies its rotation to the LiDAR points before it writes points.txt.
+  Rigid3d InitialPose() const;
+};
+
+/// Told apart by the count of numbers: 23 (no initial pose), 27 (with iterations and rotation), 28
+/// (and LiDAR type), 30 (translation instead of the type), 31 (both).
+/// Errors: kIo, kParse, kNonFinite, with file, line and name of the field.
+Expected<OriginalConfig> ReadOriginalConfig(const std::filesystem::path& path);
+Expected<OriginalConfig> ParseOriginalConfig(std::string_view text, const std::string& file);
+
+}  // namespace sextant

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "geometry/calibration_problem.h"
+
+namespace sextant {
+
+/// Pairs as comma-separated values; the first line names the columns, in any order.
+/// - 2D-3D: u, v (px), x, y, z (LiDAR, m), and as you like sigma_px;
+/// - 3D-3D: camx, camy, camz, lidarx, lidary, lidarz (m), and as you like sigma_m;
+/// - either: view, board and corner, or id: `board:corner`, `view:board:corner`, or a number n for
+///   a point of no board, which is corner 0 of board n. Without these row i is point i.
+/// One file holds one kind. 3D-3D pairs also fill point_sets. A 2D-3D file has no camera.
+/// Errors: kIo; kParse (an unknown column names the nearest known); kNonFinite; with line and
+/// field.
+Expected<CalibrationProblem> ReadPairsCsv(const std::filesystem::path& path);
+Expected<CalibrationProblem> ParsePairsCsv(std::string_view text, const std::string& file);
+
+/// The same with all columns, sigma 0 for unknown. A covariance has no column.
+std::string FormatPairsCsv(std::span<const Pair2d3d> pairs);
+std::string FormatPairsCsv(std::span<const Pair3d3d> pairs);
+
+}  // namespace sextant

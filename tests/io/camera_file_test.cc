@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/camera_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/bad_text.h"
+#include "support/real_data.h"
+
+namespace sextant {
+namespace {
+
+using test::BadText;
+
+constexpr ErrorCode kParse = ErrorCode::kParse;
+constexpr ErrorCode kInvalid = ErrorCode::kInvalidInput;
+
+TEST(CameraFile, ReadsRosCalibrationYaml) {
+  const Expected<Camera> camera = ParseCamera(R"(
+image_width: 640
+image_height: 480
+camera_name: left
+camera_matrix:
+  rows: 3
+  cols: 3
+  data: [600.5, 0, 320, 0, 601, 240, 0, 0, 1]
+distortion_model: rational_polynomial
+distortion_coefficients: {rows: 1, cols: 8, data: [.1, .2, .3, .4, .5, .6, .7, .8]}
+rectification_matrix: {rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}
+)",
+                                              "c.yaml");
+  ASSERT_TRUE(camera) << camera.error().message;
+  EXPECT_EQ(camera->model, CameraModel::kBrownConrady);
+  EXPECT_EQ(camera->width_px, 640);
+  EXPECT_EQ(camera->fx_px, 600.5);
+  EXPECT_EQ(camera->cy_px, 240.0);
+  EXPECT_EQ(camera->distortion[7], 0.8);
+}
+
+TEST(CameraFile, ZeroOrNoDistortionIsAPinhole) {
+  for (const char* d : {"", "D: []", "d: [0, 0, 0, 0, 0]", "distortion_model: plumb_bob"}) {
+    const Expected<Camera> camera =
+        ParseCamera(std::string("k: [600, 0, 320, 0, 600, 240, 0, 0, 1]\n") + d + "\n", "c.yaml");
+    ASSERT_TRUE(camera) << camera.error().message;
+    EXPECT_EQ(camera->model, CameraModel::kPinhole);
+  }
+}
+
+class BadCameraTest : public testing::TestWithParam<BadText> {};
+
+TEST_P(BadCameraTest, EndsInOneLineThatSaysWhereAndWhat) {
+  ExpectRefused(ParseCamera(GetParam().text, "c"), GetParam());
+}
+
+const std::string kMatrix = "K: [600, 0, 320, 0, 600, 240, 0, 0, 1]\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    Inputs, BadCameraTest,
+    testing::Values(
+        BadText{"Empty", "", kParse, "c:1: the file is empty"},
+        BadText{"NoCamera", "a: 1", kParse, "expected a camera: camera_matrix, K or fx"},
+        BadText{"EightNumbers", "K: [1, 0, 1, 0, 1, 1, 0, 0]", kParse,
+                "c:1: camera matrix: expected 9 numbers, got 8"},
+        BadText{"Skew", "K: [600, 2, 320, 0, 600, 240, 0, 0, 1]", kInvalid, "without skew"},
+        BadText{"Singular", "K: [0, 0, 320, 0, 600, 240, 0, 0, 1]", kInvalid, "c: "},
+        BadText{"NegativeFocal", "K: [-600, 0, 320, 0, 600, 240, 0, 0, 1]", kInvalid, "c: "},
+        BadText{"Model", kMatrix + "distortion_model: omnidirectional", kInvalid,
+                "got 'omnidirectional'"},
+        BadText{"FisheyeCount", kMatrix + "distortion_model: fisheye\nD: [1, 2, 3, 4, 5]", kInvalid,
+                "expected 4 distortion coefficients k1..k4 for the fisheye model, got 5"},
+        BadText{"ThreeCoefficients", kMatrix + "D: [0.1, 0, 0]", kInvalid, "got 3"},
+        BadText{"ThinPrism", kMatrix + "D: [0.1, 0, 0, 0, 0, 0, 0, 0, 0.1, 0, 0, 0]", kInvalid,
+                "thin prism"},
+        BadText{"LongList", kMatrix + "D: [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]", kParse,
+                "expected at most 14 numbers, got 15"},
+        BadText{"NotANumber", "K: [.nan, 0, 320, 0, 600, 240, 0, 0, 1]", ErrorCode::kNonFinite,
+                "c:1: camera matrix"},
+        BadText{"IniTruncated", "[camera]\ncamera matrix\n1 0 2\n0 1 2\n", kParse,
+                "c:4: the file ends here, expected row 3 of 3 of the camera matrix"},
+        BadText{"IniHeading", "[camera]\ncamera matrx\n", kParse,
+                "c:2: unknown heading 'camera matrx'; did you mean 'camera matrix'?"},
+        BadText{"IniWithoutMatrix", "[image]\nwidth\n640\n", kParse,
+                "expected the heading camera matrix"},
+        BadText{"IniComma", "[image]\nwidth\n640,5\n", kParse, "c:3: field 1 (width)"}),
+    [](const auto& bad) { return bad.param.name; });
+
+TEST(CameraFile, ReadsTheRealFilesOfEveryForm) {
+  SEXTANT_REAL_DATA(path, ".");
+  struct Row {
+    const char* path;
+    CameraModel model;
+    int width_px;
+    double fx_px;
+    double cy_px;
+    double first;
+    double last;
+  };
+  const Row rows[] = {
+      {"acfr_vlp16/camera_info.yaml", CameraModel::kEquidistant, 1920, 1176.93, 612.725, -0.0540096,
+       -0.0515253},
+      {"aruco_gold/tutorial_camera_charuco.yml", CameraModel::kBrownConrady, 640,
+       4.5251072219637672e+02, 2.7775155919135995e+02, 1.2136925618707872e-01,
+       2.9542589406810080e+00},
+      {"aruco_gold/tutorial_camera_params.yml", CameraModel::kBrownConrady, 0, 628.158, 260.908,
+       0.0995485, 0.0},
+      {"ouster64/basler.yaml", CameraModel::kBrownConrady, 1920, 2813.643275, 624.049972, -0.134313,
+       0.0},
+      {"dhall/zed_left_uurmi.ini", CameraModel::kBrownConrady, 1280, 704.12, 393.9,
+       -1.7716164842652732e-01, 3.0916019834707860e-03},
+      {"dhall/ptgrey.ini", CameraModel::kBrownConrady, 1280, 2117.135189, 378.896917, -0.285236,
+       0.0},
+      {"dhall/geniusF100.ini", CameraModel::kBrownConrady, 640, 316.172746, 241.691715, 0.003758,
+       0.0},
+  };
+  for (const Row& row : rows) {
+    const Expected<Camera> camera = ReadCamera(path / row.path);
+    ASSERT_TRUE(camera) << camera.error().message;
+    EXPECT_EQ(camera->model, row.model) << row.path;
+    EXPECT_EQ(camera->width_px, row.width_px) << row.path;
+    EXPECT_EQ(camera->fx_px, row.fx_px) << row.path;
+    EXPECT_EQ(camera->cy_px, row.cy_px) << row.path;
+    EXPECT_EQ(camera->distortion[0], row.first) << row.path;
+    const std::size_t last = row.model == CameraModel::kEquidistant ? 3 : 4;
+    EXPECT_EQ(camera->distortion[last], row.last) << row.path;
+  }
+}
+
+}  // namespace
+}  // namespace sextant
