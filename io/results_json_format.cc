@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "io/pose_json.h"
 #include "io/results_json.h"
 
 namespace sextant {
@@ -10,30 +10,11 @@ namespace {
 // Keeps the keys in the order in which they are documented.
 using Json = nlohmann::ordered_json;
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
-template <int kRows, int kCols>
-Json Rows(const Eigen::Matrix<double, kRows, kCols>& matrix) {
+Json Rows(const Matrix6d& matrix) {
   Json rows = Json::array();
-  for (int i = 0; i < kRows; ++i) {
-    Json row = Json::array();
-    for (int j = 0; j < kCols; ++j) row.push_back(matrix(i, j));
-    rows.push_back(std::move(row));
-  }
+  for (int i = 0; i < 6; ++i)
+    rows.push_back(std::vector<double>(matrix.row(i).begin(), matrix.row(i).end()));
   return rows;
-}
-
-Json Pose(const Rigid3d& pose) {
-  const Eigen::Quaterniond& q = pose.rotation;
-  const Eigen::Vector3d& t = pose.translation;
-  const EulerZyx euler = ToEulerZyx(q);
-  return {
-      {"matrix", Rows<4, 4>(pose.Matrix())},
-      {"translation_m", {t.x(), t.y(), t.z()}},
-      {"quaternion_wxyz", {q.w(), q.x(), q.y(), q.z()}},
-      {"euler_zyx_deg",
-       {euler.yaw * kDegPerRad, euler.pitch * kDegPerRad, euler.roll * kDegPerRad}},
-  };
 }
 
 template <class T>
@@ -43,7 +24,7 @@ Json OrNull(const std::optional<T>& value) {
 
 Json Poses(const std::vector<Rigid3d>& poses) {
   Json list = Json::array();
-  for (const Rigid3d& pose : poses) list.push_back(Pose(pose));
+  for (const Rigid3d& pose : poses) list.push_back(PoseJson(pose));
   return list;
 }
 
@@ -63,8 +44,8 @@ Json Result(const SolverResult& result) {
     }
     return json;
   }
-  json["cam_from_lidar"] = Pose(report->cam_from_lidar);
-  json["covariance"] = report->covariance ? Rows<6, 6>(*report->covariance) : Json(nullptr);
+  json["cam_from_lidar"] = PoseJson(report->cam_from_lidar);
+  json["covariance"] = report->covariance ? Rows(*report->covariance) : Json(nullptr);
   json["rmse_m"] = OrNull(report->evaluation.rmse_m);
   json["rmse_px"] = OrNull(report->evaluation.rmse_px);
   json["per_pair_m"] = report->evaluation.per_pair_m;
