@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/error.h"
+#include "geometry/calibration_problem.h"
+
+namespace sextant {
+
+/// The Cramer-Rao bound: no unbiased estimator has a smaller covariance of (dphi [rad], dt [m]).
+///
+/// Inverse of the Fisher information sum_i J_i^T Sigma_i^-1 J_i of all pairs of the problem, with
+/// the residuals linearised at the true pose and the noise that the pairs state (van Trees 1968).
+/// Errors: kMissingData (no pairs, or pairs that state no noise), kDegenerate (singular
+/// information), kInvalidInput (2D-3D pairs without a camera, or a point that does not project).
+Expected<Matrix6d> CramerRaoBound(const CalibrationProblem& problem,
+                                  const Rigid3d& true_cam_from_lidar);
+
+/// The root mean square errors that go with a covariance.
+struct RmsError {
+  double rotation_rad = 0.0;
+  double translation_m = 0.0;
+};
+RmsError RmsOf(const Matrix6d& covariance);
+
+}  // namespace sextant
