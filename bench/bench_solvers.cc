@@ -15,12 +15,12 @@ namespace {
 // Ten sigmas of a single measurement: only a wrong answer is farther off.
 constexpr Tolerance kTolerance = {.rotation_rad = 0.1, .translation_m = 0.1};
 
-std::vector<test::Scene> ScenesFor(const SolverSpec& spec, int pairs) {
-  test::SceneOptions options{.pairs = pairs, .sigma_m = 0.01, .sigma_px = 1.0};
+std::vector<RandomScene> ScenesFor(const SolverSpec& spec, int pairs) {
+  RandomSceneOptions options{.pairs = pairs, .sigma_m = 0.01, .sigma_px = 1.0};
   if (!spec.is_global) options.max_rotation_rad = 0.1;
   if (!spec.estimates_rotation) options.max_rotation_rad = 0.0;
-  std::vector<test::Scene> scenes = MakeScenes(options);
-  for (test::Scene& scene : scenes) {
+  std::vector<RandomScene> scenes = MakeScenes(options);
+  for (RandomScene& scene : scenes) {
     CalibrationProblem& problem = scene.problem;
     if (spec.needs.pairs_3d3d == 0) problem.pairs_3d3d.clear();
     if (spec.needs.pairs_2d3d == 0) problem.pairs_2d3d.clear();
@@ -31,9 +31,9 @@ std::vector<test::Scene> ScenesFor(const SolverSpec& spec, int pairs) {
 }
 
 void Solve(benchmark::State& state, const SolverPtr& solver) {
-  const std::vector<test::Scene> scenes =
+  const std::vector<RandomScene> scenes =
       ScenesFor(solver->spec(), static_cast<int>(state.range(0)));
-  for (const test::Scene& scene : scenes) {
+  for (const RandomScene& scene : scenes) {
     const Expected<SolveReport> report = solver->Solve(scene.problem);
     if (!report) return state.SkipWithError(report.error().message.c_str());
     if (!CheckPose(state, report->cam_from_lidar, scene.cam_from_lidar, kTolerance)) return;

@@ -25,10 +25,10 @@ std::size_t SceneCount(std::int64_t points) {
   return static_cast<std::size_t>(std::clamp<std::int64_t>(2000 / points, 1, 64));
 }
 
-std::vector<test::Scene> MakeScenes(const test::SceneOptions& options) {
-  std::vector<test::Scene> scenes(SceneCount(options.pairs));
+std::vector<RandomScene> MakeScenes(const RandomSceneOptions& options) {
+  std::vector<RandomScene> scenes(SceneCount(options.pairs));
   Random random(1);
-  for (test::Scene& scene : scenes) scene = test::MakeScene(options, random);
+  for (RandomScene& scene : scenes) scene = MakeRandomScene(options, random);
   return scenes;
 }
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "eval/random_scene.h"
 #include "geometry/rigid3d.h"
-#include "support/scenes.h"
 
 namespace sextant::bench {
 
@@ -27,6 +27,6 @@ bool CheckPose(benchmark::State& state, const Rigid3d& answer, const Rigid3d& tr
 std::size_t SceneCount(std::int64_t points);
 
 /// As many scenes. The same options give the same scenes in every binary.
-std::vector<test::Scene> MakeScenes(const test::SceneOptions& options);
+std::vector<RandomScene> MakeScenes(const RandomSceneOptions& options);
 
 }  // namespace sextant::bench

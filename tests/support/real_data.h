@@ -13,10 +13,11 @@ std::optional<std::filesystem::path> RealDataFolder();
 
 }  // namespace sextant::test
 
-/// Declares `path` as a file of the real data, or skips the test and says loudly why.
-#define SEXTANT_REAL_DATA(path, relative)                                                  \
-  const auto path##_folder = sextant::test::RealDataFolder();                              \
-  if (!path##_folder) {                                                                    \
+/// Declares `variable` as the path of a file of the real data, or skips the test and says loudly
+/// why.
+#define SEXTANT_REAL_DATA(variable, relative)                                              \
+  const auto variable##_folder = sextant::test::RealDataFolder();                          \
+  if (!variable##_folder) {                                                                \
     GTEST_SKIP() << "REAL DATA ABSENT: set SEXTANT_DATA to the folder that has " relative; \
   }                                                                                        \
-  const std::filesystem::path path = *path##_folder / relative
+  const std::filesystem::path variable = *variable##_folder / relative

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/scenes.h"
+#include "eval/random_scene.h"
 
-namespace sextant::test {
+namespace sextant {
 namespace {
 
 Eigen::Vector3d UniformVector(Random& random, double half_side) {
@@ -18,8 +18,8 @@ Eigen::Vector3d NormalVector(Random& random) {
 
 }  // namespace
 
-Scene MakeScene(const SceneOptions& options, Random& random) {
-  Scene scene;
+RandomScene MakeRandomScene(const RandomSceneOptions& options, Random& random) {
+  RandomScene scene;
   const Eigen::Vector3d axis = NormalVector(random).normalized();
   const double angle = random.Uniform(0.0, options.max_rotation_rad);
   scene.cam_from_lidar.rotation = ExpSo3(axis * angle);
@@ -57,4 +57,4 @@ Scene MakeScene(const SceneOptions& options, Random& random) {
   return scene;
 }
 
-}  // namespace sextant::test
+}  // namespace sextant
