@@ -6,9 +6,12 @@ namespace sextant {
 std::vector<std::string> DefaultSpecs(const SolverRegistry& registry,
                                       const CalibrationProblem& problem) {
   std::vector<std::string> specs;
+  bool any_whole_pose = false;
   const auto add_if_met = [&](const std::string& spec) {
     const Expected<SolverPtr> solver = registry.Make(spec);
-    if (solver && CheckProblem(problem, (*solver)->spec())) specs.push_back((*solver)->spec().name);
+    if (!solver || !CheckProblem(problem, (*solver)->spec())) return;
+    specs.push_back((*solver)->spec().name);
+    any_whole_pose = any_whole_pose || FindsWholePose((*solver)->spec());
   };
   for (const SolverEntry& entry : registry.entries()) {
     if (!entry.wraps_solver) {
@@ -17,6 +20,8 @@ std::vector<std::string> DefaultSpecs(const SolverRegistry& registry,
     }
     for (const char* inner : {"kabsch", "epnp"}) add_if_met(entry.name + "(" + inner + ")");
   }
+  const bool sets_given = problem.point_sets.in_cam.size() >= 3;
+  if (!any_whole_pose && !sets_given) specs.clear();
   return specs;
 }
 

@@ -88,6 +88,11 @@ CalibrationProblem Reordered(const CalibrationProblem& problem, const OrderFindi
   for (std::size_t i = 0; i < order.lidar_index.size(); ++i) {
     const auto from = static_cast<std::size_t>(order.lidar_index[i]);
     reordered.pairs_3d3d[i].point_in_lidar = problem.pairs_3d3d[from].point_in_lidar;
+    // Pixels of the same corner follow it.
+    for (Pair2d3d& pair : reordered.pairs_2d3d) {
+      if (pair.id != problem.pairs_3d3d[i].id) continue;
+      pair.point_in_lidar = problem.pairs_3d3d[from].point_in_lidar;
+    }
   }
   return reordered;
 }

@@ -52,10 +52,10 @@ struct Judgement {
 /// Order: one board's camera corners against any board's LiDAR corners in any of the eight orders
 /// of a rectangle give a pose; all boards of each view are assigned under it and the pose is fitted
 /// again until nothing moves; the best of all starts is reported where its RMSE is less than half
-/// of the given order's and the latter over a tenth of the mean edge. Needs boards of four corners.
-/// Edges are compared in the better order; they are reported beyond 5 percent of their length and
-/// three standard deviations of their difference, where the noise is stated.
-/// Weak: one standard deviation over five times that of the strongest direction.
+/// of the given order's, the latter over a tenth and the former under a fifth of the mean edge.
+/// Needs boards of four corners. Edges are compared in the better order; they are reported beyond 5
+/// percent of their length and three standard deviations of their difference, where the noise is
+/// stated. Weak: one standard deviation over five times that of the strongest direction.
 Judgement JudgePairs(const CalibrationProblem& problem);
 
 /// The problem with its LiDAR points moved to the pairs that the finding says.

@@ -17,6 +17,7 @@ constexpr int kMaxStarts = 512;  // Enough for eight boards; more views share th
 constexpr int kMaxRounds = 20;
 constexpr double kFarBetter = 0.5;  // Of the RMSE as given.
 constexpr double kMinMisfit = 0.1;  // Of the mean edge: noise alone does not swap corners.
+constexpr double kMaxMisfit = 0.2;  // Of the mean edge: beyond, no order is the right one.
 
 using Assignment = std::vector<int>;  // By camera point: the pair whose LiDAR point belongs to it.
 
@@ -224,7 +225,7 @@ std::optional<OrderFinding> FindBetterOrder(std::span<const Pair3d3d> pairs) {
   if (as_given < kMinMisfit * search.MeanEdge()) return std::nullopt;
 
   Assignment best;
-  double best_rmse = kFarBetter * as_given;
+  double best_rmse = std::min(kFarBetter * as_given, kMaxMisfit * search.MeanEdge());
   for (const Rigid3d& start : search.Starts()) {
     Assignment assignment = search.Converge(start);
     const double rmse = search.FitAll(assignment).rmse_m;

@@ -4,9 +4,9 @@
 // One line a solver, in the order of the catalogue; X(Name) is `SolverEntry NameEntry()` in the
 // solver's own file. An explicit table: the linker drops self-registering objects.
 #define SEXTANT_SOLVERS(X) \
-  X(MeanOffset)            \
   X(Kabsch)                \
   X(EigenUmeyama)          \
+  X(MeanOffset)            \
   X(P3p)                   \
   X(Icp)                   \
   X(Ransac)                \

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <numeric>
 
+#include "solvers/kabsch.h"
 #include "solvers/pair_noise.h"
 #include "solvers/registry.h"
 
@@ -10,7 +10,7 @@ namespace sextant {
 namespace {
 
 /// Eigen's own closed form, beside ours for comparison. It weighs all pairs alike and does not see
-/// degenerate sets, so the spectrum is looked at first.
+/// degenerate or mirrored sets, which our kernel refuses first.
 class EigenUmeyamaSolver final : public Solver {
  public:
   explicit EigenUmeyamaSolver(const std::string& name)
@@ -26,10 +26,9 @@ class EigenUmeyamaSolver final : public Solver {
       in_lidar.col(i) = pairs[static_cast<std::size_t>(i)].point_in_lidar;
       in_cam.col(i) = pairs[static_cast<std::size_t>(i)].point_in_cam;
     }
-    if (IsCollinear(in_lidar) || IsCollinear(in_cam)) {
-      return MakeError(ErrorCode::kDegenerate,
-                       "the points of a sensor coincide or lie on one line, which leaves a "
-                       "rotation undetermined; use points that span a plane");
+    const PointSets points = PointsOf(pairs);
+    if (const auto fit = FitKabsch(points.in_cam, points.in_lidar); !fit) {
+      return tl::unexpected<Error>(fit.error());
     }
     const Eigen::Matrix4d matrix = Eigen::umeyama(in_lidar, in_cam, /*with_scaling=*/false);
     Estimate estimate;
@@ -41,13 +40,6 @@ class EigenUmeyamaSolver final : public Solver {
     const std::vector<double> equal_weights(pairs.size(), 1.0);
     estimate.covariance = PropagateCovariance(pairs, equal_weights, estimate.cam_from_lidar);
     return estimate;
-  }
-
-  static bool IsCollinear(const Eigen::Matrix3Xd& points) {
-    const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
-    const Eigen::Matrix3d scatter = centred * centred.transpose();
-    const Eigen::Vector3d spread = Eigen::JacobiSVD<Eigen::Matrix3d>(scatter).singularValues();
-    return !(spread(1) > 1e-10 * spread(0));
   }
 };
 

@@ -29,6 +29,11 @@ struct SolverSpec {
   bool is_global = true;           ///< False: finds the optimum near its start only.
 };
 
+/// Whether it finds all six degrees of freedom from anywhere, unlike baselines and local searches.
+inline bool FindsWholePose(const SolverSpec& spec) {
+  return spec.is_global && spec.estimates_rotation;
+}
+
 enum class Termination {
   kClosedForm,     ///< The optimum by formula, or a search that is finite by construction.
   kConverged,      ///< The method's own stopping inequality holds; stated in its header.
