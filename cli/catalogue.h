@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "solvers/registry.h"
+
+namespace sextant::cli {
+
+/// Every solver that this build has.
+SolverRegistry AllSolvers();
+
+}  // namespace sextant::cli

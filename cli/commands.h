@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/simulate_pairs.h"
+
+namespace sextant::cli {
+
+/// Exit codes, a contract with scripts.
+inline constexpr int kAnswered = 0;
+inline constexpr int kNoAnswer = 1;  ///< The input was read, and no solver answered.
+inline constexpr int kWrongUse = 2;  ///< Wrong usage, or an input or output that fails.
+
+/// What `solve` and `compare` share.
+struct InputOptions {
+  std::string problem_path;
+  std::string camera_path;  ///< Empty: the problem's own.
+  std::string boards_path;  ///< marker_coordinates.txt; empty: the problem's own.
+  bool reorder = false;
+  std::string json_path;  ///< Empty: none; "-": standard output, and no text there.
+};
+
+struct SolveOptions {
+  InputOptions input;
+  std::string solver = "kabsch";
+};
+
+struct CompareOptions {
+  InputOptions input;
+  std::string solvers;    ///< Empty: every one whose needs the input meets.
+  std::string plot_path;  ///< Empty: none.
+};
+
+struct AverageOptions {
+  std::string log_path;
+  std::string json_path;
+};
+
+struct CatalogueOptions {
+  std::string name;  ///< Empty: all, a line each.
+  bool markdown = false;
+};
+
+struct ConvertOptions {
+  std::string from;
+  std::string to;
+};
+
+struct SimulatePairsOptions {
+  PairSimulation simulation;
+  std::string out = "session.yaml";
+};
+
+/// Each runs one command, prints its answer or one line of error, and returns the exit code.
+int RunSolve(const SolveOptions& options);
+int RunCompare(const CompareOptions& options);
+int RunAverage(const AverageOptions& options);
+int RunCatalogue(const CatalogueOptions& options);
+int RunConvert(const ConvertOptions& options);
+int RunSimulatePairs(const SimulatePairsOptions& options);
+
+}  // namespace sextant::cli

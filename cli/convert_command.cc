@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+
+#include "cli/commands.h"
+#include "cli/load.h"
+#include "io/points_file.h"
+#include "io/read_problem.h"
+#include "io/text_file.h"
+
+namespace sextant::cli {
+namespace {
+
+Expected<std::string> FormatAs(const std::string& extension, const ProblemFile& file) {
+  const CalibrationProblem& problem = file.problem;
+  if (extension == ".yaml" || extension == ".yml") return FormatProblemYaml(file);
+  if (extension == ".txt") {
+    if (!problem.pairs_3d3d.empty()) return FormatPoints(problem.pairs_3d3d);
+    return MakeError(ErrorCode::kMissingData, "points.txt holds 3D-3D pairs, and there are none");
+  }
+  return MakeError(ErrorCode::kInvalidOption,
+                   "expected an output that ends in .yaml or .txt, got '" + extension + "'");
+}
+
+}  // namespace
+
+int RunConvert(const ConvertOptions& options) {
+  const Expected<DetectedProblem> read = ReadProblem(options.from);
+  if (!read) return Refuse("convert", read.error());
+  const Expected<std::string> text =
+      FormatAs(std::filesystem::path(options.to).extension().string(), *read);
+  if (!text) return Refuse("convert", text.error());
+  if (const Expected<void> ok = WriteFileAtomically(options.to, *text); !ok) {
+    return Refuse("convert", ok.error());
+  }
+  return kAnswered;
+}
+
+}  // namespace sextant::cli

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/load.h"
+
+#include <fmt/format.h>
+
+#include "io/camera_file.h"
+#include "io/marker_files.h"
+#include "io/read_problem.h"
+#include "io/text_file.h"
+
+namespace sextant::cli {
+namespace {
+
+Expected<void> AddNamedFiles(const InputOptions& options, CalibrationProblem& problem) {
+  if (!options.camera_path.empty()) {
+    const Expected<Camera> camera = ReadCamera(options.camera_path);
+    if (!camera) return tl::unexpected<Error>(camera.error());
+    problem.camera = *camera;
+  }
+  if (!options.boards_path.empty()) {
+    const Expected<std::vector<MarkerBoard>> boards = ReadMarkerCoordinates(options.boards_path);
+    if (!boards) return tl::unexpected<Error>(boards.error());
+    problem.boards = BoardsOf(*boards);
+  }
+  return {};
+}
+
+}  // namespace
+
+Expected<LoadedInput> Load(const InputOptions& options) {
+  const Expected<DetectedProblem> read = ReadProblem(options.problem_path);
+  if (!read) return tl::unexpected<Error>(read.error());
+  LoadedInput input;
+  input.file = *read;
+  CalibrationProblem& problem = input.file.problem;
+  if (Expected<void> ok = AddNamedFiles(options, problem); !ok) {
+    return tl::unexpected<Error>(std::move(ok.error()));
+  }
+  input.judgement = JudgePairs(problem);
+  if (options.reorder && input.judgement.order) {
+    problem = Reordered(problem, *input.judgement.order);
+  }
+  input.summary = {.path = options.problem_path,
+                   .format = std::string(ToString(read->format)),
+                   .pairs_3d3d = static_cast<int>(problem.pairs_3d3d.size()),
+                   .pairs_2d3d = static_cast<int>(problem.pairs_2d3d.size()),
+                   .points_in_cam = static_cast<int>(problem.point_sets.in_cam.size()),
+                   .points_in_lidar = static_cast<int>(problem.point_sets.in_lidar.size())};
+  return input;
+}
+
+int Refuse(const char* command, const Error& error, int exit_code) {
+  fmt::print(stderr, "sextant {}: {}\n", command, error.message);
+  return exit_code;
+}
+
+int Deliver(const char* command, const std::string& json_path, const std::string& text,
+            const std::string& json, int exit_code) {
+  if (json_path == "-") {
+    fmt::print("{}", json);
+    return exit_code;
+  }
+  fmt::print("{}", text);
+  if (json_path.empty()) return exit_code;
+  if (Expected<void> ok = WriteFileAtomically(json_path, json); !ok) {
+    return Refuse(command, ok.error());
+  }
+  return exit_code;
+}
+
+}  // namespace sextant::cli

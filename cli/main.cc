@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+
+#include "base/version.h"
+#include "cli/commands.h"
+
+namespace sextant::cli {
+namespace {
+
+constexpr const char* kIntroduction =
+    "sextant finds the rigid transform cam_from_lidar between a LiDAR and a camera, says how sure "
+    "it\n"
+    "is, and compares every way of finding it.\n"
+    "A transform is named by its frames: point_in_cam = cam_from_lidar * point_in_lidar. Camera: "
+    "x\n"
+    "right, y down, z forward. LiDAR: x forward, y left, z up. Metres and degrees.";
+
+constexpr const char* kFirstSteps =
+    "First steps:\n"
+    "  sextant simulate pairs --out session.yaml    a session whose truth is known\n"
+    "  sextant compare session.yaml                 every solver on it, with its error\n"
+    "  sextant solve points.txt                     cam_from_lidar from your own correspondences\n"
+    "  sextant solvers                              what there is to choose from\n"
+    "Each command has its own --help with examples.\n"
+    "Exit codes: 0 answered, 1 no answer (and why), 2 wrong usage or unreadable input.";
+
+constexpr const char* kInputHelp =
+    "Correspondences: points.txt of the original package, a problem file (YAML), 3D-3D or 2D-3D\n"
+    "pairs (CSV), or poses.csv of cam_lidar_calibration; told apart by content";
+
+constexpr const char* kReorderHelp =
+    "Take the order of corners and boards that fits best, where another than the file's fits far\n"
+    "better";
+
+void AddInput(CLI::App& command, InputOptions& input) {
+  command.add_option("FILE", input.problem_path, kInputHelp)->required();
+  command.add_option("--camera", input.camera_path,
+                     "Intrinsics: ROS camera_info YAML, OpenCV YAML, or .ini");
+  command.add_option("--boards", input.boards_path,
+                     "Known board sizes: marker_coordinates.txt of the original package");
+  command.add_flag("--reorder", input.reorder, kReorderHelp);
+  command.add_option("--json", input.json_path, "Write the results as JSON; - for standard output");
+}
+
+void AddSolve(CLI::App& app, SolveOptions& options) {
+  CLI::App& command = *app.add_subcommand("solve", "One solver's answer, with its uncertainty");
+  AddInput(command, options.input);
+  command
+      .add_option("--solver", options.solver, "A solver, possibly composed; see sextant solvers")
+      ->capture_default_str();
+  command.footer(
+      "Examples:\n"
+      "  sextant solve points.txt\n"
+      "  sextant solve points.txt --solver 'refine(ransac(kabsch, seed=7), loss=huber)'\n"
+      "  sextant solve pairs.csv --camera camera.yaml --solver 'refine(epnp)' --json result.json");
+}
+
+void AddCompare(CLI::App& app, CompareOptions& options) {
+  CLI::App& command = *app.add_subcommand("compare", "Many solvers on the same data, as a table");
+  AddInput(command, options.input);
+  command.add_option("--solvers", options.solvers,
+                     "Solvers, separated by commas; default: every one whose needs the file meets");
+  command.add_option("--plot", options.plot_path,
+                     "Draw the residuals of every pair under every solver (.svg or .png)");
+  command.footer(
+      "The distance of each answer to the first is given, and to the truth where the file knows "
+      "it.\n"
+      "Examples:\n"
+      "  sextant compare points.txt\n"
+      "  sextant compare points.txt --solvers "
+      "'kabsch,icp(init=centroid),drop_worst(kabsch,keep=6)'");
+}
+
+void AddAverage(CLI::App& app, AverageOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("average", "The single scans and true mean of an avg_values.txt");
+  command.add_option("LOG", options.log_path, "avg_values.txt of the original package")->required();
+  command.add_option("--json", options.json_path,
+                     "Write the results as JSON; - for standard output");
+  command.footer(
+      "The original package renormalises its quaternion sum at every scan, so that its newest "
+      "scan\n"
+      "always weighs one half. This recovers the single scans and shows their true mean.\n"
+      "Example:\n  sextant average conf/avg_values.txt");
+}
+
+void AddCatalogue(CLI::App& app, CatalogueOptions& options) {
+  CLI::App& command = *app.add_subcommand("solvers", "What there is, with needs and options");
+  command.add_option("NAME", options.name, "One solver in full");
+  command.add_flag("--markdown", options.markdown, "The whole catalogue as a page");
+  command.footer("Examples:\n  sextant solvers\n  sextant solvers ransac");
+}
+
+void AddConvert(CLI::App& app, ConvertOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("convert", "From one format of correspondences to another");
+  command.add_option("FROM", options.from, kInputHelp)->required();
+  command
+      .add_option("TO", options.to,
+                  "Written by its extension: .yaml (everything), .csv (pairs), .txt (points.txt)")
+      ->required();
+  command.footer("Example:\n  sextant convert points.txt session.yaml");
+}
+
+void AddSimulate(CLI::App& app, SimulatePairsOptions& options) {
+  CLI::App& command = *app.add_subcommand("simulate", "Sessions whose truth is known");
+  command.require_subcommand(1);
+  CLI::App& pairs = *command.add_subcommand(
+      "pairs", "Corners of the paper's two boards, as extractors find them");
+  PairSimulation& simulation = options.simulation;
+  pairs.add_option("--out", options.out, "Problem file to write")->capture_default_str();
+  pairs.add_option("--seed", simulation.seed, "The same seed gives the same bytes")
+      ->capture_default_str();
+  pairs.add_option("--views", simulation.views, "How often the boards are hung")
+      ->capture_default_str();
+  pairs.add_option("--outliers", simulation.outliers, "Corners that are displaced")
+      ->capture_default_str();
+  pairs.add_option("--outlier-shift", simulation.outlier_shift_m, "By how much [m]")
+      ->capture_default_str();
+  pairs.add_option("--lidar-sigma", simulation.lidar_sigma_m, "LiDAR corner noise per axis [m]")
+      ->capture_default_str();
+  pairs
+      .add_option("--camera-sigma", simulation.camera_lateral_sigma_m,
+                  "Camera corner noise across the ray [m]")
+      ->capture_default_str();
+  pairs
+      .add_option("--depth-sigma", simulation.camera_depth_sigma_m,
+                  "Camera corner noise along the ray [m]")
+      ->capture_default_str();
+  pairs.add_option("--pixel-sigma", simulation.pixel_sigma_px, "Corner noise in the image [px]")
+      ->capture_default_str();
+  pairs.footer("Example:\n  sextant simulate pairs --views 5 --seed 7 --out session.yaml");
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app(kIntroduction, "sextant");
+  app.set_version_flag("--version", std::string(Version()));
+  app.set_help_all_flag("--help-all", "The help of every command");
+  app.require_subcommand(1);
+  app.footer(kFirstSteps);
+  SolveOptions solve;
+  CompareOptions compare;
+  AverageOptions average;
+  CatalogueOptions catalogue;
+  ConvertOptions convert;
+  SimulatePairsOptions simulate;
+  AddSolve(app, solve);
+  AddCompare(app, compare);
+  AddAverage(app, average);
+  AddCatalogue(app, catalogue);
+  AddConvert(app, convert);
+  AddSimulate(app, simulate);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kAnswered : kWrongUse;
+  }
+  if (app.got_subcommand("solve")) return RunSolve(solve);
+  if (app.got_subcommand("compare")) return RunCompare(compare);
+  if (app.got_subcommand("average")) return RunAverage(average);
+  if (app.got_subcommand("solvers")) return RunCatalogue(catalogue);
+  if (app.got_subcommand("convert")) return RunConvert(convert);
+  return RunSimulatePairs(simulate);
+}
+
+}  // namespace
+}  // namespace sextant::cli
+
+int main(int argc, char** argv) { return sextant::cli::Main(argc, argv); }

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/compare.h"
+#include "solvers/solver.h"
+
+namespace sextant::cli {
+
+/// Everything that `sextant solve` says of one answer.
+std::string DescribeReport(const CalibrationProblem& problem, const SolveReport& report);
+
+/// The table of `sextant compare`, a row a solver, and the reasons of those that did not answer.
+std::string DescribeComparison(const std::vector<ComparisonRow>& rows);
+
+}  // namespace sextant::cli

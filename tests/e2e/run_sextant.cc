@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "e2e/run_sextant.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "support/scratch_folder.h"
+
+namespace sextant::test {
+
+std::filesystem::path TestFolder() {
+  static std::unique_ptr<ScratchFolder> folder;
+  static const testing::TestInfo* owner = nullptr;
+  const testing::TestInfo* current = testing::UnitTest::GetInstance()->current_test_info();
+  if (owner != current) {
+    folder = std::make_unique<ScratchFolder>();
+    owner = current;
+  }
+  return folder->path();
+}
+
+void WriteText(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+std::string ReadText(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+ProgramRun RunSextant(const std::string& arguments) {
+  const std::filesystem::path folder = TestFolder();
+  const std::string command = std::string(SEXTANT_BINARY) + " " + arguments + " >" +
+                              (folder / "stdout").string() + " 2>" + (folder / "stderr").string() +
+                              " </dev/null";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadText(folder / "stdout"),
+          ReadText(folder / "stderr")};
+}
+
+}  // namespace sextant::test
