@@ -116,7 +116,8 @@ std::string ResidualPlot(const CalibrationProblem& problem,
                     k, k + 1, k, k + 1, Quote(answers[k]->solver)));
   }
   return fmt::format(
-      "{}{}set key outside right top noenhanced\nset grid ytics\nset yrange [0:*]\n"
+      "{}{}set key above horizontal noenhanced\nset grid ytics\nset offsets 0, 0, graph 0.05, "
+      "0\nset yrange [0:*]\n"
       "set xrange [-0.6:{}]\nset xlabel 'pair (view.board.corner)'\nset ylabel 'residual [{}]'\n"
       "plot {}\n",
       data, Ticks(residuals.ids), static_cast<double>(residuals.ids.size()) - 0.4, residuals.unit,

@@ -129,6 +129,16 @@ TEST(Cli, CompareIsReproducible) {
             poses(RunSextant("compare " + session + " --json -")));
 }
 
+TEST(Cli, DrawsTheResiduals) {
+  const std::string session = SimulatedSession();
+  const auto plot = TestFolder() / "it's a plot.svg";
+  const ProgramRun run = RunSextant("compare " + session + " --plot \"" + plot.string() + "\"");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(ReadText(plot), AllOf(HasSubstr("<svg"), HasSubstr("gnc(kabsch)")));
+  EXPECT_EQ(RunSextant("compare " + session + " --plot plot.bmp").exit_code, 2);
+  EXPECT_EQ(RunSextant("compare " + session + " --plot /nowhere/plot.svg").exit_code, 2);
+}
+
 TEST(Cli, ReordersCornersWhereAskedAndSaysSoWhereNot) {
   const std::string session = SimulatedSession("--outliers 0");
   const auto path = TestFolder() / "points.txt";
