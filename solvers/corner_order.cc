@@ -115,11 +115,11 @@ Expected<CornerOrderFit> ResolveCornerOrders(std::span<const CornerGroup> groups
                                  i + 1, groups.size(), group.in_b.size(), group.in_a.size()));
   }
   std::optional<CornerOrderFit> best;
-  // Equal to rounding is equal: the earliest start, nearest to the lists, then stays.
-  constexpr double kBetter = 1.0 - 1e-9;
+  // Equal to a micrometre is equal: the earliest start, nearest to the lists, then stays.
+  constexpr double kNoticeableMetres = 1e-6;
   for (const Rigid3d& start : Starts(groups)) {
     std::optional<CornerOrderFit> fit = Descend(groups, start);
-    if (fit && (!best || fit->rmse_m < kBetter * best->rmse_m)) best = std::move(fit);
+    if (fit && (!best || fit->rmse_m < best->rmse_m - kNoticeableMetres)) best = std::move(fit);
   }
   if (!best) {
     return MakeError(ErrorCode::kDegenerate,

@@ -191,23 +191,5 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"Junk", "\x7f\x45LF\x02\xff\xfe", kParse, "p.yaml"}),
     [](const auto& bad) { return bad.param.name; });
 
-TEST(ProblemYaml, EveryTruncationAndByteFlipIsReadOrRefused) {
-  Random random(4);
-  const std::string text = FormatProblemYaml(FullProblem(random));
-  for (std::size_t size = 0; size < text.size(); size += 7) {
-    const Expected<ProblemFile> read = ParseProblemYaml(text.substr(0, size), "p");
-    EXPECT_TRUE(read || !read.error().message.empty());
-  }
-  for (int trial = 0; trial < 300; ++trial) {
-    std::string broken = text;
-    for (int flip = 0; flip < 3; ++flip) {
-      const std::uint64_t at = random.Below(text.size());
-      broken[at] = static_cast<char>(random.Below(256));
-    }
-    const Expected<ProblemFile> read = ParseProblemYaml(broken, "p");
-    EXPECT_TRUE(read || !read.error().message.empty());
-  }
-}
-
 }  // namespace
 }  // namespace sextant

@@ -61,6 +61,7 @@ TEST(CornerOrder, KeepsTheListedOrderWhereOneBoardLeavesItOpen) {
   const auto groups = Boards(truth, as_listed, 0.0, random);
   const Expected<CornerOrderFit> fit = ResolveCornerOrders(groups);
   ASSERT_TRUE(fit);
+  EXPECT_EQ(fit->orders[0], as_listed[0]);
   EXPECT_LT(fit->rmse_m, 1e-7);
 }
 

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every reader takes any damage to a good file: it reads it or refuses it in one line.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "base/random.h"
+#include "io/acfr_poses.h"
+#include "io/average_log.h"
+#include "io/camera_file.h"
+#include "io/marker_files.h"
+#include "io/original_config.h"
+#include "io/pairs_csv.h"
+#include "io/points_file.h"
+#include "io/read_problem.h"
+#include "io/results_json.h"
+#include "io/transform_list.h"
+#include "support/scenes.h"
+
+namespace sextant {
+namespace {
+
+/// The message of the error; empty where the text is read.
+using Refusal = std::function<std::string(const std::string&)>;
+
+template <class T>
+Refusal RefusalOf(Expected<T> (*parse)(std::string_view, const std::string&)) {
+  return [parse](const std::string& text) {
+    const Expected<T> read = parse(text, "f");
+    if (!read) return read.error().message;
+    return std::string();
+  };
+}
+
+struct Reader {
+  const char* name;
+  std::string good;
+  Refusal refusal;
+};
+
+void PrintTo(const Reader& reader, std::ostream* out) { *out << reader.name; }
+
+CalibrationProblem SomeProblem() {
+  Random random(1);
+  return test::MakeScene({.pairs = 4, .sigma_m = 0.01, .sigma_px = 0.5}, random).problem;
+}
+
+std::string Repeated(const std::string& piece, int times) {
+  std::string text;
+  for (int i = 0; i < times; ++i) text += piece;
+  return text;
+}
+
+std::vector<Reader> Readers() {
+  const CalibrationProblem problem = SomeProblem();
+  ResultFile results;
+  results.results.push_back({"kabsch", SolveReport{}});
+  results.results.push_back({"p3p", MakeError(ErrorCode::kDegenerate, "on a line")});
+  const std::string identity = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+  return {
+      {"Yaml", FormatProblemYaml({problem, Rigid3d{}, "made"}), RefusalOf(ParseProblemYaml)},
+      {"Points", FormatPoints(problem.pairs_3d3d), RefusalOf(ParsePoints)},
+      {"CsvPixels", FormatPairsCsv(problem.pairs_2d3d), RefusalOf(ParsePairsCsv)},
+      {"CsvPoints", FormatPairsCsv(problem.pairs_3d3d), RefusalOf(ParsePairsCsv)},
+      {"AnyProblem", FormatPoints(problem.pairs_3d3d), RefusalOf(ParseProblem)},
+      {"Results", FormatResults(results), RefusalOf(ParseResults)},
+      {"AverageLog", "1\n0.5\n0\n0\n1 0 0\n0 1 0\n0 0 1\n0.1\n", RefusalOf(ParseAverageLog)},
+      {"Config", Repeated("1 2\n", 4) + "0.1\n2\n0\n" + Repeated("1 0 0 0\n", 3) + "9\n1 2 3\n",
+       RefusalOf(ParseOriginalConfig)},
+      {"Markers", "1\n48.4\n46.8\n4.0\n5.0\n20.5\n", RefusalOf(ParseMarkerCoordinates)},
+      {"Detected", "26=(573.6,220.9) (515,274) (461,216) (520,163) Txyz=0 0 1 Rxyz=1 2 3\n",
+       RefusalOf(ParseDetectedMarkers)},
+      {"Transforms", identity + "\n" + identity, RefusalOf(ParseTransformList)},
+      {"CameraYaml",
+       "%YAML:1.0\n---\nimage_width: 640\ncamera_matrix: !!opencv-matrix\n  rows: 3\n  data: [6, "
+       "0, 3, 0, 6, 2, 0, 0, 1]\nD: [0.1, 0, 0, 0]\n",
+       RefusalOf(ParseCamera)},
+      {"CameraIni",
+       "[image]\n\nwidth\n640\n\n[camera]\ncamera matrix\n6 0 3\n0 6 2\n0 0 1\n\ndistortion\n0 0 0 "
+       "0 0\n",
+       RefusalOf(ParseCamera)},
+      {"AcfrPoses",
+       Repeated("1,2,3\n", 2) + "1,0,4\n2,0,4\n2,1,4\n1,1,4\n" + Repeated("1,2,3\n", 2) +
+           "4,1,0\n4,2,0\n4,2,1\n4,1,1\n" + Repeated("1,0,0\n", 7),
+       RefusalOf(ParseAcfrPoses)},
+  };
+}
+
+// Cuts, doubles or overwrites a stretch.
+std::string Damaged(std::string text, Random& random) {
+  static const std::string kPieces[] = {"",
+                                        "\n",
+                                        ":",
+                                        ",",
+                                        "-",
+                                        "nan",
+                                        "1e999",
+                                        "[",
+                                        "{",
+                                        "(",
+                                        "\"",
+                                        "&a ",
+                                        "*a",
+                                        "\t",
+                                        "99999999999",
+                                        "%",
+                                        "#",
+                                        "|",
+                                        "? ",
+                                        "<<",
+                                        "\r",
+                                        std::string(1, '\0'),
+                                        "\xff",
+                                        "!!"};
+  const std::uint64_t edits = 1 + random.Below(3);
+  for (std::uint64_t i = 0; i < edits && !text.empty(); ++i) {
+    const std::uint64_t at = random.Below(text.size());
+    const std::uint64_t length = random.Below(2) == 0 ? random.Below(3) : random.Below(40);
+    const std::string stretch = text.substr(at, length);
+    const std::uint64_t piece = random.Below(std::size(kPieces));
+    text.replace(at, length, random.Below(4) == 0 ? stretch + stretch : kPieces[piece]);
+  }
+  return text;
+}
+
+class MutationTest : public testing::TestWithParam<Reader> {};
+
+TEST_P(MutationTest, ReadsOrRefusesEveryDamage) {
+  const Reader& reader = GetParam();
+  EXPECT_EQ(reader.refusal(reader.good), "");
+  Random random(2);
+  int refused = 0;
+  constexpr int kTrials = 400;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const std::string message = reader.refusal(Damaged(reader.good, random));
+    if (message.empty()) continue;
+    ++refused;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    EXPECT_LT(message.size(), 500U) << message;
+    EXPECT_TRUE(message.starts_with("f:")) << message;
+  }
+  // Damage within a number or a comment may leave a good file, but not most often.
+  EXPECT_GT(refused, kTrials / 4);
+}
+
+TEST_P(MutationTest, ReadsOrRefusesEveryTruncation) {
+  const Reader& reader = GetParam();
+  const std::size_t step = 1 + reader.good.size() / 200;
+  for (std::size_t size = 0; size < reader.good.size(); size += step) {
+    const std::string message = reader.refusal(reader.good.substr(0, size));
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Readers, MutationTest, testing::ValuesIn(Readers()),
+                         [](const auto& reader) { return reader.param.name; });
+
+}  // namespace
+}  // namespace sextant
