@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -54,12 +54,20 @@ struct SimulatePairsOptions {
   std::string out = "session.yaml";
 };
 
+struct AccuracyOptions {
+  std::string solvers;  ///< Empty: every one that finds a whole pose.
+  int trials = 2000;
+  std::uint64_t seed = 1;
+  bool markdown = false;
+};
+
 /// Each runs one command, prints its answer or one line of error, and returns the exit code.
 int RunSolve(const SolveOptions& options);
 int RunCompare(const CompareOptions& options);
 int RunAverage(const AverageOptions& options);
 int RunCatalogue(const CatalogueOptions& options);
 int RunConvert(const ConvertOptions& options);
+int RunAccuracy(const AccuracyOptions& options);
 int RunSimulatePairs(const SimulatePairsOptions& options);
 
 }  // namespace sextant::cli

@@ -132,6 +132,19 @@ void AddSimulate(CLI::App& app, SimulatePairsOptions& options) {
   pairs.footer("Example:\n  sextant simulate pairs --views 5 --seed 7 --out session.yaml");
 }
 
+void AddAccuracy(CLI::App& app, AccuracyOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("accuracy", "Every solver against the Cramer-Rao bound, by simulation");
+  command.add_option("--solvers", options.solvers, "Solvers, separated by commas; default: all");
+  command.add_option("--trials", options.trials, "Random scenes a condition")
+      ->check(CLI::Range(1, 100'000'000))
+      ->capture_default_str();
+  command.add_option("--seed", options.seed, "The same seed gives the same figures")
+      ->capture_default_str();
+  command.add_flag("--markdown", options.markdown, "As a page");
+  command.footer("Example:\n  sextant accuracy --solvers 'epnp,refine(epnp)' --trials 500");
+}
+
 int Main(int argc, char** argv) {
   CLI::App app(kIntroduction, "sextant");
   app.set_version_flag("--version", std::string(Version()));
@@ -143,12 +156,14 @@ int Main(int argc, char** argv) {
   AverageOptions average;
   CatalogueOptions catalogue;
   ConvertOptions convert;
+  AccuracyOptions accuracy;
   SimulatePairsOptions simulate;
   AddSolve(app, solve);
   AddCompare(app, compare);
   AddAverage(app, average);
   AddCatalogue(app, catalogue);
   AddConvert(app, convert);
+  AddAccuracy(app, accuracy);
   AddSimulate(app, simulate);
   try {
     app.parse(argc, argv);
@@ -160,6 +175,7 @@ int Main(int argc, char** argv) {
   if (app.got_subcommand("average")) return RunAverage(average);
   if (app.got_subcommand("solvers")) return RunCatalogue(catalogue);
   if (app.got_subcommand("convert")) return RunConvert(convert);
+  if (app.got_subcommand("accuracy")) return RunAccuracy(accuracy);
   return RunSimulatePairs(simulate);
 }
 

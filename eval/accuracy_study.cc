@@ -110,6 +110,7 @@ std::vector<AccuracyResult> StudyAccuracy(const AccuracyStudy& study,
       for (std::size_t k = 0; k < solvers.size(); ++k) {
         trials[k][i] = RunTrial(scene, problem, inliers, *solvers[k]);
       }
+      study.after_trial();
     }
   };
   {

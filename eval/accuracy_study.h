@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,6 +42,7 @@ struct AccuracyStudy {
   std::uint64_t seed = 1;
   int trials = 2000;
   int threads = 2;
+  std::function<void()> after_trial = [] {};  ///< Called from any thread, for progress.
 };
 
 /// Every solver on the same `trials` scenes of the condition. The figures do not depend on the

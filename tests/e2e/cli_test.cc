@@ -32,7 +32,8 @@ std::string SimulatedSession(const std::string& options = "") {
 TEST(Cli, HelpTeachesEveryCommand) {
   const ProgramRun top = RunSextant("--help");
   EXPECT_EQ(top.exit_code, 0);
-  for (const char* command : {"solve", "compare", "average", "solvers", "convert", "simulate"}) {
+  for (const char* command :
+       {"solve", "compare", "average", "solvers", "convert", "accuracy", "simulate"}) {
     EXPECT_THAT(top.out, HasSubstr(command));
     const ProgramRun help = RunSextant(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0);
@@ -127,6 +128,14 @@ TEST(Cli, CompareIsReproducible) {
   const std::string session = SimulatedSession();
   EXPECT_EQ(poses(RunSextant("compare " + session + " --json -")),
             poses(RunSextant("compare " + session + " --json -")));
+}
+
+TEST(Cli, AccuracyStandsBesideTheBound) {
+  const ProgramRun run = RunSextant("accuracy --trials 20 --solvers kabsch");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("8 points"), HasSubstr("/ bound"), HasSubstr("kabsch")));
+  EXPECT_EQ(run.out, RunSextant("accuracy --trials 20 --solvers kabsch").out);
+  EXPECT_EQ(RunSextant("accuracy --trials 0").exit_code, 2);
 }
 
 TEST(Cli, DrawsTheResiduals) {
