@@ -19,6 +19,7 @@ double SquaredWhitened(const Pair3d3d& pair, const Eigen::Vector3d& residual) {
 void EvaluatePairs3d3d(const CalibrationProblem& problem, const Rigid3d& cam_from_lidar,
                        Evaluation& evaluation) {
   if (problem.pairs_3d3d.empty()) return;
+  evaluation.per_pair_m.reserve(problem.pairs_3d3d.size());
   double sum = 0.0;
   for (const Pair3d3d& pair : problem.pairs_3d3d) {
     const Eigen::Vector3d residual = PointResidual(cam_from_lidar, pair);
@@ -32,6 +33,7 @@ void EvaluatePairs3d3d(const CalibrationProblem& problem, const Rigid3d& cam_fro
 void EvaluatePairs2d3d(const CalibrationProblem& problem, const Rigid3d& cam_from_lidar,
                        Evaluation& evaluation) {
   if (!problem.camera) return;
+  evaluation.per_pair_px.reserve(problem.pairs_2d3d.size());
   double sum = 0.0;
   int projected = 0;
   for (const Pair2d3d& pair : problem.pairs_2d3d) {

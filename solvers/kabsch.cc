@@ -30,20 +30,46 @@ struct CentredMoments {
   double squares = 0.0;   // sum w (|a - mean_a|^2 + |b - mean_b|^2)
 };
 
-Lanes3 OffsetOfTwo(const Eigen::Vector3d* points, const Eigen::Vector3d& origin) {
-  return {Lanes(points[0].x(), points[1].x()) - origin.x(),
-          Lanes(points[0].y(), points[1].y()) - origin.y(),
-          Lanes(points[0].z(), points[1].z()) - origin.z()};
+Lanes3 Offsets(const Eigen::Vector3d& first, const Eigen::Vector3d& second,
+               const Eigen::Vector3d& origin) {
+  return {Lanes(first.x(), second.x()) - origin.x(), Lanes(first.y(), second.y()) - origin.y(),
+          Lanes(first.z(), second.z()) - origin.z()};
 }
 
-template <bool kWeighted>
-CentredMoments ComputeMoments(std::span<const Eigen::Vector3d> points_in_b,
-                              std::span<const Eigen::Vector3d> points_in_a,
-                              std::span<const double> weights) {
+// Points as the caller holds them, so that none need be copied: size(), a(i), b(i).
+struct PointSpans {
+  std::size_t size() const { return in_a.size(); }
+  const Eigen::Vector3d& a(std::size_t i) const { return in_a[i]; }
+  const Eigen::Vector3d& b(std::size_t i) const { return in_b[i]; }
+
+  std::span<const Eigen::Vector3d> in_b;
+  std::span<const Eigen::Vector3d> in_a;
+};
+
+struct AllPairs {
+  std::size_t size() const { return pairs.size(); }
+  const Eigen::Vector3d& a(std::size_t i) const { return pairs[i].point_in_lidar; }
+  const Eigen::Vector3d& b(std::size_t i) const { return pairs[i].point_in_cam; }
+
+  std::span<const Pair3d3d> pairs;
+};
+
+struct SampledPairs {
+  std::size_t size() const { return sample.size(); }
+  const Eigen::Vector3d& a(std::size_t i) const { return pair(i).point_in_lidar; }
+  const Eigen::Vector3d& b(std::size_t i) const { return pair(i).point_in_cam; }
+  const Pair3d3d& pair(std::size_t i) const { return pairs[static_cast<std::size_t>(sample[i])]; }
+
+  std::span<const Pair3d3d> pairs;
+  std::span<const int> sample;
+};
+
+template <bool kWeighted, class Points>
+CentredMoments ComputeMoments(const Points& points, std::span<const double> weights) {
   // The first point as provisional origin keeps the digits of small sets far from the sensor.
-  const Eigen::Vector3d origin_a = points_in_a[0];
-  const Eigen::Vector3d origin_b = points_in_b[0];
-  const std::size_t count = points_in_a.size();
+  const Eigen::Vector3d origin_a = points.a(0);
+  const Eigen::Vector3d origin_b = points.b(0);
+  const std::size_t count = points.size();
   Lanes total = Lanes::Zero();
   Lanes squares = Lanes::Zero();
   Lanes ax = Lanes::Zero(), ay = Lanes::Zero(), az = Lanes::Zero();
@@ -53,8 +79,8 @@ CentredMoments ComputeMoments(std::span<const Eigen::Vector3d> points_in_b,
   Lanes zx = Lanes::Zero(), zy = Lanes::Zero(), zz = Lanes::Zero();
   // An odd count leaves out the first point: it is the origin and adds to the total only.
   for (std::size_t i = count % 2; i < count; i += 2) {
-    const Lanes3 a = OffsetOfTwo(&points_in_a[i], origin_a);
-    Lanes3 b = OffsetOfTwo(&points_in_b[i], origin_b);
+    const Lanes3 a = Offsets(points.a(i), points.a(i + 1), origin_a);
+    Lanes3 b = Offsets(points.b(i), points.b(i + 1), origin_b);
     Lanes both = a.x * a.x + a.y * a.y + a.z * a.z + (b.x * b.x + b.y * b.y + b.z * b.z);
     if constexpr (kWeighted) {
       const Lanes w(weights[i], weights[i + 1]);
@@ -93,53 +119,44 @@ CentredMoments ComputeMoments(std::span<const Eigen::Vector3d> points_in_b,
   return m;
 }
 
-}  // namespace
-
-Expected<KabschFit> FitKabsch(std::span<const Eigen::Vector3d> points_in_b,
-                              std::span<const Eigen::Vector3d> points_in_a,
-                              std::span<const double> weights) {
-  if (points_in_a.size() < 3) {
-    return MakeError(ErrorCode::kTooFewPairs,
-                     fmt::format("kabsch needs at least 3 pairs, got {}", points_in_a.size()));
-  }
-  const CentredMoments m = weights.empty()
-                               ? ComputeMoments<false>(points_in_b, points_in_a, weights)
-                               : ComputeMoments<true>(points_in_b, points_in_a, weights);
+// Without messages: a consensus search discards most failures unread.
+template <class Points>
+tl::expected<KabschFit, ErrorCode> Fit(const Points& points, std::span<const double> weights) {
+  if (points.size() < 3) return tl::unexpected(ErrorCode::kTooFewPairs);
+  const CentredMoments m = weights.empty() ? ComputeMoments<false>(points, weights)
+                                           : ComputeMoments<true>(points, weights);
   const std::optional<MaxTraceRotation> best = MaximizeTrace(m.cross, 0.5 * m.squares);
-  if (!best) {
-    return MakeError(ErrorCode::kDegenerate,
-                     "the points of a sensor coincide or lie on one line, which leaves a rotation "
-                     "undetermined; use points that span a plane");
-  }
+  if (!best) return tl::unexpected(ErrorCode::kDegenerate);
   KabschFit fit;
   fit.sum_squares = std::max(0.0, m.squares - 2.0 * best->trace);
   fit.mirrored_sum_squares = std::max(0.0, m.squares - 2.0 * best->mirrored_trace);
   if (fit.sum_squares > kMirrorRatio * fit.mirrored_sum_squares + 1e-9 * m.squares) {
-    return MakeError(ErrorCode::kMirrored,
-                     "one point set is a mirror image of the other: no rotation maps them; check "
-                     "the order of the corners and the sign of the axes");
+    return tl::unexpected(ErrorCode::kMirrored);
   }
   fit.b_from_a.rotation = best->rotation;
   fit.b_from_a.translation = m.mean_b - fit.b_from_a.rotation * m.mean_a;
   return fit;
 }
 
-namespace {
-
-struct GatheredPairs {
-  std::vector<Eigen::Vector3d> in_cam;
-  std::vector<Eigen::Vector3d> in_lidar;
-};
-
-GatheredPairs Gather(std::span<const Pair3d3d> pairs) {
-  GatheredPairs points;
-  points.in_cam.reserve(pairs.size());
-  points.in_lidar.reserve(pairs.size());
-  for (const Pair3d3d& pair : pairs) {
-    points.in_cam.push_back(pair.point_in_cam);
-    points.in_lidar.push_back(pair.point_in_lidar);
+Error Explain(ErrorCode code, std::size_t count) {
+  if (code == ErrorCode::kTooFewPairs) {
+    return {code, fmt::format("kabsch needs at least 3 pairs, got {}", count)};
   }
-  return points;
+  if (code == ErrorCode::kMirrored) {
+    return {code,
+            "one point set is a mirror image of the other: no rotation maps them; check the order "
+            "of the corners and the sign of the axes"};
+  }
+  return {code,
+          "the points of a sensor coincide or lie on one line, which leaves a rotation "
+          "undetermined; use points that span a plane"};
+}
+
+template <class Points>
+Expected<KabschFit> FitOrExplain(const Points& points, std::span<const double> weights) {
+  return Fit(points, weights).map_error([&](ErrorCode code) {
+    return Explain(code, points.size());
+  });
 }
 
 class KabschSolver final : public Solver {
@@ -149,9 +166,8 @@ class KabschSolver final : public Solver {
 
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
-    const GatheredPairs points = Gather(problem.pairs_3d3d);
     const std::vector<double> weights = IsotropicWeights(problem.pairs_3d3d);
-    const Expected<KabschFit> fit = FitKabsch(points.in_cam, points.in_lidar, weights);
+    const Expected<KabschFit> fit = FitOrExplain(AllPairs{problem.pairs_3d3d}, weights);
     if (!fit) return tl::unexpected<Error>(fit.error());
     Estimate estimate;
     estimate.cam_from_lidar = fit->b_from_a;
@@ -163,22 +179,18 @@ class KabschSolver final : public Solver {
 
   void DoHypothesize(const CalibrationProblem& problem, std::span<const int> sample,
                      std::vector<Rigid3d>& poses) const override {
-    constexpr std::size_t kMostOnStack = 64;
-    if (sample.size() > kMostOnStack) return;
-    std::array<Eigen::Vector3d, kMostOnStack> in_cam;
-    std::array<Eigen::Vector3d, kMostOnStack> in_lidar;
-    for (std::size_t i = 0; i < sample.size(); ++i) {
-      const Pair3d3d& pair = problem.pairs_3d3d[static_cast<std::size_t>(sample[i])];
-      in_cam[i] = pair.point_in_cam;
-      in_lidar[i] = pair.point_in_lidar;
-    }
-    const Expected<KabschFit> fit =
-        FitKabsch(std::span(in_cam).first(sample.size()), std::span(in_lidar).first(sample.size()));
+    const auto fit = Fit(SampledPairs{problem.pairs_3d3d, sample}, {});
     if (fit) poses.push_back(fit->b_from_a);
   }
 };
 
 }  // namespace
+
+Expected<KabschFit> FitKabsch(std::span<const Eigen::Vector3d> points_in_b,
+                              std::span<const Eigen::Vector3d> points_in_a,
+                              std::span<const double> weights) {
+  return FitOrExplain(PointSpans{points_in_b, points_in_a}, weights);
+}
 
 SolverEntry KabschEntry() {
   return {

@@ -93,25 +93,30 @@ std::optional<double> LargestRoot(const Invariants& v, double bound) {
   return std::nullopt;
 }
 
-// s3, the root of smallest size of x^3 - e1 x^2 + e2 x - e3, from below; none where it is so nearly
-// a multiple root that rounding moves it. The start is Laguerre's step from zero.
-std::optional<double> SmallestRoot(double e1, double e2, double e3) {
+// s3, the least root of x^3 - e1 x^2 + e2 x - e3, from below; none where it is so nearly a multiple
+// root that rounding moves it.
+std::optional<double> LeastRoot(double e1, double e2, double e3, double start) {
   constexpr int kMaxIterations = 16;
   constexpr double kMinSlope = 1e-5;
-  const double discriminant = e2 * e2 - 3.0 * e1 * e3;
-  if (!(e2 > 0.0 && discriminant >= 0.0)) return std::nullopt;
-  double x = 3.0 * e3 / (e2 + 2.0 * std::sqrt(discriminant));
+  double x = start;
   for (int i = 0; i < kMaxIterations; ++i) {
     const double value = ((x - e1) * x + e2) * x - e3;
     const double slope = (3.0 * x - 2.0 * e1) * x + e2;
     const double step = HalleyStep(value, slope, 3.0 * x - e1);
     x -= step;
-    if (!(slope > kMinSlope * e1 * e1)) return std::nullopt;
+    // The root in the middle has a falling slope, the greatest lies above the mean.
+    if (!(slope > kMinSlope * e1 * e1 && 3.0 * x < e1)) return std::nullopt;
     // The next step is about step^3 over the square of the distance to s2, which slope / e1 bounds.
     const double cube = std::abs(step * step * step);
     if (i + 1 >= kUsualIterations && cube * e1 <= 1e-8 * slope * slope) return x;
   }
   return std::nullopt;
+}
+
+// Halley's step from zero, with the bound in place of e1: it need not wait for e1.
+double StartOfLeastRoot(const Invariants& v, double bound) {
+  const double e2 = 0.5 * (bound * bound - v.sum_squares);
+  return HalleyStep(v.product, e2, bound);
 }
 
 struct Vector4 {
@@ -193,7 +198,7 @@ std::optional<MaxTraceRotation> ByFormula(const Eigen::Matrix3d& cross, const Ho
   const double e2 = 0.5 * (*e1 * *e1 - v.sum_squares);
   const double separation = *e1 * e2 - v.product;  // (s1 + s2)(s1 + s3)(s2 + s3)
   if (!(separation > kMinSeparation * bound * bound * bound)) return std::nullopt;
-  const std::optional<double> s3 = SmallestRoot(*e1, e2, v.product);
+  const std::optional<double> s3 = LeastRoot(*e1, e2, v.product, StartOfLeastRoot(v, bound));
   if (!s3) return std::nullopt;
   // The two largest eigenvalues are s2 + s3 > separation / (4 bound^2) apart.
   const double tolerance = kMaxError * separation / (4.0 * bound * bound);

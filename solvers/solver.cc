@@ -28,23 +28,23 @@ bool IsSymmetricPositive(const Eigen::Matrix3d& m) {
 Expected<void> CheckPairs(std::span<const Pair3d3d> pairs) {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Pair3d3d& pair = pairs[i];
-    const std::string where = fmt::format("3D-3D pair {} of {}", i + 1, pairs.size());
+    const auto where = [&] { return fmt::format("3D-3D pair {} of {}", i + 1, pairs.size()); };
     if (!pair.point_in_cam.allFinite() || !pair.point_in_lidar.allFinite() ||
         !std::isfinite(pair.sigma_m)) {
-      return MakeError(ErrorCode::kNonFinite, where + " has a NaN or infinite number");
+      return MakeError(ErrorCode::kNonFinite, where() + " has a NaN or infinite number");
     }
     if (pair.sigma_m < 0.0) {
       return MakeError(
           ErrorCode::kInvalidInput,
-          fmt::format("{} has sigma {} m, expected > 0, or 0 for unknown", where, pair.sigma_m));
+          fmt::format("{} has sigma {} m, expected > 0, or 0 for unknown", where(), pair.sigma_m));
     }
     if (pair.covariance_in_cam && !IsSymmetricPositive(*pair.covariance_in_cam)) {
       return MakeError(ErrorCode::kInvalidInput,
-                       where + " has a covariance that is not symmetric positive definite");
+                       where() + " has a covariance that is not symmetric positive definite");
     }
     if (HasKnownNoise(pair) != HasKnownNoise(pairs[0])) {
       return MakeError(ErrorCode::kInvalidInput,
-                       where +
+                       where() +
                            " differs from the first in whether it states its noise; state it "
                            "for every pair or for none");
     }
@@ -55,19 +55,19 @@ Expected<void> CheckPairs(std::span<const Pair3d3d> pairs) {
 Expected<void> CheckPairs(std::span<const Pair2d3d> pairs) {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Pair2d3d& pair = pairs[i];
-    const std::string where = fmt::format("2D-3D pair {} of {}", i + 1, pairs.size());
+    const auto where = [&] { return fmt::format("2D-3D pair {} of {}", i + 1, pairs.size()); };
     if (!pair.pixel.allFinite() || !pair.point_in_lidar.allFinite() ||
         !std::isfinite(pair.sigma_px)) {
-      return MakeError(ErrorCode::kNonFinite, where + " has a NaN or infinite number");
+      return MakeError(ErrorCode::kNonFinite, where() + " has a NaN or infinite number");
     }
     if (pair.sigma_px < 0.0) {
-      return MakeError(
-          ErrorCode::kInvalidInput,
-          fmt::format("{} has sigma {} px, expected > 0, or 0 for unknown", where, pair.sigma_px));
+      return MakeError(ErrorCode::kInvalidInput,
+                       fmt::format("{} has sigma {} px, expected > 0, or 0 for unknown", where(),
+                                   pair.sigma_px));
     }
     if (HasKnownNoise(pair) != HasKnownNoise(pairs[0])) {
       return MakeError(ErrorCode::kInvalidInput,
-                       where +
+                       where() +
                            " differs from the first in whether it states its noise; state it "
                            "for every pair or for none");
     }

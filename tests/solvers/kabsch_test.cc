@@ -5,10 +5,14 @@
 
 #include "base/random.h"
 #include "geometry/so3.h"
+#include "solvers/registry.h"
+#include "support/scenes.h"
 
 namespace sextant {
 namespace {
 
+using test::MakeScene;
+using test::Scene;
 using Points = std::vector<Eigen::Vector3d>;
 
 Points RandomPoints(int count, Random& random) {
@@ -110,6 +114,23 @@ TEST(Kabsch, RefusesCollinearCoincidentAndMirroredSets) {
   EXPECT_EQ(
       FitKabsch(Points(a.begin(), a.begin() + 2), Points(a.begin(), a.begin() + 2)).error().code,
       ErrorCode::kTooFewPairs);
+}
+
+TEST(Kabsch, HypothesizesFromSamplesOfEverySize) {
+  Random random(7);
+  const Scene scene = MakeScene({.pairs = 200}, random);
+  const SolverPtr solver = *BuiltinSolvers().Make("kabsch");
+  std::vector<Rigid3d> poses;
+  for (const int size : {3, 64, 65, 200}) {
+    std::vector<int> sample(static_cast<std::size_t>(size));
+    random.Sample(200, sample);
+    poses.clear();
+    solver->Hypothesize(scene.problem, sample, poses);
+    ASSERT_EQ(poses.size(), 1u) << size;
+    EXPECT_LT(RotationDistance(poses[0].rotation, scene.cam_from_lidar.rotation), 1e-8) << size;
+  }
+  solver->Hypothesize(scene.problem, std::vector<int>{4, 4, 4, 4}, poses);
+  EXPECT_EQ(poses.size(), 1u) << "a degenerate sample gives no pose";
 }
 
 TEST(Kabsch, WeightsCountAsRepetitions) {
