@@ -6,8 +6,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "solvers/refine_pose.h"
 #include "solvers/subset.h"
 
 namespace sextant {
@@ -59,6 +61,17 @@ double BinomialTail(int trials, int successes, double p) {
   return tail;
 }
 
+// Whether `inner` can work on so few.
+Expected<void> CheckEnough(const Solver& inner, std::size_t inlier_count) {
+  const DataNeeds& needs = inner.spec().needs;
+  const int least = std::max(needs.pairs_3d3d, needs.pairs_2d3d);
+  if (inlier_count >= static_cast<std::size_t>(least)) return {};
+  return MakeError(ErrorCode::kNoConsensus,
+                   fmt::format("{} pairs agree on a pose, expected at least {}; check the pairing "
+                               "and the sigmas",
+                               inlier_count, least));
+}
+
 }  // namespace
 
 double InlierOptions::MaxSquared(PairKind kind) const {
@@ -93,19 +106,32 @@ Expected<Estimate> SolveSubset(const Solver& inner, const CalibrationProblem& pr
   return estimate;
 }
 
+Expected<Rigid3d> PoseOfSubset(const Solver& inner, const CalibrationProblem& problem,
+                               const PairTerms& terms, std::span<const int> indices) {
+  std::vector<Rigid3d> poses;
+  inner.Hypothesize(problem, indices, poses);
+  if (poses.empty()) {
+    return SolveSubset(inner, problem, indices).map([](const Estimate& e) {
+      return e.cam_from_lidar;
+    });
+  }
+  if (poses.size() == 1) return poses.front();
+  PairTerms subset;
+  subset.AssignSubset(terms, indices);
+  const PoseScorer squares(subset, std::numeric_limits<double>::max());
+  return *std::min_element(poses.begin(), poses.end(), [&](const Rigid3d& a, const Rigid3d& b) {
+    return squares.Cost(a) < squares.Cost(b);
+  });
+}
+
 Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem& problem,
                                   const PoseScorer& scorer, const Rigid3d& pose) {
-  const DataNeeds& needs = inner.spec().needs;
-  const std::size_t least = static_cast<std::size_t>(std::max(needs.pairs_3d3d, needs.pairs_2d3d));
   std::vector<int> inliers;
   std::vector<int> next;
   scorer.Inliers(pose, inliers);
   for (int refit = 0;; ++refit) {
-    if (inliers.size() < least) {
-      return MakeError(ErrorCode::kNoConsensus,
-                       fmt::format("{} pairs agree on a pose, expected at least {}; check the "
-                                   "pairing and the sigmas",
-                                   inliers.size(), least));
+    if (Expected<void> ok = CheckEnough(inner, inliers.size()); !ok) {
+      return tl::unexpected<Error>(std::move(ok.error()));
     }
     Expected<Estimate> estimate = SolveSubset(inner, problem, inliers);
     if (!estimate) return estimate;
@@ -113,6 +139,34 @@ Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem&
     if (next == inliers || refit + 1 == kMaxRefits) return estimate;
     std::swap(inliers, next);
   }
+}
+
+Estimate LeastSquaresOnInliers(const PairTerms& terms, const PoseScorer& scorer,
+                               const Rigid3d& pose) {
+  Estimate estimate;
+  estimate.cam_from_lidar = pose;
+  scorer.Inliers(pose, estimate.inliers);
+  PairTerms inliers;
+  inliers.AssignSubset(terms, estimate.inliers);
+  const RefinedPose there = RefinePose(inliers.View(), pose, {.max_iterations = 1});
+  estimate.covariance = LeastSquaresCovariance(inliers, there.information, there.cost);
+  return estimate;
+}
+
+Expected<Estimate> BetterOnInliers(const Solver& inner, const CalibrationProblem& problem,
+                                   const PairTerms& terms, const PoseScorer& scorer,
+                                   const Rigid3d& pose) {
+  constexpr double kRounding = 1e-9;
+  std::vector<int> inliers;
+  scorer.Inliers(pose, inliers);
+  if (Expected<void> ok = CheckEnough(inner, inliers.size()); !ok) {
+    return tl::unexpected<Error>(std::move(ok.error()));
+  }
+  const Expected<Rigid3d> refit = PoseOfSubset(inner, problem, terms, inliers);
+  if (refit && scorer.Cost(*refit) <= (1.0 + kRounding) * scorer.Cost(pose)) {
+    return RefitOnInliers(inner, problem, scorer, pose);
+  }
+  return LeastSquaresOnInliers(terms, scorer, pose);
 }
 
 }  // namespace sextant

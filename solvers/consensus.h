@@ -54,9 +54,25 @@ Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer, 
 Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem& problem,
                                   const PoseScorer& scorer, const Rigid3d& pose);
 
+/// The pose of `inner` on the pairs at `indices`, without covariance and so on; of several, the one
+/// with the smallest sum of squared residuals there. Requires as many as `inner` needs. Errors:
+/// those of `inner`.
+Expected<Rigid3d> PoseOfSubset(const Solver& inner, const CalibrationProblem& problem,
+                               const PairTerms& terms, std::span<const int> indices);
+
 /// `inner` on the pairs at `indices` only; the estimate speaks of the whole problem's indices and
 /// has `inner` as its last stage.
 Expected<Estimate> SolveSubset(const Solver& inner, const CalibrationProblem& problem,
                                std::span<const int> indices);
+
+/// `pose` as an estimate: its inliers, and the covariance of least squares on them at `pose`.
+Estimate LeastSquaresOnInliers(const PairTerms& terms, const PoseScorer& scorer,
+                               const Rigid3d& pose);
+
+/// RefitOnInliers, unless `inner` fits the inliers of `pose` worse than `pose` does, as a minimal
+/// solver or EPnP may; then LeastSquaresOnInliers. `pose` is a minimum of least squares on them.
+Expected<Estimate> BetterOnInliers(const Solver& inner, const CalibrationProblem& problem,
+                                   const PairTerms& terms, const PoseScorer& scorer,
+                                   const Rigid3d& pose);
 
 }  // namespace sextant

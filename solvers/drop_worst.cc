@@ -47,30 +47,31 @@ class DropWorstSolver final : public Solver {
     std::iota(kept.begin(), kept.end(), 0);
     const std::size_t least = static_cast<std::size_t>(
         std::max({spec().needs.pairs_3d3d, spec().needs.pairs_2d3d, options_.keep}));
-    for (int solves = 1;; ++solves) {
-      Expected<Estimate> estimate = SolveSubset(*inner_, problem, kept);
-      if (!estimate) return estimate;
-      scorer.SquaredResiduals(estimate->cam_from_lidar, squared);
+    bool all_within = false;
+    int solves = 0;
+    while (true) {
+      ++solves;
+      const Expected<Rigid3d> pose = PoseOfSubset(*inner_, problem, terms, kept);
+      if (!pose) return tl::unexpected<Error>(pose.error());
+      scorer.SquaredResiduals(*pose, squared);
       const auto worst = std::max_element(kept.begin(), kept.end(), [&](int a, int b) {
         return squared[static_cast<std::size_t>(a)] < squared[static_cast<std::size_t>(b)];
       });
-      const bool all_within = squared[static_cast<std::size_t>(*worst)] <= scorer.max_squared();
-      if (kept.size() <= least || (options_.keep == 0 && all_within)) {
-        estimate->iterations = solves;
-        estimate->termination = Termination::kConverged;
-        return options_.keep > 0 ? estimate : Accept(terms, scorer, all_within, *estimate);
-      }
+      all_within = squared[static_cast<std::size_t>(*worst)] <= scorer.max_squared();
+      if (kept.size() <= least || (options_.keep == 0 && all_within)) break;
       kept.erase(worst);
     }
-  }
-
-  Expected<Estimate> Accept(const PairTerms& terms, const PoseScorer& scorer, bool all_within,
-                            const Estimate& estimate) const {
-    const int least = std::max(spec().needs.pairs_3d3d, spec().needs.pairs_2d3d);
-    const int inlier_count = all_within ? static_cast<int>(estimate.inliers.size()) : 0;
-    if (Expected<void> ok = CheckConsensus(terms, scorer, inlier_count, least + 1); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
+    if (options_.keep == 0) {
+      const int agreeing = all_within ? static_cast<int>(kept.size()) : 0;
+      const int wanted = static_cast<int>(least) + 1;
+      if (Expected<void> ok = CheckConsensus(terms, scorer, agreeing, wanted); !ok) {
+        return tl::unexpected<Error>(std::move(ok.error()));
+      }
     }
+    Expected<Estimate> estimate = SolveSubset(*inner_, problem, kept);
+    if (!estimate) return estimate;
+    estimate->iterations = solves;
+    estimate->termination = Termination::kConverged;
     return estimate;
   }
 

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
 
 #include "solvers/consensus.h"
 #include "solvers/refine_pose.h"
@@ -57,9 +60,9 @@ std::vector<Pair> WeightedPairs(const std::vector<Pair>& pairs, const std::vecto
 /// 2020, RA-L 5): min sum_i min(r_i^2, threshold^2), reached from a convex surrogate that mu
 /// bends, a step of mu_factor at a time, towards the truncated cost.
 ///
-/// The weights go to the inner solver as sigma / sqrt(w); least squares from its answer follows,
-/// since not every closed form heeds sigmas. At the end the inner solver gets the inliers with
-/// their true sigmas. Errors: kNoConsensus (see CheckConsensus), those of the inner solver.
+/// The weights go to the inner solver as sigma / sqrt(w); weighted least squares from its answer
+/// follows, since not every closed form heeds sigmas. At the end the inner solver gets the inliers
+/// with their true sigmas. Errors: kNoConsensus (see CheckConsensus), those of the inner solver.
 class GncSolver final : public Solver {
  public:
   GncSolver(const SolverArguments& arguments, PairKind kind, const GncOptions& options)
@@ -78,7 +81,7 @@ class GncSolver final : public Solver {
     int iterations = 0;
     const Expected<Rigid3d> pose = Anneal(problem, terms, scorer, iterations);
     if (!pose) return tl::unexpected<Error>(pose.error());
-    Expected<Estimate> estimate = RefitOnInliers(*inner_, problem, scorer, *pose);
+    Expected<Estimate> estimate = BetterOnInliers(*inner_, problem, terms, scorer, *pose);
     if (!estimate) return estimate;
     const int inlier_count = static_cast<int>(estimate->inliers.size());
     if (Expected<void> ok = CheckConsensus(terms, scorer, inlier_count, Least() + 1); !ok) {
@@ -94,7 +97,7 @@ class GncSolver final : public Solver {
                            const PoseScorer& scorer, int& iterations) const {
     std::vector<double> weights(terms.size(), 1.0);
     std::vector<double> squared(terms.size());
-    Expected<Rigid3d> pose = SolveWeighted(problem, terms, weights);
+    Expected<Rigid3d> pose = SolveWeighted(problem, weights, std::nullopt);
     double mu = 0.0;
     for (iterations = 1; pose && iterations < options_.max_iterations; ++iterations) {
       scorer.SquaredResiduals(*pose, squared);
@@ -103,7 +106,7 @@ class GncSolver final : public Solver {
         if (mu <= 0.0) break;
       }
       if (!UpdateWeights(squared, scorer.max_squared(), mu, weights)) break;
-      pose = SolveWeighted(problem, terms, weights);
+      pose = SolveWeighted(problem, weights, *pose);
       mu *= options_.mu_factor;
     }
     return pose;
@@ -129,28 +132,33 @@ class GncSolver final : public Solver {
     return !settled;
   }
 
-  Expected<Rigid3d> SolveWeighted(const CalibrationProblem& problem, const PairTerms& terms,
-                                  const std::vector<double>& weights) const {
+  // The least weighted squares: from the inner solver's pose, or the one before if that is better.
+  Expected<Rigid3d> SolveWeighted(const CalibrationProblem& problem,
+                                  const std::vector<double>& weights,
+                                  const std::optional<Rigid3d>& before) const {
     CalibrationProblem weighted;
     weighted.camera = problem.camera;
     weighted.initial_cam_from_lidar = problem.initial_cam_from_lidar;
+    weighted.boards = problem.boards;
     if (kind_ == PairKind::k3d3d) {
       weighted.pairs_3d3d = WeightedPairs(problem.pairs_3d3d, weights, options_.Assumed());
     } else {
       weighted.pairs_2d3d = WeightedPairs(problem.pairs_2d3d, weights, options_.Assumed());
     }
-    const std::size_t left = std::max(weighted.pairs_3d3d.size(), weighted.pairs_2d3d.size());
-    if (left < static_cast<std::size_t>(Least())) {
+    const PairTerms terms = MakeTerms(weighted, kind_, options_.Assumed());
+    if (terms.size() < static_cast<std::size_t>(Least())) {
       return MakeError(ErrorCode::kNoConsensus,
                        fmt::format("{} of {} pairs keep a weight, expected at least {}; check the "
                                    "pairing and the sigmas",
-                                   left, terms.size(), Least()));
+                                   terms.size(), weights.size(), Least()));
     }
-    const Expected<SolveReport> report = inner_->Solve(weighted);
-    if (!report) return tl::unexpected<Error>(report.error());
-    if (!spec().estimates_rotation) return report->cam_from_lidar;
-    const PairTerms weighted_terms = MakeTerms(weighted, kind_, options_.Assumed());
-    return RefinePose(weighted_terms.View(), report->cam_from_lidar, {}).cam_from_lidar;
+    std::vector<int> all(terms.size());
+    std::iota(all.begin(), all.end(), 0);
+    const Expected<Rigid3d> pose = PoseOfSubset(*inner_, weighted, terms, all);
+    if (!pose || !spec().estimates_rotation) return pose;
+    const PoseScorer squares(terms, std::numeric_limits<double>::max());
+    const bool is_better = !before || squares.Cost(*pose) <= squares.Cost(*before);
+    return RefinePose(terms.View(), is_better ? *pose : *before, {}).cam_from_lidar;
   }
 
   int Least() const { return std::max(spec().needs.pairs_3d3d, spec().needs.pairs_2d3d); }

@@ -179,7 +179,17 @@ class KabschSolver final : public Solver {
 
   void DoHypothesize(const CalibrationProblem& problem, std::span<const int> sample,
                      std::vector<Rigid3d>& poses) const override {
-    const auto fit = Fit(SampledPairs{problem.pairs_3d3d, sample}, {});
+    constexpr std::size_t kMostOnStack = 64;
+    if (sample.size() > kMostOnStack) {
+      Solver::DoHypothesize(problem, sample, poses);
+      return;
+    }
+    std::array<double, kMostOnStack> weights;
+    for (std::size_t i = 0; i < sample.size(); ++i) {
+      weights[i] = IsotropicWeight(problem.pairs_3d3d[static_cast<std::size_t>(sample[i])]);
+    }
+    const auto fit = Fit(SampledPairs{problem.pairs_3d3d, sample},
+                         std::span<const double>(weights).first(sample.size()));
     if (fit) poses.push_back(fit->b_from_a);
   }
 };

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "solvers/p3p.h"
@@ -177,8 +178,8 @@ class P3pSolver final : public Solver {
     Estimate estimate;
     estimate.cam_from_lidar = poses.front();
     estimate.alternatives.assign(poses.begin() + 1, poses.end());
-    estimate.inliers.assign(triple.begin(), triple.end());
-    std::sort(estimate.inliers.begin(), estimate.inliers.end());
+    estimate.inliers.resize(problem.pairs_2d3d.size());
+    std::iota(estimate.inliers.begin(), estimate.inliers.end(), 0);
     estimate.covariance = Covariance(problem, triple, estimate.cam_from_lidar);
     return estimate;
   }
@@ -195,6 +196,10 @@ class P3pSolver final : public Solver {
 
   void DoHypothesize(const CalibrationProblem& problem, std::span<const int> sample,
                      std::vector<Rigid3d>& poses) const override {
+    if (sample.size() > 3) {
+      Solver::DoHypothesize(problem, sample, poses);
+      return;
+    }
     Append(SolveTriple(problem, sample), poses);
   }
 

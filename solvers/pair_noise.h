@@ -12,7 +12,8 @@ namespace sextant {
 /// The covariance that a pair states; the identity where it states none.
 Eigen::Matrix3d StatedCovariance(const Pair3d3d& pair);
 
-/// 1 / (mean variance per axis) of each pair; 1 where the problem states no noise.
+/// 1 / (mean variance per axis) of a pair; 1 where it states no noise.
+double IsotropicWeight(const Pair3d3d& pair);
 std::vector<double> IsotropicWeights(std::span<const Pair3d3d> pairs);
 
 /// Covariance of (dphi, dt) of the minimum of sum_i w_i |q_i - R p_i - t|^2 at `pose`.

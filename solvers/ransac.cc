@@ -142,9 +142,10 @@ int SampleSize(const DataNeeds& needs) { return std::max(needs.pairs_3d3d, needs
 /// sigmas (Torr and Zisserman 2000), samples until `confidence`, least squares on the inliers of
 /// each new best (Lebeda, Matas and Chum 2012, LO+-RANSAC), then the inner solver on all inliers.
 ///
-/// The inner's refit is taken unless it costs more than the pose before it, as a minimal solver's
-/// may. The paper's plain scheme: sample_size=15, max_iterations=10000, local_optimisation=0.
-/// Errors: kDegenerate (1000 samples and not one pose), kNoConsensus (see CheckConsensus).
+/// The inner's refit is taken unless it costs more than least squares on the same inliers, as that
+/// of a minimal solver or of EPnP may; then least squares is the answer. The paper's plain scheme:
+/// sample_size=15, max_iterations=10000, local_optimisation=0. Errors: kDegenerate (1000 samples
+/// and not one pose), kNoConsensus (see CheckConsensus).
 class RansacSolver final : public Solver {
  public:
   RansacSolver(const SolverArguments& arguments, PairKind kind, const RansacOptions& options)
@@ -186,23 +187,9 @@ class RansacSolver final : public Solver {
 
   Expected<Estimate> Finish(const CalibrationProblem& problem, const PairTerms& terms,
                             const PoseScorer& scorer, const Rigid3d& pose) const {
-    if (options_.refit == Refit::kInliers) {
-      Expected<Estimate> refit = RefitOnInliers(*inner_, problem, scorer, pose);
-      constexpr double kRounding = 1e-9;
-      if (!refit || options_.local_optimisation == 0 ||
-          scorer.Cost(refit->cam_from_lidar) <= (1.0 + kRounding) * scorer.Cost(pose)) {
-        return refit;
-      }
-    }
-    Estimate estimate;
-    estimate.cam_from_lidar = pose;
-    scorer.Inliers(pose, estimate.inliers);
-    PairTerms inlier_terms;
-    inlier_terms.AssignSubset(terms, estimate.inliers);
-    const RefinedPose there =
-        RefinePose(inlier_terms.View(), pose, {.max_iterations = 1, .step_tolerance = 0.0});
-    estimate.covariance = LeastSquaresCovariance(inlier_terms, there.information, there.cost);
-    return estimate;
+    if (options_.refit == Refit::kNone) return LeastSquaresOnInliers(terms, scorer, pose);
+    if (options_.local_optimisation == 0) return RefitOnInliers(*inner_, problem, scorer, pose);
+    return BetterOnInliers(*inner_, problem, terms, scorer, pose);
   }
 
   SolverPtr inner_;

@@ -94,10 +94,12 @@ class Solver {
  protected:
   explicit Solver(SolverSpec spec) : spec_(std::move(spec)) {}
 
- private:
-  virtual Expected<Estimate> DoSolve(const CalibrationProblem& problem) const = 0;
+  /// Solves the sample as a problem of its own; overrides are faster, and may fall back on it.
   virtual void DoHypothesize(const CalibrationProblem& problem, std::span<const int> sample,
                              std::vector<Rigid3d>& poses) const;
+
+ private:
+  virtual Expected<Estimate> DoSolve(const CalibrationProblem& problem) const = 0;
 
   SolverSpec spec_;
 };

@@ -168,7 +168,7 @@ TEST(P3pSolver, ThreePairsGiveEverySolutionAndMoreChooseAmongThem) {
     const Expected<SolveReport> chosen = p3p->Solve(scene.problem);
     ASSERT_TRUE(chosen) << chosen.error().message;
     EXPECT_TRUE(chosen->alternatives.empty());
-    EXPECT_EQ(chosen->inliers.size(), 3U);
+    EXPECT_EQ(chosen->inliers.size(), 12U);
     const PoseDistance off = DistanceBetween(chosen->cam_from_lidar, scene.cam_from_lidar);
     EXPECT_LT(off.rotation_rad, 1e-8);
     EXPECT_LT(off.translation_m, 3e-8);
