@@ -26,6 +26,7 @@ struct InputOptions {
 struct SolveOptions {
   InputOptions input;
   std::string solver = "kabsch";
+  std::vector<std::string> overlay;  ///< Image to draw on and file to write; empty: none.
 };
 
 struct CompareOptions {

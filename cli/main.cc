@@ -48,6 +48,10 @@ void AddSolve(CLI::App& app, SolveOptions& options) {
   command
       .add_option("--solver", options.solver, "A solver, possibly composed; see sextant solvers")
       ->capture_default_str();
+  command
+      .add_option("--overlay", options.overlay,
+                  "IMAGE OUT: draw measured and reprojected points on the image, residuals x10")
+      ->expected(2);
   command.footer(
       "Examples:\n"
       "  sextant solve points.txt\n"

@@ -7,6 +7,7 @@
 #include "cli/catalogue.h"
 #include "cli/commands.h"
 #include "cli/load.h"
+#include "cli/overlay.h"
 #include "cli/report_text.h"
 #include "eval/compare.h"
 #include "eval/default_specs.h"
@@ -88,6 +89,11 @@ int RunSolve(const SolveOptions& options) {
       text += fmt::format("  error against the truth    {:.2f} mm, {:.4f} deg\n",
                           row.from_truth->translation_m * 1e3,
                           row.from_truth->rotation_rad * kDegPerRad);
+    }
+    if (!options.overlay.empty()) {
+      const Expected<void> drawn =
+          DrawOverlay(problem, *row.report, options.overlay[0], options.overlay[1]);
+      if (!drawn) return Refuse("solve", drawn.error());
     }
   } else {
     RefuseProblem("solve", options.input, row);

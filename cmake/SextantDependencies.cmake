@@ -21,6 +21,8 @@ sextant_dependency(nanoflann REQUIRED)
 sextant_dependency(yaml-cpp REQUIRED)
 sextant_dependency(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
+# The program only: OpenCV maps over a hundred shared objects into a process.
+find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs)
 
 # yaml-cpp 0.7 (Debian 12) exports its target without the namespace that 0.8 gives it.
 if(NOT TARGET yaml-cpp::yaml-cpp)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "e2e/run_sextant.h"
@@ -128,6 +129,25 @@ TEST(Cli, CompareIsReproducible) {
   const std::string session = SimulatedSession();
   EXPECT_EQ(poses(RunSextant("compare " + session + " --json -")),
             poses(RunSextant("compare " + session + " --json -")));
+}
+
+TEST(Cli, OverlayMarksThePairsOnTheImage) {
+  const std::string session = SimulatedSession();
+  const std::string image = (TestFolder() / "image.png").string();
+  const std::string out = (TestFolder() / "overlay.png").string();
+  ASSERT_TRUE(cv::imwrite(image, cv::Mat(720, 1280, CV_8UC3, cv::Scalar(90, 90, 90))));
+  const ProgramRun run =
+      RunSextant("solve " + session + " --solver 'gnc(kabsch)' --overlay " + image + " " + out);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const cv::Mat drawn = cv::imread(out);
+  ASSERT_EQ(drawn.size(), cv::Size(1280, 720));
+  EXPECT_GT(cv::norm(drawn, cv::imread(image), cv::NORM_L1), 1e5);
+
+  ASSERT_TRUE(cv::imwrite(image, cv::Mat(10, 10, CV_8UC3, cv::Scalar(90, 90, 90))));
+  const ProgramRun small = RunSextant("solve " + session + " --overlay " + image + " " + out);
+  EXPECT_EQ(small.exit_code, 2);
+  EXPECT_THAT(small.err, HasSubstr("10 x 10"));
+  EXPECT_EQ(RunSextant("solve " + session + " --overlay /nowhere.png " + out).exit_code, 2);
 }
 
 TEST(Cli, AccuracyStandsBesideTheBound) {
