@@ -6,8 +6,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
-#include "e2e/run_sextant.h"
 #include "support/real_data.h"
+#include "support/run_program.h"
 
 namespace sextant {
 namespace {
@@ -15,12 +15,15 @@ namespace {
 using nlohmann::json;
 using test::ProgramRun;
 using test::ReadText;
-using test::RunSextant;
 using test::TestFolder;
 using test::WriteText;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+
+ProgramRun RunSextant(const std::string& arguments) {
+  return test::RunProgram(SEXTANT_BINARY, arguments);
+}
 
 // The paper's two boards seen from a known pose, as points.txt.
 std::string SimulatedSession(const std::string& options = "") {

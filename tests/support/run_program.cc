@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "e2e/run_sextant.h"
+#include "support/run_program.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -33,11 +33,10 @@ std::string ReadText(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-ProgramRun RunSextant(const std::string& arguments) {
+ProgramRun RunProgram(const std::string& program, const std::string& arguments) {
   const std::filesystem::path folder = TestFolder();
-  const std::string command = std::string(SEXTANT_BINARY) + " " + arguments + " >" +
-                              (folder / "stdout").string() + " 2>" + (folder / "stderr").string() +
-                              " </dev/null";
+  const std::string command = program + " " + arguments + " >" + (folder / "stdout").string() +
+                              " 2>" + (folder / "stderr").string() + " </dev/null";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadText(folder / "stdout"),
           ReadText(folder / "stderr")};

@@ -12,8 +12,9 @@ struct ProgramRun {
   std::string err;
 };
 
-/// Runs the built program as a user's shell would; `arguments` are quoted by the caller.
-ProgramRun RunSextant(const std::string& arguments);
+/// Runs the program as a user's shell would, without standard input; `arguments` are quoted by the
+/// caller.
+ProgramRun RunProgram(const std::string& program, const std::string& arguments);
 
 /// A folder of the running test's own; the next test gets another.
 std::filesystem::path TestFolder();
