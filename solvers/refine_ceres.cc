@@ -29,7 +29,8 @@ class PairCost final : public ceres::SizedCostFunction<kResiduals, 4, 3> {
     TermDerivatives<kResiduals> at;
     if (!Differentiate(term_, camera_, rotation.toRotationMatrix(), translation, at)) return false;
     // Ceres prints numbers that are not finite, but not refusals.
-    if (!at.residual.allFinite() || !at.jacobian.allFinite()) return false;
+    const Eigen::Matrix<double, kResiduals, 6> jacobian = at.Jacobian();
+    if (!at.residual.allFinite() || !jacobian.allFinite()) return false;
     Eigen::Map<Eigen::Matrix<double, kResiduals, 1>> residual(residuals);
     residual = at.residual;
     if (jacobians == nullptr) return true;
@@ -37,11 +38,11 @@ class PairCost final : public ceres::SizedCostFunction<kResiduals, 4, 3> {
       RowMajor34 lift;
       RotationManifold().MinusJacobian(parameters[0], lift.data());
       Eigen::Map<Eigen::Matrix<double, kResiduals, 4, Eigen::RowMajor>> by_rotation(jacobians[0]);
-      by_rotation = at.jacobian.template leftCols<3>() * lift;
+      by_rotation = jacobian.template leftCols<3>() * lift;
     }
     if (jacobians[1] != nullptr) {
       Eigen::Map<Eigen::Matrix<double, kResiduals, 3, Eigen::RowMajor>> by_shift(jacobians[1]);
-      by_shift = at.jacobian.template rightCols<3>();
+      by_shift = jacobian.template rightCols<3>();
     }
     return true;
   }
@@ -122,7 +123,8 @@ bool AddWeighted(std::span<const Term> terms, const Camera* camera, const ceres:
     const double squared = at.residual.squaredNorm();
     double rho[3] = {squared, 1.0, 0.0};
     if (loss != nullptr) loss->Evaluate(squared, rho);
-    sum.information += rho[1] * at.jacobian.transpose() * at.jacobian;
+    const Eigen::Matrix<double, kResiduals, 6> jacobian = at.Jacobian();
+    sum.information += rho[1] * jacobian.transpose() * jacobian;
     sum.cost += 0.5 * rho[0];
   }
   return true;

@@ -31,7 +31,7 @@ struct RefinedPose {
 /// than it beyond rounding.
 ///
 /// Levenberg-Marquardt (Marquardt 1963) on the 6 numbers of Perturb, derivatives by hand:
-/// d(R p + t) = -[R p]x dphi + dt. Allocates nothing. About 3 us for 20 pixels.
+/// d(R p + t) = -[R p]x dphi + dt. Allocates nothing. About 4 us for 20 pixels.
 /// Degenerate data (a singular J^T J) is left to the caller: see InvertInformation.
 RefinedPose RefinePose(const TermsView& terms, const Rigid3d& start, const RefineLimits& limits);
 

@@ -69,6 +69,7 @@ void ExpectDerivativesOf(const Term& term, const Camera* camera, const Rigid3d& 
   };
   TermDerivatives<kResiduals> here;
   ASSERT_TRUE(at(pose, here));
+  const auto jacobian = here.Jacobian();
   constexpr double kStep = 1e-5;
   for (int k = 0; k < 6; ++k) {
     const Vector6d step = kStep * Vector6d::Unit(k);
@@ -76,7 +77,7 @@ void ExpectDerivativesOf(const Term& term, const Camera* camera, const Rigid3d& 
     TermDerivatives<kResiduals> backward;
     ASSERT_TRUE(at(Perturb(pose, step), forward) && at(Perturb(pose, -step), backward));
     const auto numeric = ((forward.residual - backward.residual) / (2.0 * kStep)).eval();
-    EXPECT_LT((numeric - here.jacobian.col(k)).norm(), 1e-6 * (1.0 + here.jacobian.norm()));
+    EXPECT_LT((numeric - jacobian.col(k)).norm(), 1e-6 * (1.0 + jacobian.norm()));
   }
 }
 
