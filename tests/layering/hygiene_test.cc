@@ -47,7 +47,8 @@ bool HasMarkWithoutReason(std::string_view line) {
 }
 
 bool NeedsLicenceLine(const SourceFile& file) {
-  return IsCpp(file) || file.path.ends_with(".cmake") || file.folder == "scripts";
+  return IsCpp(file) || file.path.ends_with(".cmake") || file.path.ends_with("CMakeLists.txt") ||
+         file.folder == "scripts";
 }
 
 TEST(Hygiene, EverySourceNamesItsLicence) {
