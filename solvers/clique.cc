@@ -18,6 +18,9 @@ struct CliqueOptions : InlierOptions {
   std::int64_t max_nodes = 20'000;
 };
 
+// Of least squares on the inliers; far fewer are needed.
+constexpr int kMaxRounds = 20;
+
 // In a larger clique one false pair does little harm.
 constexpr std::size_t kSmallClique = 16;
 
@@ -30,7 +33,8 @@ constexpr std::size_t kMostPairs = 20'000;
 /// `threshold` of its sigma sqrt(u^T (S_i + S_j) u), u along c_i - c_j. Outliers agree with each
 /// other by chance only, so the true pairs are the maximum clique of the graph of agreements even
 /// at 95 percent outliers (Leordeanu and Hebert 2005; Shi, Yang and Carlone 2021, ROBIN). The inner
-/// solver's pose then gathers its inliers anew. Exact up to max_nodes nodes of the search; after
+/// solver's pose then gathers its inliers anew, and the inner solver answers on them unless least
+/// squares fits them better. Exact up to max_nodes nodes of the search; after
 /// that the largest so far, and termination kMaxIterations. Memory N^2 / 4 bytes, time N^2 to
 /// build. Errors: kNoConsensus (see CheckConsensus), those of the inner solver.
 class CliqueSolver final : public Solver {
@@ -83,10 +87,9 @@ class CliqueSolver final : public Solver {
     if (Expected<void> ok = CheckConsensus(terms, scorer, clique_size, least); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
-    const Expected<Estimate> on_clique = SolveSubset(*inner_, problem, clique.vertices);
-    if (!on_clique) return on_clique;
-    Expected<Estimate> estimate =
-        RefitOnInliers(*inner_, problem, scorer, on_clique->cam_from_lidar);
+    const Expected<Rigid3d> on_clique = PoseOfSubset(*inner_, problem, terms, clique.vertices);
+    if (!on_clique) return tl::unexpected<Error>(on_clique.error());
+    Expected<Estimate> estimate = Gather(problem, terms, scorer, *on_clique);
     if (!estimate) return estimate;
     const int inlier_count = static_cast<int>(estimate->inliers.size());
     if (Expected<void> ok = CheckConsensus(terms, scorer, inlier_count, least); !ok) {
@@ -96,6 +99,15 @@ class CliqueSolver final : public Solver {
     estimate->termination =
         clique.is_maximum ? Termination::kConverged : Termination::kMaxIterations;
     return estimate;
+  }
+
+  // All pairs within the threshold of the clique's pose, and the answer on them.
+  Expected<Estimate> Gather(const CalibrationProblem& problem, const PairTerms& terms,
+                            const PoseScorer& scorer, const Rigid3d& pose) const {
+    if (!spec().estimates_rotation) return RefitOnInliers(*inner_, problem, scorer, pose);
+    InlierWorkspace workspace;
+    return BetterOnInliers(*inner_, problem, terms, scorer,
+                           OptimiseOnInliers(terms, scorer, pose, kMaxRounds, {}, workspace));
   }
 
   BitGraph AgreementGraph(const std::vector<Pair3d3d>& pairs) const {

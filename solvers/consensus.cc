@@ -9,7 +9,6 @@
 #include <limits>
 #include <numbers>
 
-#include "solvers/refine_pose.h"
 #include "solvers/subset.h"
 
 namespace sextant {
@@ -17,6 +16,8 @@ namespace {
 
 constexpr double kMaxFalseAlarms = 0.01;
 constexpr int kMaxRefits = 10;
+// Of the squared threshold, in the first round of OptimiseOnInliers; halved in the next.
+constexpr double kFirstWidening = 4.0;
 // Quantiles at 0.99 of chi-square with 2 and 3 degrees of freedom.
 constexpr double kChiSquare2 = 9.210340371976184;
 constexpr double kChiSquare3 = 11.344866730144373;
@@ -141,6 +142,30 @@ Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem&
   }
 }
 
+Rigid3d OptimiseOnInliers(const PairTerms& terms, const PoseScorer& scorer, const Rigid3d& pose,
+                          int rounds, const RefineLimits& limits, InlierWorkspace& workspace) {
+  const std::size_t least = terms.pixels.empty() ? 3 : 4;
+  Rigid3d best = pose;
+  double best_cost = scorer.Cost(pose);
+  Rigid3d current = pose;
+  double widening = kFirstWidening;
+  for (int round = 0; round < rounds; ++round) {
+    scorer.Inliers(current, workspace.inliers, widening);
+    if (workspace.inliers.size() < least) break;
+    workspace.terms.AssignSubset(terms, workspace.inliers);
+    current = RefinePose(workspace.terms.View(), current, limits).cam_from_lidar;
+    const double cost = scorer.Cost(current, best_cost);
+    const bool falls = current.IsFinite() && cost < best_cost;
+    if (falls) {
+      best = current;
+      best_cost = cost;
+    }
+    if (widening == 1.0 && !falls) break;
+    widening = std::max(1.0, 0.5 * widening);
+  }
+  return best;
+}
+
 Estimate LeastSquaresOnInliers(const PairTerms& terms, const PoseScorer& scorer,
                                const Rigid3d& pose) {
   Estimate estimate;
@@ -156,6 +181,7 @@ Estimate LeastSquaresOnInliers(const PairTerms& terms, const PoseScorer& scorer,
 Expected<Estimate> BetterOnInliers(const Solver& inner, const CalibrationProblem& problem,
                                    const PairTerms& terms, const PoseScorer& scorer,
                                    const Rigid3d& pose) {
+  if (!inner.spec().estimates_rotation) return RefitOnInliers(inner, problem, scorer, pose);
   constexpr double kRounding = 1e-9;
   std::vector<int> inliers;
   scorer.Inliers(pose, inliers);

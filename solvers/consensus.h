@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "solvers/options.h"
 #include "solvers/pose_scorer.h"
+#include "solvers/refine_pose.h"
 #include "solvers/solver.h"
 
 namespace sextant {
@@ -65,12 +66,25 @@ Expected<Rigid3d> PoseOfSubset(const Solver& inner, const CalibrationProblem& pr
 Expected<Estimate> SolveSubset(const Solver& inner, const CalibrationProblem& problem,
                                std::span<const int> indices);
 
+/// Buffers of OptimiseOnInliers, to be kept between calls.
+struct InlierWorkspace {
+  std::vector<int> inliers;
+  PairTerms terms;
+};
+
+/// The cheapest pose met by alternating least squares on the inliers with choosing them, `pose`
+/// included. The first rounds choose generously, so that a pair just outside is not lost for good;
+/// ends after `rounds` or when the cost no longer falls. Source: Lebeda, Matas and Chum 2012.
+Rigid3d OptimiseOnInliers(const PairTerms& terms, const PoseScorer& scorer, const Rigid3d& pose,
+                          int rounds, const RefineLimits& limits, InlierWorkspace& workspace);
+
 /// `pose` as an estimate: its inliers, and the covariance of least squares on them at `pose`.
 Estimate LeastSquaresOnInliers(const PairTerms& terms, const PoseScorer& scorer,
                                const Rigid3d& pose);
 
 /// RefitOnInliers, unless `inner` fits the inliers of `pose` worse than `pose` does, as a minimal
-/// solver or EPnP may; then LeastSquaresOnInliers. `pose` is a minimum of least squares on them.
+/// solver or EPnP may; then LeastSquaresOnInliers. `pose` is a minimum of least squares on them
+/// where `inner` estimates the rotation.
 Expected<Estimate> BetterOnInliers(const Solver& inner, const CalibrationProblem& problem,
                                    const PairTerms& terms, const PoseScorer& scorer,
                                    const Rigid3d& pose);

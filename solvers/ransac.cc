@@ -28,8 +28,6 @@ struct RansacOptions : InlierOptions {
 
 // After this many degenerate samples and no other, the data itself is degenerate.
 constexpr int kMaxDegenerateSamples = 1000;
-// Of the squared threshold, in the first round of local optimisation; halved in the next.
-constexpr double kFirstWidening = 4.0;
 constexpr RefineLimits kLocalLimits{.max_iterations = 4, .step_tolerance = 1e-6};
 constexpr RefineLimits kFinalLimits{.max_iterations = 30, .step_tolerance = 1e-10};
 
@@ -47,9 +45,9 @@ class ConsensusSearch {
         random_(options.seed),
         sample_(static_cast<std::size_t>(sample_size)) {
     poses_.reserve(8);
-    inliers_.reserve(terms.size());
-    subset_.points.reserve(terms.points.size());
-    subset_.pixels.reserve(terms.pixels.size());
+    workspace_.inliers.reserve(terms.size());
+    workspace_.terms.points.reserve(terms.points.size());
+    workspace_.terms.pixels.reserve(terms.pixels.size());
   }
 
   void Run() {
@@ -62,8 +60,9 @@ class ConsensusSearch {
       for (const Rigid3d& pose : poses_) {
         if (!Offer(pose)) continue;
         if (options_.local_optimisation > 0) Optimise();
-        scorer_.Inliers(best_, inliers_);
-        wanted = std::min<double>(options_.max_iterations, WantedIterations(inliers_.size()));
+        scorer_.Inliers(best_, workspace_.inliers);
+        wanted =
+            std::min<double>(options_.max_iterations, WantedIterations(workspace_.inliers.size()));
       }
     }
   }
@@ -73,21 +72,10 @@ class ConsensusSearch {
   int iterations() const { return iterations_; }
   bool exhausted() const { return iterations_ >= options_.max_iterations; }
 
-  /// Least squares on the inliers of the best, alternated with choosing them. The first rounds
-  /// choose generously, so that a pair just outside is not lost for good.
   void Optimise(const RefineLimits& limits = kLocalLimits) {
     if (!inner_.spec().estimates_rotation) return;
-    Rigid3d pose = best_;
-    double widening = kFirstWidening;
-    for (int round = 0; round < options_.local_optimisation; ++round) {
-      scorer_.Inliers(pose, inliers_, widening);
-      if (inliers_.size() <= sample_.size()) return;
-      subset_.AssignSubset(terms_, inliers_);
-      pose = RefinePose(subset_.View(), pose, limits).cam_from_lidar;
-      const bool better = Offer(pose);
-      if (widening == 1.0 && !better) return;
-      widening = std::max(1.0, 0.5 * widening);
-    }
+    Offer(
+        OptimiseOnInliers(terms_, scorer_, best_, options_.local_optimisation, limits, workspace_));
   }
 
  private:
@@ -121,9 +109,8 @@ class ConsensusSearch {
   const PoseScorer& scorer_;
   Random random_;
   std::vector<int> sample_;
-  std::vector<int> inliers_;
   std::vector<Rigid3d> poses_;
-  PairTerms subset_;
+  InlierWorkspace workspace_;
   Rigid3d best_;
   double best_cost_ = std::numeric_limits<double>::infinity();
   bool found_ = false;
