@@ -48,16 +48,21 @@ double ChanceOfAgreement(const PairTerms& terms, double max_squared) {
   return std::min(1.0, disc / (box.sizes().array() + 2.0 * radius).prod());
 }
 
+// log of (n over k). By sums: std::lgamma writes a global, which is a data race.
 double LogChoose(int n, int k) {
-  return std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0);
+  double sum = 0.0;
+  for (int i = 1; i <= k; ++i) sum += std::log(static_cast<double>(n - k + i) / i);
+  return sum;
 }
 
 // P(Binomial(trials, p) >= successes).
 double BinomialTail(int trials, int successes, double p) {
   if (successes <= 0 || p >= 1.0) return 1.0;
+  double log_choose = LogChoose(trials, successes);
   double tail = 0.0;
   for (int k = successes; k <= trials; ++k) {
-    tail += std::exp(LogChoose(trials, k) + k * std::log(p) + (trials - k) * std::log1p(-p));
+    tail += std::exp(log_choose + k * std::log(p) + (trials - k) * std::log1p(-p));
+    if (k < trials) log_choose += std::log((trials - k) / (k + 1.0));
   }
   return tail;
 }
