@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernels for pixels and points beside those of OpenCV and opengv, on the same views.
+#include <benchmark/benchmark.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "bench/check.h"
+#include "solvers/ippe.h"
+#include "solvers/p3p.h"
+
+#ifdef SEXTANT_BENCH_OPENGV
+#include <opengv/absolute_pose/CentralAbsoluteAdapter.hpp>
+#include <opengv/absolute_pose/methods.hpp>
+#endif
+#ifdef SEXTANT_BENCH_OPENCV
+#include <opencv2/calib3d.hpp>
+#endif
+
+namespace sextant::bench {
+namespace {
+
+// One view of a scene in the forms that the kernels take.
+struct View {
+  std::vector<Eigen::Vector3d> rays;          // Unit length.
+  std::vector<Eigen::Vector2d> image_points;  // On the plane z = 1.
+  std::vector<Eigen::Vector3d> points;
+  Rigid3d cam_from_lidar;
+};
+
+std::vector<View> MakeViews(const RandomSceneOptions& options) {
+  std::vector<View> views;
+  for (const RandomScene& scene : MakeScenes(options)) {
+    View& view = views.emplace_back();
+    view.cam_from_lidar = scene.cam_from_lidar;
+    for (const Pair2d3d& pair : scene.problem.pairs_2d3d) {
+      view.rays.push_back(*Unproject(*scene.problem.camera, pair.pixel));
+      view.image_points.push_back(view.rays.back().hnormalized());
+      view.points.push_back(pair.point_in_lidar);
+    }
+  }
+  return views;
+}
+
+using Poses = std::vector<Rigid3d>;
+
+// Times prepare(view)() over the views. The pose nearest to the truth among to_poses(answer) must
+// be within the tolerance for all but one in 32 views: some peers lose a few even of exact data.
+template <class Prepare, class ToPoses>
+void Time(benchmark::State& state, const std::vector<View>& views, const Tolerance& tolerance,
+          const Prepare& prepare, const ToPoses& to_poses) {
+  std::vector<decltype(prepare(views.front()))> calls;
+  std::size_t lost = 0;
+  for (const View& view : views) {
+    calls.push_back(prepare(view));
+    const Poses poses = to_poses(calls.back()());
+    const bool found = std::any_of(poses.begin(), poses.end(), [&](const Rigid3d& pose) {
+      const PoseDistance off = DistanceBetween(pose, view.cam_from_lidar);
+      return off.rotation_rad < tolerance.rotation_rad &&
+             off.translation_m < tolerance.translation_m;
+    });
+    if (!found) ++lost;
+  }
+  state.counters["lost"] = static_cast<double>(lost);
+  if (lost > views.size() / 32) return state.SkipWithError("too many wrong answers");
+  std::size_t next = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(calls[next]());
+    next = next + 1 < calls.size() ? next + 1 : 0;
+  }
+}
+
+// OpenCV's P3P keeps half of the digits at best.
+constexpr Tolerance kExact = {.rotation_rad = 1e-3, .translation_m = 1e-3};
+constexpr Tolerance kNoisy = {.rotation_rad = 0.3, .translation_m = 0.5};
+
+std::vector<View> Triples() { return MakeViews({.pairs = 3}); }
+
+std::vector<View> Planes(const benchmark::State& state) {
+  const auto pairs = static_cast<int>(state.range(0));
+  return MakeViews({.pairs = pairs, .sigma_px = 0.5, .planar = true});
+}
+
+struct P3pAnswer {
+  std::array<Rigid3d, kMaxP3pPoses> poses;
+  int count = 0;
+};
+
+void P3p(benchmark::State& state) {
+  const auto prepare = [](const View& view) {
+    return [&view] {
+      P3pAnswer answer;
+      answer.count = SolveP3p(std::span<const Eigen::Vector3d, 3>(view.rays),
+                              std::span<const Eigen::Vector3d, 3>(view.points), answer.poses);
+      return answer;
+    };
+  };
+  Time(state, Triples(), kExact, prepare, [](const P3pAnswer& answer) {
+    return Poses(answer.poses.begin(), answer.poses.begin() + answer.count);
+  });
+}
+BENCHMARK(P3p)->Name("p3p/sextant/3");
+
+void Ippe(benchmark::State& state) {
+  const auto prepare = [](const View& view) {
+    return [&view] { return SolveIppe(view.image_points, view.points); };
+  };
+  Time(state, Planes(state), kNoisy, prepare, [](const Expected<IppeFit>& fit) {
+    if (!fit) return Poses();
+    return Poses(fit->cam_from_lidar.begin(), fit->cam_from_lidar.begin() + fit->count);
+  });
+}
+BENCHMARK(Ippe)->Name("ippe/sextant")->Arg(5)->Arg(8)->Arg(20)->Arg(100);
+
+#ifdef SEXTANT_BENCH_OPENGV
+// The adapter outlives the call: only the solver is timed.
+struct OpengvView {
+  explicit OpengvView(const View& view)
+      : bearings(view.rays.begin(), view.rays.end()),
+        points(view.points.begin(), view.points.end()),
+        adapter(bearings, points) {}
+
+  opengv::bearingVectors_t bearings;
+  opengv::points_t points;
+  opengv::absolute_pose::CentralAbsoluteAdapter adapter;
+};
+
+template <class Solve>
+void Opengv(benchmark::State& state, const Solve& solve) {
+  const auto prepare = [&](const View& view) {
+    return [made = std::make_shared<OpengvView>(view), &solve] { return solve(made->adapter); };
+  };
+  // opengv's transformation is lidar_from_cam.
+  Time(state, Triples(), kExact, prepare, [](const opengv::transformations_t& answers) {
+    Poses poses;
+    for (const opengv::transformation_t& answer : answers) {
+      const Eigen::Matrix3d rotation = answer.leftCols<3>();
+      poses.push_back(Rigid3d{Eigen::Quaterniond(rotation), answer.col(3)}.Inverse());
+    }
+    return poses;
+  });
+}
+
+void OpengvKneip(benchmark::State& state) {
+  Opengv(state,
+         [](const auto& adapter) { return opengv::absolute_pose::p3p_kneip(adapter, 0, 1, 2); });
+}
+BENCHMARK(OpengvKneip)->Name("p3p/opengv_kneip/3");
+
+void OpengvGao(benchmark::State& state) {
+  Opengv(state,
+         [](const auto& adapter) { return opengv::absolute_pose::p3p_gao(adapter, 0, 1, 2); });
+}
+BENCHMARK(OpengvGao)->Name("p3p/opengv_gao/3");
+#endif
+
+#ifdef SEXTANT_BENCH_OPENCV
+struct OpenCvView {
+  explicit OpenCvView(const View& view) {
+    for (const Eigen::Vector3d& p : view.points) points.emplace_back(p.x(), p.y(), p.z());
+    for (const Eigen::Vector2d& p : view.image_points) pixels.emplace_back(p.x(), p.y());
+  }
+
+  std::vector<cv::Point3d> points;
+  std::vector<cv::Point2d> pixels;
+};
+
+struct OpenCvAnswer {
+  std::vector<cv::Mat> rotations;
+  std::vector<cv::Mat> translations;
+};
+
+// The image points are on the plane z = 1 already, so that nothing is undistorted.
+void OpenCv(benchmark::State& state, const std::vector<View>& views, const Tolerance& tolerance,
+            int method) {
+  const auto prepare = [method](const View& view) {
+    return [made = std::make_shared<OpenCvView>(view), method] {
+      OpenCvAnswer answer;
+      const cv::Matx33d unit = cv::Matx33d::eye();
+      if (method == cv::SOLVEPNP_P3P || method == cv::SOLVEPNP_AP3P) {
+        cv::solveP3P(made->points, made->pixels, unit, cv::noArray(), answer.rotations,
+                     answer.translations, method);
+      } else {
+        cv::solvePnPGeneric(made->points, made->pixels, unit, cv::noArray(), answer.rotations,
+                            answer.translations, false, static_cast<cv::SolvePnPMethod>(method));
+      }
+      return answer;
+    };
+  };
+  Time(state, views, tolerance, prepare, [](const OpenCvAnswer& answer) {
+    Poses poses;
+    for (std::size_t i = 0; i < answer.rotations.size(); ++i) {
+      const auto r = cv::Vec3d(answer.rotations[i]);
+      const auto t = cv::Vec3d(answer.translations[i]);
+      poses.push_back({ExpSo3({r[0], r[1], r[2]}), {t[0], t[1], t[2]}});
+    }
+    return poses;
+  });
+}
+
+void OpenCvP3p(benchmark::State& state) { OpenCv(state, Triples(), kExact, cv::SOLVEPNP_P3P); }
+BENCHMARK(OpenCvP3p)->Name("p3p/opencv_p3p/3");
+
+void OpenCvAp3p(benchmark::State& state) { OpenCv(state, Triples(), kExact, cv::SOLVEPNP_AP3P); }
+BENCHMARK(OpenCvAp3p)->Name("p3p/opencv_ap3p/3");
+
+void OpenCvIppe(benchmark::State& state) {
+  OpenCv(state, Planes(state), kNoisy, cv::SOLVEPNP_IPPE);
+}
+BENCHMARK(OpenCvIppe)->Name("ippe/opencv_ippe")->Arg(5)->Arg(8)->Arg(20)->Arg(100);
+#endif
+
+}  // namespace
+}  // namespace sextant::bench
+
+BENCHMARK_MAIN();
