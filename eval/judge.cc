@@ -56,7 +56,7 @@ double Excess(const Edge& edge, std::optional<double> known) {
 
 std::vector<EdgeFinding> JudgeEdges(const CalibrationProblem& problem) {
   std::vector<EdgeFinding> findings;
-  for (const CornerGroup& group : CornerGroups(problem.pairs_3d3d)) {
+  for (const BoardPairs& group : CompleteBoards(problem.pairs_3d3d)) {
     double worst = 0.0;
     std::optional<EdgeFinding> finding;
     for (int i = 0; i < kCornersPerBoard; ++i) {

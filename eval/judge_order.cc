@@ -2,17 +2,18 @@
 #include "eval/judge_order.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
 
+#include "solvers/corner_order.h"
 #include "solvers/kabsch.h"
 
 namespace sextant {
 namespace {
 
-constexpr int kOrders = 8;       // Four turns, each seen from the front or from behind.
 constexpr int kMaxStarts = 512;  // Enough for eight boards; more views share the same answer.
 constexpr int kMaxRounds = 20;
 constexpr double kFarBetter = 0.5;  // Of the RMSE as given.
@@ -21,9 +22,14 @@ constexpr double kMaxMisfit = 0.2;  // Of the mean edge: beyond, no order is the
 
 using Assignment = std::vector<int>;  // By camera point: the pair whose LiDAR point belongs to it.
 
-int CornerInOrder(int corner, int order) {
-  const int turned = order < kCornersPerBoard ? corner + order : order - corner + kCornersPerBoard;
-  return turned % kCornersPerBoard;
+// Four turns, each seen from the front or from behind.
+std::array<CornerOrder, 8> EveryOrder() {
+  std::array<CornerOrder, 8> orders;
+  for (int first = 0; first < kCornersPerBoard; ++first) {
+    orders[static_cast<std::size_t>(first)] = {first, false};
+    orders[static_cast<std::size_t>(first + kCornersPerBoard)] = {first, true};
+  }
+  return orders;
 }
 
 struct Fit {
@@ -34,8 +40,8 @@ struct Fit {
 class OrderSearch {
  public:
   explicit OrderSearch(std::span<const Pair3d3d> pairs)
-      : pairs_(pairs), groups_(CornerGroups(pairs)) {
-    for (const CornerGroup& group : groups_) {
+      : pairs_(pairs), groups_(CompleteBoards(pairs)) {
+    for (const BoardPairs& group : groups_) {
       auto& members = views_[group.view];
       members.push_back(&group);
     }
@@ -51,7 +57,7 @@ class OrderSearch {
 
   double MeanEdge() const {
     double sum = 0.0;
-    for (const CornerGroup& group : groups_) {
+    for (const BoardPairs& group : groups_) {
       for (int i = 0; i < kCornersPerBoard; ++i) {
         const Pair3d3d& from = pairs_[group.pair(i)];
         const Pair3d3d& to = pairs_[group.pair((i + 1) % kCornersPerBoard)];
@@ -74,15 +80,15 @@ class OrderSearch {
   // Every pose worth starting from: one order for all boards, then board against board.
   std::vector<Rigid3d> Starts() const {
     std::vector<Rigid3d> starts;
-    for (int order = 0; order < kOrders; ++order) {
+    for (const CornerOrder& order : EveryOrder()) {
       Assignment assignment = AsGiven();
-      for (const CornerGroup& group : groups_) Assign(group, group, order, assignment);
+      for (const BoardPairs& group : groups_) Assign(group, group, order, assignment);
       AddStart(FitAll(assignment), starts);
     }
     for (const auto& [view, members] : views_) {
-      for (const CornerGroup* in_cam : members) {
-        for (const CornerGroup* in_lidar : members) {
-          for (int order = 0; order < kOrders; ++order) {
+      for (const BoardPairs* in_cam : members) {
+        for (const BoardPairs* in_lidar : members) {
+          for (const CornerOrder& order : EveryOrder()) {
             if (static_cast<int>(starts.size()) >= kMaxStarts) return starts;
             AddStart(FitBoard(*in_cam, *in_lidar, order), starts);
           }
@@ -103,7 +109,7 @@ class OrderSearch {
   }
 
   bool SwapsBoards(const Assignment& assignment) const {
-    return std::any_of(groups_.begin(), groups_.end(), [&](const CornerGroup& group) {
+    return std::any_of(groups_.begin(), groups_.end(), [&](const BoardPairs& group) {
       const auto& own = group.pairs;
       return std::find(own.begin(), own.end(), assignment[group.pair(0)]) == own.end();
     });
@@ -117,13 +123,14 @@ class OrderSearch {
     return {fit->b_from_a, std::sqrt(fit->sum_squares / static_cast<double>(in_cam.size()))};
   }
 
-  Fit FitBoard(const CornerGroup& in_cam, const CornerGroup& in_lidar, int order) const {
+  Fit FitBoard(const BoardPairs& in_cam, const BoardPairs& in_lidar,
+               const CornerOrder& order) const {
     std::array<Eigen::Vector3d, kCornersPerBoard> cam;
     std::array<Eigen::Vector3d, kCornersPerBoard> lidar;
     for (int i = 0; i < kCornersPerBoard; ++i) {
       const auto k = static_cast<std::size_t>(i);
       cam[k] = pairs_[in_cam.pair(i)].point_in_cam;
-      lidar[k] = pairs_[in_lidar.pair(CornerInOrder(i, order))].point_in_lidar;
+      lidar[k] = pairs_[in_lidar.pair(order.IndexInA(i, kCornersPerBoard))].point_in_lidar;
     }
     return FitPoints(cam, lidar);
   }
@@ -132,33 +139,34 @@ class OrderSearch {
     if (std::isfinite(fit.rmse_m)) starts.push_back(fit.cam_from_lidar);
   }
 
-  static void Assign(const CornerGroup& in_cam, const CornerGroup& in_lidar, int order,
+  static void Assign(const BoardPairs& in_cam, const BoardPairs& in_lidar, const CornerOrder& order,
                      Assignment& assignment) {
     for (int i = 0; i < kCornersPerBoard; ++i) {
-      assignment[in_cam.pair(i)] = static_cast<int>(in_lidar.pair(CornerInOrder(i, order)));
+      assignment[in_cam.pair(i)] =
+          static_cast<int>(in_lidar.pair(order.IndexInA(i, kCornersPerBoard)));
     }
   }
 
   struct Match {
     double squares = 0.0;
-    const CornerGroup* in_cam = nullptr;
-    const CornerGroup* in_lidar = nullptr;
-    int order = 0;
+    const BoardPairs* in_cam = nullptr;
+    const BoardPairs* in_lidar = nullptr;
+    CornerOrder order;
   };
 
-  Match BestOrder(const Rigid3d& pose, const CornerGroup& in_cam,
-                  const CornerGroup& in_lidar) const {
-    Match best{std::numeric_limits<double>::infinity(), &in_cam, &in_lidar, 0};
-    for (int order = 0; order < kOrders; ++order) {
-      double squares = 0.0;
-      for (int i = 0; i < kCornersPerBoard; ++i) {
-        const Eigen::Vector3d& lidar =
-            pairs_[in_lidar.pair(CornerInOrder(i, order))].point_in_lidar;
-        squares += (pairs_[in_cam.pair(i)].point_in_cam - pose * lidar).squaredNorm();
-      }
-      if (squares < best.squares) best = {squares, &in_cam, &in_lidar, order};
+  Match BestMatch(const Rigid3d& pose, const BoardPairs& in_cam, const BoardPairs& in_lidar) const {
+    CornerGroup corners;
+    for (int i = 0; i < kCornersPerBoard; ++i) {
+      corners.in_b.push_back(pairs_[in_cam.pair(i)].point_in_cam);
+      corners.in_a.push_back(pairs_[in_lidar.pair(i)].point_in_lidar);
     }
-    return best;
+    Match match{0.0, &in_cam, &in_lidar, BestCornerOrder(corners, pose)};
+    for (int i = 0; i < kCornersPerBoard; ++i) {
+      const auto k = static_cast<std::size_t>(match.order.IndexInA(i, kCornersPerBoard));
+      match.squares +=
+          (corners.in_b[static_cast<std::size_t>(i)] - pose * corners.in_a[k]).squaredNorm();
+    }
+    return match;
   }
 
   // Boards are far apart against a sensible pose's error, so nearest first settles them.
@@ -166,16 +174,16 @@ class OrderSearch {
     Assignment assignment = AsGiven();
     for (const auto& [view, members] : views_) {
       std::vector<Match> matches;
-      for (const CornerGroup* in_cam : members) {
-        for (const CornerGroup* in_lidar : members) {
-          matches.push_back(BestOrder(pose, *in_cam, *in_lidar));
+      for (const BoardPairs* in_cam : members) {
+        for (const BoardPairs* in_lidar : members) {
+          matches.push_back(BestMatch(pose, *in_cam, *in_lidar));
         }
       }
       std::stable_sort(matches.begin(), matches.end(),
                        [](const Match& a, const Match& b) { return a.squares < b.squares; });
-      std::vector<const CornerGroup*> taken_in_cam;
-      std::vector<const CornerGroup*> taken_in_lidar;
-      const auto contains = [](const auto& taken, const CornerGroup* group) {
+      std::vector<const BoardPairs*> taken_in_cam;
+      std::vector<const BoardPairs*> taken_in_lidar;
+      const auto contains = [](const auto& taken, const BoardPairs* group) {
         return std::find(taken.begin(), taken.end(), group) != taken.end();
       };
       for (const Match& match : matches) {
@@ -191,20 +199,20 @@ class OrderSearch {
   }
 
   std::span<const Pair3d3d> pairs_;
-  std::vector<CornerGroup> groups_;
-  std::map<int, std::vector<const CornerGroup*>> views_;
+  std::vector<BoardPairs> groups_;
+  std::map<int, std::vector<const BoardPairs*>> views_;
 };
 
 }  // namespace
 
-std::vector<CornerGroup> CornerGroups(std::span<const Pair3d3d> pairs) {
+std::vector<BoardPairs> CompleteBoards(std::span<const Pair3d3d> pairs) {
   std::map<std::pair<int, int>, std::vector<int>> by_board;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     by_board[{pairs[i].id.view, pairs[i].id.board}].push_back(static_cast<int>(i));
   }
-  std::vector<CornerGroup> groups;
+  std::vector<BoardPairs> groups;
   for (const auto& [key, members] : by_board) {
-    CornerGroup group{key.first, {-1, -1, -1, -1}};
+    BoardPairs group{key.first, {-1, -1, -1, -1}};
     for (const int i : members) {
       const int corner = pairs[static_cast<std::size_t>(i)].id.corner;
       if (corner >= 0 && corner < kCornersPerBoard) {

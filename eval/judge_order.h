@@ -12,7 +12,7 @@
 namespace sextant {
 
 /// The four pairs of one board in one view, by corner number.
-struct CornerGroup {
+struct BoardPairs {
   int view = 0;
   std::array<int, kCornersPerBoard> pairs{};
 
@@ -22,7 +22,7 @@ struct CornerGroup {
 };
 
 /// The boards that have each of their four corners exactly once, ordered by view and board.
-std::vector<CornerGroup> CornerGroups(std::span<const Pair3d3d> pairs);
+std::vector<BoardPairs> CompleteBoards(std::span<const Pair3d3d> pairs);
 
 /// See JudgePairs; none where the given order is the best or no other is far better.
 std::optional<OrderFinding> FindBetterOrder(std::span<const Pair3d3d> pairs);
