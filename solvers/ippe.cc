@@ -10,15 +10,15 @@
 #include <limits>
 #include <utility>
 
-#include "solvers/image_moments.h"
 #include "solvers/plane_frame.h"
+#include "solvers/plane_image_moments.h"
 
 namespace sextant {
 namespace {
 
 constexpr std::size_t kMinPoints = 4;
 
-using Moments = ImageMoments<3>;
+using Moments = PlaneImageMoments;
 
 // The eigenvector of the least eigenvalue, near enough to start from. The adjugate has the same
 // eigenvectors, the wanted one by far the largest.
@@ -255,7 +255,7 @@ Expected<IppeFit> SolveIppe(std::span<const Eigen::Vector2d> image_points,
                      "line, which leaves the plane's pose undetermined; use four that span a "
                      "quadrilateral");
   }
-  Eigen::Matrix3d homography = moments.Model(depth.direction);
+  Eigen::Matrix3d homography = moments.Homography(depth.direction);
   homography.leftCols<2>() *= extent.cwiseInverse().asDiagonal();
 
   const AlgebraicError error(moments, extent);

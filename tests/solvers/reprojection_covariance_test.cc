@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/reprojection_covariance.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "base/random.h"
+#include "support/scenes.h"
+
+namespace sextant {
+namespace {
+
+using test::MakeScene;
+using test::Scene;
+
+TEST(ReprojectionJacobian, IsTheDerivativeByThePose) {
+  Random random(1);
+  const Scene scene = MakeScene({.pairs = 20}, random);
+  const Camera& camera = *scene.problem.camera;
+  for (const Pair2d3d& pair : scene.problem.pairs_2d3d) {
+    const auto analytic = ReprojectionJacobian(camera, scene.cam_from_lidar, pair);
+    ASSERT_TRUE(analytic);
+    for (int k = 0; k < 6; ++k) {
+      constexpr double kStep = 1e-6;
+      const auto pixel_at = [&](double step) {
+        const Rigid3d pose = Perturb(scene.cam_from_lidar, step * Vector6d::Unit(k));
+        return *Project(camera, pose * pair.point_in_lidar);
+      };
+      const Eigen::Vector2d numeric = (pixel_at(kStep) - pixel_at(-kStep)) / (2.0 * kStep);
+      EXPECT_LT((numeric - analytic->col(k)).norm(), 1e-5);
+    }
+  }
+}
+
+// One step of least squares from the truth is an estimator whose covariance is the bound exactly.
+std::optional<Rigid3d> OneStep(const Camera& camera, std::span<const Pair2d3d> pairs,
+                               const Rigid3d& from) {
+  Matrix6d normal = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+  for (const Pair2d3d& pair : pairs) {
+    const Eigen::Matrix<double, 2, 6> jacobian = *ReprojectionJacobian(camera, from, pair);
+    const Eigen::Vector2d residual = pair.pixel - *Project(camera, from * pair.point_in_lidar);
+    normal += jacobian.transpose() * jacobian;
+    gradient += jacobian.transpose() * residual;
+  }
+  return Perturb(from, normal.inverse() * gradient);
+}
+
+TEST(PropagateByDifferences, EqualsTheBoundForLeastSquares) {
+  Random random(2);
+  for (const double sigma_px : {0.3, 2.0}) {
+    Scene scene = MakeScene({.pairs = 10}, random);
+    const Camera& camera = *scene.problem.camera;
+    for (Pair2d3d& pair : scene.problem.pairs_2d3d) pair.sigma_px = sigma_px;
+    const std::vector<Pair2d3d>& pairs = scene.problem.pairs_2d3d;
+    const auto bound = ReprojectionCovariance(camera, pairs, scene.cam_from_lidar);
+    const auto propagated = PropagateByDifferences(
+        camera, pairs, scene.cam_from_lidar,
+        [&](const auto& disturbed) { return OneStep(camera, disturbed, scene.cam_from_lidar); });
+    ASSERT_TRUE(bound && propagated);
+    EXPECT_TRUE(propagated->isApprox(*bound, 1e-5));
+  }
+}
+
+TEST(ReprojectionCovariance, TakesUnstatedNoiseFromTheResiduals) {
+  Random random(3);
+  Scene scene = MakeScene({.pairs = 500, .sigma_px = 0.7}, random);
+  std::vector<Pair2d3d>& pairs = scene.problem.pairs_2d3d;
+  const Camera& camera = *scene.problem.camera;
+  const auto stated = ReprojectionCovariance(camera, pairs, scene.cam_from_lidar);
+  EXPECT_EQ(UnstatedVariance(camera, pairs, scene.cam_from_lidar), 0.0);
+  for (Pair2d3d& pair : pairs) pair.sigma_px = 0.0;
+  const auto measured = ReprojectionCovariance(camera, pairs, scene.cam_from_lidar);
+  ASSERT_TRUE(stated && measured);
+  // Five standard errors of the variance of 1000 residuals.
+  EXPECT_NEAR(measured->trace() / stated->trace(), 1.0, 5.0 * std::sqrt(2.0 / 1000.0));
+}
+
+TEST(ReprojectionCovariance, IsNoneWhereNothingCanBeSaid) {
+  Random random(4);
+  Scene scene = MakeScene({.pairs = 3}, random);
+  std::vector<Pair2d3d>& pairs = scene.problem.pairs_2d3d;
+  const Camera& camera = *scene.problem.camera;
+  const Rigid3d& pose = scene.cam_from_lidar;
+  EXPECT_FALSE(ReprojectionCovariance(camera, pairs, pose)) << "no residual to judge by";
+  EXPECT_FALSE(ReprojectionCovariance(camera, {}, pose));
+  for (Pair2d3d& pair : pairs) pair.sigma_px = 1.0;
+  EXPECT_TRUE(ReprojectionCovariance(camera, pairs, pose));
+  EXPECT_FALSE(ReprojectionCovariance(camera, std::span(pairs).first(2), pose)) << "singular";
+  const Rigid3d away{Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0) * pose.rotation, -pose.translation};
+  EXPECT_FALSE(ReprojectionCovariance(camera, pairs, away)) << "behind the camera";
+  const auto fails = [](std::span<const Pair2d3d>) -> std::optional<Rigid3d> {
+    return std::nullopt;
+  };
+  EXPECT_FALSE(PropagateByDifferences(camera, pairs, pose, fails));
+}
+
+}  // namespace
+}  // namespace sextant
