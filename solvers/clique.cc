@@ -41,7 +41,7 @@ class CliqueSolver final : public Solver {
  public:
   CliqueSolver(const SolverArguments& arguments, const CliqueOptions& options)
       : Solver({.name = arguments.name,
-                .needs = arguments.inner->spec().needs,
+                .needs = NeedsOfConsensus(arguments.inner->spec().needs, PairKind::k3d3d),
                 .estimates_rotation = arguments.inner->spec().estimates_rotation,
                 .is_global = arguments.inner->spec().is_global}),
         inner_(arguments.inner),
@@ -82,17 +82,15 @@ class CliqueSolver final : public Solver {
 
   Expected<Estimate> AnswerFrom(const CalibrationProblem& problem, const PairTerms& terms,
                                 const PoseScorer& scorer, const Clique& clique) const {
-    const int least = spec().needs.pairs_3d3d + 1;
-    const int clique_size = static_cast<int>(clique.vertices.size());
-    if (Expected<void> ok = CheckConsensus(terms, scorer, clique_size, least); !ok) {
+    const int least = spec().needs.pairs_3d3d;
+    if (Expected<void> ok = CheckConsensus(terms, scorer, clique.vertices, least); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
     const Expected<Rigid3d> on_clique = PoseOfSubset(*inner_, problem, terms, clique.vertices);
     if (!on_clique) return tl::unexpected<Error>(on_clique.error());
     Expected<Estimate> estimate = Gather(problem, terms, scorer, *on_clique);
     if (!estimate) return estimate;
-    const int inlier_count = static_cast<int>(estimate->inliers.size());
-    if (Expected<void> ok = CheckConsensus(terms, scorer, inlier_count, least); !ok) {
+    if (Expected<void> ok = CheckConsensus(terms, scorer, estimate->inliers, least); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
     estimate->iterations = static_cast<int>(std::min<std::int64_t>(clique.nodes, 1'000'000'000));

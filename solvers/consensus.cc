@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -67,10 +68,25 @@ double BinomialTail(int trials, int successes, double p) {
   return tail;
 }
 
+int CountDistinct(const PairTerms& terms, std::span<const int> indices) {
+  std::vector<std::array<double, 6>> numbers;
+  numbers.reserve(indices.size());
+  for (const int i : indices) {
+    const auto index = static_cast<std::size_t>(i);
+    const bool is_point = terms.pixels.empty();
+    const Eigen::Vector3d& p =
+        is_point ? terms.points[index].in_lidar : terms.pixels[index].in_lidar;
+    const Eigen::Vector3d m =
+        is_point ? terms.points[index].in_cam : terms.pixels[index].pixel.homogeneous().eval();
+    numbers.push_back({p.x(), p.y(), p.z(), m.x(), m.y(), m.z()});
+  }
+  std::sort(numbers.begin(), numbers.end());
+  return static_cast<int>(std::unique(numbers.begin(), numbers.end()) - numbers.begin());
+}
+
 // Whether `inner` can work on so few.
 Expected<void> CheckEnough(const Solver& inner, std::size_t inlier_count) {
-  const DataNeeds& needs = inner.spec().needs;
-  const int least = std::max(needs.pairs_3d3d, needs.pairs_2d3d);
+  const int least = LeastPairs(inner.spec().needs);
   if (inlier_count >= static_cast<std::size_t>(least)) return {};
   return MakeError(ErrorCode::kNoConsensus,
                    fmt::format("{} pairs agree on a pose, expected at least {}; check the pairing "
@@ -85,8 +101,16 @@ double InlierOptions::MaxSquared(PairKind kind) const {
   return kind == PairKind::k3d3d ? kChiSquare3 : kChiSquare2;
 }
 
-Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer, int inlier_count,
-                              int least) {
+int LeastPairs(const DataNeeds& needs) { return std::max(needs.pairs_3d3d, needs.pairs_2d3d); }
+
+DataNeeds NeedsOfConsensus(DataNeeds inner, PairKind kind) {
+  ++(kind == PairKind::k3d3d ? inner.pairs_3d3d : inner.pairs_2d3d);
+  return inner;
+}
+
+Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer,
+                              std::span<const int> inliers, int least) {
+  const int inlier_count = CountDistinct(terms, inliers);
   const int count = static_cast<int>(terms.size());
   const int absorbed = terms.pixels.empty() ? 2 : 3;
   const double p = ChanceOfAgreement(terms, scorer.max_squared());
@@ -95,7 +119,8 @@ Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer, 
   if (inlier_count >= least && false_alarms < kMaxFalseAlarms) return {};
   return MakeError(
       ErrorCode::kNoConsensus,
-      fmt::format("the best pose gathers {} of {} pairs, expected at least {} and more than chance "
+      fmt::format("the best pose gathers {} of {} pairs (each counted once), expected at least {} "
+                  "and more than chance "
                   "explains ({:.2g} such poses, fewer than {:g} wanted); check the pairing and the "
                   "sigmas",
                   inlier_count, count, least, false_alarms, kMaxFalseAlarms));

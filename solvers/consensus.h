@@ -44,9 +44,16 @@ OptionSet<Options>& AddInlierOptions(OptionSet<Options>& options) {
 /// pair would meet a given pose with probability p = volume within the threshold / volume of the
 /// box. A pose absorbs m pairs (2 of 3D-3D, 3 of 2D-3D), so the expected number of poses that k of
 /// n pairs agree on is about C(n, m) P(Binomial(n - m, p) >= k - m); it must be under 0.01.
-/// Error: kNoConsensus, for fewer than `least` inliers too.
-Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer, int inlier_count,
-                              int least);
+/// The same pair given several times counts once. Error: kNoConsensus, for fewer than `least`
+/// inliers too.
+Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer,
+                              std::span<const int> inliers, int least);
+
+/// The least pairs of one kind that `needs` states.
+int LeastPairs(const DataNeeds& needs);
+
+/// `inner` with one pair more of its kind, as a consensus takes.
+DataNeeds NeedsOfConsensus(DataNeeds inner, PairKind kind);
 
 /// `inner` on all inliers of `pose`, again and again until the inliers stay the same (at most ten
 /// times). The estimate's inliers are those it was solved from, as indices of the whole problem;

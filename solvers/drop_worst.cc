@@ -33,9 +33,9 @@ class DropWorstSolver final : public Solver {
         options_(options) {}
 
  private:
-  static DataNeeds WithKept(DataNeeds needs, PairKind kind, int keep) {
-    int& count = kind == PairKind::k3d3d ? needs.pairs_3d3d : needs.pairs_2d3d;
-    count = std::max(count, keep);
+  static DataNeeds WithKept(const DataNeeds& inner, PairKind kind, int keep) {
+    DataNeeds needs = NeedsOfConsensus(inner, kind);
+    if (keep > 0) (kind == PairKind::k3d3d ? needs.pairs_3d3d : needs.pairs_2d3d) = keep;
     return needs;
   }
 
@@ -45,8 +45,7 @@ class DropWorstSolver final : public Solver {
     std::vector<double> squared(terms.size());
     std::vector<int> kept(terms.size());
     std::iota(kept.begin(), kept.end(), 0);
-    const std::size_t least = static_cast<std::size_t>(
-        std::max({spec().needs.pairs_3d3d, spec().needs.pairs_2d3d, options_.keep}));
+    const int least = options_.keep > 0 ? options_.keep : LeastPairs(inner_->spec().needs);
     bool all_within = false;
     int solves = 0;
     while (true) {
@@ -58,13 +57,13 @@ class DropWorstSolver final : public Solver {
         return squared[static_cast<std::size_t>(a)] < squared[static_cast<std::size_t>(b)];
       });
       all_within = squared[static_cast<std::size_t>(*worst)] <= scorer.max_squared();
-      if (kept.size() <= least || (options_.keep == 0 && all_within)) break;
+      if (static_cast<int>(kept.size()) <= least || (options_.keep == 0 && all_within)) break;
       kept.erase(worst);
     }
     if (options_.keep == 0) {
-      const int agreeing = all_within ? static_cast<int>(kept.size()) : 0;
-      const int wanted = static_cast<int>(least) + 1;
-      if (Expected<void> ok = CheckConsensus(terms, scorer, agreeing, wanted); !ok) {
+      const std::span<const int> agreeing = all_within ? kept : std::span<const int>();
+      if (Expected<void> ok = CheckConsensus(terms, scorer, agreeing, LeastPairs(spec().needs));
+          !ok) {
         return tl::unexpected<Error>(std::move(ok.error()));
       }
     }
@@ -94,7 +93,7 @@ SolverEntry DropWorstEntry() {
       .name = "drop_worst",
       .summary =
           "leaves out the pair of the largest residual and solves again, until keep are left",
-      .needs = "what the inner solver needs, or keep if that is more",
+      .needs = "keep pairs, or what the inner solver needs and at least one pair more",
       .reference = "the manual elimination of the paper (20 to 11 to 8 points)",
       .example = "drop_worst(kabsch)",
       .wraps_solver = true,
@@ -104,8 +103,7 @@ SolverEntry DropWorstEntry() {
         if (!options) return tl::unexpected<Error>(options.error());
         const Expected<PairKind> kind = KindOfPairs(*arguments.inner, "drop_worst");
         if (!kind) return tl::unexpected<Error>(kind.error());
-        const DataNeeds& needs = arguments.inner->spec().needs;
-        const int least = std::max(needs.pairs_3d3d, needs.pairs_2d3d);
+        const int least = LeastPairs(arguments.inner->spec().needs);
         if (options->keep > 0 && options->keep < least) {
           return MakeError(ErrorCode::kInvalidOption,
                            fmt::format("option keep={}: '{}' needs at least {} pairs",

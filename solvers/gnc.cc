@@ -67,7 +67,7 @@ class GncSolver final : public Solver {
  public:
   GncSolver(const SolverArguments& arguments, PairKind kind, const GncOptions& options)
       : Solver({.name = arguments.name,
-                .needs = arguments.inner->spec().needs,
+                .needs = NeedsOfConsensus(arguments.inner->spec().needs, kind),
                 .estimates_rotation = arguments.inner->spec().estimates_rotation,
                 .is_global = arguments.inner->spec().is_global}),
         inner_(arguments.inner),
@@ -83,8 +83,8 @@ class GncSolver final : public Solver {
     if (!pose) return tl::unexpected<Error>(pose.error());
     Expected<Estimate> estimate = BetterOnInliers(*inner_, problem, terms, scorer, *pose);
     if (!estimate) return estimate;
-    const int inlier_count = static_cast<int>(estimate->inliers.size());
-    if (Expected<void> ok = CheckConsensus(terms, scorer, inlier_count, Least() + 1); !ok) {
+    const int least = LeastPairs(spec().needs);
+    if (Expected<void> ok = CheckConsensus(terms, scorer, estimate->inliers, least); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
     estimate->iterations = iterations;
@@ -146,11 +146,12 @@ class GncSolver final : public Solver {
       weighted.pairs_2d3d = WeightedPairs(problem.pairs_2d3d, weights, options_.Assumed());
     }
     const PairTerms terms = MakeTerms(weighted, kind_, options_.Assumed());
-    if (terms.size() < static_cast<std::size_t>(Least())) {
+    const int least = LeastPairs(inner_->spec().needs);
+    if (terms.size() < static_cast<std::size_t>(least)) {
       return MakeError(ErrorCode::kNoConsensus,
                        fmt::format("{} of {} pairs keep a weight, expected at least {}; check the "
                                    "pairing and the sigmas",
-                                   terms.size(), weights.size(), Least()));
+                                   terms.size(), weights.size(), least));
     }
     std::vector<int> all(terms.size());
     std::iota(all.begin(), all.end(), 0);
@@ -160,8 +161,6 @@ class GncSolver final : public Solver {
     const bool is_better = !before || squares.Cost(*pose) <= squares.Cost(*before);
     return RefinePose(terms.View(), is_better ? *pose : *before, {}).cam_from_lidar;
   }
-
-  int Least() const { return std::max(spec().needs.pairs_3d3d, spec().needs.pairs_2d3d); }
 
   SolverPtr inner_;
   PairKind kind_;

@@ -117,13 +117,12 @@ class ConsensusSearch {
   int iterations_ = 0;
 };
 
-DataNeeds WithSample(DataNeeds needs, PairKind kind, int sample_size) {
+DataNeeds WithSample(const DataNeeds& inner, PairKind kind, int sample_size) {
+  DataNeeds needs = NeedsOfConsensus(inner, kind);
   int& count = kind == PairKind::k3d3d ? needs.pairs_3d3d : needs.pairs_2d3d;
   count = std::max(count, sample_size);
   return needs;
 }
-
-int SampleSize(const DataNeeds& needs) { return std::max(needs.pairs_3d3d, needs.pairs_2d3d); }
 
 /// Random sample consensus (Fischler and Bolles 1981) around any solver of pairs: MSAC cost in
 /// sigmas (Torr and Zisserman 2000), samples until `confidence`, least squares on the inliers of
@@ -132,7 +131,7 @@ int SampleSize(const DataNeeds& needs) { return std::max(needs.pairs_3d3d, needs
 /// The inner's refit is taken unless it costs more than least squares on the same inliers, as that
 /// of a minimal solver or of EPnP may; then least squares is the answer. The paper's plain scheme:
 /// sample_size=15, max_iterations=10000, local_optimisation=0. Errors: kDegenerate (1000 samples
-/// and not one pose), kNoConsensus (see CheckConsensus).
+/// and not one pose), kNoConsensus (see CheckConsensus), kMirrored.
 class RansacSolver final : public Solver {
  public:
   RansacSolver(const SolverArguments& arguments, PairKind kind, const RansacOptions& options)
@@ -147,7 +146,7 @@ class RansacSolver final : public Solver {
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
     const int sample_size =
-        options_.sample_size > 0 ? options_.sample_size : SampleSize(inner_->spec().needs);
+        options_.sample_size > 0 ? options_.sample_size : LeastPairs(inner_->spec().needs);
     const PairTerms terms = MakeTerms(problem, kind_, options_.Assumed());
     const PoseScorer scorer(terms, options_.MaxSquared(kind_));
     ConsensusSearch search(*inner_, options_, sample_size, problem, terms, scorer);
@@ -161,15 +160,28 @@ class RansacSolver final : public Solver {
     search.Optimise(kFinalLimits);
     Expected<Estimate> estimate = Finish(problem, terms, scorer, search.best());
     if (!estimate) return estimate;
-    const int least = std::max(options_.min_inliers, SampleSize(inner_->spec().needs) + 1);
-    const int inlier_count = static_cast<int>(estimate->inliers.size());
-    if (Expected<void> ok = CheckConsensus(terms, scorer, inlier_count, least); !ok) {
+    const int least = std::max(options_.min_inliers, LeastPairs(inner_->spec().needs) + 1);
+    if (Expected<void> ok = CheckConsensus(terms, scorer, estimate->inliers, least); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
+    }
+    if (2 * estimate->inliers.size() < terms.size()) {
+      if (Expected<void> ok = CheckNotMirrored(problem, terms); !ok) {
+        return tl::unexpected<Error>(std::move(ok.error()));
+      }
     }
     estimate->iterations = search.iterations();
     estimate->termination =
         search.exhausted() ? Termination::kMaxIterations : Termination::kConverged;
     return estimate;
+  }
+
+  // Of mirrored points, those near one plane agree on a pose, which is not the answer.
+  Expected<void> CheckNotMirrored(const CalibrationProblem& problem, const PairTerms& terms) const {
+    std::vector<int> all(terms.size());
+    std::iota(all.begin(), all.end(), 0);
+    const Expected<Rigid3d> pose = PoseOfSubset(*inner_, problem, terms, all);
+    if (pose || pose.error().code != ErrorCode::kMirrored) return {};
+    return tl::unexpected<Error>(pose.error());
   }
 
   Expected<Estimate> Finish(const CalibrationProblem& problem, const PairTerms& terms,
@@ -218,7 +230,7 @@ SolverEntry RansacEntry() {
         if (!options) return tl::unexpected<Error>(options.error());
         const Expected<PairKind> kind = KindOfPairs(*arguments.inner, "ransac");
         if (!kind) return tl::unexpected<Error>(kind.error());
-        const int least = SampleSize(arguments.inner->spec().needs);
+        const int least = LeastPairs(arguments.inner->spec().needs);
         if (options->sample_size > 0 && options->sample_size < least) {
           return MakeError(ErrorCode::kInvalidOption,
                            fmt::format("option sample_size={}: '{}' needs at least {} pairs",

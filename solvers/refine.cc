@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
+#include <tuple>
 
 #include "solvers/consensus.h"
 #include "solvers/refine_ceres.h"
@@ -52,12 +54,41 @@ std::vector<Pair> PairsAt(const std::vector<Pair>& pairs, const std::vector<int>
   return selected;
 }
 
+/// Indices of the pairs of each kind that are refined on.
+struct UsedPairs {
+  std::vector<int> points;
+  std::vector<int> pixels;
+};
+
+std::vector<int> AllOf(std::size_t count) {
+  std::vector<int> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+// Indices of `others` but those whose id is that of a pair at none of `kept`, and of none that is.
+template <class Pair, class Other>
+std::vector<int> NotLeftOut(const std::vector<Pair>& pairs, const std::vector<int>& kept,
+                            const std::vector<Other>& others) {
+  using Key = std::tuple<int, int, int>;
+  const auto key = [](const PairId& id) { return Key(id.view, id.board, id.corner); };
+  std::set<Key> left_out;
+  for (const Pair& pair : pairs) left_out.insert(key(pair.id));
+  for (const int i : kept) left_out.erase(key(pairs[static_cast<std::size_t>(i)].id));
+  std::vector<int> chosen;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    if (!left_out.contains(key(others[i].id))) chosen.push_back(static_cast<int>(i));
+  }
+  return chosen;
+}
+
 /// argmin over SE(3) of 1/2 sum rho(|r_i|^2) from the inner solver's answer, r_i whitened by what
 /// the pairs state (full 3x3 covariances included), on the pairs that this answer rests on.
 ///
-/// Plain least squares runs in RefinePose, robust losses in Ceres. With on=both the other kind's
-/// pairs are all used. Covariance: inverse of sum rho' J^T J. Termination kConverged: the last step
-/// is under step_tolerance. Errors: kNoConvergence, kDegenerate, those of the inner solver.
+/// Plain least squares runs in RefinePose, robust losses in Ceres. With on=both, so are the
+/// other kind's pairs but for the ids that this answer left out. Covariance: inverse of sum rho'
+/// J^T J. Termination kConverged: the last step is under step_tolerance. Errors: kNoConvergence,
+/// kDegenerate, those of the inner solver.
 class RefineSolver final : public Solver {
  public:
   RefineSolver(const SolverArguments& arguments, RefineOn on, const RefineOptions& options)
@@ -74,7 +105,8 @@ class RefineSolver final : public Solver {
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
     Expected<SolveReport> start = inner_->Solve(problem);
     if (!start) return tl::unexpected<Error>(std::move(start.error()));
-    const PairTerms terms = TermsOf(problem, *start);
+    const UsedPairs used = Choose(problem, *start);
+    const PairTerms terms = TermsOf(problem, used);
     const RefineLimits limits{options_.max_iterations, options_.step_tolerance};
     const RobustLoss loss = options_.Loss();
     const RefinedPose refined =
@@ -89,25 +121,37 @@ class RefineSolver final : public Solver {
     estimate.termination = Termination::kConverged;
     estimate.iterations = refined.iterations;
     estimate.covariance = LeastSquaresCovariance(terms, refined.information, refined.cost);
-    estimate.inliers = std::move(start->inliers);
+    estimate.inliers = spec().needs.pairs_3d3d > 0 ? used.points : used.pixels;
     estimate.stages = std::move(start->stages);
     estimate.stages.push_back(
         {start->solver, start->cam_from_lidar, start->iterations, start->wall_time_us});
     return estimate;
   }
 
-  PairTerms TermsOf(const CalibrationProblem& problem, const Estimate& start) const {
-    const AssumedNoise assumed{options_.sigma_m, options_.sigma_px};
-    const DataNeeds& inner_needs = inner_->spec().needs;
-    PairTerms terms;
-    if (Uses3d3d(on_)) {
-      const bool chosen = inner_needs.pairs_3d3d > 0;
-      terms.Add(chosen ? PairsAt(problem.pairs_3d3d, start.inliers) : problem.pairs_3d3d, assumed);
+  // Of the inner solver's kind, the inliers; of the other, all but those that carry the id of a
+  // pair left out, since an outlier of one kind comes from a sensor that both share.
+  UsedPairs Choose(const CalibrationProblem& problem, const Estimate& start) const {
+    const DataNeeds& inner = inner_->spec().needs;
+    UsedPairs used;
+    if (inner.pairs_3d3d > 0) {
+      used.points = start.inliers;
+      used.pixels = NotLeftOut(problem.pairs_3d3d, start.inliers, problem.pairs_2d3d);
+    } else if (inner.pairs_2d3d > 0) {
+      used.pixels = start.inliers;
+      used.points = NotLeftOut(problem.pairs_2d3d, start.inliers, problem.pairs_3d3d);
+    } else {
+      used.points = AllOf(problem.pairs_3d3d.size());
+      used.pixels = AllOf(problem.pairs_2d3d.size());
     }
+    return used;
+  }
+
+  PairTerms TermsOf(const CalibrationProblem& problem, const UsedPairs& used) const {
+    const AssumedNoise assumed{options_.sigma_m, options_.sigma_px};
+    PairTerms terms;
+    if (Uses3d3d(on_)) terms.Add(PairsAt(problem.pairs_3d3d, used.points), assumed);
     if (Uses2d3d(on_)) {
-      const bool chosen = inner_needs.pairs_2d3d > 0 && inner_needs.pairs_3d3d == 0;
-      terms.Add(chosen ? PairsAt(problem.pairs_2d3d, start.inliers) : problem.pairs_2d3d,
-                *problem.camera, assumed);
+      terms.Add(PairsAt(problem.pairs_2d3d, used.pixels), *problem.camera, assumed);
     }
     return terms;
   }

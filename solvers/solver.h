@@ -54,7 +54,8 @@ struct Estimate {
   Rigid3d cam_from_lidar;
   Termination termination = Termination::kClosedForm;
   int iterations = 0;
-  /// Indices, ascending, of the pairs that the answer rests on; empty for point sets.
+  /// Indices, ascending, of the pairs that the answer rests on (the 3D-3D ones where the solver
+  /// needs both kinds); empty for point sets.
   std::vector<int> inliers;
   /// Of (dphi [rad], dt [m]); see Perturb. None where the data leaves no residual to judge by.
   std::optional<Matrix6d> covariance;

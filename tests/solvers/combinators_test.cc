@@ -77,6 +77,29 @@ TEST(Ransac, KeepsToItsThresholdAndLeastInliers) {
   }
 }
 
+TEST(Ransac, CountsAPairGivenSeveralTimesOnce) {
+  Scene scene = SceneWithOutliers(12, 21, 0.0);
+  for (std::size_t i = 3; i < 21; ++i) {
+    scene.problem.pairs_3d3d[i] = scene.problem.pairs_3d3d[i % 3];
+    scene.problem.pairs_2d3d[i] = scene.problem.pairs_2d3d[i % 3];
+  }
+  for (const char* spec : {"ransac(kabsch)", "ransac(p3p)", "gnc(kabsch)", "drop_worst(p3p)"}) {
+    const Expected<SolveReport> report = Solve(spec, scene.problem);
+    ASSERT_FALSE(report) << spec;
+    EXPECT_EQ(report.error().code, ErrorCode::kNoConsensus) << spec;
+  }
+}
+
+TEST(Ransac, SaysThatThePointsAreMirrored) {
+  Scene scene = SceneWithOutliers(13, 20, 0.0);
+  for (Pair3d3d& pair : scene.problem.pairs_3d3d) pair.point_in_lidar.x() *= -1.0;
+  for (const char* spec : {"ransac(kabsch)", "gnc(kabsch)", "clique(kabsch)"}) {
+    const Expected<SolveReport> report = Solve(spec, scene.problem);
+    ASSERT_FALSE(report) << spec;
+    EXPECT_EQ(report.error().code, ErrorCode::kMirrored) << spec;
+  }
+}
+
 TEST(Ransac, WithoutRefitReturnsTheBestSample) {
   const Scene scene = SceneWithOutliers(6, 30, 0.3);
   const Expected<SolveReport> report =

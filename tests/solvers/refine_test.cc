@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -117,6 +118,23 @@ TEST(Refine, RestsOnTheInliersOfTheInnerSolver) {
   EXPECT_EQ(refined->stages[0].solver, "kabsch");
   EXPECT_EQ(refined->stages[1].solver, "ransac(kabsch)");
   EXPECT_LT(DistanceBetween(refined->cam_from_lidar, inner->cam_from_lidar).translation_m, 1e-8);
+}
+
+TEST(Refine, LeavesOutTheSameCornersOfBothKinds) {
+  Random random(6);
+  const SceneOptions options{.pairs = 30, .sigma_m = 0.01, .sigma_px = 1.0};
+  Scene scene = MakeScene(options, random);
+  const std::vector<int> inliers = AddOutliers(0.4, options, random, scene);
+  for (const char* inner : {"ransac(kabsch)", "ransac(p3p)", "refine(ransac(p3p),on=both)"}) {
+    const std::string spec = std::string("refine(") + inner + ",on=both)";
+    const Expected<SolveReport> report = Make(spec)->Solve(scene.problem);
+    ASSERT_TRUE(report) << spec << ": " << report.error().message;
+    EXPECT_LT(DistanceBetween(report->cam_from_lidar, scene.cam_from_lidar).translation_m, 0.03);
+    EXPECT_GT(report->inliers.size() + 3, inliers.size()) << spec;
+    EXPECT_TRUE(std::includes(inliers.begin(), inliers.end(), report->inliers.begin(),
+                              report->inliers.end()))
+        << spec;
+  }
 }
 
 TEST(Refine, SaysWhenItDoesNotConverge) {
