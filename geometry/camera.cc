@@ -41,6 +41,7 @@ Eigen::Vector2d PixelOf(const Camera& camera, const Eigen::Vector2d& distorted) 
 std::optional<Eigen::Vector2d> UndistortPlane(const Camera& camera, const Eigen::Vector2d& target) {
   constexpr int kMaxSteps = 100;
   constexpr double kMinFraction = 1e-6;
+  constexpr double kLastStep = 1e-9;
   Eigen::Vector2d guess = target;
   std::optional<Distorted> image = Distort(camera, guess);
   if (!image) {
@@ -52,6 +53,8 @@ std::optional<Eigen::Vector2d> UndistortPlane(const Camera& camera, const Eigen:
     const Eigen::Vector2d residual = target - image->point;
     if (residual.norm() <= rounding) return guess;
     const Eigen::Vector2d full = image->by_undistorted.inverse() * residual;
+    // Newton's method squares its error: this step is the last that counts.
+    if (full.norm() < kLastStep) return Distort(camera, guess + full) ? guess + full : guess;
     double fraction = 1.0;
     std::optional<Distorted> next;
     for (; fraction > kMinFraction; fraction *= 0.5) {
