@@ -8,6 +8,8 @@
   X(EigenUmeyama)          \
   X(MeanOffset)            \
   X(P3p)                   \
+  X(Epnp)                  \
+  X(Sqpnp)                 \
   X(Icp)                   \
   X(Ransac)                \
   X(Gnc)                   \

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/point_cloud_frame.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace sextant {
+namespace {
+
+// Points within 1e-5 of their length of a line leave the turn about it to rounding.
+constexpr double kMinLineVariance = 1e-10;
+
+// Doubles carry 1e-8 m at this distance.
+constexpr double kMaxDistance_m = 1e8;
+
+// Points within 1e-9 of the cloud's size of each other count as one.
+constexpr double kSameSquaredDistance = 1e-18;
+
+void FindDifferent(std::span<const Eigen::Vector3d> points, double variance,
+                   PointCloudFrame& frame) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    bool is_new = true;
+    for (int k = 0; k < frame.different_count && is_new; ++k) {
+      const Eigen::Vector3d& other = points[frame.different[static_cast<std::size_t>(k)]];
+      is_new = (points[i] - other).squaredNorm() > kSameSquaredDistance * variance;
+    }
+    if (is_new) frame.different[static_cast<std::size_t>(frame.different_count++)] = i;
+    if (frame.different_count == static_cast<int>(frame.different.size())) return;
+  }
+}
+
+}  // namespace
+
+Expected<PointCloudFrame> FramePointCloud(std::span<const Eigen::Vector3d> points,
+                                          int min_different) {
+  PointCloudFrame frame;
+  const auto count = static_cast<double>(points.size());
+  for (const Eigen::Vector3d& point : points) frame.centroid += point;
+  frame.centroid /= count;
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    const Eigen::Vector3d offset = point - frame.centroid;
+    scatter.noalias() += offset * offset.transpose();
+  }
+  scatter /= count;
+  const double variance = scatter.trace();
+  if (!(std::sqrt(variance) + frame.centroid.norm() < kMaxDistance_m)) {
+    return MakeError(ErrorCode::kDegenerate,
+                     fmt::format("the points are further than {:g} m away, where rounding eats the "
+                                 "translation; give LiDAR points in metres",
+                                 kMaxDistance_m));
+  }
+  FindDifferent(points, variance, frame);
+  if (frame.different_count < min_different) {
+    return MakeError(ErrorCode::kDegenerate,
+                     fmt::format("only {} of {} points differ from each other, expected at least "
+                                 "{}; leave out duplicated pairs and add others",
+                                 frame.different_count, points.size(), min_different));
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scatter);
+  const Eigen::Vector3d& ascending = eigen.eigenvalues();
+  if (!(ascending(1) > kMinLineVariance * ascending(2))) {
+    return MakeError(ErrorCode::kDegenerate,
+                     "the points lie on one line, which leaves the rotation about it undetermined; "
+                     "use points that span a plane");
+  }
+  frame.deviation = ascending.reverse().cwiseMax(0.0).cwiseSqrt();
+  frame.axes.col(0) = eigen.eigenvectors().col(2);
+  frame.axes.col(1) = eigen.eigenvectors().col(1);
+  frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));
+  return frame;
+}
+
+}  // namespace sextant
