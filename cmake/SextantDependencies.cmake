@@ -20,6 +20,7 @@ sextant_dependency(Ceres 2.1 REQUIRED)
 sextant_dependency(nanoflann REQUIRED)
 sextant_dependency(yaml-cpp REQUIRED)
 sextant_dependency(nlohmann_json REQUIRED)
+sextant_dependency(OpenCV 4.5 QUIET COMPONENTS core calib3d)
 find_package(CLI11 REQUIRED)
 # The program only: OpenCV maps over a hundred shared objects into a process.
 find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs)

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "solvers/registry.h"
+
+namespace sextant {
+
+/// Adds opencv.epnp, opencv.sqpnp, opencv.ippe, opencv.p3p, opencv.iterative, opencv.ransac_epnp
+/// and opencv.magsac. Pixels are undistorted by our own camera models. Deterministic: the
+/// randomised two draw from generators that OpenCV seeds alike in every call.
+void AddOpenCvSolvers(SolverRegistry& registry);
+
+}  // namespace sextant
