@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "bench/check.h"
+#include "solvers/epnp.h"
 #include "solvers/ippe.h"
 #include "solvers/p3p.h"
+#include "solvers/sqpnp.h"
 
 #ifdef SEXTANT_BENCH_OPENGV
 #include <opengv/absolute_pose/CentralAbsoluteAdapter.hpp>
@@ -84,6 +86,11 @@ std::vector<View> Planes(const benchmark::State& state) {
   return MakeViews({.pairs = pairs, .sigma_px = 0.5, .planar = true});
 }
 
+std::vector<View> Cubes(const benchmark::State& state) {
+  const auto pairs = static_cast<int>(state.range(0));
+  return MakeViews({.pairs = pairs, .sigma_px = 0.5});
+}
+
 struct P3pAnswer {
   std::array<Rigid3d, kMaxP3pPoses> poses;
   int count = 0;
@@ -115,6 +122,31 @@ void Ippe(benchmark::State& state) {
 }
 BENCHMARK(Ippe)->Name("ippe/sextant")->Arg(5)->Arg(8)->Arg(20)->Arg(100);
 
+void TimeEpnp(benchmark::State& state, const std::vector<View>& views) {
+  const auto prepare = [](const View& view) {
+    return [&view] { return SolveEpnp(view.image_points, view.points); };
+  };
+  Time(state, views, kNoisy, prepare,
+       [](const Expected<EpnpFit>& fit) { return fit ? Poses{fit->cam_from_lidar} : Poses(); });
+}
+
+void Epnp(benchmark::State& state) { TimeEpnp(state, Cubes(state)); }
+BENCHMARK(Epnp)->Name("epnp/sextant")->Arg(5)->Arg(8)->Arg(20)->Arg(100)->Arg(1000);
+
+void EpnpOnPlane(benchmark::State& state) { TimeEpnp(state, Planes(state)); }
+BENCHMARK(EpnpOnPlane)->Name("epnp_plane/sextant")->Arg(8)->Arg(20)->Arg(100);
+
+void Sqpnp(benchmark::State& state) {
+  const auto prepare = [](const View& view) {
+    return [&view] { return SolveSqpnp(view.image_points, view.points); };
+  };
+  Time(state, Cubes(state), kNoisy, prepare, [](const Expected<SqpnpFit>& fit) {
+    if (!fit) return Poses();
+    return Poses(fit->cam_from_lidar.begin(), fit->cam_from_lidar.begin() + fit->count);
+  });
+}
+BENCHMARK(Sqpnp)->Name("sqpnp/sextant")->Arg(5)->Arg(8)->Arg(20)->Arg(100)->Arg(1000);
+
 #ifdef SEXTANT_BENCH_OPENGV
 // The adapter outlives the call: only the solver is timed.
 struct OpengvView {
@@ -129,12 +161,13 @@ struct OpengvView {
 };
 
 template <class Solve>
-void Opengv(benchmark::State& state, const Solve& solve) {
+void Opengv(benchmark::State& state, const std::vector<View>& views, const Tolerance& tolerance,
+            const Solve& solve) {
   const auto prepare = [&](const View& view) {
     return [made = std::make_shared<OpengvView>(view), &solve] { return solve(made->adapter); };
   };
   // opengv's transformation is lidar_from_cam.
-  Time(state, Triples(), kExact, prepare, [](const opengv::transformations_t& answers) {
+  Time(state, views, tolerance, prepare, [](const opengv::transformations_t& answers) {
     Poses poses;
     for (const opengv::transformation_t& answer : answers) {
       const Eigen::Matrix3d rotation = answer.leftCols<3>();
@@ -145,16 +178,23 @@ void Opengv(benchmark::State& state, const Solve& solve) {
 }
 
 void OpengvKneip(benchmark::State& state) {
-  Opengv(state,
+  Opengv(state, Triples(), kExact,
          [](const auto& adapter) { return opengv::absolute_pose::p3p_kneip(adapter, 0, 1, 2); });
 }
 BENCHMARK(OpengvKneip)->Name("p3p/opengv_kneip/3");
 
 void OpengvGao(benchmark::State& state) {
-  Opengv(state,
+  Opengv(state, Triples(), kExact,
          [](const auto& adapter) { return opengv::absolute_pose::p3p_gao(adapter, 0, 1, 2); });
 }
 BENCHMARK(OpengvGao)->Name("p3p/opengv_gao/3");
+
+void OpengvEpnp(benchmark::State& state) {
+  Opengv(state, Cubes(state), kNoisy, [](const auto& adapter) {
+    return opengv::transformations_t{opengv::absolute_pose::epnp(adapter)};
+  });
+}
+BENCHMARK(OpengvEpnp)->Name("epnp/opengv")->Arg(5)->Arg(8)->Arg(20)->Arg(100)->Arg(1000);
 #endif
 
 #ifdef SEXTANT_BENCH_OPENCV
@@ -211,6 +251,14 @@ void OpenCvIppe(benchmark::State& state) {
   OpenCv(state, Planes(state), kNoisy, cv::SOLVEPNP_IPPE);
 }
 BENCHMARK(OpenCvIppe)->Name("ippe/opencv_ippe")->Arg(5)->Arg(8)->Arg(20)->Arg(100);
+
+void OpenCvEpnp(benchmark::State& state) { OpenCv(state, Cubes(state), kNoisy, cv::SOLVEPNP_EPNP); }
+BENCHMARK(OpenCvEpnp)->Name("epnp/opencv")->Arg(5)->Arg(8)->Arg(20)->Arg(100)->Arg(1000);
+
+void OpenCvSqpnp(benchmark::State& state) {
+  OpenCv(state, Cubes(state), kNoisy, cv::SOLVEPNP_SQPNP);
+}
+BENCHMARK(OpenCvSqpnp)->Name("sqpnp/opencv")->Arg(5)->Arg(8)->Arg(20)->Arg(100)->Arg(1000);
 #endif
 
 }  // namespace
