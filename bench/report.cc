@@ -42,14 +42,10 @@ struct Goal {
 };
 
 constexpr Goal kGoals[] = {
-    {"kabsch", 8, "umeyama_fixed", 6.0},
-    {"kabsch", 8, "umeyama_dynamic", 12.0},
-    {"kabsch", 100, "umeyama_dynamic", 6.0},
-    {"kabsch", 1000000, "umeyama_dynamic", 5.0},
-    {"p3p", 3, "opengv_kneip", 1.8},
-    {"p3p", 3, "opencv_p3p", 25.0},
-    {"ippe", 8, "opencv_ippe", 10.0},
-    {"ippe", 20, "opencv_ippe", 10.0},
+    {"kabsch", 8, "umeyama_fixed", 6.0},     {"kabsch", 8, "umeyama_dynamic", 12.0},
+    {"kabsch", 100, "umeyama_dynamic", 6.0}, {"kabsch", 1000000, "umeyama_dynamic", 5.0},
+    {"p3p", 3, "opengv_kneip", 1.8},         {"p3p", 3, "opencv_p3p", 25.0},
+    {"ippe", 8, "opencv_ippe", 10.0},        {"ippe", 20, "opencv_ippe", 10.0},
 };
 
 double Nanoseconds(const json& benchmark) {

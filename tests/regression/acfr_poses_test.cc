@@ -22,7 +22,8 @@ CalibrationProblem AllPlacements(const std::filesystem::path& path) {
 
 TEST(AcfrPoses, KabschOverAllHasTheKnownError) {
   SEXTANT_REAL_DATA(path, "acfr_vlp16/poses.csv");
-  const Expected<SolveReport> report = (*BuiltinSolvers().Make("kabsch"))->Solve(AllPlacements(path));
+  const Expected<SolveReport> report =
+      (*BuiltinSolvers().Make("kabsch"))->Solve(AllPlacements(path));
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_NEAR(*report->evaluation.rmse_m, 0.01615, 2e-5);
 }
