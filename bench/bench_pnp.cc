@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/check.h"
+#include "solvers/dlt.h"
 #include "solvers/epnp.h"
 #include "solvers/ippe.h"
 #include "solvers/p3p.h"
@@ -146,6 +147,15 @@ void Sqpnp(benchmark::State& state) {
   });
 }
 BENCHMARK(Sqpnp)->Name("sqpnp/sextant")->Arg(5)->Arg(8)->Arg(20)->Arg(100)->Arg(1000);
+
+void Dlt(benchmark::State& state) {
+  const auto prepare = [](const View& view) {
+    return [&view] { return SolveDlt(view.image_points, view.points); };
+  };
+  Time(state, Cubes(state), kNoisy, prepare,
+       [](const Expected<Rigid3d>& pose) { return pose ? Poses{*pose} : Poses(); });
+}
+BENCHMARK(Dlt)->Name("dlt/sextant")->Arg(8)->Arg(20)->Arg(100);
 
 #ifdef SEXTANT_BENCH_OPENGV
 // The adapter outlives the call: only the solver is timed.

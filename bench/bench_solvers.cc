@@ -19,6 +19,7 @@ std::vector<RandomScene> ScenesFor(const SolverSpec& spec, int pairs) {
   RandomSceneOptions options{.pairs = pairs, .sigma_m = 0.01, .sigma_px = 1.0};
   if (!spec.is_global) options.max_rotation_rad = 0.1;
   if (!spec.estimates_rotation) options.max_rotation_rad = 0.0;
+  options.planar = spec.needs.points_on_plane;
   std::vector<RandomScene> scenes = MakeScenes(options);
   for (RandomScene& scene : scenes) {
     CalibrationProblem& problem = scene.problem;

@@ -10,6 +10,8 @@ std::vector<std::string> DefaultSpecs(const SolverRegistry& registry,
   const auto add_if_met = [&](const std::string& spec) {
     const Expected<SolverPtr> solver = registry.Make(spec);
     if (!solver || !CheckProblem(problem, (*solver)->spec())) return;
+    // Whether points lie on a plane shows when it is fitted.
+    if ((*solver)->spec().needs.points_on_plane && !(*solver)->Solve(problem)) return;
     specs.push_back((*solver)->spec().name);
     any_whole_pose = any_whole_pose || FindsWholePose((*solver)->spec());
   };

@@ -10,6 +10,8 @@
   X(P3p)                   \
   X(Epnp)                  \
   X(Sqpnp)                 \
+  X(Ippe)                  \
+  X(Dlt)                   \
   X(Icp)                   \
   X(Ransac)                \
   X(Gnc)                   \

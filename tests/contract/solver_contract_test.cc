@@ -53,6 +53,7 @@ class SolverContract : public testing::TestWithParam<std::string> {
   Scene SceneFor(SceneOptions options, Random& random) const {
     if (!spec().is_global) options.max_rotation_rad = 0.1;
     if (!spec().estimates_rotation) options.max_rotation_rad = 0.0;
+    options.planar = spec().needs.points_on_plane;
     Scene scene = MakeScene(options, random);
     if (!spec().is_global) scene.problem.initial_cam_from_lidar = scene.cam_from_lidar;
     Restrict(scene.problem);

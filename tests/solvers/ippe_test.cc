@@ -8,6 +8,8 @@
 
 #include "base/random.h"
 #include "geometry/so3.h"
+#include "solvers/registry.h"
+#include "support/scenes.h"
 
 namespace sextant {
 namespace {
@@ -171,6 +173,18 @@ TEST(Ippe, RefusesDegenerateSets) {
   View one_pixel = view;
   for (Eigen::Vector2d& point : one_pixel.image_points) point = {0.1, 0.2};
   EXPECT_EQ(code(one_pixel), ErrorCode::kDegenerate);
+}
+
+TEST(IppeSolver, ReportsTheOtherPoseAsAlternative) {
+  const SolverPtr ippe = *BuiltinSolvers().Make("ippe");
+  Random random(7);
+  const test::Scene scene =
+      test::MakeScene({.pairs = 8, .sigma_px = 0.3, .planar = true, .depth_m = 40.0}, random);
+  const Expected<SolveReport> report = ippe->Solve(scene.problem);
+  ASSERT_TRUE(report) << report.error().message;
+  ASSERT_EQ(report->alternatives.size(), 1U);
+  EXPECT_GT(RotationDistance(report->alternatives[0].rotation, report->cam_from_lidar.rotation),
+            0.01);
 }
 
 }  // namespace

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/dlt.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "solvers/correspondences.h"
+#include "solvers/max_trace_rotation.h"
+#include "solvers/pnp_solver.h"
+#include "solvers/registry.h"
+
+namespace sextant {
+namespace {
+
+constexpr int kMinPoints = 6;
+
+// Thinner than this over its length, noise of rounding decides the axis across.
+constexpr double kMinThickness = 1e-5;
+
+// Two null directions closer than this cannot be told apart.
+constexpr double kMinRelativeGap = 1e-13;
+
+}  // namespace
+
+Expected<Rigid3d> SolveDlt(std::span<const Eigen::Vector2d> image_points,
+                           std::span<const Eigen::Vector3d> points_in_lidar) {
+  const Expected<Correspondences> data =
+      PrepareCorrespondences(image_points, points_in_lidar, kMinPoints);
+  if (!data) return tl::unexpected<Error>(data.error());
+  const PointCloudFrame& frame = data->frame;
+  const double thickness = frame.deviation.z() / frame.deviation.x();
+  if (!(thickness > kMinThickness)) {
+    return MakeError(ErrorCode::kDegenerate,
+                     fmt::format("the points lie on one plane (deviation from it {:.1g} of their "
+                                 "extent), which leaves the linear projection undetermined; use "
+                                 "ippe, epnp or sqpnp, or points off the plane",
+                                 thickness));
+  }
+  // To coordinates (1, p) of unit covariance.
+  Eigen::Vector4d to_unit;
+  to_unit << 1.0, frame.deviation.cwiseInverse();
+  const Eigen::Matrix4d u = to_unit.asDiagonal() * data->moments.u * to_unit.asDiagonal();
+  const Eigen::Matrix4d v = to_unit.asDiagonal() * data->moments.v * to_unit.asDiagonal();
+  const Eigen::Matrix4d w = to_unit.asDiagonal() * data->moments.w * to_unit.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(w - u * u - v * v);
+  const Eigen::Vector4d& lambda = eigen.eigenvalues();
+  if (!(lambda(1) - lambda(0) > kMinRelativeGap * lambda(3))) {
+    return MakeError(ErrorCode::kDegenerate,
+                     "the points and the camera lie on a surface that leaves the linear "
+                     "projection undetermined; add points, or use epnp or sqpnp");
+  }
+  Eigen::Vector4d depth = eigen.eigenvectors().col(0);
+  if (depth(0) < 0.0) depth = -depth;
+  Eigen::Matrix<double, 3, 4> model;
+  model.row(0) = u * depth + data->moments.mean.x() * depth;
+  model.row(1) = v * depth + data->moments.mean.y() * depth;
+  model.row(2) = depth;
+  const Eigen::Matrix3d linear =
+      model.rightCols<3>() * frame.deviation.cwiseInverse().asDiagonal() * frame.axes.transpose();
+  if (linear.determinant() < 0.0) {
+    return MakeError(ErrorCode::kMirrored,
+                     "a mirror image fits better than any pose in front of the camera; check the "
+                     "pairing, the axes and that the points are in front of the camera");
+  }
+  const auto nearest = MaximizeTrace(linear.transpose(), 2.0 * linear.norm());
+  if (!nearest) {
+    return MakeError(ErrorCode::kDegenerate, "the linear projection has no nearest rotation");
+  }
+  const double scale = nearest->trace / 3.0;
+  return Rigid3d{nearest->rotation, model.col(0) / scale - nearest->rotation * frame.centroid};
+}
+
+SolverEntry DltEntry() {
+  return {
+      .name = "dlt",
+      .summary = "linear projection matrix, then the nearest rotation: the naive baseline",
+      .needs = "6 or more 2D-3D pairs, not on one plane",
+      .reference = "Abdel-Aziz and Karara 1971; Hartley and Zisserman 2004, section 7.1",
+      .example = "dlt",
+      .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
+        const auto kernel = [](const PnpInput& input) -> Expected<PnpPoses> {
+          const Expected<Rigid3d> pose = SolveDlt(input.image_points, input.points);
+          if (!pose) return tl::unexpected<Error>(pose.error());
+          return PnpPoses{.poses = {*pose}, .count = 1};
+        };
+        return std::make_shared<PnpSolver>(
+            SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = kMinPoints}}, kernel,
+            PnpCovariance::kDifferences);
+      },
+  };
+}
+
+}  // namespace sextant
