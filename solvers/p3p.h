@@ -26,8 +26,9 @@ inline constexpr std::size_t kMaxP3pPoses = 4;
 /// however far the points are. Newton steps on the three distances then take each solution to
 /// rounding.
 ///
-/// Degenerate, with no pose: points on one line, two rays alike. On the cylinder through the points
-/// and normal to their plane two solutions merge, and lose half the digits.
+/// Degenerate, with no pose: points within 1e-6 of their extent of a line, all three rays alike. On
+/// the cylinder through the points and normal to their plane two solutions merge, and lose half the
+/// digits.
 int SolveP3p(std::span<const Eigen::Vector3d, 3> rays_in_cam,
              std::span<const Eigen::Vector3d, 3> points_in_lidar,
              std::span<Rigid3d, kMaxP3pPoses> poses);
