@@ -3,10 +3,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
-#include "base/random.h"
 #include "solvers/residuals.h"
 #include "solvers/subset.h"
 
@@ -18,36 +16,6 @@ constexpr double kPoseFreedom = 6.0;
 
 double Variance(const Pair2d3d& pair, double unstated) {
   return HasKnownNoise(pair) ? pair.sigma_px * pair.sigma_px : unstated;
-}
-
-// A Sigma A^T is the mean of (A e)(A e)^T over displacements e of plus or minus sigma per axis.
-std::optional<Matrix6d> PropagateByProbes(std::span<const Pair2d3d> pairs, double unstated,
-                                          double step_px, const PoseOfPairs& estimate) {
-  constexpr int kProbes = 256;
-  double largest = 0.0;
-  for (const Pair2d3d& pair : pairs) largest = std::max(largest, Variance(pair, unstated));
-  if (!(largest > 0.0)) return Matrix6d(Matrix6d::Zero());
-  const double step = step_px / std::sqrt(largest);
-  Random random(DeriveSeed(0, "covariance probes", pairs.size(), 0));
-  std::vector<Pair2d3d> plus(pairs.begin(), pairs.end());
-  std::vector<Pair2d3d> minus(pairs.begin(), pairs.end());
-  Matrix6d covariance = Matrix6d::Zero();
-  for (int probe = 0; probe < kProbes; ++probe) {
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const double sigma_px = std::sqrt(Variance(pairs[i], unstated));
-      const std::uint64_t signs = random.Bits();
-      const Eigen::Vector2d displacement(signs & 1U ? sigma_px : -sigma_px,
-                                         signs & 2U ? sigma_px : -sigma_px);
-      plus[i].pixel = pairs[i].pixel + step * displacement;
-      minus[i].pixel = pairs[i].pixel - step * displacement;
-    }
-    const std::optional<Rigid3d> ahead = estimate(plus);
-    const std::optional<Rigid3d> behind = estimate(minus);
-    if (!ahead || !behind) return std::nullopt;
-    const Vector6d slope = PoseDifference(*ahead, *behind) / (2.0 * step);
-    covariance += slope * slope.transpose() / kProbes;
-  }
-  return covariance;
 }
 
 }  // namespace
@@ -106,8 +74,6 @@ std::optional<Matrix6d> PropagateByDifferences(const Camera& camera,
   if (!unstated) return std::nullopt;
   // Truncation leaves 1e-10 relative; rounding of the estimate, 1e-13, leaves 1e-8.
   const double step_px = 1e-5 * std::max(camera.fx_px, camera.fy_px);
-  constexpr std::size_t kMostOneByOne = 128;
-  if (pairs.size() > kMostOneByOne) return PropagateByProbes(pairs, *unstated, step_px, estimate);
   std::vector<Pair2d3d> disturbed(pairs.begin(), pairs.end());
   Matrix6d covariance = Matrix6d::Zero();
   for (std::size_t i = 0; i < pairs.size(); ++i) {

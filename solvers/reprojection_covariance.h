@@ -34,9 +34,7 @@ using PoseOfPairs = std::function<std::optional<Rigid3d>(std::span<const Pair2d3
 
 /// Covariance of (dphi, dt) of any estimator that is smooth in the pixels, to first order:
 /// A Sigma A^T with A (6 x 2n) the derivative of its pose by the pixels, by central differences of
-/// 1e-5 focal lengths. `pose` is estimate(pairs). Costs 4 n calls of `estimate`; beyond 128 pairs
-/// 512, for 256 random displacements of all pixels at once, which leave each standard deviation a
-/// relative error of 4 percent (Hutchinson 1990; always the same displacements).
+/// 1e-5 focal lengths. `pose` is estimate(pairs). Costs 4 n calls of `estimate`.
 /// None where the estimator fails at a disturbed pixel or there is no variance.
 std::optional<Matrix6d> PropagateByDifferences(const Camera& camera,
                                                std::span<const Pair2d3d> pairs, const Rigid3d& pose,
