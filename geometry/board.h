@@ -1,16 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace sextant {
 
-/// A rectangular board hung from a corner. Its corners are numbered clockwise as the camera sees
-/// them, from the top: 0 top, 1 right, 2 bottom, 3 left.
+/// A square marker printed on a board.
+struct BoardTag {
+  std::string family{};  ///< "aruco_original", "aruco_6x6_250", "tag36h11", ...
+  int id = 0;
+  double edge_m = 0.0;  ///< Side of the square whose corners detectors report.
+  Eigen::Vector2d center_in_board_m = Eigen::Vector2d::Zero();
+  double rotation_rad = 0.0;  ///< Clockwise as seen; 0: the tag's own top along the board's.
+};
+
+/// A checkerboard printed on a board, centred where `center_in_board_m` says.
+struct BoardChecker {
+  int inner_columns = 0;  ///< Inner corners along x.
+  int inner_rows = 0;     ///< Inner corners along y.
+  double square_m = 0.0;
+  Eigen::Vector2d center_in_board_m = Eigen::Vector2d::Zero();
+};
+
+/// The opening of a hollow board, its sides parallel to the board's.
+struct BoardHole {
+  double width_m = 0.0;   ///< Along x.
+  double height_m = 0.0;  ///< Along y.
+  Eigen::Vector2d center_in_board_m = Eigen::Vector2d::Zero();
+};
+
+/// A rectangular board, usually hung from a corner.
+///
+/// Board frame: origin at the centre of the front, x right and y down along its edges as one sees
+/// the front, z into the board, so that a board that faces the camera squarely has the camera's
+/// axes. Corners are numbered clockwise as seen, from (-x, -y): 0 top, 1 right, 2 bottom, 3 left of
+/// a board that hangs from corner 0.
 struct Board {
   int id = 0;
-  double top_right_m = 0.0;     ///< Edge from the top to the right corner, and its opposite.
-  double right_bottom_m = 0.0;  ///< Edge from the right to the bottom corner, and its opposite.
+  double top_right_m = 0.0;     ///< Along x: edge from the top to the right corner, and opposite.
+  double right_bottom_m = 0.0;  ///< Along y: edge from the right to the bottom corner.
+  std::string name{};
+  double thickness_m = 0.0;
+  std::optional<BoardHole> hole{};  ///< Its corners follow the outer ones as 4 to 7, same order.
+  std::vector<BoardTag> tags{};
+  std::optional<BoardChecker> checker{};
 
   /// Length of the edge from corner i to corner i + 1 (mod 4).
   std::array<double, 4> EdgeLengths() const {

@@ -28,18 +28,19 @@ const std::map<std::string_view, Folders>& MayInclude() {
       {"features/lidar", {"base", "geometry", "solvers"}},
       {"features", {"base", "geometry", "solvers", "features/camera", "features/lidar"}},
       {"io", {"base", "geometry", "solvers"}},
+      {"eval/simulator", {"base", "geometry", "features/camera", "io"}},
       {"eval",
        {"base", "geometry", "solvers", "solvers/opencv", "features", "features/camera",
-        "features/lidar", "io"}},
+        "features/lidar", "io", "eval/simulator"}},
       {"bench",
        {"base", "geometry", "solvers", "solvers/opencv", "features", "features/camera",
-        "features/lidar", "io", "eval", "tests"}},
+        "features/lidar", "io", "eval", "eval/simulator", "tests"}},
       {"cli",
        {"base", "geometry", "solvers", "solvers/opencv", "features", "features/camera",
-        "features/lidar", "io", "eval"}},
+        "features/lidar", "io", "eval", "eval/simulator"}},
       {"tests",
        {"base", "geometry", "solvers", "solvers/opencv", "features", "features/camera",
-        "features/lidar", "io", "eval", "bench", "cli"}},
+        "features/lidar", "io", "eval", "eval/simulator", "bench", "cli"}},
   };
   return table;
 }
@@ -48,8 +49,10 @@ const std::map<std::string_view, Folders>& MayInclude() {
 const std::map<std::string_view, Folders>& OnlyIn() {
   static const std::map<std::string_view, Folders> table = {
       {"opencv2/",
-       {"solvers/opencv", "features", "features/camera", "features/lidar", "io", "eval", "bench",
-        "cli", "tests"}},
+       {"solvers/opencv", "features", "features/camera", "features/lidar", "io", "eval",
+        "eval/simulator", "bench", "cli", "tests"}},
+      {"apriltag", {"features/camera", "bench"}},
+      {"tbb/", {"features", "eval", "eval/simulator", "bench", "cli"}},
       {"ceres/", {"solvers", "features", "features/camera", "features/lidar", "bench", "tests"}},
       {"yaml-cpp/", {"io", "eval", "tests"}},
       {"nlohmann/", {"io", "eval", "bench", "cli", "tests"}},

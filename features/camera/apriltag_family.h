@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+extern "C" {
+#include <apriltag/apriltag.h>
+}
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sextant {
+
+using AprilTagFamily = std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)>;
+
+/// "tag36h11", "tag25h9" and so on, as the AprilTag library names them.
+const std::vector<std::string>& AprilTagFamilyNames();
+
+/// The library's family; null where it has none of that name.
+AprilTagFamily MakeAprilTagFamily(std::string_view name);
+
+}  // namespace sextant

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/camera/tag_pattern.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <opencv2/aruco/dictionary.hpp>
+#include <optional>
+
+#include "base/nearest_name.h"
+#include "features/camera/apriltag_family.h"
+#include "features/camera/aruco_dictionary.h"
+
+namespace sextant {
+namespace {
+
+TagPattern ArucoPattern(const cv::aruco::Dictionary& dictionary, int id) {
+  const int bits = dictionary.markerSize;
+  const cv::Mat inner =
+      cv::aruco::Dictionary::getBitsFromByteList(dictionary.bytesList.rowRange(id, id + 1), bits);
+  TagPattern pattern{.cells = bits + 2, .edge_first = 0, .edge_cells = bits + 2, .white = {}};
+  pattern.white.assign(static_cast<std::size_t>(pattern.cells * pattern.cells), 0);
+  for (int row = 0; row < bits; ++row) {
+    for (int column = 0; column < bits; ++column) {
+      pattern.white[static_cast<std::size_t>((row + 1) * pattern.cells + column + 1)] =
+          inner.at<std::uint8_t>(row, column);
+    }
+  }
+  return pattern;
+}
+
+TagPattern AprilTagPattern(apriltag_family_t& family, int id) {
+  const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> image(apriltag_to_image(&family, id),
+                                                                 image_u8_destroy);
+  TagPattern pattern{.cells = family.total_width,
+                     .edge_first = (family.total_width - family.width_at_border) / 2,
+                     .edge_cells = family.width_at_border,
+                     .white = {}};
+  for (int row = 0; row < pattern.cells; ++row) {
+    for (int column = 0; column < pattern.cells; ++column) {
+      pattern.white.push_back(image->buf[row * image->stride + column] > 127 ? 1 : 0);
+    }
+  }
+  return pattern;
+}
+
+tl::unexpected<Error> UnknownFamily(std::string_view family) {
+  return MakeError(ErrorCode::kUnknownName, fmt::format("no tag family '{}'; {}", family,
+                                                        SuggestName(family, TagFamilies())));
+}
+
+}  // namespace
+
+const std::vector<std::string>& TagFamilies() {
+  static const std::vector<std::string> families = [] {
+    std::vector<std::string> names = ArucoDictionaryNames();
+    const std::vector<std::string>& others = AprilTagFamilyNames();
+    names.insert(names.end(), others.begin(), others.end());
+    return names;
+  }();
+  return families;
+}
+
+Expected<int> TagCount(std::string_view family) {
+  if (const auto dictionary = FindArucoDictionary(family)) return (*dictionary)->bytesList.rows;
+  if (const AprilTagFamily april = MakeAprilTagFamily(family)) {
+    return static_cast<int>(april->ncodes);
+  }
+  return UnknownFamily(family);
+}
+
+Expected<TagPattern> MakeTagPattern(std::string_view family, int id) {
+  const Expected<int> count = TagCount(family);
+  if (!count) return tl::unexpected(count.error());
+  if (id < 0 || id >= *count) {
+    return MakeError(
+        ErrorCode::kInvalidInput,
+        fmt::format("tag family {} has the ids 0 to {}, not {}", family, *count - 1, id));
+  }
+  if (const auto dictionary = FindArucoDictionary(family)) return ArucoPattern(**dictionary, id);
+  return AprilTagPattern(*MakeAprilTagFamily(family), id);
+}
+
+}  // namespace sextant
