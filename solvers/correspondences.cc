@@ -6,6 +6,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "geometry/so3.h"
 
@@ -96,6 +98,12 @@ TrianglePoses PosesOfWidestTriangle(const Correspondences& data) {
   TrianglePoses found;
   found.count = SolveP3p(rays, points, found.poses);
   return found;
+}
+
+double MirrorRatio(std::size_t count) {
+  if (count <= 3) return std::numeric_limits<double>::infinity();
+  const double freedom = 2.0 * static_cast<double>(count) - 6.0;
+  return std::pow(25.0, 1.0 + 6.0 / freedom);
 }
 
 tl::unexpected<Error> MirroredError() {

@@ -51,6 +51,11 @@ struct TrianglePoses {
 /// P3P on the widest triangle.
 TrianglePoses PosesOfWidestTriangle(const Correspondences& data);
 
+/// How many times better, in squares, an impossible pose must fit before the points count as
+/// mirrored: more than noise does once in 10^5 trials (ratio of two chi^2 of 2 count - 6 degrees of
+/// freedom). Five in RMSE for many points, as in kabsch; infinite for three, which always fit.
+double MirrorRatio(std::size_t count);
+
 /// kMirrored; see the errors of SolveEpnp.
 tl::unexpected<Error> MirroredError();
 /// kNoConsensus; see the errors of SolveEpnp.

@@ -23,9 +23,6 @@ namespace {
 // more of the third axis than its points do.
 constexpr double kThin = 0.05;
 
-// Five in RMSE, as in kabsch.
-constexpr double kMirrorRatio = 25.0;
-
 /// A pose with the centroid in place of the origin, and how well it explains the image.
 struct Candidate {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
@@ -330,7 +327,8 @@ Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
   const bool explained =
       best.fit.behind <= points_in_lidar.size() / 2 && best.fit.sum_squares <= spread;
   const double error = explained ? best.fit.sum_squares : spread;
-  if (error > kMirrorRatio * mirrored + 1e-12 * spread) return MirroredError();
+  if (error > MirrorRatio(points_in_lidar.size()) * mirrored + 1e-12 * spread)
+    return MirroredError();
   if (!explained) return UnexplainedError();
   PolishIfExact(*data, best.fit, best.rotation, best.centroid);
   EpnpFit fit;

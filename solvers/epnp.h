@@ -33,9 +33,9 @@ struct EpnpFit {
 ///
 /// Shapes: image points (x/z, y/z), and as many points [m], at least 4 different ones.
 /// Errors: kTooFewPairs; kDegenerate (fewer than 4 different points, on one line, a single ray,
-/// or too far away for a translation); kMirrored (a mirror image fits five times better, as when
-/// all points are behind the camera); kNoConsensus (no pose in front of the camera fits better
-/// than a single image point for all).
+/// or too far away for a translation); kMirrored (a mirror image fits far better, see
+/// MirrorRatio, as when all points are behind the camera); kNoConsensus (no pose in front of the
+/// camera fits better than a single image point for all).
 Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
                             std::span<const Eigen::Vector3d> points_in_lidar);
 

@@ -20,18 +20,17 @@ namespace {
 using Vector9d = Eigen::Matrix<double, 9, 1>;
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
-// Five in RMSE, as in kabsch.
-constexpr double kMirrorRatio = 25.0;
-
 // Costs of exact data, relative to the points' variance, with a wide margin.
 constexpr double kRounding = 1e-12;
 
 // Thinner sets than this (standard deviations) have two minima when far away.
 constexpr double kThin = 0.05;
 
-// Up to five points leave omega a kernel of two or more dimensions (for a plane, four points),
-// whose basis says little of the rotation: poses of three of them are starts then.
+// Up to five points leave omega a kernel of two or more dimensions, whose basis says little of the
+// rotation, and so do a few others by chance, which then fit badly: poses of three of the points
+// are starts too.
 constexpr int kMaxForTriangle = 5;
+constexpr double kWellExplained = 1e-3;
 
 /// The cost mean_i |x_i - u_i z_i|^2 + |y_i - v_i z_i|^2 = r^T omega r, with the entries of the
 /// rotation (camera from principal axes) row by row in r, and the centroid that goes with it.
@@ -151,6 +150,13 @@ class Minima {
   void SearchFrom(const Eigen::Matrix3d& start);
   std::span<const Minimum> found() const { return std::span(found_).first(count_); }
   double best_cost() const { return count_ > 0 ? found_[0].cost : kNone; }
+  /// Whether the best leaves less than `share` of the image points' squared distance from their
+  /// mean.
+  bool ExplainImage(double share) const {
+    if (count_ == 0) return false;
+    const double depth = found_[0].centroid.z();
+    return found_[0].cost <= share * data_.moments.Spread() * depth * depth;
+  }
   double best_cost_behind() const { return best_cost_behind_; }
 
  private:
@@ -243,13 +249,6 @@ Expected<SqpnpFit> SolveSqpnp(std::span<const Eigen::Vector2d> image_points,
   const RotationCost cost(*data);
   Minima minima(*data, cost);
   const PointCloudFrame& frame = data->frame;
-  if (frame.different_count <= kMaxForTriangle) {
-    const TrianglePoses found = PosesOfWidestTriangle(*data);
-    for (int i = 0; i < found.count; ++i) {
-      const Rigid3d& pose = found.poses[static_cast<std::size_t>(i)];
-      minima.SearchFrom(pose.rotation * frame.axes);
-    }
-  }
   if (frame.different_count > 3) {
     if (frame.IsPlanar()) {
       SearchFromEigenvectors<2>(cost, minima);
@@ -258,12 +257,19 @@ Expected<SqpnpFit> SolveSqpnp(std::span<const Eigen::Vector2d> image_points,
     }
     if (frame.deviation.z() < kThin * frame.deviation.x()) SearchFromMirrorImage(minima);
   }
-
-  const double count = static_cast<double>(points_in_lidar.size());
-  const double trace = frame.deviation.squaredNorm();
-  if (minima.best_cost() > kMirrorRatio * minima.best_cost_behind() + kRounding * trace) {
-    return MirroredError();
+  if (frame.different_count <= kMaxForTriangle || !minima.ExplainImage(kWellExplained)) {
+    const TrianglePoses found = PosesOfWidestTriangle(*data);
+    for (int i = 0; i < found.count; ++i) {
+      const Rigid3d& pose = found.poses[static_cast<std::size_t>(i)];
+      minima.SearchFrom(pose.rotation * frame.axes);
+    }
   }
+
+  const double trace = frame.deviation.squaredNorm();
+  const double behind = MirrorRatio(points_in_lidar.size()) * minima.best_cost_behind();
+  if (minima.best_cost() > behind + kRounding * trace) return MirroredError();
+  if (!minima.ExplainImage(1.0)) return UnexplainedError();
+  const auto count = static_cast<double>(points_in_lidar.size());
   SqpnpFit fit;
   for (Minimum minimum : minima.found()) {
     if (minimum.cost > 2.0 * minima.best_cost() + kRounding * trace) break;
@@ -275,9 +281,6 @@ Expected<SqpnpFit> SolveSqpnp(std::span<const Eigen::Vector2d> image_points,
     pose.translation = minimum.centroid - pose.rotation * frame.centroid;
     fit.sum_squares[at] = count * minimum.cost;
   }
-  if (fit.count == 0) return UnexplainedError();
-  const double depth = (fit.cam_from_lidar[0] * frame.centroid).z();
-  if (!(minima.best_cost() <= data->moments.Spread() * depth * depth)) return UnexplainedError();
   return fit;
 }
 

@@ -27,18 +27,18 @@ struct SqpnpFit {
 /// The best translation is linear in the rotation r (9 entries), which leaves the minimum of
 /// r^T Omega r over rotations. Starts are the rotations nearest to +-sqrt(3) times the eigenvectors
 /// of Omega, in ascending order, until an eigenvalue alone costs more than the best found; for a
-/// plane Omega is that of the two columns that it has. Two more kinds of start: up to five points,
-/// the poses of three of them, and for flat sets the mirror image of the best pose. From each,
-/// Newton steps on the rotation (the quadratic programme with its constraints linearised,
-/// with their curvature too where that keeps it convex).
+/// plane Omega is that of the two columns that it has. Two more kinds of start: for flat sets the
+/// mirror image of the best pose; up to five points, and where the best fits badly, the poses of
+/// three of them. From each, Newton steps on the rotation (the quadratic programme with its
+/// constraints linearised, with their curvature too where that keeps it convex).
 /// The other poses of the answer are minima that cost at most twice the best; with three points
 /// there are up to four without any cost.
 ///
 /// Shapes: image points (x/z, y/z), and as many points [m], at least 3; unique from 4 on.
 /// Errors: kTooFewPairs; kDegenerate (fewer than 3 different points, on one line, a single ray, or
-/// too far away for a translation); kMirrored (a pose with the points behind the camera fits five
-/// times better); kNoConsensus (no pose in front of the camera fits better than a single image
-/// point for all).
+/// too far away for a translation); kMirrored (a pose with the points behind the camera fits far
+/// better, see MirrorRatio); kNoConsensus (no pose in front of the camera fits better than a single
+/// image point for all).
 Expected<SqpnpFit> SolveSqpnp(std::span<const Eigen::Vector2d> image_points,
                               std::span<const Eigen::Vector3d> points_in_lidar);
 

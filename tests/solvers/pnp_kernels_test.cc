@@ -206,6 +206,19 @@ TEST_P(PnpKernel, RefusesPointsBehindTheCameraWhateverTheirNumber) {
   }
 }
 
+TEST_P(PnpKernel, TakesNoNoiseForAMirrorImage) {
+  Random random(7);
+  int mirrored = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Shape shape{.name = "far_cube", .depth_m = 20.0};
+    const Scene scene = MakeScene(shape, 4 + trial % 4, 1.0 / 700.0, random);
+    const Expected<Rigid3d> pose = GetParam().solve(scene);
+    if (!pose && pose.error().code == ErrorCode::kMirrored) ++mirrored;
+  }
+  // MirrorRatio: less than one in 10^5.
+  EXPECT_EQ(mirrored, 0);
+}
+
 TEST_P(PnpKernel, DuplicatedPairsChangeNothingThatIsExact) {
   Random random(5);
   for (int trial = 0; trial < 200; ++trial) {
