@@ -26,7 +26,7 @@ struct Mark {
 };
 
 std::vector<Mark> MarksOf(const CalibrationProblem& problem, const SolveReport& report) {
-  const Camera& camera = *problem.camera;
+  const Camera& camera = report.camera ? report.camera->camera : *problem.camera;
   const auto used = [&report](std::size_t i) {
     return report.inliers.empty() ||
            std::binary_search(report.inliers.begin(), report.inliers.end(), static_cast<int>(i));

@@ -48,6 +48,15 @@ std::string DescribeUncertainty(const SolveReport& report) {
       sigma[4] * kMmPerM, sigma[5] * kMmPerM);
 }
 
+std::string DescribeCamera(const CameraEstimate& camera) {
+  std::string text = "  camera, estimated too\n";
+  for (const EstimatedIntrinsic& number : camera.estimated) {
+    const std::string sigma = number.sigma ? fmt::format("{:.2g}", *number.sigma) : "not known";
+    text += fmt::format("    {:<24} {:.6g}, 1 sigma {}\n", number.name, number.value, sigma);
+  }
+  return text;
+}
+
 template <class Pair>
 std::string DescribeResiduals(const std::vector<Pair>& pairs, const std::vector<double>& residuals,
                               const std::vector<int>& inliers, const char* unit, double scale) {
@@ -100,6 +109,7 @@ std::string DescribeReport(const CalibrationProblem& problem, const SolveReport&
                         *evaluation.rmse_px, evaluation.per_pair_px.size());
   }
   text += DescribeUncertainty(report);
+  if (report.camera) text += DescribeCamera(*report.camera);
   text += fmt::format("  {}, {} iterations, {:.1f} us\n", ToString(report.termination),
                       report.iterations, report.wall_time_us);
   for (const Rigid3d& other : report.alternatives) {

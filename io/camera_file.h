@@ -16,6 +16,7 @@ namespace sextant {
 ///   equidistant, width and height (or image_width and image_height).
 /// - OpenCV FileStorage YAML: camera_matrix, distortion_coefficients, image_width, image_height.
 /// - flat YAML: fx, fy, cx, cy, k1, k2, p1, p2, k3.
+/// - a problem file of this project: its block `camera`.
 /// - the INI form of ROS that the original package uses: sections [image] and [camera], then
 ///   width, height, camera matrix, distortion; rectification and projection are read over.
 /// Errors: kIo; kParse (also skew, and distortion models that Camera does not have); kNonFinite;

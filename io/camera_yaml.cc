@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <initializer_list>
 
+#include "io/camera_block.h"
 #include "io/camera_file.h"
 #include "io/camera_parts.h"
 #include "io/number_text.h"
@@ -69,6 +70,11 @@ Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file)
   const Expected<YamlNode> root = ParseYaml(std::string(text), file);
   if (!root) return tl::unexpected<Error>(root.error());
   YamlFields in(file);
+  if (const YamlNode* block = root->Find("camera")) {
+    const Camera camera = ReadCameraBlock(in, *block);
+    if (!in.ok()) return in.TakeError();
+    return camera;
+  }
   CameraParts parts;
   std::vector<double> distortion;
   if (const YamlNode* matrix = FindAny(*root, {"camera_matrix", "K", "k"})) {
@@ -76,7 +82,8 @@ Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file)
   } else if (root->Find("fx") != nullptr) {
     ReadFlat(in, *root, parts, distortion);
   } else {
-    in.Fail(root->line, {}, "expected a camera: camera_matrix, K or fx; none of them is there");
+    in.Fail(root->line, {},
+            "expected a camera: camera_matrix, K, fx or camera; none of them is there");
   }
   parts.width_px = ReadSize(in, *root, "width", "image_width");
   parts.height_px = ReadSize(in, *root, "height", "image_height");

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <span>
 
+#include "io/camera_block.h"
 #include "io/problem_yaml.h"
 
 namespace sextant {
@@ -31,18 +32,6 @@ std::string List(std::span<const double> values) {
 
 std::string List(const Eigen::Vector3d& v) { return List(std::span<const double>(v.data(), 3)); }
 
-const char* ModelName(CameraModel model) {
-  switch (model) {
-    case CameraModel::kPinhole:
-      return "pinhole";
-    case CameraModel::kBrownConrady:
-      return "brown_conrady";
-    case CameraModel::kEquidistant:
-      return "equidistant";
-  }
-  return "pinhole";
-}
-
 std::string QuotedText(const std::string& text) {
   YAML::Emitter emitter;
   emitter << YAML::DoubleQuoted << text;
@@ -51,7 +40,7 @@ std::string QuotedText(const std::string& text) {
 
 void WriteCamera(Writer& out, const Camera& camera) {
   out.Line("camera:");
-  out.Line("  model: {}", ModelName(camera.model));
+  out.Line("  model: {}", CameraModelName(camera.model));
   out.Line("  width_px: {}", camera.width_px);
   out.Line("  height_px: {}", camera.height_px);
   out.Line("  fx_px: {}", camera.fx_px);

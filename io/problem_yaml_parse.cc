@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "io/camera_block.h"
 #include "io/number_text.h"
 #include "io/problem_yaml.h"
 #include "io/rigid_matrix.h"
@@ -16,43 +17,6 @@ namespace {
 using Keys = std::vector<std::string>;
 
 constexpr int kMostId = 1'000'000'000;
-
-Camera ReadCamera(YamlFields& in, const YamlNode& node) {
-  static const Keys kKeys = {"model", "width_px", "height_px", "fx_px",
-                             "fy_px", "cx_px",    "cy_px",     "distortion"};
-  static const Keys kModels = {"pinhole", "brown_conrady", "equidistant"};
-  Camera camera;
-  if (!in.IsMap(node, "camera", kKeys)) return camera;
-  const std::string model = in.TextAt(node, "model");
-  if (model == "pinhole") {
-    camera.model = CameraModel::kPinhole;
-  } else if (model == "brown_conrady") {
-    camera.model = CameraModel::kBrownConrady;
-  } else if (model == "equidistant") {
-    camera.model = CameraModel::kEquidistant;
-  } else {
-    in.Fail(node.line, "model",
-            fmt::format("expected {}, got {}", fmt::join(kModels, " or "), Quoted(model)));
-  }
-  constexpr int kMostPixels = 1'000'000;
-  if (node.Find("width_px") != nullptr)
-    camera.width_px = in.IntegerAt(node, "width_px", 0, kMostPixels);
-  if (node.Find("height_px") != nullptr)
-    camera.height_px = in.IntegerAt(node, "height_px", 0, kMostPixels);
-  camera.fx_px = in.RealAt(node, "fx_px");
-  camera.fy_px = in.RealAt(node, "fy_px");
-  camera.cx_px = in.RealAt(node, "cx_px");
-  camera.cy_px = in.RealAt(node, "cy_px");
-  if (const YamlNode* list = node.Find("distortion")) {
-    const std::vector<double> values = in.RealList(*list, "distortion", camera.distortion.size());
-    std::copy(values.begin(), values.end(), camera.distortion.begin());
-  }
-  if (!in.ok()) return camera;
-  if (Expected<void> valid = ValidateCamera(camera); !valid) {
-    in.Fail(node.line, "camera", valid.error().message);
-  }
-  return camera;
-}
 
 // Untouched where it is of unit length to rounding, so that a file round-trips to the bit.
 Eigen::Quaterniond ReadQuaternion(YamlFields& in, const YamlNode& node) {
@@ -201,7 +165,7 @@ Expected<ProblemFile> ParseProblemYaml(std::string_view text, const std::string&
   ProblemFile read;
   CalibrationProblem& problem = read.problem;
   if (root->Find("comment") != nullptr) read.comment = in.TextAt(*root, "comment");
-  if (const YamlNode* node = root->Find("camera")) problem.camera = ReadCamera(in, *node);
+  if (const YamlNode* node = root->Find("camera")) problem.camera = ReadCameraBlock(in, *node);
   if (const YamlNode* node = root->Find("boards")) ReadBoards(in, *node, problem.boards);
   if (const YamlNode* node = root->Find("initial_cam_from_lidar")) {
     problem.initial_cam_from_lidar = ReadPose(in, *node, "initial_cam_from_lidar");

@@ -17,6 +17,16 @@ namespace {
 
 bool IsNumber(std::string_view text) { return ParseFinite(text, {}).has_value(); }
 
+// avg_values.txt of the original package: a number, then three more, each alone on its line, where
+// points.txt has a count and points.
+bool IsAverageLog(std::string_view text, const std::string& file) {
+  LineReader in(file, text);
+  for (int line = 0; line < 4; ++line) {
+    if (!in.Next() || in.field_count() != 1 || !IsNumber(in.Field(0))) return false;
+  }
+  return true;
+}
+
 std::optional<ProblemFormat> Detect(std::string_view text, const std::string& file) {
   const std::string extension = std::filesystem::path(file).extension().string();
   if (extension == ".yaml" || extension == ".yml") return ProblemFormat::kYaml;
@@ -64,6 +74,12 @@ Expected<DetectedProblem> ReadProblem(const std::filesystem::path& path) {
 }
 
 Expected<DetectedProblem> ParseProblem(std::string_view text, const std::string& file) {
+  if (IsAverageLog(text, file)) {
+    return MakeError(ErrorCode::kParse,
+                     fmt::format("{}:1: an avg_values.txt, the log of the original package, which "
+                                 "has poses and no correspondences; 'sextant average' reads it",
+                                 ToString(Place{.file = file})));
+  }
   const std::optional<ProblemFormat> format = Detect(text, file);
   if (!format) return UnknownFormat(file);
   DetectedProblem detected;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "io/camera_block.h"
 #include "io/pose_json.h"
 #include "io/results_json.h"
 
@@ -28,6 +29,24 @@ Json Poses(const std::vector<Rigid3d>& poses) {
   return list;
 }
 
+Json CameraJson(const CameraEstimate& estimate) {
+  const Camera& camera = estimate.camera;
+  Json json = {{"model", CameraModelName(camera.model)},
+               {"width_px", camera.width_px},
+               {"height_px", camera.height_px},
+               {"fx_px", camera.fx_px},
+               {"fy_px", camera.fy_px},
+               {"cx_px", camera.cx_px},
+               {"cy_px", camera.cy_px},
+               {"distortion", camera.distortion}};
+  json["estimated"] = Json::array();
+  for (const EstimatedIntrinsic& number : estimate.estimated) {
+    json["estimated"].push_back(
+        {{"name", number.name}, {"value", number.value}, {"sigma", OrNull(number.sigma)}});
+  }
+  return json;
+}
+
 // Every key stands in every result, so that a tool need not ask whether it is there.
 Json Result(const SolverResult& result) {
   const SolveReport* report = result.report ? &*result.report : nullptr;
@@ -38,14 +57,15 @@ Json Result(const SolverResult& result) {
   json["error_code"] = report ? Json(nullptr) : Json(ToString(result.report.error().code));
   if (report == nullptr) {
     for (const char* key :
-         {"cam_from_lidar", "covariance", "rmse_m", "rmse_px", "per_pair_m", "per_pair_px",
-          "inliers", "alternatives", "iterations", "termination", "wall_time_us"}) {
+         {"cam_from_lidar", "covariance", "camera", "rmse_m", "rmse_px", "per_pair_m",
+          "per_pair_px", "inliers", "alternatives", "iterations", "termination", "wall_time_us"}) {
       json[key] = nullptr;
     }
     return json;
   }
   json["cam_from_lidar"] = PoseJson(report->cam_from_lidar);
   json["covariance"] = report->covariance ? Rows(*report->covariance) : Json(nullptr);
+  json["camera"] = report->camera ? CameraJson(*report->camera) : Json(nullptr);
   json["rmse_m"] = OrNull(report->evaluation.rmse_m);
   json["rmse_px"] = OrNull(report->evaluation.rmse_px);
   json["per_pair_m"] = report->evaluation.per_pair_m;

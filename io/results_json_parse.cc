@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "io/camera_block.h"
 #include "io/number_text.h"
 #include "io/results_json.h"
 #include "io/text_file.h"
@@ -75,6 +76,27 @@ std::vector<double> GetResiduals(const Json& map, const char* key) {
   return residuals;
 }
 
+CameraEstimate ParseCameraEstimate(const Json& json) {
+  CameraEstimate estimate;
+  Camera& camera = estimate.camera;
+  const auto name = Get<std::string>(json, "model");
+  const std::optional<CameraModel> model = CameraModelNamed(name);
+  if (!model) Refuse(fmt::format("key 'model': unknown value {}", Quoted(name)));
+  camera.model = *model;
+  camera.width_px = Get<int>(json, "width_px");
+  camera.height_px = Get<int>(json, "height_px");
+  camera.fx_px = Get<double>(json, "fx_px");
+  camera.fy_px = Get<double>(json, "fy_px");
+  camera.cx_px = Get<double>(json, "cx_px");
+  camera.cy_px = Get<double>(json, "cy_px");
+  camera.distortion = Get<std::array<double, 8>>(json, "distortion");
+  for (const Json& number : json.at("estimated")) {
+    estimate.estimated.push_back({Get<std::string>(number, "name"), Get<double>(number, "value"),
+                                  GetOptional(number, "sigma")});
+  }
+  return estimate;
+}
+
 template <class Enum>
 Enum GetEnum(const Json& map, const char* key, Enum last) {
   const auto name = Get<std::string>(map, key);
@@ -89,6 +111,10 @@ SolveReport ParseReport(const Json& json) {
   report.solver = Get<std::string>(json, "solver");
   report.cam_from_lidar = ParsePose(json.at("cam_from_lidar"));
   report.covariance = GetCovariance(json);
+  // Files written before this key was there have none.
+  if (json.contains("camera") && !json.at("camera").is_null()) {
+    report.camera = ParseCameraEstimate(json.at("camera"));
+  }
   report.evaluation.rmse_m = GetOptional(json, "rmse_m");
   report.evaluation.rmse_px = GetOptional(json, "rmse_px");
   report.evaluation.per_pair_m = GetResiduals(json, "per_pair_m");

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "solvers/pair_terms.h"
 #include "solvers/registry.h"
 #include "solvers/rotation_average.h"
 #include "solvers/subset.h"
@@ -190,6 +191,9 @@ SolverEntry AverageEntry() {
                            fmt::format("{}: {} works on data that names no views; average a solver "
                                        "of pairs",
                                        arguments.name, arguments.inner->spec().name));
+        }
+        if (Expected<void> ok = CheckKeepsCamera(*arguments.inner, arguments.name); !ok) {
+          return tl::unexpected<Error>(std::move(ok.error()));
         }
         return Options().Parse(arguments.options).map([&](const AverageOptions& o) -> SolverPtr {
           return std::make_shared<AverageSolver>(arguments.name, arguments.inner, o);

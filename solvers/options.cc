@@ -57,4 +57,24 @@ Expected<std::size_t> ParseChoice(const std::string& name, const std::string& te
   return static_cast<std::size_t>(found - choices.begin());
 }
 
+Expected<unsigned> ParseSet(const std::string& name, const std::string& text,
+                            const std::vector<std::string>& choices) {
+  if (text == "none") return 0U;
+  unsigned bits = 0;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('+', begin), text.size());
+    const std::string part = text.substr(begin, end - begin);
+    const auto found = std::find(choices.begin(), choices.end(), part);
+    if (found == choices.end()) {
+      return MakeError(
+          ErrorCode::kInvalidOption,
+          fmt::format("option {}={}: expected none, or any of {} joined by +; {}", name, text,
+                      fmt::join(choices, ", "), SuggestName(part, choices)));
+    }
+    bits |= 1U << static_cast<unsigned>(found - choices.begin());
+    begin = end + 1;
+  }
+  return bits;
+}
+
 }  // namespace sextant

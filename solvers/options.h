@@ -28,6 +28,9 @@ Expected<std::int64_t> ParseCount(const std::string& name, const std::string& te
                                   std::int64_t low, std::int64_t high);
 Expected<std::size_t> ParseChoice(const std::string& name, const std::string& text,
                                   const std::vector<std::string>& choices);
+/// A set of choices joined by +, as bits in their order; "none" is the empty one.
+Expected<unsigned> ParseSet(const std::string& name, const std::string& text,
+                            const std::vector<std::string>& choices);
 std::string FormatReal(double value);
 
 /// Binds option names to the members of a plain settings struct. The struct's member initialisers
@@ -68,6 +71,18 @@ class OptionSet {
                    options.*member = static_cast<Enum>(i);
                  });
                });
+  }
+
+  /// Any of the choices, joined by +; bit i of the member stands for choices[i]. None by default.
+  OptionSet& Set(std::string name, unsigned Options::*member, std::vector<std::string> choices,
+                 std::string meaning) {
+    std::string joined;
+    for (const std::string& choice : choices) joined += (joined.empty() ? "" : "+") + choice;
+    return Add(
+        {name, "none", "none|" + joined, std::move(meaning)},
+        [name, member, choices](Options& options, const std::string& text) {
+          return ParseSet(name, text, choices).map([&](unsigned bits) { options.*member = bits; });
+        });
   }
 
   /// Names are known to be this set's: the registry has checked them.

@@ -21,7 +21,18 @@ Eigen::Matrix3d Whitener(const Pair3d3d& pair, double assumed_sigma_m) {
 
 }  // namespace
 
+Expected<void> CheckKeepsCamera(const Solver& inner, const std::string& outer) {
+  if (!inner.spec().estimates_camera) return {};
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("{}: '{}' estimates intrinsics, which only the outermost solver "
+                               "may; put {} inside",
+                               outer, inner.spec().name, outer));
+}
+
 Expected<PairKind> KindOfPairs(const Solver& inner, const std::string& outer) {
+  if (Expected<void> ok = CheckKeepsCamera(inner, outer); !ok) {
+    return tl::unexpected<Error>(std::move(ok.error()));
+  }
   const DataNeeds& needs = inner.spec().needs;
   if (needs.points_per_set > 0 || (needs.pairs_3d3d == 0 && needs.pairs_2d3d == 0)) {
     return MakeError(

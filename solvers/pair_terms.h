@@ -19,8 +19,11 @@ enum class PairKind { k3d3d, k2d3d };
 inline constexpr int ResidualsPerPair(PairKind kind) { return kind == PairKind::k3d3d ? 3 : 2; }
 
 /// The kind of pairs that `inner` needs. Error: kInvalidOption where it needs none (point sets) or
-/// both; `outer` is the combinator's name for the message.
+/// both, or estimates the camera; `outer` is the combinator's name for the message.
 Expected<PairKind> KindOfPairs(const Solver& inner, const std::string& outer);
+
+/// Error: kInvalidOption where `inner` estimates the camera, which `outer` would take no notice of.
+Expected<void> CheckKeepsCamera(const Solver& inner, const std::string& outer);
 
 /// What is assumed of pairs that state no noise.
 struct AssumedNoise {

@@ -7,38 +7,17 @@
 #include <tuple>
 
 #include "solvers/consensus.h"
+#include "solvers/refine_camera.h"
 #include "solvers/refine_ceres.h"
+#include "solvers/refine_options.h"
 #include "solvers/refine_pose.h"
 #include "solvers/registry.h"
 
 namespace sextant {
 namespace {
 
-enum class RefineOn { kAuto, k3d3d, k2d3d, kBoth };
-
-struct RefineOptions {
-  RefineOn on = RefineOn::kAuto;
-  LossKind loss = LossKind::kNone;
-  double loss_scale = 0.0;
-  double loss_shape = RobustLoss{}.shape;
-  int max_iterations = RefineLimits{}.max_iterations;
-  double step_tolerance = RefineLimits{}.step_tolerance;
-  double sigma_m = AssumedNoise{}.sigma_m;
-  double sigma_px = AssumedNoise{}.sigma_px;
-
-  RobustLoss Loss() const {
-    // Beyond most residuals of clean pairs, whose root mean square is sqrt(3) or sqrt(2).
-    constexpr double kScales[] = {2.0, 2.0, 3.0, 6.0, 3.0};
-    const double scale = loss_scale > 0.0 ? loss_scale : kScales[static_cast<std::size_t>(loss)];
-    return {loss, scale, loss_shape};
-  }
-};
-
 // Fewer pairs than this leave a direction undetermined whatever their places.
 constexpr int kLeastPairs = 3;
-
-bool Uses3d3d(RefineOn on) { return on == RefineOn::k3d3d || on == RefineOn::kBoth; }
-bool Uses2d3d(RefineOn on) { return on == RefineOn::k2d3d || on == RefineOn::kBoth; }
 
 DataNeeds WithRefined(DataNeeds needs, RefineOn on) {
   if (Uses3d3d(on)) needs.pairs_3d3d = std::max(needs.pairs_3d3d, kLeastPairs);
@@ -87,18 +66,18 @@ std::vector<int> NotLeftOut(const std::vector<Pair>& pairs, const std::vector<in
 ///
 /// Plain least squares runs in RefinePose, robust losses in Ceres. With on=both, so are the
 /// other kind's pairs but for the ids that this answer left out. Covariance: inverse of sum rho'
-/// J^T J. Termination kConverged: the last step is under step_tolerance. Errors: kNoConvergence,
-/// kDegenerate, those of the inner solver.
+/// J^T J; with free intrinsics see refine_camera.h. Termination kConverged: the last step is under
+/// step_tolerance. Errors: kNoConvergence, kDegenerate, those of the inner solver.
 class RefineSolver final : public Solver {
  public:
-  RefineSolver(const SolverArguments& arguments, RefineOn on, const RefineOptions& options)
+  RefineSolver(const SolverArguments& arguments, const RefineOptions& options)
       : Solver({.name = arguments.name,
-                .needs = WithRefined(arguments.inner->spec().needs, on),
+                .needs = WithRefined(arguments.inner->spec().needs, options.on),
                 .estimates_rotation = true,
-                .is_global = arguments.inner->spec().is_global &&
-                             arguments.inner->spec().estimates_rotation}),
+                .is_global =
+                    arguments.inner->spec().is_global && arguments.inner->spec().estimates_rotation,
+                .estimates_camera = options.intrinsics != 0U}),
         inner_(arguments.inner),
-        on_(on),
         options_(options) {}
 
  private:
@@ -107,26 +86,48 @@ class RefineSolver final : public Solver {
     if (!start) return tl::unexpected<Error>(std::move(start.error()));
     const UsedPairs used = Choose(problem, *start);
     const PairTerms terms = TermsOf(problem, used);
-    const RefineLimits limits{options_.max_iterations, options_.step_tolerance};
+    Expected<Estimate> estimate = options_.intrinsics == 0U
+                                      ? PoseOf(terms, start->cam_from_lidar)
+                                      : PoseAndCameraOf(terms, start->cam_from_lidar);
+    if (!estimate) return estimate;
+    estimate->termination = Termination::kConverged;
+    estimate->inliers = spec().needs.pairs_3d3d > 0 ? used.points : used.pixels;
+    estimate->stages = std::move(start->stages);
+    estimate->stages.push_back(
+        {start->solver, start->cam_from_lidar, start->iterations, start->wall_time_us});
+    return estimate;
+  }
+
+  Expected<Estimate> PoseOf(const PairTerms& terms, const Rigid3d& start) const {
     const RobustLoss loss = options_.Loss();
-    const RefinedPose refined =
-        loss.kind == LossKind::kNone
-            ? RefinePose(terms.View(), start->cam_from_lidar, limits)
-            : RefinePoseWithCeres(terms.View(), start->cam_from_lidar, loss, limits);
+    const RefinedPose refined = loss.kind == LossKind::kNone
+                                    ? RefinePose(terms.View(), start, Limits())
+                                    : RefinePoseWithCeres(terms.View(), start, loss, Limits());
     if (Expected<void> ok = CheckOutcome(refined); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
     Estimate estimate;
     estimate.cam_from_lidar = refined.cam_from_lidar;
-    estimate.termination = Termination::kConverged;
     estimate.iterations = refined.iterations;
     estimate.covariance = LeastSquaresCovariance(terms, refined.information, refined.cost);
-    estimate.inliers = spec().needs.pairs_3d3d > 0 ? used.points : used.pixels;
-    estimate.stages = std::move(start->stages);
-    estimate.stages.push_back(
-        {start->solver, start->cam_from_lidar, start->iterations, start->wall_time_us});
     return estimate;
   }
+
+  Expected<Estimate> PoseAndCameraOf(const PairTerms& terms, const Rigid3d& start) const {
+    const Expected<std::vector<int>> free = FreeIntrinsics(terms.camera, options_.intrinsics);
+    if (!free) return tl::unexpected<Error>(free.error());
+    return RefinePoseAndCamera(terms, start, *free, options_.Loss(), Limits())
+        .map([](const RefinedPoseAndCamera& refined) {
+          Estimate estimate;
+          estimate.cam_from_lidar = refined.cam_from_lidar;
+          estimate.iterations = refined.iterations;
+          estimate.covariance = refined.covariance;
+          estimate.camera = refined.camera;
+          return estimate;
+        });
+  }
+
+  RefineLimits Limits() const { return {options_.max_iterations, options_.step_tolerance}; }
 
   // Of the inner solver's kind, the inliers; of the other, all but those that carry the id of a
   // pair left out, since an outlier of one kind comes from a sensor that both share.
@@ -149,8 +150,8 @@ class RefineSolver final : public Solver {
   PairTerms TermsOf(const CalibrationProblem& problem, const UsedPairs& used) const {
     const AssumedNoise assumed{options_.sigma_m, options_.sigma_px};
     PairTerms terms;
-    if (Uses3d3d(on_)) terms.Add(PairsAt(problem.pairs_3d3d, used.points), assumed);
-    if (Uses2d3d(on_)) {
+    if (Uses3d3d(options_.on)) terms.Add(PairsAt(problem.pairs_3d3d, used.points), assumed);
+    if (Uses2d3d(options_.on)) {
       terms.Add(PairsAt(problem.pairs_2d3d, used.pixels), *problem.camera, assumed);
     }
     return terms;
@@ -185,43 +186,8 @@ class RefineSolver final : public Solver {
   }
 
   SolverPtr inner_;
-  RefineOn on_;
   RefineOptions options_;
 };
-
-OptionSet<RefineOptions> RefineOptionSet() {
-  OptionSet<RefineOptions> options;
-  options
-      .Choice("on", &RefineOptions::on, {"auto", "3d3d", "2d3d", "both"},
-              "the residuals; auto: those of the inner solver")
-      .Choice("loss", &RefineOptions::loss, {"none", "huber", "cauchy", "tukey", "barron"},
-              "robust loss on each pair")
-      .Real("loss_scale", &RefineOptions::loss_scale, "sigma", 0.0, 1e6,
-            "where the loss bends; 0: huber 2, cauchy 3, tukey 6, barron 3")
-      .Real("loss_shape", &RefineOptions::loss_shape, "1", -100.0, 2.0,
-            "of barron: 2 squares, 1 Charbonnier, 0 Cauchy, -2 Geman-McClure")
-      .Count("max_iterations", &RefineOptions::max_iterations, 1, 1'000'000,
-             "more are kNoConvergence")
-      .Real("step_tolerance", &RefineOptions::step_tolerance, "rad and m", 1e-15, 1.0,
-            "the iteration ends with a step smaller than this")
-      .Real("sigma_m", &RefineOptions::sigma_m, "m", 1e-9, 1e6,
-            "assumed of pairs that state no sigma")
-      .Real("sigma_px", &RefineOptions::sigma_px, "px", 1e-6, 1e6,
-            "assumed of pairs that state no sigma");
-  return options;
-}
-
-Expected<RefineOn> ResolveOn(const SolverArguments& arguments, RefineOn on) {
-  if (on != RefineOn::kAuto) return on;
-  const DataNeeds& needs = arguments.inner->spec().needs;
-  if (needs.pairs_3d3d > 0 && needs.pairs_2d3d > 0) return RefineOn::kBoth;
-  if (needs.pairs_3d3d > 0) return RefineOn::k3d3d;
-  if (needs.pairs_2d3d > 0) return RefineOn::k2d3d;
-  return MakeError(ErrorCode::kInvalidOption,
-                   fmt::format("refine: '{}' works on point sets; say on which pairs to refine: "
-                               "on=3d3d, on=2d3d or on=both",
-                               arguments.inner->spec().name));
-}
 
 }  // namespace
 
@@ -235,11 +201,9 @@ SolverEntry RefineEntry() {
       .wraps_solver = true,
       .options = RefineOptionSet().Describe(),
       .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
-        const Expected<RefineOptions> options = RefineOptionSet().Parse(arguments.options);
-        if (!options) return tl::unexpected<Error>(options.error());
-        const Expected<RefineOn> on = ResolveOn(arguments, options->on);
-        if (!on) return tl::unexpected<Error>(on.error());
-        return std::make_shared<RefineSolver>(arguments, *on, *options);
+        return ParseRefineOptions(arguments).map([&](const RefineOptions& o) -> SolverPtr {
+          return std::make_shared<RefineSolver>(arguments, o);
+        });
       },
   };
 }

@@ -6,67 +6,12 @@
 #include <cmath>
 #include <memory>
 
-#include "solvers/barron_loss.h"
+#include "solvers/ceres_parts.h"
+#include "solvers/pair_cost.h"
 #include "solvers/rotation_manifold.h"
-#include "solvers/term_derivatives.h"
 
 namespace sextant {
 namespace {
-
-using RowMajor34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
-
-// The residual of one pair and its derivatives by (dphi, dt), lifted to the quaternion: Ceres
-// multiplies by PlusJacobian, whose left inverse is MinusJacobian.
-template <class Term, int kResiduals>
-class PairCost final : public ceres::SizedCostFunction<kResiduals, 4, 3> {
- public:
-  PairCost(const Term& term, const Camera* camera) : term_(term), camera_(camera) {}
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    const Eigen::Map<const Eigen::Quaterniond> rotation(parameters[0]);
-    const Eigen::Map<const Eigen::Vector3d> translation(parameters[1]);
-    TermDerivatives<kResiduals> at;
-    if (!Differentiate(term_, camera_, rotation.toRotationMatrix(), translation, at)) return false;
-    // Ceres prints numbers that are not finite, but not refusals.
-    const Eigen::Matrix<double, kResiduals, 6> jacobian = at.Jacobian();
-    if (!at.residual.allFinite() || !jacobian.allFinite()) return false;
-    Eigen::Map<Eigen::Matrix<double, kResiduals, 1>> residual(residuals);
-    residual = at.residual;
-    if (jacobians == nullptr) return true;
-    if (jacobians[0] != nullptr) {
-      RowMajor34 lift;
-      RotationManifold().MinusJacobian(parameters[0], lift.data());
-      Eigen::Map<Eigen::Matrix<double, kResiduals, 4, Eigen::RowMajor>> by_rotation(jacobians[0]);
-      by_rotation = jacobian.template leftCols<3>() * lift;
-    }
-    if (jacobians[1] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, kResiduals, 3, Eigen::RowMajor>> by_shift(jacobians[1]);
-      by_shift = jacobian.template rightCols<3>();
-    }
-    return true;
-  }
-
- private:
-  Term term_;
-  const Camera* camera_;
-};
-
-ceres::LossFunction* NewLoss(const RobustLoss& loss) {
-  switch (loss.kind) {
-    case LossKind::kNone:
-      return nullptr;
-    case LossKind::kHuber:
-      return new ceres::HuberLoss(loss.scale);
-    case LossKind::kCauchy:
-      return new ceres::CauchyLoss(loss.scale);
-    case LossKind::kTukey:
-      return new ceres::TukeyLoss(loss.scale);
-    case LossKind::kBarron:
-      return new BarronLoss(loss.shape, loss.scale);
-  }
-  return nullptr;
-}
 
 // The problem of one pose; `pose` and `terms` must live as long.
 class PoseProblem {
@@ -94,24 +39,6 @@ class PoseProblem {
   double* rotation_;
   double* translation_;
 };
-
-ceres::Solver::Options OptionsFor(const RefineLimits& limits) {
-  ceres::Solver::Options options;
-  options.max_num_iterations = limits.max_iterations;
-  options.parameter_tolerance = limits.step_tolerance;
-  options.function_tolerance = 0.0;
-  options.gradient_tolerance = 0.0;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.logging_type = ceres::SILENT;
-  options.num_threads = 1;
-  return options;
-}
-
-RefineOutcome OutcomeOf(ceres::TerminationType termination) {
-  if (termination == ceres::CONVERGENCE) return RefineOutcome::kConverged;
-  if (termination == ceres::NO_CONVERGENCE) return RefineOutcome::kMaxIterations;
-  return RefineOutcome::kStalled;
-}
 
 template <int kResiduals, class Term>
 bool AddWeighted(std::span<const Term> terms, const Camera* camera, const ceres::LossFunction* loss,
@@ -151,7 +78,7 @@ RefinedPose RefinePoseWithCeres(const TermsView& terms, const Rigid3d& start,
   }
   PoseProblem pose_problem(terms, refined.cam_from_lidar, loss);
   ceres::Solver::Summary summary;
-  ceres::Solve(OptionsFor(limits), &pose_problem.problem(), &summary);
+  ceres::Solve(CeresOptions(limits), &pose_problem.problem(), &summary);
   refined.iterations = static_cast<int>(summary.iterations.size());
   refined.outcome = OutcomeOf(summary.termination_type);
   SumUp(terms, loss, refined);

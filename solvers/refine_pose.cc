@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/refine_pose.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/invert_information.h"
 #include "solvers/term_derivatives.h"
 
 namespace sextant {
@@ -14,8 +14,6 @@ constexpr double kFirstDamping = 1e-6;
 constexpr double kLargestDamping = 1e12;
 // The cost is a sum of many rounded terms: a rise of this share is no rise.
 constexpr double kCostRounding = 1e-14;
-// Pivots of the unit-diagonal information below this are rounding.
-constexpr double kMinPivot = 1e-13;
 
 struct NormalEquations {
   Matrix6d information;  // J^T J
@@ -148,16 +146,7 @@ RefinedPose RefinePose(const TermsView& terms, const Rigid3d& start, const Refin
 }
 
 std::optional<Matrix6d> InvertInformation(const Matrix6d& information) {
-  const Vector6d scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  if (!scale.allFinite()) return std::nullopt;
-  const Matrix6d unit = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::LDLT<Matrix6d> factor(unit);
-  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > kMinPivot)) {
-    return std::nullopt;
-  }
-  const Matrix6d inverse =
-      scale.asDiagonal() * factor.solve(Matrix6d::Identity()).eval() * scale.asDiagonal();
-  return Matrix6d(0.5 * (inverse + inverse.transpose()));
+  return InvertSymmetric(information);
 }
 
 std::optional<Matrix6d> LeastSquaresCovariance(const PairTerms& terms, const Matrix6d& information,

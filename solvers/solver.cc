@@ -160,7 +160,13 @@ Expected<SolveReport> Solver::Solve(const CalibrationProblem& problem) const {
   static_cast<Estimate&>(report) = std::move(*estimate);
   report.solver = spec_.name;
   report.wall_time_us = std::chrono::duration<double, std::micro>(end - start).count();
-  report.evaluation = Evaluate(problem, report.cam_from_lidar);
+  if (report.camera) {
+    CalibrationProblem with_camera = problem;
+    with_camera.camera = report.camera->camera;
+    report.evaluation = Evaluate(with_camera, report.cam_from_lidar);
+  } else {
+    report.evaluation = Evaluate(problem, report.cam_from_lidar);
+  }
   return report;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "geometry/calibration_problem.h"
+#include "solvers/camera_estimate.h"
 #include "solvers/evaluation.h"
 
 namespace sextant {
@@ -28,6 +29,7 @@ struct SolverSpec {
   DataNeeds needs = {};
   bool estimates_rotation = true;  ///< False: the rotation of the initial pose is taken as given.
   bool is_global = true;           ///< False: finds the optimum near its start only.
+  bool estimates_camera = false;   ///< Its pose goes with another camera than the problem's.
 };
 
 /// Whether it finds all six degrees of freedom from anywhere, unlike baselines and local searches.
@@ -60,6 +62,8 @@ struct Estimate {
   std::vector<int> inliers;
   /// Of (dphi [rad], dt [m]); see Perturb. None where the data leaves no residual to judge by.
   std::optional<Matrix6d> covariance;
+  /// Where the solver estimates the camera too; the covariance of the pose then accounts for it.
+  std::optional<CameraEstimate> camera;
   /// Other poses that explain the data about as well, best first (p3p, ippe).
   std::vector<Rigid3d> alternatives;
   std::vector<Stage> stages;
@@ -68,7 +72,7 @@ struct Estimate {
 struct SolveReport : Estimate {
   std::string solver;
   double wall_time_us = 0.0;
-  Evaluation evaluation;  ///< Of the answer, over all data of the problem.
+  Evaluation evaluation;  ///< Of the answer with its camera, over all data of the problem.
 };
 
 /// A way to find cam_from_lidar. Immutable, deterministic, thread-safe.

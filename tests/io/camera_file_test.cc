@@ -46,6 +46,27 @@ TEST(CameraFile, ZeroOrNoDistortionIsAPinhole) {
   }
 }
 
+TEST(CameraFile, TakesTheCameraOfAProblemFile) {
+  const Expected<Camera> camera = ParseCamera(R"(
+sextant_problem: 1
+camera:
+  model: equidistant
+  width_px: 640
+  fx_px: 600.5
+  fy_px: 601
+  cx_px: 320
+  cy_px: 240
+  distortion: [0.1, 0, 0, 0]
+pairs_3d3d: []
+)",
+                                              "session.yaml");
+  ASSERT_TRUE(camera) << camera.error().message;
+  EXPECT_EQ(camera->model, CameraModel::kEquidistant);
+  EXPECT_EQ(camera->width_px, 640);
+  EXPECT_EQ(camera->fx_px, 600.5);
+  EXPECT_EQ(camera->distortion[0], 0.1);
+}
+
 class BadCameraTest : public testing::TestWithParam<BadText> {};
 
 TEST_P(BadCameraTest, EndsInOneLineThatSaysWhereAndWhat) {
@@ -58,7 +79,9 @@ INSTANTIATE_TEST_SUITE_P(
     Inputs, BadCameraTest,
     testing::Values(
         BadText{"Empty", "", kParse, "c:1: the file is empty"},
-        BadText{"NoCamera", "a: 1", kParse, "expected a camera: camera_matrix, K or fx"},
+        BadText{"NoCamera", "a: 1", kParse, "expected a camera: camera_matrix, K, fx or camera"},
+        BadText{"BlockWithoutFocal", "sextant_problem: 1\ncamera:\n  model: pinhole\n", kParse,
+                "fx_px"},
         BadText{"EightNumbers", "K: [1, 0, 1, 0, 1, 1, 0, 0]", kParse,
                 "c:1: camera matrix: expected 9 numbers, got 8"},
         BadText{"Skew", "K: [600, 2, 320, 0, 600, 240, 0, 0, 1]", kInvalid, "without skew"},

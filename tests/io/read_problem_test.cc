@@ -68,5 +68,13 @@ TEST(ReadProblem, ReadsTheRealPoints) {
   EXPECT_EQ(read->problem.pairs_3d3d.size(), 8U);
 }
 
+TEST(ReadProblem, PointsALogOfAveragesToItsCommand) {
+  const auto read = ParseProblem("1\n0.1\n-0.2\n0.3\n1 0 0\n0 1 0\n0 0 1\n0.03\n", "avg.txt");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, ErrorCode::kParse);
+  EXPECT_THAT(read.error().message, testing::HasSubstr("avg.txt:1: "));
+  EXPECT_THAT(read.error().message, testing::HasSubstr("sextant average"));
+}
+
 }  // namespace
 }  // namespace sextant

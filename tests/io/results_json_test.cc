@@ -23,6 +23,9 @@ SolveReport Report() {
   report.iterations = 3;
   report.inliers = {0, 2};
   report.covariance = Matrix6d::Identity() * 1e-5;
+  report.camera =
+      CameraEstimate{.camera = {.model = CameraModel::kEquidistant, .fx_px = 700.5, .fy_px = 701.0},
+                     .estimated = {{"fx_px", 700.5, 1.5}, {"fy_px", 701.0, std::nullopt}}};
   report.alternatives = {Rigid3d{}};
   report.wall_time_us = 1.25;
   report.evaluation.rmse_m = 0.04;
@@ -47,7 +50,7 @@ TEST(ResultsJson, KeysAreTheContract) {
   const auto& good = json["results"][0];
   const auto& bad = json["results"][1];
   for (const char* key : {"solver", "ok", "error", "error_code", "cam_from_lidar", "covariance",
-                          "rmse_m", "rmse_px", "per_pair_m", "per_pair_px", "inliers",
+                          "camera", "rmse_m", "rmse_px", "per_pair_m", "per_pair_px", "inliers",
                           "alternatives", "iterations", "termination", "wall_time_us"}) {
     EXPECT_TRUE(good.contains(key)) << key;
     EXPECT_TRUE(bad.contains(key)) << key;

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geometry/intrinsics.h"
+
+#include <gtest/gtest.h>
+
+#include "base/random.h"
+
+namespace sextant {
+namespace {
+
+Camera CameraOf(CameraModel model) {
+  Camera camera{.model = model, .fx_px = 700.0, .fy_px = 690.0, .cx_px = 640.0, .cy_px = 360.0};
+  if (model == CameraModel::kBrownConrady) {
+    camera.distortion = {-0.1, 0.02, 1e-3, -2e-3, 0.003, 0.02, 0.01, 0.004};
+  }
+  if (model == CameraModel::kEquidistant) camera.distortion = {0.02, -0.01, 0.003, -0.001};
+  return camera;
+}
+
+class Intrinsics : public testing::TestWithParam<CameraModel> {};
+
+TEST_P(Intrinsics, VectorHoldsTheWholeCamera) {
+  const Camera camera = CameraOf(GetParam());
+  const Camera other{.model = GetParam()};
+  const Camera back = WithIntrinsics(other, IntrinsicsOf(camera));
+  EXPECT_EQ(back.fy_px, camera.fy_px);
+  EXPECT_EQ(back.cy_px, camera.cy_px);
+  EXPECT_EQ(back.distortion, camera.distortion);
+  EXPECT_EQ(IntrinsicName(GetParam(), 1), "fy_px");
+  EXPECT_EQ(IntrinsicName(CameraModel::kBrownConrady, 8), "k3");
+  EXPECT_EQ(IntrinsicName(CameraModel::kEquidistant, 6), "k3");
+}
+
+TEST_P(Intrinsics, DerivativeIsThatOfProject) {
+  const Camera camera = CameraOf(GetParam());
+  const IntrinsicVector numbers = IntrinsicsOf(camera);
+  const int used = GetParam() == CameraModel::kEquidistant ? 8 : kIntrinsicCount;
+  Random random(1);
+  for (int trial = 0; trial < 50; ++trial) {
+    Eigen::Vector3d point;
+    for (int i = 0; i < 3; ++i) point[i] = random.Uniform(-1.0, 1.0);
+    point.z() += 2.5;
+    const auto analytic = PixelByIntrinsics(camera, point);
+    ASSERT_TRUE(analytic);
+    for (int k = 0; k < (GetParam() == CameraModel::kPinhole ? 4 : used); ++k) {
+      const double step = 1e-6 * (1.0 + std::abs(numbers[k]));
+      const auto at = [&](double shift) {
+        return *Project(WithIntrinsics(camera, numbers + shift * IntrinsicVector::Unit(k)), point);
+      };
+      const Eigen::Vector2d numeric = (at(step) - at(-step)) / (2.0 * step);
+      EXPECT_LT((numeric - analytic->col(k)).norm(), 1e-5) << k;
+    }
+  }
+  EXPECT_FALSE(PixelByIntrinsics(camera, {0.0, 0.0, -1.0}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Intrinsics,
+                         testing::Values(CameraModel::kPinhole, CameraModel::kBrownConrady,
+                                         CameraModel::kEquidistant));
+
+}  // namespace
+}  // namespace sextant
