@@ -87,7 +87,7 @@ SolverEntry DltEntry() {
         };
         return std::make_shared<PnpSolver>(
             SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = kMinPoints}}, kernel,
-            PnpCovariance::kDifferences);
+            PnpCovariance::kMoments);
       },
   };
 }

@@ -43,7 +43,8 @@ class DepthKernel {
   /// Depths of the centroid and of each d_k.
   using Depths = Eigen::Matrix<double, kDepths, 1>;
 
-  explicit DepthKernel(const Correspondences& data);
+  /// Candidates are judged by how well they explain the image, or by how near they are to `near`.
+  DepthKernel(const Correspondences& data, const Rigid3d* near);
 
   const Candidate& best() const { return best_; }
 
@@ -65,9 +66,11 @@ class DepthKernel {
   Depths Refined(Depths z) const;
   bool GaussNewtonStep(Depths& z) const;
   std::optional<Candidate> PoseOf(const Depths& z, bool mirrored) const;
+  ImageFit Judge(const Candidate& candidate) const;
   void Consider(const Depths& z);
 
   const Correspondences& data_;
+  const Rigid3d* near_;
   Eigen::Matrix<double, kAxes, 1> deviation_;
   Eigen::Vector2d mean_;  ///< Of the image points.
   // The moments for coordinates in standard deviations.
@@ -84,8 +87,11 @@ class DepthKernel {
 };
 
 template <int kAxes>
-DepthKernel<kAxes>::DepthKernel(const Correspondences& data)
-    : data_(data), deviation_(data.frame.deviation.head<kAxes>()), mean_(data.moments.mean) {
+DepthKernel<kAxes>::DepthKernel(const Correspondences& data, const Rigid3d* near)
+    : data_(data),
+      near_(near),
+      deviation_(data.frame.deviation.head<kAxes>()),
+      mean_(data.moments.mean) {
   Depths whiten;
   whiten << 1.0, deviation_.cwiseInverse();
   const auto whitened = [&whiten](const Eigen::Matrix4d& moment) -> Square {
@@ -217,8 +223,17 @@ std::optional<Candidate> DepthKernel<kAxes>::PoseOf(const Depths& z, bool mirror
   const double x = about_u_.row(0).template tail<kAxes>().dot(d.row(2));
   const double y = about_v_.row(0).template tail<kAxes>().dot(d.row(2));
   candidate.centroid << x + mean_.x() * depth, y + mean_.y() * depth, depth;
-  candidate.fit = FitOf(data_, candidate.rotation, candidate.centroid);
+  candidate.fit = Judge(candidate);
   return candidate;
+}
+
+template <int kAxes>
+ImageFit DepthKernel<kAxes>::Judge(const Candidate& candidate) const {
+  if (near_ == nullptr) return FitOf(data_, candidate.rotation, candidate.centroid);
+  const Eigen::Vector3d centroid = *near_ * data_.frame.centroid;
+  return {.behind = 0,
+          .sum_squares = (candidate.rotation - near_->rotation.toRotationMatrix()).squaredNorm() +
+                         (candidate.centroid - centroid).squaredNorm() / centroid.squaredNorm()};
 }
 
 template <int kAxes>
@@ -295,8 +310,8 @@ double DepthKernel<kAxes>::MirroredSumSquares() const {
 
 /// Tries every start, and gives the error of the best improper rotation.
 template <int kAxes>
-double Search(const Correspondences& data, Candidate& best) {
-  DepthKernel<kAxes> kernel(data);
+double Search(const Correspondences& data, const Rigid3d* near, Candidate& best) {
+  DepthKernel<kAxes> kernel(data, near);
   kernel.SearchFromKernel();
   kernel.SearchFromWeakPerspective();
   if (data.frame.different_count == 4) {
@@ -309,10 +324,21 @@ double Search(const Correspondences& data, Candidate& best) {
   return kernel.MirroredSumSquares();
 }
 
+/// Whether the best candidate is an answer.
+Expected<void> Check(const Correspondences& data, const Candidate& best, double mirrored) {
+  const std::size_t count = data.points.size();
+  const double spread = data.moments.Spread() * static_cast<double>(count);
+  const bool explained = best.fit.behind <= count / 2 && best.fit.sum_squares <= spread;
+  const double error = explained ? best.fit.sum_squares : spread;
+  if (error > MirrorRatio(count) * mirrored + 1e-12 * spread) return MirroredError();
+  if (!explained) return UnexplainedError();
+  return {};
+}
+
 }  // namespace
 
 Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
-                            std::span<const Eigen::Vector3d> points_in_lidar) {
+                            std::span<const Eigen::Vector3d> points_in_lidar, const Rigid3d* near) {
   constexpr std::size_t kMinPoints = 4;
   const Expected<Correspondences> data =
       PrepareCorrespondences(image_points, points_in_lidar, kMinPoints);
@@ -320,16 +346,13 @@ Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
   const PointCloudFrame& frame = data->frame;
   Candidate best;
   double mirrored = std::numeric_limits<double>::infinity();
-  if (!frame.IsPlanar()) mirrored = Search<3>(*data, best);
-  if (frame.deviation.z() < kThin * frame.deviation.x()) Search<2>(*data, best);
-
-  const double spread = data->moments.Spread() * static_cast<double>(points_in_lidar.size());
-  const bool explained =
-      best.fit.behind <= points_in_lidar.size() / 2 && best.fit.sum_squares <= spread;
-  const double error = explained ? best.fit.sum_squares : spread;
-  if (error > MirrorRatio(points_in_lidar.size()) * mirrored + 1e-12 * spread)
-    return MirroredError();
-  if (!explained) return UnexplainedError();
+  if (!frame.IsPlanar()) mirrored = Search<3>(*data, near, best);
+  if (frame.deviation.z() < kThin * frame.deviation.x()) Search<2>(*data, near, best);
+  if (near != nullptr) {
+    best.fit = FitOf(*data, best.rotation, best.centroid);
+  } else if (Expected<void> ok = Check(*data, best, mirrored); !ok) {
+    return tl::unexpected<Error>(std::move(ok.error()));
+  }
   PolishIfExact(*data, best.fit, best.rotation, best.centroid);
   EpnpFit fit;
   fit.cam_from_lidar.rotation = Eigen::Quaterniond(best.rotation).normalized();
@@ -349,11 +372,11 @@ SolverEntry EpnpEntry() {
         return std::make_shared<PnpSolver>(
             SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = 4}},
             [](const PnpInput& input) -> Expected<PnpPoses> {
-              const Expected<EpnpFit> fit = SolveEpnp(input.image_points, input.points);
+              const Expected<EpnpFit> fit = SolveEpnp(input.image_points, input.points, input.near);
               if (!fit) return tl::unexpected<Error>(fit.error());
               return PnpPoses{.poses = {fit->cam_from_lidar}, .count = 1};
             },
-            PnpCovariance::kDifferences);
+            PnpCovariance::kMoments);
       },
   };
 }

@@ -24,7 +24,7 @@ SolverEntry IppeEntry() {
         };
         return std::make_shared<PnpSolver>(
             SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = 4, .points_on_plane = true}},
-            kernel, PnpCovariance::kDifferences);
+            kernel, PnpCovariance::kObjectSpace);
       },
   };
 }

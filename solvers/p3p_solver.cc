@@ -7,14 +7,11 @@
 
 #include "solvers/p3p.h"
 #include "solvers/registry.h"
-#include "solvers/reprojection_covariance.h"
 #include "solvers/residuals.h"
-#include "solvers/subset.h"
+#include "solvers/triple_covariance.h"
 
 namespace sextant {
 namespace {
-
-using Triple = std::array<std::size_t, 3>;
 
 // More points give little: the triples of the outermost five hold one close to the best.
 constexpr std::size_t kMaxCorners = 5;
@@ -97,30 +94,6 @@ TriplePoses SolveTriple(const CalibrationProblem& problem, const Indices& indice
   return found;
 }
 
-// The three pixels fix the pose exactly, so its covariance is that of the least squares through
-// them; in units of the pixel variance where none is stated.
-std::optional<Matrix6d> RelativeCovariance(const CalibrationProblem& problem, const Triple& triple,
-                                           const Rigid3d& pose) {
-  const std::vector<Pair2d3d>& pairs = problem.pairs_2d3d;
-  std::array<Pair2d3d, 3> used = {pairs[triple[0]], pairs[triple[1]], pairs[triple[2]]};
-  for (Pair2d3d& pair : used) {
-    if (!HasKnownNoise(pair)) pair.sigma_px = 1.0;
-  }
-  return ReprojectionCovariance(*problem.camera, used, pose);
-}
-
-// The variance that the error of the pose adds to all projections; infinite where one is missing.
-double ProjectedVariance(const CalibrationProblem& problem, const Matrix6d& covariance,
-                         const Rigid3d& pose) {
-  double sum = 0.0;
-  for (const Pair2d3d& pair : problem.pairs_2d3d) {
-    const auto jacobian = ReprojectionJacobian(*problem.camera, pose, pair);
-    if (!jacobian) return std::numeric_limits<double>::infinity();
-    sum += (*jacobian * covariance * jacobian->transpose()).trace();
-  }
-  return sum;
-}
-
 // The triple whose pixel noise disturbs the projections of all pairs least, at a pose near the
 // answer. It does not look at residuals, so the covariance of its solution stays honest.
 Triple SteadiestTriple(const CalibrationProblem& problem, const std::vector<Triple>& triples,
@@ -128,31 +101,17 @@ Triple SteadiestTriple(const CalibrationProblem& problem, const std::vector<Trip
   Triple best = triples.front();
   double least = std::numeric_limits<double>::infinity();
   for (const Triple& triple : triples) {
-    const auto covariance = RelativeCovariance(problem, triple, near_answer);
+    const Camera& camera = *problem.camera;
+    const std::vector<Pair2d3d>& pairs = problem.pairs_2d3d;
+    const auto covariance = RelativeTripleCovariance(camera, pairs, triple, near_answer);
     if (!covariance) continue;
-    const double variance = ProjectedVariance(problem, *covariance, near_answer);
+    const double variance = ProjectedVariance(camera, pairs, *covariance, near_answer);
     if (variance < least) {
       least = variance;
       best = triple;
     }
   }
   return best;
-}
-
-// Pixels that state no sigma get it from the pairs outside the triple, whose residuals carry the
-// error of the pose besides their own.
-std::optional<Matrix6d> Covariance(const CalibrationProblem& problem, const Triple& triple,
-                                   const Rigid3d& pose) {
-  const std::vector<Pair2d3d>& pairs = problem.pairs_2d3d;
-  const std::optional<Matrix6d> relative = RelativeCovariance(problem, triple, pose);
-  if (!relative || HasKnownNoise(pairs.front())) return relative;
-  if (pairs.size() == 3) return std::nullopt;
-  const auto [unseen, squares] = Misfit(problem, pose);
-  if (unseen > 0) return std::nullopt;
-  // Within the triple the residuals are zero and the projected variance is one a coordinate.
-  const double others = static_cast<double>(pairs.size()) - 3.0;
-  const double expected = 2.0 * others + ProjectedVariance(problem, *relative, pose) - 6.0;
-  return Matrix6d(squares / expected * *relative);
 }
 
 /// Of the outermost pairs, the three that fix the pose best are solved; the others only choose
@@ -180,7 +139,8 @@ class P3pSolver final : public Solver {
     estimate.alternatives.assign(poses.begin() + 1, poses.end());
     estimate.inliers.resize(problem.pairs_2d3d.size());
     std::iota(estimate.inliers.begin(), estimate.inliers.end(), 0);
-    estimate.covariance = Covariance(problem, triple, estimate.cam_from_lidar);
+    estimate.covariance =
+        TripleCovariance(*problem.camera, problem.pairs_2d3d, triple, estimate.cam_from_lidar);
     return estimate;
   }
 

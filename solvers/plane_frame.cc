@@ -88,4 +88,11 @@ Expected<PlaneFrame> FramePlane(std::span<const Eigen::Vector3d> points) {
   return frame;
 }
 
+void FlattenOntoPlane(std::span<Eigen::Vector3d> points) {
+  const Expected<PlaneFrame> frame = FramePlane(points);
+  if (!frame) return;
+  const Eigen::Vector3d normal = frame->axes.col(2);
+  for (Eigen::Vector3d& point : points) point -= normal.dot(point - frame->centroid) * normal;
+}
+
 }  // namespace sextant

@@ -24,4 +24,7 @@ struct PlaneFrame {
 /// measured by a LiDAR are never quite on it, two boards are clearly off.
 Expected<PlaneFrame> FramePlane(std::span<const Eigen::Vector3d> points);
 
+/// Moves every point to the nearest of their plane; nothing where FramePlane finds none.
+void FlattenOntoPlane(std::span<Eigen::Vector3d> points);
+
 }  // namespace sextant

@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "solvers/image_noise.h"
+#include "solvers/moment_covariance.h"
+#include "solvers/object_space_covariance.h"
+#include "solvers/plane_frame.h"
 #include "solvers/reprojection_covariance.h"
 
 namespace sextant {
@@ -37,29 +41,18 @@ Expected<Eigen::Quaterniond> ProjectRays(std::span<const Eigen::Vector3d> rays,
   return cam_from_view;
 }
 
-Expected<PnpPoses> RunKernel(const PnpKernel& kernel, double focal_length_px,
-                             std::span<const Eigen::Vector3d> rays,
-                             std::span<const Eigen::Vector3d> points,
-                             std::span<Eigen::Vector2d> image_points) {
-  const Expected<Eigen::Quaterniond> cam_from_view = ProjectRays(rays, image_points);
-  if (!cam_from_view) return tl::unexpected<Error>(cam_from_view.error());
-  Expected<PnpPoses> found = kernel({image_points, points, focal_length_px});
-  if (!found) return found;
-  for (Rigid3d& pose : found->poses) pose = Rigid3d{*cam_from_view, Eigen::Vector3d::Zero()} * pose;
-  return found;
-}
+/// What the kernel works on, and how the camera is turned from it.
+struct View {
+  Eigen::Quaterniond cam_from_view = Eigen::Quaterniond::Identity();
+  std::vector<Eigen::Vector2d> image_points = {};
+  std::vector<Eigen::Vector3d> points = {};
+};
 
-double FocalLength_px(const Camera& camera) { return 0.5 * (camera.fx_px + camera.fy_px); }
-
-}  // namespace
-
-PnpSolver::PnpSolver(SolverSpec spec, PnpKernel kernel, PnpCovariance covariance)
-    : Solver(std::move(spec)), kernel_(std::move(kernel)), covariance_(covariance) {}
-
-Expected<PnpPoses> PnpSolver::Run(const Camera& camera, std::span<const Pair2d3d> pairs) const {
+Expected<View> MakeView(const Camera& camera, std::span<const Pair2d3d> pairs) {
+  View view;
+  view.image_points.resize(pairs.size());
+  view.points.resize(pairs.size());
   std::vector<Eigen::Vector3d> rays(pairs.size());
-  std::vector<Eigen::Vector3d> points(pairs.size());
-  std::vector<Eigen::Vector2d> image_points(pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const std::optional<Eigen::Vector3d> ray = Unproject(camera, pairs[i].pixel);
     if (!ray) {
@@ -69,18 +62,75 @@ Expected<PnpPoses> PnpSolver::Run(const Camera& camera, std::span<const Pair2d3d
                                    i + 1, pairs.size(), pairs[i].pixel.x(), pairs[i].pixel.y()));
     }
     rays[i] = *ray;
-    points[i] = pairs[i].point_in_lidar;
+    view.points[i] = pairs[i].point_in_lidar;
   }
-  return RunKernel(kernel_, FocalLength_px(camera), rays, points, image_points);
+  const Expected<Eigen::Quaterniond> cam_from_view = ProjectRays(rays, view.image_points);
+  if (!cam_from_view) return tl::unexpected<Error>(cam_from_view.error());
+  view.cam_from_view = *cam_from_view;
+  return view;
 }
 
+Rigid3d Turned(const Eigen::Quaterniond& turn, const Rigid3d& pose) {
+  return Rigid3d{turn, Eigen::Vector3d::Zero()} * pose;
+}
+
+double FocalLength_px(const Camera& camera) { return 0.5 * (camera.fx_px + camera.fy_px); }
+
+/// The covariance through the kernel, whose answer `view_from_lidar` is.
+std::optional<Matrix6d> ThroughMoments(const PnpKernel& kernel, double focal_length_px,
+                                       const View& view,
+                                       std::span<const Eigen::Matrix2d> image_covariances,
+                                       const Rigid3d& view_from_lidar) {
+  const auto estimate = [&](std::span<const Eigen::Vector2d> image) -> std::optional<Rigid3d> {
+    const Expected<PnpPoses> found =
+        kernel({image, view.points, focal_length_px, &view_from_lidar});
+    if (!found) return std::nullopt;
+    // Of several poses, the one that continues the answer.
+    const auto distance = [&](const Rigid3d& pose) {
+      return PoseDifference(pose, view_from_lidar).squaredNorm();
+    };
+    return *std::min_element(
+        found->poses.begin(), found->poses.begin() + found->count,
+        [&](const Rigid3d& a, const Rigid3d& b) { return distance(a) < distance(b); });
+  };
+  return MomentCovariance(view.image_points, image_covariances, view.points, estimate);
+}
+
+/// In the camera's frame; the view that the kernel worked in is taken as given.
+std::optional<Matrix6d> KernelCovariance(const PnpKernel& kernel, PnpCovariance kind,
+                                         const Camera& camera, std::span<const Pair2d3d> pairs,
+                                         const View& view, const Rigid3d& cam_from_lidar) {
+  const auto unstated = UnstatedVariance(camera, pairs, cam_from_lidar);
+  if (!unstated) return std::nullopt;
+  const auto image_covariances =
+      ImageCovariances(camera, pairs, view.image_points, view.cam_from_view, *unstated);
+  if (!image_covariances) return std::nullopt;
+  const Rigid3d view_from_lidar = Turned(view.cam_from_view.conjugate(), cam_from_lidar);
+  const std::optional<Matrix6d> in_view =
+      kind == PnpCovariance::kMoments ? ThroughMoments(kernel, FocalLength_px(camera), view,
+                                                       *image_covariances, view_from_lidar)
+                                      : ObjectSpaceCovariance(view.image_points, *image_covariances,
+                                                              view.points, view_from_lidar);
+  if (!in_view) return std::nullopt;
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() =
+      view.cam_from_view.toRotationMatrix();
+  return Matrix6d(turn * *in_view * turn.transpose());
+}
+
+}  // namespace
+
+PnpSolver::PnpSolver(SolverSpec spec, PnpKernel kernel, PnpCovariance covariance)
+    : Solver(std::move(spec)), kernel_(std::move(kernel)), covariance_(covariance) {}
+
 Expected<Estimate> PnpSolver::DoSolve(const CalibrationProblem& problem) const {
+  const Camera& camera = *problem.camera;
   const std::vector<Pair2d3d>& pairs = problem.pairs_2d3d;
-  Expected<PnpPoses> found = Run(*problem.camera, pairs);
-  if (!found) {
-    found.error().message = spec().name + ": " + found.error().message;
-    return tl::unexpected<Error>(std::move(found.error()));
-  }
+  Expected<View> view = MakeView(camera, pairs);
+  if (!view) return tl::unexpected<Error>(Named(view.error()));
+  Expected<PnpPoses> found = kernel_({view->image_points, view->points, FocalLength_px(camera)});
+  if (!found) return tl::unexpected<Error>(Named(found.error()));
+  for (Rigid3d& pose : found->poses) pose = Turned(view->cam_from_view, pose);
   Estimate estimate;
   estimate.cam_from_lidar = found->poses[0];
   estimate.alternatives.assign(found->poses.begin() + 1, found->poses.begin() + found->count);
@@ -90,29 +140,23 @@ Expected<Estimate> PnpSolver::DoSolve(const CalibrationProblem& problem) const {
     estimate.inliers.resize(pairs.size());
     std::iota(estimate.inliers.begin(), estimate.inliers.end(), 0);
   }
-  estimate.covariance = Covariance(*problem.camera, pairs, estimate);
+  const Rigid3d& pose = estimate.cam_from_lidar;
+  if (covariance_ == PnpCovariance::kTriple) {
+    estimate.covariance = TripleCovariance(camera, pairs, found->fixed_by.value(), pose);
+  } else if (covariance_ == PnpCovariance::kLeastSquares) {
+    std::vector<Pair2d3d> used;
+    for (const int i : estimate.inliers) used.push_back(pairs[static_cast<std::size_t>(i)]);
+    estimate.covariance = ReprojectionCovariance(camera, used, pose);
+  } else {
+    if (spec().needs.points_on_plane) FlattenOntoPlane(view->points);
+    estimate.covariance = KernelCovariance(kernel_, covariance_, camera, pairs, *view, pose);
+  }
   return estimate;
 }
 
-std::optional<Matrix6d> PnpSolver::Covariance(const Camera& camera, std::span<const Pair2d3d> pairs,
-                                              const Estimate& estimate) const {
-  if (covariance_ == PnpCovariance::kLeastSquares) {
-    std::vector<Pair2d3d> used;
-    for (const int i : estimate.inliers) used.push_back(pairs[static_cast<std::size_t>(i)]);
-    return ReprojectionCovariance(camera, used, estimate.cam_from_lidar);
-  }
-  const auto solve = [&](std::span<const Pair2d3d> disturbed) -> std::optional<Rigid3d> {
-    const Expected<PnpPoses> found = Run(camera, disturbed);
-    if (!found) return std::nullopt;
-    // Of several poses, the one that continues the answer.
-    const auto distance = [&](const Rigid3d& pose) {
-      return PoseDifference(pose, estimate.cam_from_lidar).squaredNorm();
-    };
-    return *std::min_element(
-        found->poses.begin(), found->poses.begin() + found->count,
-        [&](const Rigid3d& a, const Rigid3d& b) { return distance(a) < distance(b); });
-  };
-  return PropagateByDifferences(camera, pairs, estimate.cam_from_lidar, solve);
+Error PnpSolver::Named(Error error) const {
+  error.message = spec().name + ": " + error.message;
+  return error;
 }
 
 void PnpSolver::DoHypothesize(const CalibrationProblem& problem, std::span<const int> sample,
@@ -122,14 +166,19 @@ void PnpSolver::DoHypothesize(const CalibrationProblem& problem, std::span<const
   const auto pair = [&](std::size_t i) -> const Pair2d3d& {
     return problem.pairs_2d3d[static_cast<std::size_t>(sample[i])];
   };
-  const auto append = [&poses](const Expected<PnpPoses>& found) {
-    if (!found) return;
-    poses.insert(poses.end(), found->poses.begin(), found->poses.begin() + found->count);
+  const auto append = [&](std::span<const Eigen::Vector2d> image_points,
+                          std::span<const Eigen::Vector3d> points,
+                          const Eigen::Quaterniond& cam_from_view) {
+    const Expected<PnpPoses> found = kernel_({image_points, points, FocalLength_px(camera)});
+    for (int i = 0; found && i < found->count; ++i) {
+      poses.push_back(Turned(cam_from_view, found->poses[static_cast<std::size_t>(i)]));
+    }
   };
   if (sample.size() > kMostOnStack) {
     std::vector<Pair2d3d> pairs;
     for (std::size_t i = 0; i < sample.size(); ++i) pairs.push_back(pair(i));
-    append(Run(camera, pairs));
+    const Expected<View> view = MakeView(camera, pairs);
+    if (view) append(view->image_points, view->points, view->cam_from_view);
     return;
   }
   std::array<Eigen::Vector3d, kMostOnStack> rays;
@@ -141,9 +190,9 @@ void PnpSolver::DoHypothesize(const CalibrationProblem& problem, std::span<const
     rays[i] = *ray;
     points[i] = pair(i).point_in_lidar;
   }
-  append(RunKernel(kernel_, FocalLength_px(camera), std::span(rays).first(sample.size()),
-                   std::span(points).first(sample.size()),
-                   std::span(image_points).first(sample.size())));
+  const std::span<Eigen::Vector2d> image(image_points.data(), sample.size());
+  const auto cam_from_view = ProjectRays(std::span(rays).first(sample.size()), image);
+  if (cam_from_view) append(image, std::span(points).first(sample.size()), *cam_from_view);
 }
 
 }  // namespace sextant

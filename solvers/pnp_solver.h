@@ -4,10 +4,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "solvers/solver.h"
+#include "solvers/triple_covariance.h"
 
 namespace sextant {
 
@@ -16,6 +18,9 @@ struct PnpInput {
   std::span<const Eigen::Vector2d> image_points;  ///< (x/z, y/z).
   std::span<const Eigen::Vector3d> points;        ///< In the LiDAR frame [m].
   double focal_length_px = 1.0;                   ///< Pixels per unit of the image plane.
+  /// A kernel that chooses among candidates takes the nearest to this pose, in place of the best:
+  /// its answer is followed while the image is displaced. Null where the best is wanted.
+  const Rigid3d* near = nullptr;
 };
 
 struct PnpPoses {
@@ -23,14 +28,17 @@ struct PnpPoses {
   int count = 0;
   std::vector<int> inliers = {};  ///< Ascending; empty for all.
   int iterations = 0;
+  std::optional<Triple> fixed_by = {};  ///< Where three pairs fix the poses and others only choose.
 };
 
 using PnpKernel = std::function<Expected<PnpPoses>(const PnpInput&)>;
 
-/// How the covariance of a kernel's answer is found.
+/// What is known of a kernel's answer, which says how its covariance is found.
 enum class PnpCovariance {
-  kDifferences,   ///< Propagated through the kernel: any estimator that is smooth in the pixels.
-  kLeastSquares,  ///< Of the minimum of the reprojection error over the inliers.
+  kObjectSpace,   ///< A minimum of the squares of x - u z, y - v z: ObjectSpaceCovariance.
+  kMoments,       ///< A function of the image's moments: MomentCovariance.
+  kTriple,        ///< Exact on PnpPoses::fixed_by: TripleCovariance.
+  kLeastSquares,  ///< Minimum of the reprojection error over the inliers: ReprojectionCovariance.
 };
 
 /// Any kernel behind the solver interface: pixels become image points by the camera's own model.
@@ -44,10 +52,7 @@ class PnpSolver final : public Solver {
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override;
   void DoHypothesize(const CalibrationProblem& problem, std::span<const int> sample,
                      std::vector<Rigid3d>& poses) const override;
-
-  Expected<PnpPoses> Run(const Camera& camera, std::span<const Pair2d3d> pairs) const;
-  std::optional<Matrix6d> Covariance(const Camera& camera, std::span<const Pair2d3d> pairs,
-                                     const Estimate& estimate) const;
+  Error Named(Error error) const;
 
   PnpKernel kernel_;
   PnpCovariance covariance_;

@@ -299,7 +299,7 @@ SolverEntry SqpnpEntry() {
               if (!fit) return tl::unexpected<Error>(fit.error());
               return PnpPoses{.poses = fit->cam_from_lidar, .count = fit->count};
             },
-            PnpCovariance::kDifferences);
+            PnpCovariance::kObjectSpace);
       },
   };
 }

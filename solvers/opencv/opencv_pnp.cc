@@ -161,7 +161,8 @@ Expected<PnpPoses> SolveOpenCvP3p(const PnpInput& input) {
   const Expected<Correspondences> data =
       PrepareCorrespondences(input.image_points, input.points, 3);
   if (!data) return tl::unexpected<Error>(data.error());
-  const OpenCvPairs pairs = ToOpenCv(input, WidestTriangle(*data));
+  const Triple triangle = WidestTriangle(*data);
+  const OpenCvPairs pairs = ToOpenCv(input, triangle);
   std::vector<cv::Mat> rotation_vectors;
   std::vector<cv::Mat> translations;
   const Expected<void> ran = Guard([&] {
@@ -169,7 +170,9 @@ Expected<PnpPoses> SolveOpenCvP3p(const PnpInput& input) {
                  translations, cv::SOLVEPNP_P3P);
   });
   if (!ran) return tl::unexpected<Error>(ran.error());
-  return Rank(*data, rotation_vectors, translations);
+  Expected<PnpPoses> found = Rank(*data, rotation_vectors, translations);
+  if (found) found->fixed_by = triangle;
+  return found;
 }
 
 Expected<PnpPoses> SolveOpenCvRansacEpnp(const PnpInput& input,

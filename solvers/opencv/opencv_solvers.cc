@@ -63,18 +63,18 @@ void AddOpenCvSolvers(SolverRegistry& registry) {
   const std::string four = "4 or more 2D-3D pairs, not on one line";
   registry.Add(Entry("opencv.epnp", 4, four, "OpenCV's EPnP; fails on planes and on 4 pairs",
                      "Lepetit et al. 2009; cv::solvePnP", OnAllPairs(OpenCvPnp::kEpnp),
-                     PnpCovariance::kDifferences));
+                     PnpCovariance::kMoments));
   registry.Add(Entry("opencv.sqpnp", 3, "3 or more 2D-3D pairs, not on one line",
                      "OpenCV's SQPnP: global least squares in object space",
                      "Terzakis and Lourakis 2020; cv::solvePnP", OnAllPairs(OpenCvPnp::kSqpnp),
-                     PnpCovariance::kDifferences));
+                     PnpCovariance::kObjectSpace));
   registry.Add(Entry("opencv.ippe", 4, "4 or more 2D-3D pairs on one plane, not on one line",
                      "OpenCV's pose from the derivative of a homography, both solutions",
                      "Collins and Bartoli 2014; cv::solvePnPGeneric", OnAllPairs(OpenCvPnp::kIppe),
-                     PnpCovariance::kDifferences));
+                     PnpCovariance::kMoments));
   registry.Add(Entry("opencv.p3p", 3, "3 or more 2D-3D pairs, not on one line",
                      "OpenCV's P3P on the widest triangle of the first four; all pairs choose",
-                     "Gao et al. 2003; cv::solveP3P", SolveOpenCvP3p, PnpCovariance::kDifferences));
+                     "Gao et al. 2003; cv::solveP3P", SolveOpenCvP3p, PnpCovariance::kTriple));
   registry.Add(Entry("opencv.iterative", 4, four,
                      "OpenCV's Levenberg-Marquardt on the reprojection error, from a DLT",
                      "cv::solvePnP", OnAllPairs(OpenCvPnp::kIterative),

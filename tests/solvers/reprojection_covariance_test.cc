@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "base/random.h"
@@ -34,36 +33,6 @@ TEST(ReprojectionJacobian, IsTheDerivativeByThePose) {
   }
 }
 
-// One step of least squares from the truth is an estimator whose covariance is the bound exactly.
-std::optional<Rigid3d> OneStep(const Camera& camera, std::span<const Pair2d3d> pairs,
-                               const Rigid3d& from) {
-  Matrix6d normal = Matrix6d::Zero();
-  Vector6d gradient = Vector6d::Zero();
-  for (const Pair2d3d& pair : pairs) {
-    const Eigen::Matrix<double, 2, 6> jacobian = *ReprojectionJacobian(camera, from, pair);
-    const Eigen::Vector2d residual = pair.pixel - *Project(camera, from * pair.point_in_lidar);
-    normal += jacobian.transpose() * jacobian;
-    gradient += jacobian.transpose() * residual;
-  }
-  return Perturb(from, normal.inverse() * gradient);
-}
-
-TEST(PropagateByDifferences, EqualsTheBoundForLeastSquares) {
-  Random random(2);
-  for (const double sigma_px : {0.3, 2.0}) {
-    Scene scene = MakeScene({.pairs = 10}, random);
-    const Camera& camera = *scene.problem.camera;
-    for (Pair2d3d& pair : scene.problem.pairs_2d3d) pair.sigma_px = sigma_px;
-    const std::vector<Pair2d3d>& pairs = scene.problem.pairs_2d3d;
-    const auto bound = ReprojectionCovariance(camera, pairs, scene.cam_from_lidar);
-    const auto propagated = PropagateByDifferences(
-        camera, pairs, scene.cam_from_lidar,
-        [&](const auto& disturbed) { return OneStep(camera, disturbed, scene.cam_from_lidar); });
-    ASSERT_TRUE(bound && propagated);
-    EXPECT_TRUE(propagated->isApprox(*bound, 1e-5));
-  }
-}
-
 TEST(ReprojectionCovariance, TakesUnstatedNoiseFromTheResiduals) {
   Random random(3);
   Scene scene = MakeScene({.pairs = 500, .sigma_px = 0.7}, random);
@@ -91,10 +60,6 @@ TEST(ReprojectionCovariance, IsNoneWhereNothingCanBeSaid) {
   EXPECT_FALSE(ReprojectionCovariance(camera, std::span(pairs).first(2), pose)) << "singular";
   const Rigid3d away{Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0) * pose.rotation, -pose.translation};
   EXPECT_FALSE(ReprojectionCovariance(camera, pairs, away)) << "behind the camera";
-  const auto fails = [](std::span<const Pair2d3d>) -> std::optional<Rigid3d> {
-    return std::nullopt;
-  };
-  EXPECT_FALSE(PropagateByDifferences(camera, pairs, pose, fails));
 }
 
 }  // namespace
