@@ -105,6 +105,11 @@ int YamlFields::IntegerAt(const YamlNode& map, std::string_view key, int low, in
   return 0;
 }
 
+int YamlFields::IntegerAt(const YamlNode& map, std::string_view key, int low, int high,
+                          int otherwise) {
+  return ok() && map.Find(key) != nullptr ? IntegerAt(map, key, low, high) : otherwise;
+}
+
 std::string YamlFields::TextAt(const YamlNode& map, std::string_view key) {
   const YamlNode& node = Require(map, key);
   if (ok() && node.kind != YamlNode::Kind::kText) {
@@ -134,6 +139,15 @@ std::vector<double> YamlFields::RealList(const YamlNode& node, std::string_view 
   }
   for (const YamlNode& item : node.items) values.push_back(Real(item, name));
   return values;
+}
+
+Eigen::Vector2d YamlFields::Point2At(const YamlNode& map, std::string_view key,
+                                     const Eigen::Vector2d& otherwise) {
+  const YamlNode* found = ok() ? map.Find(key) : nullptr;
+  if (found == nullptr) return otherwise;
+  Eigen::Vector2d point = Eigen::Vector2d::Zero();
+  Reals(*found, key, {point.data(), 2});
+  return point;
 }
 
 Eigen::Vector3d YamlFields::Point(const YamlNode& node, std::string_view name) {

@@ -33,6 +33,7 @@ class YamlFields {
   /// As RealAt; an error below zero.
   double NonNegativeAt(const YamlNode& map, std::string_view key, double otherwise);
   int IntegerAt(const YamlNode& map, std::string_view key, int low, int high);
+  int IntegerAt(const YamlNode& map, std::string_view key, int low, int high, int otherwise);
   std::string TextAt(const YamlNode& map, std::string_view key);
 
   /// A sequence of exactly values.size() numbers.
@@ -40,6 +41,8 @@ class YamlFields {
   /// A sequence of at most `most` numbers.
   std::vector<double> RealList(const YamlNode& node, std::string_view name, std::size_t most);
   Eigen::Vector3d Point(const YamlNode& node, std::string_view name);
+  Eigen::Vector2d Point2At(const YamlNode& map, std::string_view key,
+                           const Eigen::Vector2d& otherwise);
   Eigen::Vector3d PointAt(const YamlNode& map, std::string_view key) {
     return Point(Require(map, key), key);
   }

@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "io/acfr_poses.h"
 #include "io/average_log.h"
+#include "io/board_file.h"
 #include "io/camera_file.h"
 #include "io/marker_files.h"
 #include "io/original_config.h"
@@ -80,6 +81,11 @@ std::vector<Reader> Readers() {
        "[image]\n\nwidth\n640\n\n[camera]\ncamera matrix\n6 0 3\n0 6 2\n0 0 1\n\ndistortion\n0 0 0 "
        "0 0\n",
        RefusalOf(ParseCamera)},
+      {"Boards",
+       "boards:\n  - id: 0\n    top_right_m: 0.6\n    right_bottom_m: 0.8\n    hole: {width_m: "
+       "0.1, height_m: 0.1}\n    tags:\n      - {family: a, id: 1, edge_m: 0.1, "
+       "center_in_board_m: [0.2, 0.2]}\n",
+       RefusalOf(ParseBoards)},
       {"AcfrPoses",
        Repeated("1,2,3\n", 2) + "1,0,4\n2,0,4\n2,1,4\n1,1,4\n" + Repeated("1,2,3\n", 2) +
            "4,1,0\n4,2,0\n4,2,1\n4,1,1\n" + Repeated("1,0,0\n", 7),

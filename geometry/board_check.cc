@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geometry/board_check.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sextant {
+namespace {
+
+using Quad = std::array<Eigen::Vector2d, 4>;
+using Part = BoardFault::Part;
+
+// Files give decimals: parts that touch by their figures may overlap by rounding.
+constexpr double kTouch_m = 1e-9;
+
+Quad Rectangle(const Eigen::Vector2d& center, double width, double height) {
+  const double a = 0.5 * width;
+  const double b = 0.5 * height;
+  return {center + Eigen::Vector2d(-a, -b), center + Eigen::Vector2d(a, -b),
+          center + Eigen::Vector2d(a, b), center + Eigen::Vector2d(-a, b)};
+}
+
+Quad HoleCorners(const BoardHole& hole) {
+  return Rectangle(hole.center_in_board_m, hole.width_m, hole.height_m);
+}
+
+Quad CheckerCorners(const BoardChecker& checker) {
+  return Rectangle(checker.center_in_board_m, (checker.inner_columns + 1) * checker.square_m,
+                   (checker.inner_rows + 1) * checker.square_m);
+}
+
+// Whether an edge of `a` has all of `b` on its outer side: convex shapes that do not overlap have
+// such an edge (separating axis theorem).
+bool HasSeparatingEdge(const Quad& a, const Quad& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Eigen::Vector2d along = (a[(i + 1) % a.size()] - a[i]).normalized();
+    const Eigen::Vector2d outward(along.y(), -along.x());
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector2d& corner : b) {
+      nearest = std::min(nearest, outward.dot(corner - a[i]));
+    }
+    if (nearest >= -kTouch_m) return true;
+  }
+  return false;
+}
+
+bool Overlap(const Quad& a, const Quad& b) {
+  return !HasSeparatingEdge(a, b) && !HasSeparatingEdge(b, a);
+}
+
+bool IsOnBoard(const Board& board, const Quad& part) {
+  return std::all_of(part.begin(), part.end(), [&](const Eigen::Vector2d& corner) {
+    return std::abs(corner.x()) <= 0.5 * board.top_right_m + kTouch_m &&
+           std::abs(corner.y()) <= 0.5 * board.right_bottom_m + kTouch_m;
+  });
+}
+
+bool IsPositive(double size) { return size > 0.0 && std::isfinite(size); }
+
+std::optional<BoardFault> BadSize(Part part, int tag, const char* field, double size) {
+  if (IsPositive(size)) return std::nullopt;
+  return BoardFault{part, tag, field, "expected more than zero, got " + std::to_string(size)};
+}
+
+std::optional<BoardFault> FindSizeFault(const Board& board) {
+  if (auto bad = BadSize(Part::kBoard, 0, "top_right_m", board.top_right_m)) return bad;
+  if (auto bad = BadSize(Part::kBoard, 0, "right_bottom_m", board.right_bottom_m)) return bad;
+  if (!(board.thickness_m >= 0.0) || !std::isfinite(board.thickness_m)) {
+    return BoardFault{Part::kBoard, 0, "thickness_m", "expected zero or more"};
+  }
+  return std::nullopt;
+}
+
+std::optional<BoardFault> FindHoleFault(const Board& board) {
+  const BoardHole& hole = *board.hole;
+  if (auto bad = BadSize(Part::kHole, 0, "width_m", hole.width_m)) return bad;
+  if (auto bad = BadSize(Part::kHole, 0, "height_m", hole.height_m)) return bad;
+  const Eigen::Vector2d room = 0.5 * Eigen::Vector2d(board.top_right_m, board.right_bottom_m) -
+                               0.5 * Eigen::Vector2d(hole.width_m, hole.height_m);
+  const Eigen::Vector2d shift = hole.center_in_board_m.cwiseAbs();
+  if (!(shift.x() < room.x() && shift.y() < room.y())) {
+    return BoardFault{Part::kHole, 0, "", "expected the opening to lie within the board"};
+  }
+  return std::nullopt;
+}
+
+// Of a print that covers `quad`; `what` names it.
+std::optional<BoardFault> FindPlaceFault(const Board& board, Part part, int tag, const Quad& quad) {
+  if (!IsOnBoard(board, quad)) {
+    return BoardFault{part, tag, "center_in_board_m", "it reaches over the board's edge"};
+  }
+  if (board.hole && Overlap(quad, HoleCorners(*board.hole))) {
+    return BoardFault{part, tag, "center_in_board_m", "it reaches into the board's hole"};
+  }
+  return std::nullopt;
+}
+
+std::optional<BoardFault> FindCheckerFault(const Board& board) {
+  const BoardChecker& checker = *board.checker;
+  constexpr int kMostCorners = 1000;
+  const auto is_count = [](int count) { return count >= 2 && count <= kMostCorners; };
+  if (!is_count(checker.inner_columns)) {
+    return BoardFault{Part::kChecker, 0, "inner_columns", "expected 2 to 1000 inner corners"};
+  }
+  if (!is_count(checker.inner_rows)) {
+    return BoardFault{Part::kChecker, 0, "inner_rows", "expected 2 to 1000 inner corners"};
+  }
+  if (auto bad = BadSize(Part::kChecker, 0, "square_m", checker.square_m)) return bad;
+  return FindPlaceFault(board, Part::kChecker, 0, CheckerCorners(checker));
+}
+
+std::optional<BoardFault> FindTagFault(const Board& board, int index) {
+  const BoardTag& tag = board.tags[static_cast<std::size_t>(index)];
+  if (tag.family.empty()) {
+    return BoardFault{Part::kTag, index, "family", "expected the name of a tag family"};
+  }
+  if (tag.id < 0) return BoardFault{Part::kTag, index, "id", "expected zero or more"};
+  if (auto bad = BadSize(Part::kTag, index, "edge_m", tag.edge_m)) return bad;
+  if (!std::isfinite(tag.rotation_rad)) {
+    return BoardFault{Part::kTag, index, "rotation_deg", "expected a finite angle"};
+  }
+  const Quad quad = TagCorners(tag);
+  if (auto bad = FindPlaceFault(board, Part::kTag, index, quad)) return bad;
+  if (board.checker && Overlap(quad, CheckerCorners(*board.checker))) {
+    return BoardFault{Part::kTag, index, "center_in_board_m", "it overlaps the checkerboard"};
+  }
+  for (int other = 0; other < index; ++other) {
+    const BoardTag& before = board.tags[static_cast<std::size_t>(other)];
+    if (before.family == tag.family && before.id == tag.id) {
+      return BoardFault{
+          Part::kTag, index, "id",
+          "the id " + std::to_string(tag.id) + " of " + tag.family +
+              " is on this board a second time; a detector could not tell them apart"};
+    }
+    if (Overlap(quad, TagCorners(before))) {
+      return BoardFault{
+          Part::kTag, index, "center_in_board_m",
+          "it overlaps the tag " + std::to_string(before.id) + " of " + before.family};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::array<Eigen::Vector2d, 4> TagCorners(const BoardTag& tag) {
+  // y points down: a positive angle turns clockwise as seen.
+  const Eigen::Rotation2Dd turn(tag.rotation_rad);
+  Quad corners = Rectangle(Eigen::Vector2d::Zero(), tag.edge_m, tag.edge_m);
+  for (Eigen::Vector2d& corner : corners) corner = tag.center_in_board_m + turn * corner;
+  return corners;
+}
+
+std::optional<BoardFault> FindBoardFault(const Board& board) {
+  if (auto fault = FindSizeFault(board)) return fault;
+  if (board.hole) {
+    if (auto fault = FindHoleFault(board)) return fault;
+  }
+  if (board.checker) {
+    if (auto fault = FindCheckerFault(board)) return fault;
+  }
+  for (int i = 0; i < static_cast<int>(board.tags.size()); ++i) {
+    if (auto fault = FindTagFault(board, i)) return fault;
+  }
+  return std::nullopt;
+}
+
+}  // namespace sextant

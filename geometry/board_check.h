@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "geometry/board.h"
+
+namespace sextant {
+
+/// A contradiction in a board's description: which part and field of it, and what is wrong.
+struct BoardFault {
+  enum class Part { kBoard, kHole, kTag, kChecker };
+
+  Part part = Part::kBoard;
+  int tag = 0;          ///< Into Board::tags, where the part is one.
+  std::string field{};  ///< "edge_m", as the board file names it; empty: the part as a whole.
+  std::string message{};
+};
+
+/// The first fault of a board: sizes that are not positive and finite, a hole or print that is not
+/// wholly on the board, prints that overlap each other or the hole, an id of one family twice.
+/// Touching is no overlap. Whether a family has an id only features/camera knows.
+std::optional<BoardFault> FindBoardFault(const Board& board);
+
+/// Corners of a tag in the board frame [m], clockwise as seen from the tag's own top-left.
+std::array<Eigen::Vector2d, 4> TagCorners(const BoardTag& tag);
+
+}  // namespace sextant

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/board_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "geometry/board_check.h"
+#include "support/bad_text.h"
+#include "support/real_data.h"
+
+namespace sextant {
+namespace {
+
+using test::BadText;
+using testing::HasSubstr;
+
+constexpr ErrorCode kParse = ErrorCode::kParse;
+
+constexpr const char* kHollow = R"(boards:
+  - id: 3
+    name: hollow
+    top_right_m: 0.6
+    right_bottom_m: 0.8
+    thickness_m: 0.005
+    hole: {width_m: 0.3, height_m: 0.4, center_in_board_m: [0.1, 0]}
+    tags:
+      - {family: tag36h11, id: 7, edge_m: 0.1, center_in_board_m: [-0.2, 0.3], rotation_deg: 90}
+      - {family: aruco_original, id: 7, edge_m: 0.1, center_in_board_m: [-0.2, -0.3]}
+  - {id: 4, top_right_m: 0.85, right_bottom_m: 0.61,
+     checker: {inner_columns: 7, inner_rows: 5, square_m: 0.095}}
+)";
+
+TEST(BoardFile, ReadsEveryField) {
+  const Expected<std::vector<Board>> boards = ParseBoards(kHollow, "b.yaml");
+  ASSERT_TRUE(boards) << boards.error().message;
+  ASSERT_EQ(boards->size(), 2U);
+  const Board& board = boards->front();
+  EXPECT_EQ(board.id, 3);
+  EXPECT_EQ(board.name, "hollow");
+  EXPECT_EQ(board.top_right_m, 0.6);
+  EXPECT_EQ(board.right_bottom_m, 0.8);
+  EXPECT_EQ(board.thickness_m, 0.005);
+  ASSERT_TRUE(board.hole);
+  EXPECT_EQ(board.hole->width_m, 0.3);
+  EXPECT_EQ(board.hole->height_m, 0.4);
+  EXPECT_EQ(board.hole->center_in_board_m, Eigen::Vector2d(0.1, 0.0));
+  ASSERT_EQ(board.tags.size(), 2U);
+  EXPECT_EQ(board.tags[0].family, "tag36h11");
+  EXPECT_EQ(board.tags[0].id, 7);
+  EXPECT_EQ(board.tags[0].edge_m, 0.1);
+  EXPECT_EQ(board.tags[0].center_in_board_m, Eigen::Vector2d(-0.2, 0.3));
+  EXPECT_EQ(board.tags[0].rotation_rad, 0.5 * std::numbers::pi);
+  EXPECT_EQ(board.tags[1].rotation_rad, 0.0);
+  ASSERT_TRUE(boards->back().checker);
+  EXPECT_EQ(boards->back().checker->inner_columns, 7);
+  EXPECT_EQ(boards->back().checker->inner_rows, 5);
+  EXPECT_EQ(boards->back().checker->square_m, 0.095);
+}
+
+TEST(BoardFile, ADocumentMayBeOneBoard) {
+  const auto boards = ParseBoards("id: 1\ntop_right_m: 0.5\nright_bottom_m: 0.4\n", "b.yaml");
+  ASSERT_TRUE(boards) << boards.error().message;
+  ASSERT_EQ(boards->size(), 1U);
+  EXPECT_EQ(boards->front().right_bottom_m, 0.4);
+}
+
+TEST(BoardFile, RoundTripsToTheSameText) {
+  auto boards = ParseBoards(kHollow, "b.yaml");
+  ASSERT_TRUE(boards) << boards.error().message;
+  (*boards)[0].name = "it's \"new\": #1\n";
+  (*boards)[0].tags[0].rotation_rad = 1.234;
+  const std::string text = FormatBoards(*boards);
+  const auto again = ParseBoards(text, "again.yaml");
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(FormatBoards(*again), text);
+  EXPECT_EQ(again->front().name, boards->front().name);
+  EXPECT_EQ(again->front().tags[0].rotation_rad, 1.234);
+  EXPECT_EQ(again->front().tags[0].center_in_board_m, boards->front().tags[0].center_in_board_m);
+  EXPECT_EQ(again->back().checker->square_m, 0.095);
+}
+
+class BadBoardTest : public testing::TestWithParam<BadText> {};
+
+TEST_P(BadBoardTest, EndsInOneLineThatSaysWhereAndWhat) {
+  ExpectRefused(ParseBoards(GetParam().text, "b"), GetParam());
+}
+
+// A board of 0.6 x 0.8 m with these lines more.
+std::string With(const std::string& lines) {
+  return "boards:\n  - id: 0\n    top_right_m: 0.6\n    right_bottom_m: 0.8\n" + lines;
+}
+
+std::string Tag(int id, const std::string& center, const std::string& edge = "0.1") {
+  return "      - {family: tag36h11, id: " + std::to_string(id) + ", edge_m: " + edge +
+         ", center_in_board_m: " + center + "}\n";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Inputs, BadBoardTest,
+    testing::Values(
+        BadText{"Empty", "", kParse, "b:1: the file is empty"},
+        BadText{"NoBoards", "boards: []", kParse, "b:1: boards: expected at least one board"},
+        BadText{"UnknownKey", With("    hol: {}\n"), kParse,
+                "b:5: board: unknown key 'hol'; did you mean 'hole'?"},
+        BadText{"UnknownTagKey", With("    tags:\n      - {familie: x}\n"), kParse,
+                "b:6: tag: unknown key 'familie'; did you mean 'family'?"},
+        BadText{"NoId", "boards:\n  - {top_right_m: 1, right_bottom_m: 1}\n", kParse,
+                "b:2: id: expected this key"},
+        BadText{"ZeroSide", "id: 0\ntop_right_m: 0\nright_bottom_m: 1\n", kParse,
+                "b:2: board: top_right_m: expected more than zero"},
+        BadText{"NegativeSide", "id: 0\ntop_right_m: 1\nright_bottom_m: -1\n", kParse,
+                "b:3: board: right_bottom_m: expected more than zero"},
+        BadText{"NotANumber", "id: 0\ntop_right_m: .nan\nright_bottom_m: 1\n",
+                ErrorCode::kNonFinite, "b:2: top_right_m"},
+        BadText{"Thickness", With("    thickness_m: -1\n"), kParse, "b:5: board: thickness_m"},
+        BadText{"HoleWithoutSize", With("    hole: {width_m: 0.0, height_m: 0.1}\n"), kParse,
+                "b:5: hole: width_m: expected more than zero"},
+        BadText{"HoleTooLarge", With("    hole: {width_m: 0.6, height_m: 0.1}\n"), kParse,
+                "b:5: hole: expected the opening to lie within the board"},
+        BadText{"HoleShifted",
+                With("    hole: {width_m: 0.3, height_m: 0.1, center_in_board_m: [0.2, 0]}\n"),
+                kParse, "within the board"},
+        BadText{"TagWithoutSize", With("    tags:\n" + Tag(1, "[0, 0]", "0")), kParse,
+                "b:6: tag 0: edge_m: expected more than zero"},
+        BadText{"TagOffTheBoard", With("    tags:\n" + Tag(1, "[0, 0]") + Tag(2, "[0.26, 0.2]")),
+                kParse, "b:7: tag 1: center_in_board_m: it reaches over the board's edge"},
+        BadText{"TurnedTagOffTheBoard",
+                With("    tags:\n      - {family: a, id: 1, edge_m: 0.59, rotation_deg: 45}\n"),
+                kParse, "over the board's edge"},
+        BadText{"TagInTheHole",
+                With("    hole: {width_m: 0.3, height_m: 0.3}\n    tags:\n" + Tag(1, "[0.1, 0]")),
+                kParse, "b:7: tag 0: center_in_board_m: it reaches into the board's hole"},
+        BadText{"TagsOverlap", With("    tags:\n" + Tag(1, "[0, 0]") + Tag(2, "[0.099, 0.09]")),
+                kParse, "b:7: tag 1: center_in_board_m: it overlaps the tag 1 of tag36h11"},
+        BadText{"TagTwice", With("    tags:\n" + Tag(1, "[0, 0]") + Tag(1, "[0, 0.2]")), kParse,
+                "b:7: tag 1: id: the id 1 of tag36h11 is on this board a second time"},
+        BadText{"TagOverChecker",
+                With("    checker: {inner_columns: 3, inner_rows: 3, square_m: 0.1}\n    tags:\n" +
+                     Tag(1, "[0, 0.2]")),
+                kParse, "it overlaps the checkerboard"},
+        BadText{"CheckerTooLarge",
+                With("    checker: {inner_columns: 6, inner_rows: 3, square_m: 0.1}\n"), kParse,
+                "b:5: checker: center_in_board_m: it reaches over the board's edge"},
+        BadText{"CheckerOfNothing",
+                With("    checker: {inner_columns: 1, inner_rows: 3, square_m: 0.1}\n"), kParse,
+                "b:5: checker: inner_columns: expected 2 to 1000"},
+        BadText{"BoardTwice", With("  - {id: 0, top_right_m: 1, right_bottom_m: 1}\n"), kParse,
+                "b:5: id: the board of line 2 has the id 0 already"},
+        BadText{"TagOnTwoBoards",
+                With("    tags:\n" + Tag(1, "[0, 0]")) +
+                    "  - id: 1\n    top_right_m: 1\n    right_bottom_m: 1\n    tags:\n" +
+                    Tag(1, "[0, 0]"),
+                kParse, "b:11: tag 0: id: the id 1 of 'tag36h11' is on board 0 already"},
+        BadText{"MarkersOfThreeBoards",
+                "3\n" + std::string("48\n46\n4\n5\n20\n48\n46\n4\n5\n20\n") + "48\n46\n4\n5\n20\n",
+                ErrorCode::kInvalidInput, "expected the id of one tag a board, 3 in all, got 2"},
+        BadText{"MarkerLargerThanItsBoard", "2\n48\n46\n4\n5\n20\n48\n46\n4\n5\n43\n",
+                ErrorCode::kInvalidInput, "b: board 2: center_in_board_m: it reaches over"}),
+    [](const auto& bad) { return bad.param.name; });
+
+TEST(BoardFile, TagsMayTouchEachOtherAndTheEdge) {
+  const auto boards = ParseBoards(
+      With("    tags:\n" + Tag(1, "[-0.25, 0]") + Tag(2, "[-0.15, 0]") + Tag(3, "[-0.25, 0.1]")),
+      "b");
+  EXPECT_TRUE(boards) << boards.error().message;
+}
+
+// The order in which the package's session lists the markers' corners on the image: the tag's own
+// top-left is at the board's right corner, and the whole tag towards its left corner.
+TEST(BoardFile, TakesTheOriginalsMarkersWithTheirTags) {
+  SEXTANT_REAL_DATA(path, "dhall/session_2017-05-03/marker_coordinates.txt");
+  const auto boards = ReadBoards(path);
+  ASSERT_TRUE(boards) << boards.error().message;
+  ASSERT_EQ(boards->size(), 2U);
+  EXPECT_EQ((*boards)[0].tags.at(0).id, 26);
+  EXPECT_EQ((*boards)[1].tags.at(0).id, 582);
+  const BoardTag& tag = (*boards)[0].tags.at(0);
+  EXPECT_EQ(tag.family, "aruco_original");
+  EXPECT_NEAR(tag.edge_m, 0.205, 1e-12);
+  // The marker's pose and the board's corners of that session, in the board frame.
+  EXPECT_NEAR(tag.center_in_board_m.x(), -0.0815, 1e-6);
+  EXPECT_NEAR(tag.center_in_board_m.y(), 0.0995, 1e-6);
+  EXPECT_NEAR((*boards)[1].tags.at(0).center_in_board_m.y(), 0.1025, 1e-6);
+  const Eigen::Vector2d own_top_left = TagCorners(tag)[0] - tag.center_in_board_m;
+  EXPECT_NEAR((own_top_left - Eigen::Vector2d(0.1025, -0.1025)).norm(), 0.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace sextant
