@@ -23,6 +23,10 @@ sextant_dependency(nlohmann_json REQUIRED)
 sextant_dependency(OpenCV 4.5 REQUIRED COMPONENTS core imgproc calib3d aruco)
 sextant_dependency(apriltag 3.2 REQUIRED)
 sextant_dependency(TBB REQUIRED)
+# liblzf has no CMake package, only a pkg-config file.
+sextant_dependency(PkgConfig REQUIRED)
+pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)
+string(APPEND SEXTANT_FIND_DEPENDENCIES "pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)\n")
 find_package(CLI11 REQUIRED)
 # The program only: OpenCV maps over a hundred shared objects into a process.
 find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs)

@@ -13,6 +13,7 @@
 #include "io/marker_files.h"
 #include "io/original_config.h"
 #include "io/pairs_csv.h"
+#include "io/pcd_file.h"
 #include "io/points_file.h"
 #include "io/read_problem.h"
 #include "io/results_json.h"
@@ -45,6 +46,16 @@ void PrintTo(const Reader& reader, std::ostream* out) { *out << reader.name; }
 CalibrationProblem SomeProblem() {
   Random random(1);
   return test::MakeScene({.pairs = 4, .sigma_m = 0.01, .sigma_px = 0.5}, random).problem;
+}
+
+PointCloud SomeCloud() {
+  PointCloud cloud;
+  for (int i = 0; i < 20; ++i) {
+    cloud.points.emplace_back(i, 0.1 * i, -i);
+    cloud.intensity.push_back(7.0F);
+    cloud.ring.push_back(static_cast<std::uint16_t>(i));
+  }
+  return cloud;
 }
 
 std::string Repeated(const std::string& piece, int times) {
@@ -86,6 +97,10 @@ std::vector<Reader> Readers() {
        "0.1, height_m: 0.1}\n    tags:\n      - {family: a, id: 1, edge_m: 0.1, "
        "center_in_board_m: [0.2, 0.2]}\n",
        RefusalOf(ParseBoards)},
+      {"PcdAscii", FormatPcd(SomeCloud(), PcdEncoding::kAscii), RefusalOf(ParsePcd)},
+      {"PcdBinary", FormatPcd(SomeCloud(), PcdEncoding::kBinary), RefusalOf(ParsePcd)},
+      {"PcdCompressed", FormatPcd(SomeCloud(), PcdEncoding::kBinaryCompressed),
+       RefusalOf(ParsePcd)},
       {"AcfrPoses",
        Repeated("1,2,3\n", 2) + "1,0,4\n2,0,4\n2,1,4\n1,1,4\n" + Repeated("1,2,3\n", 2) +
            "4,1,0\n4,2,0\n4,2,1\n4,1,1\n" + Repeated("1,0,0\n", 7),
