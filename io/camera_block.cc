@@ -60,4 +60,16 @@ Camera ReadCameraBlock(YamlFields& in, const YamlNode& node) {
   return camera;
 }
 
+void WriteCameraBlock(YamlText& out, const Camera& camera) {
+  out.Line("camera:");
+  out.Line("  model: {}", CameraModelName(camera.model));
+  out.Line("  width_px: {}", camera.width_px);
+  out.Line("  height_px: {}", camera.height_px);
+  out.Line("  fx_px: {}", camera.fx_px);
+  out.Line("  fy_px: {}", camera.fy_px);
+  out.Line("  cx_px: {}", camera.cx_px);
+  out.Line("  cy_px: {}", camera.cy_px);
+  out.Line("  distortion: {}", YamlList(camera.distortion));
+}
+
 }  // namespace sextant

@@ -6,6 +6,7 @@
 
 #include "geometry/camera.h"
 #include "io/yaml_fields.h"
+#include "io/yaml_text.h"
 
 namespace sextant {
 
@@ -18,5 +19,8 @@ std::optional<CameraModel> CameraModelNamed(std::string_view name);
 /// The map with keys model, width_px, height_px, fx_px, fy_px, cx_px, cy_px and distortion;
 /// validated. Errors go to `in`.
 Camera ReadCameraBlock(YamlFields& in, const YamlNode& node);
+
+/// The lines of the block, from "camera:" on.
+void WriteCameraBlock(YamlText& out, const Camera& camera);
 
 }  // namespace sextant

@@ -10,18 +10,6 @@
 namespace sextant {
 namespace {
 
-void WriteCamera(YamlText& out, const Camera& camera) {
-  out.Line("camera:");
-  out.Line("  model: {}", CameraModelName(camera.model));
-  out.Line("  width_px: {}", camera.width_px);
-  out.Line("  height_px: {}", camera.height_px);
-  out.Line("  fx_px: {}", camera.fx_px);
-  out.Line("  fy_px: {}", camera.fy_px);
-  out.Line("  cx_px: {}", camera.cx_px);
-  out.Line("  cy_px: {}", camera.cy_px);
-  out.Line("  distortion: {}", YamlList(camera.distortion));
-}
-
 std::string Id(const PairId& id) {
   return fmt::format("{{view: {}, board: {}, corner: {}}}", id.view, id.board, id.corner);
 }
@@ -56,7 +44,7 @@ std::string FormatProblemYaml(const ProblemFile& file) {
   YamlText out;
   out.Line("sextant_problem: 1");
   if (!file.comment.empty()) out.Line("comment: {}", YamlQuoted(file.comment));
-  if (problem.camera) WriteCamera(out, *problem.camera);
+  if (problem.camera) WriteCameraBlock(out, *problem.camera);
   if (!problem.boards.empty()) out.Line("boards:");
   for (const Board& board : problem.boards) {
     out.Line("  - {{id: {}, top_right_m: {}, right_bottom_m: {}}}", board.id, board.top_right_m,

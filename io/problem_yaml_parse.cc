@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
-
 #include "io/camera_block.h"
-#include "io/number_text.h"
+#include "io/pose_block.h"
 #include "io/problem_yaml.h"
-#include "io/rigid_matrix.h"
 #include "io/text_file.h"
 #include "io/yaml_fields.h"
 
@@ -17,53 +13,6 @@ namespace {
 using Keys = std::vector<std::string>;
 
 constexpr int kMostId = 1'000'000'000;
-
-// Untouched where it is of unit length to rounding, so that a file round-trips to the bit.
-Eigen::Quaterniond ReadQuaternion(YamlFields& in, const YamlNode& node) {
-  std::array<double, 4> wxyz{};
-  in.Reals(node, "quaternion_wxyz", wxyz);
-  const Eigen::Quaterniond rotation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  const double excess = rotation.norm() - 1.0;
-  if (in.ok() && !(std::abs(excess) < 1e-5)) {
-    in.Fail(node.line, "quaternion_wxyz",
-            fmt::format("expected length 1, got {:g}", rotation.norm()));
-  }
-  return std::abs(excess) < 1e-15 ? rotation : rotation.normalized();
-}
-
-Rigid3d ReadMatrix(YamlFields& in, const YamlNode& node) {
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  if (!in.IsSequence(node, "matrix")) return {};
-  if (node.items.size() != 4) {
-    in.Fail(node.line, "matrix", fmt::format("expected 4 rows, got {}", node.items.size()));
-    return {};
-  }
-  for (int i = 0; i < 4; ++i) {
-    Eigen::Vector4d row;
-    in.Reals(node.items[static_cast<std::size_t>(i)], "matrix", {row.data(), 4});
-    matrix.row(i) = row;
-  }
-  const std::optional<Rigid3d> pose = RigidFromMatrix(matrix);
-  if (in.ok() && !pose) {
-    in.Fail(node.line, "matrix", "expected a rotation and a translation over the row 0 0 0 1");
-  }
-  return pose.value_or(Rigid3d{});
-}
-
-Rigid3d ReadPose(YamlFields& in, const YamlNode& node, std::string_view what) {
-  static const Keys kKeys = {"translation_m", "quaternion_wxyz", "matrix"};
-  if (!in.IsMap(node, what, kKeys)) return {};
-  if (const YamlNode* matrix = node.Find("matrix")) {
-    if (node.items.size() > 1) {
-      in.Fail(node.line, what, "expected either matrix or translation_m and quaternion_wxyz");
-    }
-    return ReadMatrix(in, *matrix);
-  }
-  Rigid3d pose;
-  pose.translation = in.PointAt(node, "translation_m");
-  pose.rotation = ReadQuaternion(in, in.Require(node, "quaternion_wxyz"));
-  return pose;
-}
 
 // Board i / 4, corner i mod 4 where the pair names none, as in points.txt.
 PairId ReadId(YamlFields& in, const YamlNode& pair, std::size_t index) {
@@ -168,7 +117,7 @@ Expected<ProblemFile> ParseProblemYaml(std::string_view text, const std::string&
   if (const YamlNode* node = root->Find("camera")) problem.camera = ReadCameraBlock(in, *node);
   if (const YamlNode* node = root->Find("boards")) ReadBoards(in, *node, problem.boards);
   if (const YamlNode* node = root->Find("initial_cam_from_lidar")) {
-    problem.initial_cam_from_lidar = ReadPose(in, *node, "initial_cam_from_lidar");
+    problem.initial_cam_from_lidar = ReadPoseBlock(in, *node, "initial_cam_from_lidar");
   }
   if (const YamlNode* node = root->Find("pairs_3d3d")) ReadPairs3d3d(in, *node, problem.pairs_3d3d);
   if (const YamlNode* node = root->Find("pairs_2d3d")) ReadPairs2d3d(in, *node, problem.pairs_2d3d);
@@ -184,7 +133,7 @@ Expected<ProblemFile> ParseProblemYaml(std::string_view text, const std::string&
     static const Keys kKeys = {"cam_from_lidar"};
     if (in.IsMap(*node, "truth", kKeys)) {
       read.true_cam_from_lidar =
-          ReadPose(in, in.Require(*node, "cam_from_lidar"), "cam_from_lidar");
+          ReadPoseBlock(in, in.Require(*node, "cam_from_lidar"), "cam_from_lidar");
     }
   }
   if (!in.ok()) return in.TakeError();

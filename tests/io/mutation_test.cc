@@ -15,6 +15,7 @@
 #include "io/pairs_csv.h"
 #include "io/pcd_file.h"
 #include "io/points_file.h"
+#include "io/polygon_file.h"
 #include "io/read_problem.h"
 #include "io/results_json.h"
 #include "io/transform_list.h"
@@ -101,6 +102,12 @@ std::vector<Reader> Readers() {
       {"PcdBinary", FormatPcd(SomeCloud(), PcdEncoding::kBinary), RefusalOf(ParsePcd)},
       {"PcdCompressed", FormatPcd(SomeCloud(), PcdEncoding::kBinaryCompressed),
        RefusalOf(ParsePcd)},
+      {"Polygons",
+       "sextant_polygons: 1\ncamera: {model: pinhole, fx_px: 1, fy_px: 1, cx_px: 0, cy_px: 0}\n"
+       "cam_from_lidar:\n  translation_m: [0, 0, 0]\n  quaternion_wxyz: [1, 0, 0, 0]\n"
+       "boards:\n  - id: 0\n    edges:\n      - [[0, 0], [1, 0], [1, 1], [0, 1]]\n"
+       "corners:\n  - {board: 0, corner: 1, pixel: [1, 2]}\nunfinished:\n  - [1, 2]\n",
+       RefusalOf(ParsePolygons)},
       {"AcfrPoses",
        Repeated("1,2,3\n", 2) + "1,0,4\n2,0,4\n2,1,4\n1,1,4\n" + Repeated("1,2,3\n", 2) +
            "4,1,0\n4,2,0\n4,2,1\n4,1,1\n" + Repeated("1,0,0\n", 7),

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+#include "geometry/scan_marks.h"
+
+namespace sextant {
+
+/// Marks of one scan and its photo, drawn by hand: YAML, see docs/formats.md. What is not finished
+/// is read too, so that drawing can go on; who uses the marks looks for what he needs.
+/// Errors: kIo; kParse and kNonFinite with file, line and field: no camera, unknown keys, more than
+/// four edges, a quadrilateral that crosses itself, a board or corner twice.
+Expected<ScanMarks> ReadPolygons(const std::filesystem::path& path);
+Expected<ScanMarks> ParsePolygons(std::string_view text, const std::string& file);
+
+std::string FormatPolygons(const ScanMarks& marks);
+
+}  // namespace sextant
