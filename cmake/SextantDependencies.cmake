@@ -20,7 +20,7 @@ sextant_dependency(Ceres 2.1 REQUIRED)
 sextant_dependency(nanoflann REQUIRED)
 sextant_dependency(yaml-cpp REQUIRED)
 sextant_dependency(nlohmann_json REQUIRED)
-sextant_dependency(OpenCV 4.5 REQUIRED COMPONENTS core imgproc calib3d aruco)
+sextant_dependency(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs calib3d aruco)
 sextant_dependency(apriltag 3.2 REQUIRED)
 sextant_dependency(TBB REQUIRED)
 # liblzf has no CMake package, only a pkg-config file.

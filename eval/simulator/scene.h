@@ -42,6 +42,7 @@ struct SceneWall {
   double width_m = 0.0;   ///< Along x.
   double height_m = 0.0;  ///< Along y.
   Surface surface{};
+  double tile_m = 0.0;  ///< Side of square tiles, every other a little darker; 0: plain.
 };
 
 struct SceneBox {

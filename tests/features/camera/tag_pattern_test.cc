@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/camera/tag_pattern.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <opencv2/aruco.hpp>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "features/camera/apriltag_family.h"
+#include "features/camera/aruco_dictionary.h"
+
+namespace sextant::test {
+namespace {
+
+std::vector<std::uint8_t> ArucoCells(const cv::Ptr<cv::aruco::Dictionary>& dictionary, int id) {
+  cv::Mat marker;
+  cv::aruco::drawMarker(dictionary, id, dictionary->markerSize + 2, marker, 1);
+  std::vector<std::uint8_t> white;
+  for (const std::uint8_t level : cv::Mat_<std::uint8_t>(marker)) white.push_back(level > 127);
+  return white;
+}
+
+std::vector<std::uint8_t> AprilTagCells(apriltag_family_t* family, int id) {
+  const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> image(apriltag_to_image(family, id),
+                                                                 image_u8_destroy);
+  std::vector<std::uint8_t> white;
+  for (int y = 0; y < image->height; ++y) {
+    for (int x = 0; x < image->width; ++x) white.push_back(image->buf[y * image->stride + x] > 127);
+  }
+  return white;
+}
+
+class TagPatternTest : public testing::TestWithParam<std::string> {};
+
+TEST_P(TagPatternTest, IsWhatTheLibraryDraws) {
+  const Expected<int> count = TagCount(GetParam());
+  ASSERT_TRUE(count);
+  for (const int id : {0, *count / 2, *count - 1}) {
+    const Expected<TagPattern> pattern = MakeTagPattern(GetParam(), id);
+    ASSERT_TRUE(pattern);
+    const auto aruco = FindArucoDictionary(GetParam());
+    EXPECT_EQ(pattern->white, aruco ? ArucoCells(*aruco, id)
+                                    : AprilTagCells(MakeAprilTagFamily(GetParam()).get(), id));
+    EXPECT_EQ(pattern->white.size(), static_cast<std::size_t>(pattern->cells * pattern->cells));
+  }
+}
+
+// The square whose corners are reported is the outer border of the ring of one colour that
+// detectors look for: its outermost cells are of one colour, those around it of the other.
+TEST_P(TagPatternTest, ReportsTheSquareBetweenTwoRingsOfOneColourEach) {
+  const TagPattern pattern = *MakeTagPattern(GetParam(), 0);
+  const int first = pattern.edge_first;
+  const int last = first + pattern.edge_cells - 1;
+  EXPECT_EQ(first + last, pattern.cells - 1);
+  const bool inside = pattern.IsWhite(first, first);
+  for (int i = first; i <= last; ++i) {
+    EXPECT_EQ(pattern.IsWhite(first, i), inside);
+    EXPECT_EQ(pattern.IsWhite(last, i), inside);
+    EXPECT_EQ(pattern.IsWhite(i, first), inside);
+    EXPECT_EQ(pattern.IsWhite(i, last), inside);
+  }
+  if (first == 0) {
+    EXPECT_FALSE(inside) << "the board around it is white";
+    return;
+  }
+  for (int i = first - 1; i <= last + 1; ++i) {
+    EXPECT_NE(pattern.IsWhite(first - 1, i), inside);
+    EXPECT_NE(pattern.IsWhite(last + 1, i), inside);
+    EXPECT_NE(pattern.IsWhite(i, first - 1), inside);
+    EXPECT_NE(pattern.IsWhite(i, last + 1), inside);
+  }
+}
+
+TEST_P(TagPatternTest, RefusesIdsThatTheFamilyDoesNotHave) {
+  const int count = *TagCount(GetParam());
+  for (const int id : {-1, count}) {
+    const Expected<TagPattern> pattern = MakeTagPattern(GetParam(), id);
+    ASSERT_FALSE(pattern);
+    EXPECT_EQ(pattern.error().code, ErrorCode::kInvalidInput);
+    EXPECT_THAT(pattern.error().message, testing::HasSubstr(std::to_string(count - 1)));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, TagPatternTest, testing::ValuesIn(TagFamilies()),
+                         [](const auto& family) { return family.param; });
+
+TEST(TagPatternTest, SuggestsTheNearestFamily) {
+  const Expected<TagPattern> pattern = MakeTagPattern("tag36h12", 0);
+  ASSERT_FALSE(pattern);
+  EXPECT_EQ(pattern.error().code, ErrorCode::kUnknownName);
+  EXPECT_THAT(pattern.error().message, testing::HasSubstr("tag36h11"));
+}
+
+}  // namespace
+}  // namespace sextant::test
