@@ -58,15 +58,28 @@ struct LidarModel {
   double aperture_v_m = 0.0;
   double pulse_length_m = 0.0;  ///< Surfaces nearer to each other in range give one return.
 
+  /// A dim spot is measured too far and with more noise: at effective reflectivity (that of the
+  /// surface by the cosine of incidence and the share of the spot) 0 by as much as said here, less
+  /// in proportion up to dim_reflectivity, from where on it is not dim.
+  double dim_bias_m = 0.0;
+  double dim_sigma_m = 0.0;  ///< Sigma at 0; not less than range_sigma_m where dim_* are given.
+  double dim_reflectivity = 0.0;
+
   double detection_range_m = 0.0;       ///< Up to here a surface of detection_reflectivity, seen
   double detection_reflectivity = 0.1;  ///< squarely by the whole spot, always gives a return.
   double dropout = 0.0;                 ///< Probability that any other return is lost.
-  double intensity_scale = 100.0;       ///< Intensity of a white surface seen squarely.
+  /// Probability that one is lost whose spot lies half on black and half on white print; with a
+  /// share s on black it is 4 s (1 - s) times that.
+  double contrast_dropout = 0.0;
+  double intensity_scale = 100.0;  ///< Intensity of a white surface seen squarely.
   double intensity_max = 255.0;
 };
 
-/// Columns of a turn; of a rosette, its points in that time.
+/// Columns of a turn; of a rosette, its points in that time. Requires a valid model.
 int ColumnCount(const LidarModel& model);
+
+/// Errors: kNonFinite and kInvalidInput for a model that nothing could be, naming its field.
+Expected<void> ValidateLidarModel(const LidarModel& model);
 
 /// "vlp16", "hdl32e", "hdl64e", "os1_64", "os1_128", "pandar40p", "livox".
 const std::vector<std::string>& LidarModelNames();

@@ -17,8 +17,8 @@ enum class SceneObject : std::uint8_t { kBoard, kWall, kBox, kCylinder };
 struct PointTruth {
   SceneObject object = SceneObject::kBoard;
   int index = 0;          ///< Into the scene's list of such objects.
-  double spot_share = 1;  ///< Of the beam's spot, the share on that object; 1: no edge in the spot.
-  bool mixed = false;     ///< Its range lies between that object's and another's.
+  double spot_share = 1;  ///< Of the beam's spot, what is on that face of it; 1: no edge in it.
+  bool mixed = false;     ///< Its range lies between that face's and another's.
 };
 
 struct ScanOptions {

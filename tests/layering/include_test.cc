@@ -52,7 +52,7 @@ const std::map<std::string_view, Folders>& OnlyIn() {
        {"solvers/opencv", "features", "features/camera", "features/lidar", "io", "eval",
         "eval/simulator", "bench", "cli", "tests"}},
       {"apriltag", {"features/camera", "bench"}},
-      {"tbb/", {"features", "eval", "eval/simulator", "bench", "cli"}},
+      {"tbb/", {"features", "eval", "eval/simulator", "bench", "cli", "tests"}},
       {"ceres/", {"solvers", "features", "features/camera", "features/lidar", "bench", "tests"}},
       {"yaml-cpp/", {"io", "eval", "tests"}},
       {"nlohmann/", {"io", "eval", "bench", "cli", "tests"}},
