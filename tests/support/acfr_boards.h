@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "eval/simulator/scene.h"
+#include "geometry/point_cloud.h"
+#include "io/acfr_poses.h"
+
+namespace sextant::test {
+
+/// The placements of acfr/cam_lidar_calibration that come with a scan.
+inline constexpr int kAcfrScans[] = {2, 5, 9, 16, 20, 26, 30};
+
+/// A point of a board in a scan.
+struct RingPoint {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  double azimuth_rad = 0.0;
+};
+
+/// A board's points by ring, each ring from its least azimuth.
+using RingPoints = std::map<int, std::vector<RingPoint>>;
+
+/// Points of a real scan's board. The recording's scans are 363 degrees long: where both ends lie
+/// on the board, the second pass over it is left out.
+RingPoints FirstPass(const PointCloud& board);
+
+struct Plane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double rms_m = 0.0;
+};
+
+/// Least squares over the points within 5 cm of it, eight times.
+Plane FitPlane(const RingPoints& board);
+
+/// The placement as a scene in the LiDAR's frame: the board of 610 x 850 mm with its checkerboard
+/// where the stored corners put it, a room's walls 6 m away behind it.
+Scene AcfrScene(const AcfrPose& pose);
+
+}  // namespace sextant::test
