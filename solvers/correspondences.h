@@ -13,6 +13,16 @@
 
 namespace sextant {
 
+/// Which of its candidates an algebraic solver answers with.
+struct PnpChoice {
+  /// The best, though points are behind the camera or their image is not explained: for steps on
+  /// the way to an answer, whose data still holds outliers. Otherwise that is an error.
+  bool unchecked = false;
+  /// The nearest to this pose in place of the best, unchecked: its answer is followed while the
+  /// image is displaced.
+  const Rigid3d* near = nullptr;
+};
+
 /// Points and their images, checked, with what every algebraic solver for them starts from.
 struct Correspondences {
   std::span<const Eigen::Vector2d> image_points;  ///< (x/z, y/z).

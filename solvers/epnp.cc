@@ -338,7 +338,8 @@ Expected<void> Check(const Correspondences& data, const Candidate& best, double 
 }  // namespace
 
 Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
-                            std::span<const Eigen::Vector3d> points_in_lidar, const Rigid3d* near) {
+                            std::span<const Eigen::Vector3d> points_in_lidar,
+                            const PnpChoice& choice) {
   constexpr std::size_t kMinPoints = 4;
   const Expected<Correspondences> data =
       PrepareCorrespondences(image_points, points_in_lidar, kMinPoints);
@@ -346,11 +347,11 @@ Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
   const PointCloudFrame& frame = data->frame;
   Candidate best;
   double mirrored = std::numeric_limits<double>::infinity();
-  if (!frame.IsPlanar()) mirrored = Search<3>(*data, near, best);
-  if (frame.deviation.z() < kThin * frame.deviation.x()) Search<2>(*data, near, best);
-  if (near != nullptr) {
+  if (!frame.IsPlanar()) mirrored = Search<3>(*data, choice.near, best);
+  if (frame.deviation.z() < kThin * frame.deviation.x()) Search<2>(*data, choice.near, best);
+  if (choice.near != nullptr) {
     best.fit = FitOf(*data, best.rotation, best.centroid);
-  } else if (Expected<void> ok = Check(*data, best, mirrored); !ok) {
+  } else if (Expected<void> ok = Check(*data, best, mirrored); !ok && !choice.unchecked) {
     return tl::unexpected<Error>(std::move(ok.error()));
   }
   PolishIfExact(*data, best.fit, best.rotation, best.centroid);
@@ -372,7 +373,8 @@ SolverEntry EpnpEntry() {
         return std::make_shared<PnpSolver>(
             SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = 4}},
             [](const PnpInput& input) -> Expected<PnpPoses> {
-              const Expected<EpnpFit> fit = SolveEpnp(input.image_points, input.points, input.near);
+              const Expected<EpnpFit> fit =
+                  SolveEpnp(input.image_points, input.points, input.choice);
               if (!fit) return tl::unexpected<Error>(fit.error());
               return PnpPoses{.poses = {fit->cam_from_lidar}, .count = 1};
             },

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "geometry/rigid3d.h"
+#include "solvers/correspondences.h"
 
 namespace sextant {
 
@@ -36,11 +37,8 @@ struct EpnpFit {
 /// or too far away for a translation); kMirrored (a mirror image fits far better, see
 /// MirrorRatio, as when all points are behind the camera); kNoConsensus (no pose in front of the
 /// camera fits better than a single image point for all).
-///
-/// With `near` the candidate nearest to that pose is the answer, whatever it explains: the way to
-/// follow one answer while the image is displaced.
 Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
                             std::span<const Eigen::Vector3d> points_in_lidar,
-                            const Rigid3d* near = nullptr);
+                            const PnpChoice& choice = {});
 
 }  // namespace sextant

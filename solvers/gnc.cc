@@ -159,7 +159,13 @@ class GncSolver final : public Solver {
     if (!pose || !spec().estimates_rotation) return pose;
     const PoseScorer squares(terms, std::numeric_limits<double>::max());
     const bool is_better = !before || squares.Cost(*pose) <= squares.Cost(*before);
-    return RefinePose(terms.View(), is_better ? *pose : *before, {}).cam_from_lidar;
+    const Rigid3d& start = is_better ? *pose : *before;
+    // An outlier may put points behind the camera, which least squares cannot begin with.
+    std::vector<int> projected;
+    squares.Inliers(start, projected);
+    PairTerms in_front;
+    in_front.AssignSubset(terms, projected);
+    return RefinePose(in_front.View(), start, {}).cam_from_lidar;
   }
 
   SolverPtr inner_;

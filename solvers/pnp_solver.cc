@@ -83,7 +83,7 @@ std::optional<Matrix6d> ThroughMoments(const PnpKernel& kernel, double focal_len
                                        const Rigid3d& view_from_lidar) {
   const auto estimate = [&](std::span<const Eigen::Vector2d> image) -> std::optional<Rigid3d> {
     const Expected<PnpPoses> found =
-        kernel({image, view.points, focal_length_px, &view_from_lidar});
+        kernel({image, view.points, focal_length_px, {.near = &view_from_lidar}});
     if (!found) return std::nullopt;
     // Of several poses, the one that continues the answer.
     const auto distance = [&](const Rigid3d& pose) {
@@ -169,7 +169,8 @@ void PnpSolver::DoHypothesize(const CalibrationProblem& problem, std::span<const
   const auto append = [&](std::span<const Eigen::Vector2d> image_points,
                           std::span<const Eigen::Vector3d> points,
                           const Eigen::Quaterniond& cam_from_view) {
-    const Expected<PnpPoses> found = kernel_({image_points, points, FocalLength_px(camera)});
+    const Expected<PnpPoses> found =
+        kernel_({image_points, points, FocalLength_px(camera), {.unchecked = true}});
     for (int i = 0; found && i < found->count; ++i) {
       poses.push_back(Turned(cam_from_view, found->poses[static_cast<std::size_t>(i)]));
     }

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "solvers/correspondences.h"
 #include "solvers/solver.h"
 #include "solvers/triple_covariance.h"
 
@@ -18,9 +19,7 @@ struct PnpInput {
   std::span<const Eigen::Vector2d> image_points;  ///< (x/z, y/z).
   std::span<const Eigen::Vector3d> points;        ///< In the LiDAR frame [m].
   double focal_length_px = 1.0;                   ///< Pixels per unit of the image plane.
-  /// A kernel that chooses among candidates takes the nearest to this pose, in place of the best:
-  /// its answer is followed while the image is displaced. Null where the best is wanted.
-  const Rigid3d* near = nullptr;
+  PnpChoice choice = {};                          ///< For kernels that have several candidates.
 };
 
 struct PnpPoses {

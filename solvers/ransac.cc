@@ -179,9 +179,9 @@ class RansacSolver final : public Solver {
   Expected<void> CheckNotMirrored(const CalibrationProblem& problem, const PairTerms& terms) const {
     std::vector<int> all(terms.size());
     std::iota(all.begin(), all.end(), 0);
-    const Expected<Rigid3d> pose = PoseOfSubset(*inner_, problem, terms, all);
-    if (pose || pose.error().code != ErrorCode::kMirrored) return {};
-    return tl::unexpected<Error>(pose.error());
+    const Expected<Estimate> estimate = SolveSubset(*inner_, problem, all);
+    if (estimate || estimate.error().code != ErrorCode::kMirrored) return {};
+    return tl::unexpected<Error>(estimate.error());
   }
 
   Expected<Estimate> Finish(const CalibrationProblem& problem, const PairTerms& terms,

@@ -157,7 +157,8 @@ class Minima {
     const double depth = found_[0].centroid.z();
     return found_[0].cost <= share * data_.moments.Spread() * depth * depth;
   }
-  double best_cost_behind() const { return best_cost_behind_; }
+  /// Whether a pose with the points behind the camera explains the image far better.
+  bool AreMirrored() const;
 
  private:
   void Sort();
@@ -169,6 +170,7 @@ class Minima {
   std::array<Minimum, kMaxSqpnpPoses> found_;
   std::size_t count_ = 0;
   double best_cost_behind_ = kNone;
+  double best_depth_behind_ = 0.0;  ///< Of the centroid, of that minimum.
 };
 
 void Minima::Sort() {
@@ -194,12 +196,24 @@ void Minima::SearchFrom(const Eigen::Matrix3d& start) {
   minimum.fit = FitOf(data_, minimum.rotation * data_.frame.axes.transpose(), minimum.centroid);
   const std::size_t most_behind = data_.points.size() < 5 ? 0 : data_.points.size() / 2;
   if (minimum.fit.behind > most_behind) {
-    best_cost_behind_ = std::min(best_cost_behind_, minimum.cost);
+    if (minimum.cost < best_cost_behind_) {
+      best_cost_behind_ = minimum.cost;
+      best_depth_behind_ = minimum.centroid.z();
+    }
     return;
   }
   if (count_ < found_.size()) ++count_;
   found_[count_ - 1] = minimum;
   Sort();
+}
+
+bool Minima::AreMirrored() const {
+  if (best_cost_behind_ == kNone) return false;
+  // Where no pose in front fits, one image point for all is what there is to compare with.
+  const double single = data_.moments.Spread() * best_depth_behind_ * best_depth_behind_;
+  const double rounding = kRounding * data_.frame.deviation.squaredNorm();
+  return std::min(best_cost(), single) >
+         MirrorRatio(data_.points.size()) * best_cost_behind_ + rounding;
 }
 
 /// Starts from the eigenvectors of omega for the first kColumns columns of the rotation: all three,
@@ -241,7 +255,8 @@ void SearchFromMirrorImage(Minima& minima) {
 }  // namespace
 
 Expected<SqpnpFit> SolveSqpnp(std::span<const Eigen::Vector2d> image_points,
-                              std::span<const Eigen::Vector3d> points_in_lidar) {
+                              std::span<const Eigen::Vector3d> points_in_lidar,
+                              const PnpChoice& choice) {
   constexpr std::size_t kMinPoints = 3;
   const Expected<Correspondences> data =
       PrepareCorrespondences(image_points, points_in_lidar, kMinPoints);
@@ -266,9 +281,10 @@ Expected<SqpnpFit> SolveSqpnp(std::span<const Eigen::Vector2d> image_points,
   }
 
   const double trace = frame.deviation.squaredNorm();
-  const double behind = MirrorRatio(points_in_lidar.size()) * minima.best_cost_behind();
-  if (minima.best_cost() > behind + kRounding * trace) return MirroredError();
-  if (!minima.ExplainImage(1.0)) return UnexplainedError();
+  if (!choice.unchecked) {
+    if (minima.AreMirrored()) return MirroredError();
+    if (!minima.ExplainImage(1.0)) return UnexplainedError();
+  }
   const auto count = static_cast<double>(points_in_lidar.size());
   SqpnpFit fit;
   for (Minimum minimum : minima.found()) {
@@ -281,6 +297,7 @@ Expected<SqpnpFit> SolveSqpnp(std::span<const Eigen::Vector2d> image_points,
     pose.translation = minimum.centroid - pose.rotation * frame.centroid;
     fit.sum_squares[at] = count * minimum.cost;
   }
+  if (fit.count == 0) return UnexplainedError();
   return fit;
 }
 
@@ -295,7 +312,8 @@ SolverEntry SqpnpEntry() {
         return std::make_shared<PnpSolver>(
             SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = 3}},
             [](const PnpInput& input) -> Expected<PnpPoses> {
-              const Expected<SqpnpFit> fit = SolveSqpnp(input.image_points, input.points);
+              const Expected<SqpnpFit> fit =
+                  SolveSqpnp(input.image_points, input.points, input.choice);
               if (!fit) return tl::unexpected<Error>(fit.error());
               return PnpPoses{.poses = fit->cam_from_lidar, .count = fit->count};
             },

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "geometry/rigid3d.h"
+#include "solvers/correspondences.h"
 
 namespace sextant {
 
@@ -40,6 +41,7 @@ struct SqpnpFit {
 /// better, see MirrorRatio); kNoConsensus (no pose in front of the camera fits better than a single
 /// image point for all).
 Expected<SqpnpFit> SolveSqpnp(std::span<const Eigen::Vector2d> image_points,
-                              std::span<const Eigen::Vector3d> points_in_lidar);
+                              std::span<const Eigen::Vector3d> points_in_lidar,
+                              const PnpChoice& choice = {});
 
 }  // namespace sextant

@@ -26,6 +26,7 @@ struct OutlierCase {
   int pairs;
   double share;  ///< Of outliers.
   int trials;
+  double lost_pairs = 2.0;  ///< Share of the error allowed for pairs beyond the threshold.
 };
 
 void PrintTo(const OutlierCase& c, std::ostream* out) { *out << c.spec; }
@@ -67,7 +68,7 @@ TEST_P(Outliers, AnswersNearlyAsWellAsOnTheTrueInliers) {
     oracle_squares += SquaredError(*best, scene.cam_from_lidar, scale);
   }
   const double true_pairs = std::round((1.0 - c.share) * c.pairs);
-  EXPECT_LT(std::sqrt(squares / oracle_squares), 1.0 + 2.0 / true_pairs);
+  EXPECT_LT(std::sqrt(squares / oracle_squares), 1.0 + c.lost_pairs / true_pairs);
 }
 
 std::vector<OutlierCase> OutlierCases() {
@@ -91,6 +92,14 @@ std::vector<OutlierCase> OutlierCases() {
       {"ransac(p3p)", "refine(p3p)", 100, 0.5, 100},
       {"refine(ransac(p3p))", "refine(p3p)", 100, 0.5, 100},
       {"ransac(p3p)", "refine(p3p)", 100, 0.8, 20},
+      {"gnc(epnp)", "refine(epnp)", 20, 0.1, 100},
+      // The graduated cost of pixels settles in minima with a pair less: 120 of 12000 true pairs
+      // are lost here, where ransac loses 97.
+      {"gnc(epnp)", "refine(epnp)", 100, 0.4, 100, 4.0},
+      {"gnc(sqpnp)", "refine(sqpnp)", 20, 0.0, 100},
+      {"gnc(sqpnp)", "refine(sqpnp)", 100, 0.3, 100, 4.0},
+      {"ransac(epnp,sample_size=15,max_iterations=10000,local_optimisation=0,refit=inliers)",
+       "epnp", 20, 0.1, 40},
   };
 }
 
@@ -105,6 +114,34 @@ std::string CaseName(const testing::TestParamInfo<OutlierCase>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Outliers, testing::ValuesIn(OutlierCases()), CaseName);
+
+class Elimination : public testing::TestWithParam<std::string> {};
+
+// The paper's 20 points by hand to 11 and to 8, with four outliers: every pair kept is a true one.
+TEST_P(Elimination, KeepsTruePairsOnly) {
+  const SceneOptions options{.pairs = 20, .sigma_px = 1.0};
+  const Expected<SolverPtr> solver = BuiltinSolvers().Make(GetParam());
+  ASSERT_TRUE(solver) << solver.error().message;
+  for (std::uint64_t trial = 0; trial < 100; ++trial) {
+    Random random(DeriveSeed(3, "elimination", 0, trial));
+    Scene scene = MakeScene(options, random);
+    const std::vector<int> inliers = AddOutliers(0.2, options, random, scene);
+    const Expected<SolveReport> report = (*solver)->Solve(scene.problem);
+    ASSERT_TRUE(report) << "trial " << trial << ": " << report.error().message;
+    EXPECT_TRUE(std::includes(inliers.begin(), inliers.end(), report->inliers.begin(),
+                              report->inliers.end()))
+        << "trial " << trial;
+    const PoseDistance distance = DistanceBetween(report->cam_from_lidar, scene.cam_from_lidar);
+    EXPECT_LT(distance.rotation_rad, 0.05) << "trial " << trial;
+    EXPECT_LT(distance.translation_m, 0.15) << "trial " << trial;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Elimination,
+                         testing::Values("drop_worst(epnp,keep=11)", "drop_worst(epnp,keep=8)"),
+                         [](const auto& spec) {
+                           return spec.param.find("11") != std::string::npos ? "to_11" : "to_8";
+                         });
 
 class NoConsensus : public testing::TestWithParam<std::string> {};
 
@@ -140,7 +177,8 @@ std::string OuterName(const testing::TestParamInfo<std::string>& spec) {
 INSTANTIATE_TEST_SUITE_P(Every, NoConsensus,
                          testing::Values("ransac(kabsch)", "gnc(kabsch)", "clique(kabsch)",
                                          "drop_worst(kabsch)", "ransac(p3p)", "gnc(p3p)",
-                                         "drop_worst(p3p)"),
+                                         "drop_worst(p3p)", "gnc(epnp)", "drop_worst(epnp)",
+                                         "gnc(sqpnp)", "drop_worst(sqpnp)"),
                          OuterName);
 
 }  // namespace
