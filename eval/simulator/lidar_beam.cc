@@ -62,6 +62,7 @@ Expected<LidarBeams> LidarBeams::Make(const Scene& scene, const LidarSpot& spot,
       const double sine = reach / distance;
       coned.cos_half_angle = std::sqrt((1.0 - sine) * (1.0 + sine));
     }
+    coned.rotation = target.target_from_lidar.rotation.toRotationMatrix();
     coned.target = std::move(target);
     beams.targets_.push_back(std::move(coned));
   }
@@ -77,10 +78,14 @@ LidarBeams::Nearest LidarBeams::Place(const LidarRay& ray, double time_s,
   for (const Coned& coned : targets_) {
     if (ray.direction.dot(coned.axis) < coned.cos_half_angle) continue;
     const LidarTarget& target = coned.target;
-    const Rigid3d target_from_lidar = target.TargetFromLidar(world_from_lidar_, time_s);
     Placed candidate{.target = &target,
-                     .rotation = target_from_lidar.rotation.toRotationMatrix(),
-                     .translation = target_from_lidar.translation};
+                     .rotation = coned.rotation,
+                     .translation = target.target_from_lidar.translation};
+    if (target.swinging) {
+      const Rigid3d target_from_lidar = target.TargetFromLidar(world_from_lidar_, time_s);
+      candidate.rotation = target_from_lidar.rotation.toRotationMatrix();
+      candidate.translation = target_from_lidar.translation;
+    }
     const LidarRay in_target = InTarget(candidate, ray);
     const std::optional<double> may_enter = target.MayEnter(in_target, coned.spot_radius_m);
     if (!may_enter) continue;

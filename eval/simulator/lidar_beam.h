@@ -64,6 +64,7 @@ class LidarBeams {
   // A target and the cone about the LiDAR's origin that holds it and half a spot around it.
   struct Coned {
     LidarTarget target;
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // Of target_from_lidar at rest.
     Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
     double cos_half_angle = -1.0;
     double spot_radius_m = 0.0;  // The largest that can matter on it.
