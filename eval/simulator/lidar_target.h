@@ -53,7 +53,14 @@ struct LidarTarget {
   Rigid3d TargetFromLidar(const Rigid3d& world_from_lidar, double time_s) const;
 };
 
-/// Errors: those of BoardPrint::Make.
+/// What a scan needs of a scene: finite poses, positive sizes, at most 10000 objects. Whether it
+/// makes sense for calibration is not asked. Errors: kNonFinite, kInvalidInput, naming the object.
+Expected<void> CheckLidarScene(const Scene& scene);
+
+/// Error: kInvalidInput for a LiDAR inside a box or cylinder, which is named.
+Expected<void> CheckLidarOutside(const Scene& scene, const std::vector<LidarTarget>& targets);
+
+/// Errors: those of the two checks above and of BoardPrint::Make.
 Expected<std::vector<LidarTarget>> MakeLidarTargets(const Scene& scene);
 
 }  // namespace sextant

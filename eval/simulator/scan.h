@@ -47,7 +47,8 @@ struct SimulatedScan {
 /// edges look up to half a spot too wide where there is nothing bright behind them.
 ///
 /// The same scene, model and options give the same bits, whatever the number of threads.
-/// Errors: kInvalidInput and kUnknownName for what the scene or the model cannot be.
+/// Errors, before any beam is cast: those of ValidateLidarModel; kNonFinite, kInvalidInput and
+/// kUnknownName for objects and prints that cannot be, too many objects (10000), a LiDAR inside one.
 Expected<SimulatedScan> SimulateScan(const Scene& scene, const LidarModel& model,
                                      const ScanOptions& options = {});
 
