@@ -9,6 +9,8 @@ namespace sextant {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r\f\v";
+// A line of nothing but commas would take sixteen times its size.
+constexpr std::size_t kMostFields = 1000;
 
 std::string_view Trim(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kBlank);
@@ -37,7 +39,7 @@ bool LineReader::Next() {
     const std::string_view line = TakeLine();
     if (line.empty() || line.starts_with('#')) continue;
     Split(line);
-    return true;
+    return ok();
   }
   return false;
 }
@@ -54,6 +56,10 @@ void LineReader::Split(std::string_view line) {
     const std::size_t end = commas ? line.find(',') : line.find_first_of(kBlank);
     fields_.push_back(Trim(line.substr(0, end)));
     if (end == std::string_view::npos) return;
+    if (fields_.size() == kMostFields) {
+      return Fail(ErrorCode::kParse,
+                  fmt::format("expected at most {} fields in a line", kMostFields));
+    }
     line.remove_prefix(end + 1);
     if (!commas) line = Trim(line);
   }

@@ -10,10 +10,12 @@
 #include "io/average_log.h"
 #include "io/board_file.h"
 #include "io/camera_file.h"
+#include "io/csv_cloud.h"
 #include "io/marker_files.h"
 #include "io/original_config.h"
 #include "io/pairs_csv.h"
 #include "io/pcd_file.h"
+#include "io/ply_file.h"
 #include "io/points_file.h"
 #include "io/polygon_file.h"
 #include "io/read_problem.h"
@@ -112,6 +114,12 @@ std::vector<Reader> Readers() {
        Repeated("1,2,3\n", 2) + "1,0,4\n2,0,4\n2,1,4\n1,1,4\n" + Repeated("1,2,3\n", 2) +
            "4,1,0\n4,2,0\n4,2,1\n4,1,1\n" + Repeated("1,0,0\n", 7),
        RefusalOf(ParseAcfrPoses)},
+      {"CsvCloud", "x,y,z,ring\n" + Repeated("1.25,2.25,3.25,4\n", 4), RefusalOf(ParseCsvCloud)},
+      {"Ply",
+       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+       "float z\nend_header\n" +
+           Repeated("1.25 2.25 3.25\n", 4),
+       RefusalOf(ParsePly)},
   };
 }
 
