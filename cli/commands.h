@@ -56,9 +56,10 @@ struct SimulatePairsOptions {
 };
 
 struct AccuracyOptions {
-  std::string solvers;  ///< Empty: every one that finds a whole pose.
-  int trials = 2000;
+  std::string solvers;  ///< Empty: every one that finds a whole pose; the robust ones for outliers.
+  int trials = 0;       ///< 0: 2000 a condition, or 100 scenes a cell of the study of outliers.
   std::uint64_t seed = 1;
+  bool outliers = false;
   bool markdown = false;
 };
 

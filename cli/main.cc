@@ -140,13 +140,19 @@ void AddAccuracy(CLI::App& app, AccuracyOptions& options) {
   CLI::App& command =
       *app.add_subcommand("accuracy", "Every solver against the Cramer-Rao bound, by simulation");
   command.add_option("--solvers", options.solvers, "Solvers, separated by commas; default: all");
-  command.add_option("--trials", options.trials, "Random scenes a condition")
-      ->check(CLI::Range(1, 100'000'000))
-      ->capture_default_str();
+  command
+      .add_option("--trials", options.trials,
+                  "Random scenes a condition; default: 2000, or 100 with --outliers")
+      ->check(CLI::Range(1, 100'000'000));
   command.add_option("--seed", options.seed, "The same seed gives the same figures")
       ->capture_default_str();
+  command.add_flag("--outliers", options.outliers,
+                   "Instead: how often each finds the pose among 0 to 70 percent of outliers");
   command.add_flag("--markdown", options.markdown, "As a page");
-  command.footer("Example:\n  sextant accuracy --solvers 'epnp,refine(epnp)' --trials 500");
+  command.footer(
+      "Examples:\n"
+      "  sextant accuracy --solvers 'epnp,refine(epnp)' --trials 500\n"
+      "  sextant accuracy --outliers --solvers 'ransac(p3p),gnc(epnp)'");
 }
 
 int Main(int argc, char** argv) {

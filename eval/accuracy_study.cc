@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "eval/bounds.h"
+#include "eval/mismatched_pairs.h"
 
 namespace sextant {
 namespace {
@@ -15,21 +16,6 @@ struct Trial {
   PoseDistance error;
   RmsError bound;
 };
-
-// Pairs beyond the first `inliers` get the LiDAR point of another place in the same box.
-void ReplaceByOutliers(const RandomSceneOptions& options, int inliers, const RandomScene& scene,
-                       Random& random, CalibrationProblem& problem) {
-  const Rigid3d lidar_from_cam = scene.cam_from_lidar.Inverse();
-  for (auto i = static_cast<std::size_t>(inliers); i < problem.pairs_3d3d.size(); ++i) {
-    Eigen::Vector3d in_cam(0.0, 0.0, options.depth_m);
-    for (int axis = 0; axis < 3; ++axis) {
-      in_cam[axis] += random.Uniform(-options.extent_m, options.extent_m);
-    }
-    problem.pairs_3d3d[i].point_in_lidar = lidar_from_cam * in_cam;
-    problem.pairs_2d3d[i].point_in_lidar = problem.pairs_3d3d[i].point_in_lidar;
-  }
-  problem.point_sets = WithholdPairing(problem.pairs_3d3d);
-}
 
 // What the solver may see: its own kind of data and nothing else.
 CalibrationProblem ViewOf(const CalibrationProblem& problem, const SolverSpec& spec) {
@@ -96,19 +82,17 @@ std::vector<AccuracyResult> StudyAccuracy(const AccuracyStudy& study,
                                           const AccuracyCondition& condition,
                                           std::span<const SolverPtr> solvers) {
   const auto count = static_cast<std::size_t>(study.trials);
-  const int inliers =
-      condition.scene.pairs -
-      static_cast<int>(std::lround(condition.outlier_fraction * condition.scene.pairs));
+  const int inliers = InlierCount(condition.scene.pairs, condition.outlier_fraction);
   std::vector<std::vector<Trial>> trials(solvers.size(), std::vector<Trial>(count));
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
     for (std::size_t i = next++; i < count; i = next++) {
       Random random(DeriveSeed(study.seed, condition.name, 0, i));
       const RandomScene scene = MakeRandomScene(condition.scene, random);
-      CalibrationProblem problem = scene.problem;
-      ReplaceByOutliers(condition.scene, inliers, scene, random, problem);
+      RandomScene mismatched = scene;
+      MismatchPairs(condition.scene, inliers, random, mismatched);
       for (std::size_t k = 0; k < solvers.size(); ++k) {
-        trials[k][i] = RunTrial(scene, problem, inliers, *solvers[k]);
+        trials[k][i] = RunTrial(scene, mismatched.problem, inliers, *solvers[k]);
       }
       study.after_trial();
     }

@@ -161,6 +161,15 @@ TEST(Cli, AccuracyStandsBesideTheBound) {
   EXPECT_EQ(RunSextant("accuracy --trials 0").exit_code, 2);
 }
 
+TEST(Cli, AccuracyCountsSuccessesAmongOutliers) {
+  const ProgramRun run =
+      RunSextant("accuracy --outliers --trials 2 --solvers 'ransac(p3p)' --markdown");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("## 100 pairs"), HasSubstr("70 %"),
+                             HasSubstr("refine(epnp), inliers known")));
+  EXPECT_EQ(RunSextant("accuracy --outliers --solvers nonsense").exit_code, 2);
+}
+
 TEST(Cli, DrawsTheResiduals) {
   const std::string session = SimulatedSession();
   const auto plot = TestFolder() / "it's a plot.svg";

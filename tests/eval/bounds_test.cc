@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "solvers/pair_noise.h"
+#include "solvers/refine_ceres.h"
 #include "support/scenes.h"
 
 namespace sextant {
@@ -58,6 +60,64 @@ TEST(CramerRaoBound, BothKindsOfPairsAddTheirInformation) {
   ASSERT_TRUE(both && of_points && of_pixels);
   EXPECT_LT((both->inverse() - of_points->inverse() - of_pixels->inverse()).norm(),
             1e-8 * both->inverse().norm());
+}
+
+// The Fisher information from nothing but Project and the transform, by differences.
+Matrix6d NumericBound(const CalibrationProblem& problem, const Rigid3d& pose) {
+  constexpr double kStep = 1e-5;
+  Matrix6d information = Matrix6d::Zero();
+  for (const Pair3d3d& pair : problem.pairs_3d3d) {
+    Eigen::Matrix<double, 3, 6> by_pose;
+    for (int k = 0; k < 6; ++k) {
+      const Vector6d step = kStep * Vector6d::Unit(k);
+      by_pose.col(k) =
+          (Perturb(pose, step) * pair.point_in_lidar - Perturb(pose, -step) * pair.point_in_lidar) /
+          (2.0 * kStep * pair.sigma_m);
+    }
+    information += by_pose.transpose() * by_pose;
+  }
+  for (const Pair2d3d& pair : problem.pairs_2d3d) {
+    Eigen::Matrix<double, 2, 6> by_pose;
+    for (int k = 0; k < 6; ++k) {
+      const Vector6d step = kStep * Vector6d::Unit(k);
+      by_pose.col(k) = (*Project(*problem.camera, Perturb(pose, step) * pair.point_in_lidar) -
+                        *Project(*problem.camera, Perturb(pose, -step) * pair.point_in_lidar)) /
+                       (2.0 * kStep * pair.sigma_px);
+    }
+    information += by_pose.transpose() * by_pose;
+  }
+  return information.inverse();
+}
+
+// Bound, Ceres and our own least squares state the same covariance, of points, pixels and both, and
+// under distortion.
+TEST(CramerRaoBound, IsWhatCeresAndRefinePoseSayAtTheTruth) {
+  Random random(4);
+  for (const bool distorted : {false, true}) {
+    for (const unsigned kinds : {1U, 2U, 3U}) {
+      RandomScene scene = MakeRandomScene({.pairs = 12, .sigma_m = 0.01, .sigma_px = 0.7}, random);
+      CalibrationProblem& problem = scene.problem;
+      if (distorted) {
+        problem.camera->model = CameraModel::kBrownConrady;
+        problem.camera->distortion = {-0.05, 0.01, 1e-3, -2e-3};
+      }
+      if ((kinds & 1U) == 0U) problem.pairs_3d3d.clear();
+      if ((kinds & 2U) == 0U) problem.pairs_2d3d.clear();
+      const Expected<Matrix6d> bound = CramerRaoBound(problem, scene.cam_from_lidar);
+      ASSERT_TRUE(bound) << bound.error().message;
+      EXPECT_TRUE(bound->isApprox(NumericBound(problem, scene.cam_from_lidar), 1e-6)) << kinds;
+
+      PairTerms terms;
+      terms.Add(problem.pairs_3d3d, {});
+      terms.Add(problem.pairs_2d3d, *problem.camera, {});
+      const std::optional<Matrix6d> ceres = CeresCovariance(terms.View(), scene.cam_from_lidar);
+      ASSERT_TRUE(ceres);
+      EXPECT_TRUE(ceres->isApprox(*bound, 1e-8)) << kinds;
+      const RefinedPose at_truth =
+          RefinePose(terms.View(), scene.cam_from_lidar, {.max_iterations = 1});
+      EXPECT_TRUE(InvertInformation(at_truth.information)->isApprox(*bound, 1e-8)) << kinds;
+    }
+  }
 }
 
 TEST(CramerRaoBound, SaysWhatIsMissing) {

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/outlier_study.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "solvers/registry.h"
+
+namespace sextant {
+namespace {
+
+Contestant Make(const char* spec) { return ContestantOf(*BuiltinSolvers().Make(spec)); }
+
+TEST(OutlierStudy, TellsRobustSolversFromOthers) {
+  const std::vector<Contestant> contestants = {
+      Make("ransac(p3p)"),
+      Make("refine(epnp)"),
+      {"refuses", [](const CalibrationProblem&) { return std::nullopt; }},
+      ContestantThatKnowsInliers(*BuiltinSolvers().Make("refine(epnp)"))};
+  const OutlierStudy study{.scenes = 20, .pairs = {100}, .outlier_fractions = {0.0, 0.5}};
+  const std::vector<OutlierCell> cells = StudyOutliers(study, contestants);
+  ASSERT_EQ(cells.size(), 8U);
+  EXPECT_EQ(cells[0].successes, 20);
+  EXPECT_EQ(cells[1].successes, 20);
+  EXPECT_EQ(cells[2].successes, 20);
+  EXPECT_EQ(cells[3].successes, 0) << "least squares follows the outliers";
+  EXPECT_EQ(cells[5].unanswered, 20);
+  EXPECT_EQ(cells[7].successes, 20);
+  EXPECT_EQ(cells[7].contestant, "refine(epnp), inliers known");
+  const std::string table = OutlierTable(cells, 100).Plain();
+  EXPECT_THAT(table, testing::HasSubstr("50 %"));
+  EXPECT_THAT(table, testing::HasSubstr("0 (20)"));
+}
+
+// The goals that the whole study is held to by bench_outliers, in the cells that matter most.
+TEST(OutlierStudy, RansacMissesNoneAtAHundredPairs) {
+  const std::vector<Contestant> contestants = {Make("refine(ransac(p3p))"), Make("ransac(epnp)")};
+  const OutlierStudy study{.pairs = {100}, .outlier_fractions = {0.0, 0.3, 0.5}};
+  for (const OutlierCell& cell : StudyOutliers(study, contestants)) {
+    EXPECT_EQ(cell.successes, 100) << cell.contestant << " at " << cell.outlier_fraction;
+  }
+}
+
+TEST(OutlierStudy, FiguresDoNotDependOnThreads) {
+  const std::vector<Contestant> contestants = {Make("ransac(p3p)")};
+  OutlierStudy study{.scenes = 30, .threads = 1, .pairs = {20}, .outlier_fractions = {0.6}};
+  const int alone = StudyOutliers(study, contestants).front().successes;
+  study.threads = 3;
+  EXPECT_EQ(StudyOutliers(study, contestants).front().successes, alone);
+}
+
+}  // namespace
+}  // namespace sextant
