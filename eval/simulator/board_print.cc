@@ -6,37 +6,10 @@
 #include <cmath>
 #include <optional>
 
+#include "geometry/board_check.h"
+
 namespace sextant {
 namespace {
-
-bool IsPositive(double length_m) { return std::isfinite(length_m) && length_m > 0.0; }
-
-Expected<void> CheckTag(const Board& board, const BoardTag& tag) {
-  if (IsPositive(tag.edge_m) && tag.center_in_board_m.allFinite() &&
-      std::isfinite(tag.rotation_rad)) {
-    return {};
-  }
-  return MakeError(ErrorCode::kInvalidInput,
-                   fmt::format("board {}: tag {} of {} has a side of {} m at ({}, {}) m turned by "
-                               "{} rad; expected a positive side and finite numbers",
-                               board.id, tag.id, tag.family, tag.edge_m, tag.center_in_board_m.x(),
-                               tag.center_in_board_m.y(), tag.rotation_rad));
-}
-
-Expected<void> CheckChecker(const Board& board, const BoardChecker& checker) {
-  constexpr int kMaxInner = 1000;
-  const auto is_count = [](int count) { return count >= 1 && count <= kMaxInner; };
-  if (is_count(checker.inner_columns) && is_count(checker.inner_rows) &&
-      IsPositive(checker.square_m) && checker.center_in_board_m.allFinite()) {
-    return {};
-  }
-  return MakeError(
-      ErrorCode::kInvalidInput,
-      fmt::format("board {}: checkerboard of {} x {} inner corners and squares of {} m; expected 1 "
-                  "to {} inner corners each way and a positive square",
-                  board.id, checker.inner_columns, checker.inner_rows, checker.square_m,
-                  kMaxInner));
-}
 
 // The index of the cell of a row of `count` cells, from 0; none outside.
 std::optional<int> CellAlong(double offset_m, double cell_m, int count) {
@@ -48,9 +21,13 @@ std::optional<int> CellAlong(double offset_m, double cell_m, int count) {
 }  // namespace
 
 Expected<BoardPrint> BoardPrint::Make(const Board& board) {
+  if (const std::optional<BoardFault> fault = FindBoardFault(board)) {
+    return MakeError(ErrorCode::kInvalidInput,
+                     fmt::format("board {}{}{}: {}", board.id, fault->field.empty() ? "" : ": ",
+                                 fault->field, fault->message));
+  }
   BoardPrint print;
   for (const BoardTag& tag : board.tags) {
-    if (const Expected<void> ok = CheckTag(board, tag); !ok) return tl::unexpected(ok.error());
     Expected<TagPattern> pattern = MakeTagPattern(tag.family, tag.id);
     if (!pattern) {
       return MakeError(pattern.error().code,
@@ -63,11 +40,7 @@ Expected<BoardPrint> BoardPrint::Make(const Board& board) {
          .tag_x_in_board = {std::cos(tag.rotation_rad), std::sin(tag.rotation_rad)},
          .cell_m = cell_m});
   }
-  if (board.checker) {
-    const Expected<void> ok = CheckChecker(board, *board.checker);
-    if (!ok) return tl::unexpected(ok.error());
-    print.checker_ = *board.checker;
-  }
+  if (board.checker) print.checker_ = *board.checker;
   return print;
 }
 

@@ -22,12 +22,11 @@ struct PrintCell {
 ///
 /// A tag's cells are its detector library's, scaled so that the square whose corners the detector
 /// reports has sides of `edge_m`; some families print beyond it. The checkerboard has
-/// (inner_columns + 1) x (inner_rows + 1) squares, black at the top-left. Where prints overlap, the
-/// first tag wins.
+/// (inner_columns + 1) x (inner_rows + 1) squares, black at the top-left.
 class BoardPrint {
  public:
-  /// Errors: kUnknownName for a tag family; kInvalidInput for an id that the family does not have,
-  /// a side that is not positive and a checkerboard without squares. Messages name the board.
+  /// Errors: kUnknownName for a tag family; kInvalidInput for an id that the family does not have
+  /// and for what FindBoardFault() finds. Messages name the board.
   static Expected<BoardPrint> Make(const Board& board);
 
   /// The outline and the hole are not looked at. Point: board frame, m.

@@ -122,11 +122,9 @@ Expected<CameraView> CameraView::Make(const Scene& scene, const Rigid3d& world_f
   Expected<void> ok = CheckPlace("the camera", world_from_cam, {1.0});
   for (const SceneBoard& board : scene.boards) {
     if (!ok) break;
-    const Board& outline = board.board;
     const Rigid3d world_from_board = BoardPoseAt(board, time_s);
-    ok = CheckPlace(fmt::format("board {}", outline.id), world_from_board,
-                    {outline.top_right_m, outline.right_bottom_m});
-    Expected<BoardPrint> print = BoardPrint::Make(outline);
+    ok = CheckPlace(fmt::format("board {}", board.board.id), world_from_board, {1.0});
+    Expected<BoardPrint> print = BoardPrint::Make(board.board);
     if (ok && !print) return tl::unexpected(print.error());
     if (ok) add(BoardFace(frame, board, world_from_board, *std::move(print)));
   }

@@ -11,8 +11,9 @@ namespace sextant {
 
 /// What a camera adds to the light that reaches its pixels.
 
-/// Convolves a CV_32F image with a Gaussian of `sigma_px`, cut at 4 sigma and normalised; beyond
-/// the border the image goes on as its last pixel. Rows in parallel, the same bits always.
+/// Convolves a CV_32F image with samples of a Gaussian, cut beyond 4 sigma, that sum to 1 and have
+/// the variance sigma_px^2; beyond the border the image goes on as its last pixel. Rows in
+/// parallel, the same bits always.
 cv::Mat BlurGaussian(const cv::Mat& image, double sigma_px);
 
 /// Multiplies by 1 - share r^2 / R^2: r from the principal point, R the farthest image corner's.

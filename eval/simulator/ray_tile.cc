@@ -8,7 +8,7 @@
 namespace sextant {
 namespace {
 
-constexpr int kNodes = 6;
+constexpr int kNodes = 8;
 
 using Weights = std::array<std::array<double, kNodes>, RayTile::kCorners>;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -17,22 +18,49 @@ struct SquareSample {
 
 inline bool SameRadiance(double a, double b) { return std::abs(a - b) < 1e-12; }
 
-/// The mean of a unit square that one straight edge cuts into two even parts, exactly: the edge's
-/// ends on the square's border by bisection, then the area of the polygon. Corners clockwise from
-/// (0, 0): (0, 0), (1, 0), (1, 1), (0, 1). None where the corners or the samples within do not look
-/// like that.
+/// The straight line that cuts a unit square in two parts, by what its corners show.
+struct SquareCut {
+  std::array<Eigen::Vector2d, 2> ends;  ///< On the border, the part of corner 0 on the left.
+  double first_share = 0.0;             ///< Area of the part of corner 0.
+  double first = 0.0;                   ///< Radiance of that part.
+  double second = 0.0;                  ///< Of the other.
+
+  /// Whether a sample is what the cut says, or too near to it to tell.
+  bool Explains(const SquareSample& sample) const {
+    constexpr double kNear = 0.01;
+    const Eigen::Vector2d along = (ends[1] - ends[0]).normalized();
+    const Eigen::Vector2d offset = sample.at - ends[0];
+    const double beyond = along.x() * offset.y() - along.y() * offset.x();
+    return std::abs(beyond) < kNear || SameRadiance(sample.radiance, beyond > 0.0 ? first : second);
+  }
+};
+
+/// The place of the change between two points of different radiance, by bisection.
 template <class RadianceAt>
-std::optional<double> MeanAcrossStraightEdge(const std::array<double, 4>& corners,
-                                             std::span<const SquareSample> within,
-                                             const RadianceAt& radiance_at) {
+Eigen::Vector2d FindChange(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                           double radiance_from, const RadianceAt& radiance_at) {
+  constexpr int kHalvings = 20;
+  double low = 0.0;
+  double high = 1.0;
+  for (int step = 0; step < kHalvings; ++step) {
+    const double middle = 0.5 * (low + high);
+    const Eigen::Vector2d at = (1.0 - middle) * from + middle * to;
+    (SameRadiance(radiance_at(at), radiance_from) ? low : high) = middle;
+  }
+  const double middle = 0.5 * (low + high);
+  return (1.0 - middle) * from + middle * to;
+}
+
+/// Corners in the order (0, 0), (1, 0), (1, 1), (0, 1). None where they do not show two parts that
+/// one line separates.
+template <class RadianceAt>
+std::optional<SquareCut> FindSquareCut(const std::array<double, 4>& corners,
+                                       const RadianceAt& radiance_at) {
   static const std::array<Eigen::Vector2d, 4> places = {
       Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 0), Eigen::Vector2d(1, 1), Eigen::Vector2d(0, 1)};
-  constexpr int kHalvings = 20;
-  constexpr double kNearEdge = 0.01;
-  std::optional<double> other;
-  std::array<Eigen::Vector2d, 2> ends;  // Of the edge, with the first part on its left.
-  std::size_t count = 0;
-  double doubled_area = 0.0;  // Of the part with corner 0, by the shoelace formula.
+  SquareCut cut{.ends = {places[0], places[0]}, .first = corners[0], .second = corners[0]};
+  std::size_t changes = 0;
+  double doubled_area = 0.0;  // Of the first part, by the shoelace formula.
   Eigen::Vector2d last = places[0];
   const auto add_vertex = [&](const Eigen::Vector2d& vertex) {
     doubled_area += last.x() * vertex.y() - last.y() * vertex.x();
@@ -41,35 +69,32 @@ std::optional<double> MeanAcrossStraightEdge(const std::array<double, 4>& corner
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t next = (i + 1) % 4;
     const bool is_first = SameRadiance(corners[i], corners[0]);
-    const bool is_next_first = SameRadiance(corners[next], corners[0]);
-    if (!is_first && !SameRadiance(corners[i], other.value_or(corners[i]))) return std::nullopt;
-    if (!is_first) other = corners[i];
     if (is_first) add_vertex(places[i]);
-    if (is_first == is_next_first) continue;
-    if (count == 2) return std::nullopt;
-    double low = 0.0;
-    double high = 1.0;
-    for (int step = 0; step < kHalvings; ++step) {
-      const double middle = 0.5 * (low + high);
-      const double radiance = radiance_at((1.0 - middle) * places[i] + middle * places[next]);
-      (SameRadiance(radiance, corners[i]) ? low : high) = middle;
-    }
-    const double crossing = 0.5 * (low + high);
-    ends[count] = (1.0 - crossing) * places[i] + crossing * places[next];
-    add_vertex(ends[count]);
-    ++count;
+    if (!is_first && SameRadiance(cut.second, cut.first)) cut.second = corners[i];
+    if (!is_first && !SameRadiance(corners[i], cut.second)) return std::nullopt;
+    if (is_first == SameRadiance(corners[next], corners[0])) continue;
+    if (changes == 2) return std::nullopt;
+    cut.ends[changes] = FindChange(places[i], places[next], corners[i], radiance_at);
+    add_vertex(cut.ends[changes]);
+    ++changes;
   }
-  if (count != 2) return std::nullopt;
-  add_vertex(places[0]);
-  const Eigen::Vector2d along = (ends[1] - ends[0]).normalized();
-  for (const SquareSample& sample : within) {
-    const Eigen::Vector2d offset = sample.at - ends[0];
-    const double beyond = along.x() * offset.y() - along.y() * offset.x();
-    if (std::abs(beyond) < kNearEdge) continue;
-    if (!SameRadiance(sample.radiance, beyond > 0.0 ? corners[0] : *other)) return std::nullopt;
+  if (changes != 2) return std::nullopt;
+  cut.first_share = 0.5 * doubled_area;
+  return cut;
+}
+
+/// The mean of a unit square that one straight edge cuts into two even parts, exactly. None where
+/// the corners or the samples within do not look like that.
+template <class RadianceAt>
+std::optional<double> MeanAcrossStraightEdge(const std::array<double, 4>& corners,
+                                             std::span<const SquareSample> within,
+                                             const RadianceAt& radiance_at) {
+  const std::optional<SquareCut> cut = FindSquareCut(corners, radiance_at);
+  if (!cut || !std::ranges::all_of(
+                  within, [&](const SquareSample& sample) { return cut->Explains(sample); })) {
+    return std::nullopt;
   }
-  const double share = 0.5 * doubled_area;
-  return share * corners[0] + (1.0 - share) * *other;
+  return cut->first_share * cut->first + (1.0 - cut->first_share) * cut->second;
 }
 
 }  // namespace sextant
