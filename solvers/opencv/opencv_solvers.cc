@@ -6,7 +6,7 @@
 namespace sextant {
 namespace {
 
-SolverEntry Entry(const std::string& name, int needs, std::string needs_in_words,
+SolverEntry Entry(const std::string& name, DataNeeds needs, std::string needs_in_words,
                   std::string summary, std::string reference, PnpKernel kernel,
                   PnpCovariance covariance) {
   return {
@@ -17,8 +17,8 @@ SolverEntry Entry(const std::string& name, int needs, std::string needs_in_words
       .example = name,
       .make = [needs, kernel = std::move(kernel),
                covariance](const SolverArguments& arguments) -> Expected<SolverPtr> {
-        return std::make_shared<PnpSolver>(
-            SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = needs}}, kernel, covariance);
+        return std::make_shared<PnpSolver>(SolverSpec{.name = arguments.name, .needs = needs},
+                                           kernel, covariance);
       },
   };
 }
@@ -61,21 +61,22 @@ SolverEntry RansacEntry(const std::string& name, std::string summary, std::strin
 
 void AddOpenCvSolvers(SolverRegistry& registry) {
   const std::string four = "4 or more 2D-3D pairs, not on one line";
-  registry.Add(Entry("opencv.epnp", 4, four, "OpenCV's EPnP; fails on planes and on 4 pairs",
-                     "Lepetit et al. 2009; cv::solvePnP", OnAllPairs(OpenCvPnp::kEpnp),
-                     PnpCovariance::kMoments));
-  registry.Add(Entry("opencv.sqpnp", 3, "3 or more 2D-3D pairs, not on one line",
+  registry.Add(Entry(
+      "opencv.epnp", {.pairs_2d3d = 4}, four, "OpenCV's EPnP; fails on planes and on 4 pairs",
+      "Lepetit et al. 2009; cv::solvePnP", OnAllPairs(OpenCvPnp::kEpnp), PnpCovariance::kMoments));
+  registry.Add(Entry("opencv.sqpnp", {.pairs_2d3d = 3}, "3 or more 2D-3D pairs, not on one line",
                      "OpenCV's SQPnP: global least squares in object space",
                      "Terzakis and Lourakis 2020; cv::solvePnP", OnAllPairs(OpenCvPnp::kSqpnp),
                      PnpCovariance::kObjectSpace));
-  registry.Add(Entry("opencv.ippe", 4, "4 or more 2D-3D pairs on one plane, not on one line",
+  registry.Add(Entry("opencv.ippe", {.pairs_2d3d = 4, .points_on_plane = true},
+                     "4 or more 2D-3D pairs on one plane, not on one line",
                      "OpenCV's pose from the derivative of a homography, both solutions",
                      "Collins and Bartoli 2014; cv::solvePnPGeneric", OnAllPairs(OpenCvPnp::kIppe),
                      PnpCovariance::kMoments));
-  registry.Add(Entry("opencv.p3p", 3, "3 or more 2D-3D pairs, not on one line",
+  registry.Add(Entry("opencv.p3p", {.pairs_2d3d = 3}, "3 or more 2D-3D pairs, not on one line",
                      "OpenCV's P3P on the widest triangle of the first four; all pairs choose",
                      "Gao et al. 2003; cv::solveP3P", SolveOpenCvP3p, PnpCovariance::kTriple));
-  registry.Add(Entry("opencv.iterative", 4, four,
+  registry.Add(Entry("opencv.iterative", {.pairs_2d3d = 4}, four,
                      "OpenCV's Levenberg-Marquardt on the reprojection error, from a DLT",
                      "cv::solvePnP", OnAllPairs(OpenCvPnp::kIterative),
                      PnpCovariance::kLeastSquares));
