@@ -16,8 +16,8 @@ namespace sextant {
 /// - "zed_left": as the left camera of a Stereolabs ZED at HD720, the paper's camera: 1280 x 720,
 ///   f 700 px (2.8 mm at 4 um, data sheet), Brown-Conrady of the usual size of its calibrations;
 /// - "point_grey": as a FLIR (Point Grey) Blackfly BFLY-PGE-13S2M, 1288 x 964 at 3.75 um (data
-///   sheet), with a lens of 12 mm: f 3200 px, which is the paper's camera of "very large focal
-///   length" (it does not name the model);
+///   sheet), with a lens of 8 mm: f 2133 px. The paper's second camera, "Point Gray Black Fly
+///   which has a very large focal length", is not named closer than that;
 /// - "fisheye": 1920 x 1208, equidistant, the calibration that comes with the public data set of
 ///   acfr/cam_lidar_calibration.
 const std::vector<std::string>& CameraModelNames();

@@ -57,6 +57,7 @@ Expected<const SceneCamera*> FindCamera(const Scene& scene, int index) {
 ImageOptions UsualImageOptions(std::uint64_t seed, double time_s) {
   return {.seed = seed,
           .time_s = time_s,
+          .exposure = 1.15,
           .blur_sigma_px = 0.7,
           .vignetting = 0.25,
           .noise_sigma_grey = 2.0,

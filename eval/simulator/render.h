@@ -25,7 +25,7 @@ struct ImageOptions {
 };
 
 /// What a usual camera gives: blur 0.7 px, noise 2 and shot noise, a quarter of the light lost in
-/// the corners.
+/// the corners. A white board that squarely faces the lamp is just not saturated.
 ImageOptions UsualImageOptions(std::uint64_t seed, double time_s);
 
 /// The image of a scene's camera: 8-bit grey (CV_8U), linear in the light, each pixel the mean over
