@@ -28,6 +28,7 @@ struct LidarEcho {
   /// Reflectivity by cosine of incidence, averaged over the spot; 0 where the spot misses.
   double reflectivity = 0.0;
   double power = 0.0;        ///< The same with each part divided by its range squared [1/m^2].
+  double lit_share = 1.0;    ///< Of the spot, what the echo comes from.
   double black_share = 0.0;  ///< Of what is lit on the object, the share that is black print.
   PointTruth truth{};
 };

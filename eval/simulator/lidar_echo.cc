@@ -62,6 +62,7 @@ LidarEcho MakeEcho(Hits hits, int sub_rays) {
   echo.power /= sub_rays;
   echo.reflectivity /= sub_rays;
   echo.black_share = black / count;
+  echo.lit_share = count / sub_rays;
   echo.truth = {.object = main.target->object,
                 .index = main.target->index,
                 .spot_share = static_cast<double>(on_face) / sub_rays,

@@ -71,6 +71,9 @@ struct LidarModel {
   /// Probability that one is lost whose spot lies half on black and half on white print; with a
   /// share s on black it is 4 s (1 - s) times that.
   double contrast_dropout = 0.0;
+  /// Probability that one is lost of which hardly any of the spot is lit; with a lit share s it is
+  /// 1 - 2 s times that, and 0 from s = 1/2 on.
+  double edge_dropout = 0.0;
   double intensity_scale = 100.0;  ///< Intensity of a white surface seen squarely.
   double intensity_max = 255.0;
 };

@@ -106,7 +106,9 @@ class Scanner {
         model_.detection_reflectivity / (model_.detection_range_m * model_.detection_range_m);
     const double strong = std::clamp(2.0 * echo.power / needed - 1.0, 0.0, 1.0);
     const double uneven = 4.0 * echo.black_share * (1.0 - echo.black_share);
-    return strong * (1.0 - model_.dropout) * (1.0 - model_.contrast_dropout * uneven);
+    const double rim = std::max(0.0, 1.0 - 2.0 * echo.lit_share);
+    return strong * (1.0 - model_.dropout) * (1.0 - model_.contrast_dropout * uneven) *
+           (1.0 - model_.edge_dropout * rim);
   }
 
   Slot Measure(const Firing& firing, const LidarEcho& echo, double bias_m, double deviation) const {

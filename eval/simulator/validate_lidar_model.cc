@@ -19,7 +19,7 @@ Expected<void> Refuse(const LidarModel& model, const std::string& what) {
 }
 
 // Lengths, times and probabilities: none is negative.
-std::array<Field, 21> FieldsOf(const LidarModel& model) {
+std::array<Field, 22> FieldsOf(const LidarModel& model) {
   return {{{"turn_period_s", model.turn_period_s},
            {"column_period_s", model.column_period_s},
            {"start_jitter_rad", model.start_jitter_rad},
@@ -40,6 +40,7 @@ std::array<Field, 21> FieldsOf(const LidarModel& model) {
            {"detection_reflectivity", model.detection_reflectivity},
            {"dropout", model.dropout},
            {"contrast_dropout", model.contrast_dropout},
+           {"edge_dropout", model.edge_dropout},
            {"intensity_scale", model.intensity_scale}}};
 }
 
@@ -83,7 +84,7 @@ Expected<void> ValidateLidarModel(const LidarModel& model) {
     return Refuse(model, fmt::format("max_range_m is {} m, min_range_m {} m", model.max_range_m,
                                      model.min_range_m));
   }
-  if (model.dropout > 1.0 || model.contrast_dropout > 1.0) {
+  if (model.dropout > 1.0 || model.contrast_dropout > 1.0 || model.edge_dropout > 1.0) {
     return Refuse(model, "a probability of lost returns is above 1");
   }
   if (model.detection_range_m == 0.0 || model.detection_reflectivity == 0.0) {

@@ -59,6 +59,7 @@ LidarModel Vlp16() {
   model.dim_sigma_m = 0.0138;
   model.dim_reflectivity = 0.15;
   model.contrast_dropout = 0.55;
+  model.edge_dropout = 1.0;
   model.min_range_m = 0.4;
   model.max_range_m = 100.0;
   model.detection_range_m = 50.0;

@@ -117,6 +117,45 @@ TEST(LidarEdge, MixedPointsAreMarked) {
   }
 }
 
+// Points of many scans, each a little turned against the one before.
+int PointsOf(const Scene& scene, LidarModel model, bool dropouts) {
+  int points = 0;
+  for (int k = 0; k < 60; ++k) {
+    model.start_azimuth_rad += 1e-4;
+    ScanOptions options = OnlySpot();
+    options.dropouts = dropouts;
+    options.scan_index = k;
+    points += static_cast<int>(Scan(scene, model, options).cloud.points.size());
+  }
+  return points;
+}
+
+// Shares of a spot come in twelfths: of those below a half, 1 - 2 s is lost, 5/24 of a spot's
+// width.
+TEST(LidarEdge, SpotsThatHardlyTouchAreLost) {
+  LidarModel model = FineVlp16();
+  model.dropout = 0.0;
+  const Scene scene = BoardBefore(0.0);
+  const int lost = PointsOf(scene, model, false) - PointsOf(scene, model, true);
+  const double expected = 60 * 2.0 * 5.0 / 24.0 * kSpot / 0.00127;
+  EXPECT_NEAR(lost, expected, 4.0 * std::sqrt(expected) + 0.05 * expected);
+}
+
+// 4 s (1 - s) is 2/3 on average over a spot's way across an edge. The ring crosses two, into the
+// black square in the middle and out of it.
+TEST(LidarEdge, SpotsHalfOnBlackAreLost) {
+  LidarModel model = FineVlp16();
+  model.dropout = 0.0;
+  model.edge_dropout = 0.0;
+  Scene scene;
+  scene.boards = {test::PlainBoard(Facing({kBoard, 0.0, 0.0}, {1.0, 0.0, 0.0}), 1.4, 1.4)};
+  scene.boards[0].board.checker =
+      BoardChecker{.inner_columns = 2, .inner_rows = 2, .square_m = 0.4};
+  const int lost = PointsOf(scene, model, false) - PointsOf(scene, model, true);
+  const double expected = 60 * 2.0 * 2.0 / 3.0 * model.contrast_dropout * kSpot / 0.00127;
+  EXPECT_NEAR(lost, expected, 4.0 * std::sqrt(expected) + 0.05 * expected);
+}
+
 LidarBeams::SubHit Hit(double range_m, double reflectivity, const LidarTarget& target) {
   return {.range_m = range_m, .reflectivity = reflectivity, .target = &target};
 }

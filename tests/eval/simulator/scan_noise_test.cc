@@ -198,15 +198,19 @@ TEST(ScanNoise, IntensityFollowsThePrint) {
   Scene scene;
   scene.boards = {test::PlainBoard(test::Facing({1.5, 0.0, 0.0}, {1.0, 0.0, 0.0}), 1.2, 1.2)};
   scene.boards[0].board.checker =
-      BoardChecker{.inner_columns = 1, .inner_rows = 1, .square_m = 0.6};
+      BoardChecker{.inner_columns = 2, .inner_rows = 2, .square_m = 0.4};
   ScanOptions options = Noiseless();
   options.divergence = true;
   const SimulatedScan scan = Scan(scene, Model("os1_64"), options);
   int black = 0;
   for (std::size_t i = 0; i < scan.cloud.points.size(); ++i) {
     const Eigen::Vector3d p = scene.boards[0].world_from_board.Inverse() * scan.cloud.points[i];
-    if (p.head<2>().cwiseAbs().minCoeff() < 0.02 || scan.truth[i].spot_share < 1.0) continue;
-    const bool is_black = p.x() * p.y() > 0.0;  // The top-left square and its diagonal partner.
+    const Eigen::Array2d squares = p.head<2>().array() / 0.4 + 1.5;
+    const Eigen::Array2d to_line = (squares - squares.round()).abs();
+    if (to_line.minCoeff() < 0.05 || scan.truth[i].spot_share < 1.0) continue;
+    // Black at the top-left and wherever an even number of squares lies between.
+    const Eigen::Array2i square = squares.floor().cast<int>();
+    const bool is_black = square.sum() % 2 == 0;
     const double cosine = scan.cloud.points[i].x() / scan.cloud.points[i].norm();
     ASSERT_NEAR(scan.cloud.intensity[i], (is_black ? 10.0 : 80.0) * cosine, 0.5);
     black += is_black ? 1 : 0;
