@@ -26,6 +26,28 @@ Expected<void> CheckPlace(const std::string& what, const Rigid3d& pose,
   return {};
 }
 
+Expected<void> CheckAlbedo(const std::string& what, double albedo) {
+  if (albedo >= 0.0 && albedo <= 1.0) return {};
+  return MakeError(ErrorCode::kInvalidInput,
+                   fmt::format("{} has an albedo of {}, expected 0 to 1", what, albedo));
+}
+
+Expected<void> CheckTiles(const SceneWall& wall) {
+  constexpr double kLeast_m = 1e-3;
+  if (wall.tile_m == 0.0 || (wall.tile_m >= kLeast_m && std::isfinite(wall.tile_m))) return {};
+  return MakeError(ErrorCode::kInvalidInput,
+                   fmt::format("wall {} has tiles of {} m, expected 0 for none, or {} and more",
+                               wall.name, wall.tile_m, kLeast_m));
+}
+
+// The first that fails of checks that are all made.
+Expected<void> FirstOf(std::initializer_list<Expected<void>> checks) {
+  for (const Expected<void>& check : checks) {
+    if (!check) return check;
+  }
+  return {};
+}
+
 struct ViewFrame {
   Rigid3d cam_from_world;
   Lighting lighting;
@@ -119,30 +141,38 @@ Expected<CameraView> CameraView::Make(const Scene& scene, const Rigid3d& world_f
   const auto add = [&view](std::optional<ViewRectangle> face) {
     if (face) view.rectangles_.push_back(*std::move(face));
   };
-  Expected<void> ok = CheckPlace("the camera", world_from_cam, {1.0});
+  Expected<void> ok = FirstOf({CheckPlace("the camera", world_from_cam, {1.0}),
+                               CheckAlbedo("the background", scene.background_albedo)});
   for (const SceneBoard& board : scene.boards) {
     if (!ok) break;
     const Rigid3d world_from_board = BoardPoseAt(board, time_s);
-    ok = CheckPlace(fmt::format("board {}", board.board.id), world_from_board, {1.0});
+    const std::string name = fmt::format("board {}", board.board.id);
+    ok = FirstOf({CheckPlace(name, world_from_board, {1.0}), CheckAlbedo(name, board.white.albedo),
+                  CheckAlbedo(name, board.black.albedo)});
     Expected<BoardPrint> print = BoardPrint::Make(board.board);
     if (ok && !print) return tl::unexpected(print.error());
     if (ok) add(BoardFace(frame, board, world_from_board, *std::move(print)));
   }
   for (const SceneWall& wall : scene.walls) {
     if (!ok) break;
-    ok = CheckPlace("wall " + wall.name, wall.world_from_wall, {wall.width_m, wall.height_m});
+    ok = FirstOf(
+        {CheckPlace("wall " + wall.name, wall.world_from_wall, {wall.width_m, wall.height_m}),
+         CheckAlbedo("wall " + wall.name, wall.surface.albedo), CheckTiles(wall)});
     if (ok) add(WallFace(frame, wall));
   }
   for (const SceneBox& box : scene.boxes) {
     if (!ok) break;
-    ok = CheckPlace("box " + box.name, box.world_from_box,
-                    {box.size_m.x(), box.size_m.y(), box.size_m.z()});
+    ok = FirstOf({CheckPlace("box " + box.name, box.world_from_box,
+                             {box.size_m.x(), box.size_m.y(), box.size_m.z()}),
+                  CheckAlbedo("box " + box.name, box.surface.albedo)});
     if (ok) AddBoxFaces(frame, box, view.rectangles_);
   }
   for (const SceneCylinder& cylinder : scene.cylinders) {
     if (!ok) break;
-    ok = CheckPlace("cylinder " + cylinder.name, {.translation = cylinder.base_in_world},
-                    {cylinder.radius_m, cylinder.height_m});
+    const std::string name = "cylinder " + cylinder.name;
+    ok = FirstOf({CheckPlace(name, {.translation = cylinder.base_in_world},
+                             {cylinder.radius_m, cylinder.height_m}),
+                  CheckAlbedo(name, cylinder.surface.albedo)});
     if (ok) view.cylinders_.push_back(CylinderOf(frame, cylinder));
   }
   if (!ok) return tl::unexpected(ok.error());

@@ -14,8 +14,8 @@ namespace sextant {
 ///
 /// Unprojecting every corner by Newton's method costs more than all the rest of a picture. A lens
 /// is smooth, so 8 x 8 unprojected nodes and Lagrange's polynomial through them give the other
-/// rays: to 1e-7 rad, or 1e-4 px, for the lenses of camera_model.h (tested). A block of which a node has no ray is
-/// unprojected corner by corner.
+/// rays: to 1e-7 rad, or 1e-4 px, for the lenses of camera_model.h (tested). A block of which a
+/// node has no ray is unprojected corner by corner.
 class RayTile {
  public:
   static constexpr int kPixels = 34;  ///< A side; 32 and one around for its neighbours.
