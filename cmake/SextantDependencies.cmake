@@ -31,6 +31,28 @@ find_package(CLI11 REQUIRED)
 # The program only: OpenCV maps over a hundred shared objects into a process.
 find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs)
 
+# Recordings of ROS: optional. lz4 and zstd are named as the linker knows them, as not every
+# distribution has CMake files of theirs.
+option(SEXTANT_BAG "Read and write recordings of ROS (sextant::bag), where the libraries are found" ON)
+if(SEXTANT_BAG)
+  find_package(BZip2 QUIET)
+  find_package(SQLite3 QUIET)
+  find_library(SEXTANT_LZ4 lz4)
+  find_library(SEXTANT_ZSTD zstd)
+  find_path(SEXTANT_LZ4_INCLUDE lz4frame.h)
+  find_path(SEXTANT_ZSTD_INCLUDE zstd.h)
+  mark_as_advanced(SEXTANT_LZ4 SEXTANT_ZSTD SEXTANT_LZ4_INCLUDE SEXTANT_ZSTD_INCLUDE)
+  if(BZIP2_FOUND AND SQLite3_FOUND AND SEXTANT_LZ4 AND SEXTANT_ZSTD AND SEXTANT_LZ4_INCLUDE
+     AND SEXTANT_ZSTD_INCLUDE)
+    string(APPEND SEXTANT_FIND_DEPENDENCIES "find_dependency(BZip2)
+find_dependency(SQLite3)
+")
+  else()
+    message(STATUS "bz2, lz4, zstd or SQLite not found: no recordings of ROS")
+    set(SEXTANT_BAG OFF)
+  endif()
+endif()
+
 # yaml-cpp 0.7 (Debian 12) exports its target without the namespace that 0.8 gives it.
 if(NOT TARGET yaml-cpp::yaml-cpp)
   add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)

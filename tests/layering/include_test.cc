@@ -28,19 +28,20 @@ const std::map<std::string_view, Folders>& MayInclude() {
       {"features/lidar", {"base", "geometry", "solvers"}},
       {"features", {"base", "geometry", "solvers", "features/camera", "features/lidar"}},
       {"io", {"base", "geometry", "solvers"}},
+      {"io/bag", {"base", "geometry", "io"}},
       {"eval/simulator", {"base", "geometry", "features/camera", "io"}},
       {"eval",
        {"base", "geometry", "solvers", "solvers/opencv", "features", "features/camera",
         "features/lidar", "io", "eval/simulator"}},
       {"bench",
        {"base", "geometry", "solvers", "solvers/opencv", "features", "features/camera",
-        "features/lidar", "io", "eval", "eval/simulator", "tests"}},
+        "features/lidar", "io", "io/bag", "eval", "eval/simulator", "tests"}},
       {"cli",
        {"base", "geometry", "solvers", "solvers/opencv", "features", "features/camera",
-        "features/lidar", "io", "eval", "eval/simulator"}},
+        "features/lidar", "io", "io/bag", "eval", "eval/simulator"}},
       {"tests",
        {"base", "geometry", "solvers", "solvers/opencv", "features", "features/camera",
-        "features/lidar", "io", "eval", "eval/simulator", "bench", "cli"}},
+        "features/lidar", "io", "io/bag", "eval", "eval/simulator", "bench", "cli"}},
   };
   return table;
 }
@@ -54,6 +55,10 @@ const std::map<std::string_view, Folders>& OnlyIn() {
       {"apriltag", {"features/camera", "bench"}},
       {"tbb/", {"features", "eval", "eval/simulator", "bench", "cli", "tests"}},
       {"ceres/", {"solvers", "features", "features/camera", "features/lidar", "bench", "tests"}},
+      {"sqlite3", {"io/bag", "tests"}},
+      {"bzlib", {"io/bag"}},
+      {"lz4", {"io/bag"}},
+      {"zstd", {"io/bag", "tests"}},
       {"yaml-cpp/", {"io", "eval", "tests"}},
       {"nlohmann/", {"io", "eval", "bench", "cli", "tests"}},
       {"CLI/", {"cli"}},
@@ -135,6 +140,7 @@ TEST(Layering, WrongDirectionsAreSeen) {
   EXPECT_TRUE(WhyForbidden("solvers", "solvers/opencv/epnp.h"));
   EXPECT_TRUE(WhyForbidden("features", "io/points_file.h"));
   EXPECT_TRUE(WhyForbidden("io", "features/camera/aruco.h"));
+  EXPECT_TRUE(WhyForbidden("io", "io/bag/bag.h"));
   EXPECT_TRUE(WhyForbidden("features/camera", "features/lidar/board.h"));
   EXPECT_TRUE(WhyForbidden("eval", "support/scenes.h"));
   EXPECT_TRUE(WhyForbidden("solvers", "kabsch.h"));

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/bag/mapped_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "io/number_text.h"
+
+namespace sextant {
+namespace {
+
+tl::unexpected<Error> ReadError(const std::filesystem::path& path, const std::string& reason) {
+  return MakeError(ErrorCode::kIo,
+                   fmt::format("cannot read '{}': {}", Printable(path.string(), 300), reason));
+}
+
+}  // namespace
+
+Expected<std::shared_ptr<const MappedFile>> MappedFile::Open(const std::filesystem::path& path) {
+  // Without O_NONBLOCK a pipe that nobody writes would hang here.
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0) return ReadError(path, std::generic_category().message(errno));
+  struct stat status {};
+  const bool is_file = fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
+  const auto size = static_cast<std::size_t>(is_file ? status.st_size : 0);
+  void* const data = size > 0 ? mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd, 0) : nullptr;
+  const int reason = errno;
+  close(fd);
+  if (!is_file) return ReadError(path, "it is not a regular file");
+  if (data == MAP_FAILED) return ReadError(path, std::generic_category().message(reason));
+  return std::shared_ptr<const MappedFile>(new MappedFile(static_cast<const char*>(data), size));
+}
+
+MappedFile::~MappedFile() {
+  if (size_ > 0) munmap(const_cast<char*>(data_), size_);
+}
+
+}  // namespace sextant

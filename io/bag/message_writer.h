@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "io/bag/messages.h"
+
+namespace sextant {
+
+/// What ROS 1 wants to know of a message's type: name, MD5 of its definition, the definition.
+struct Ros1Type {
+  std::string_view name;
+  std::string_view md5;
+  std::string_view definition;
+};
+
+extern const Ros1Type kPointCloud2Type;
+extern const Ros1Type kImageType;
+extern const Ros1Type kCompressedImageType;
+extern const Ros1Type kCameraInfoType;
+
+/// Adds the bytes of a number, little endian.
+template <class Number>
+void AppendNumber(std::string& out, Number value) {
+  static_assert(std::endian::native == std::endian::little);
+  const auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(value);
+  out.append(raw.data(), raw.size());
+}
+
+/// Adds the length (4 bytes) and the bytes.
+void AppendCounted(std::string& out, std::string_view bytes);
+
+/// A message as ROS 1 packs it. Requires a stamp from 0 to 2^32 s.
+std::string Ros1Message(const CloudMessage& message);
+std::string Ros1Message(const ImageMessage& message);
+std::string Ros1Message(const EncodedImageMessage& message);
+std::string Ros1Message(const CameraInfoMessage& message);
+
+}  // namespace sextant

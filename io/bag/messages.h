@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "base/error.h"
+#include "geometry/camera.h"
+#include "geometry/point_cloud.h"
+#include "io/bag/bag.h"
+
+namespace sextant {
+
+/// When and where something was measured.
+struct MessageHeader {
+  std::int64_t stamp_ns = 0;  ///< Since 1970.
+  std::string frame;
+};
+
+/// sensor_msgs/PointCloud2.
+struct CloudMessage {
+  MessageHeader header{};
+  PointCloud cloud{};
+};
+
+/// sensor_msgs/Image.
+struct ImageMessage {
+  MessageHeader header{};
+  int width_px = 0;
+  int height_px = 0;
+  std::string encoding{};     ///< "mono8", "bgr8", "rgb8", "mono16", "bayer_rggb8" and so on.
+  bool big_endian = false;    ///< Of samples of more than one byte.
+  std::size_t row_bytes = 0;  ///< From row to row.
+  std::string data{};         ///< height_px * row_bytes bytes.
+};
+
+/// sensor_msgs/CompressedImage: a JPEG or PNG file.
+struct EncodedImageMessage {
+  MessageHeader header{};
+  std::string format{};  ///< "jpeg", "png", "bgr8; jpeg compressed bgr8" and so on.
+  std::string data{};
+};
+
+/// sensor_msgs/CameraInfo.
+struct CameraInfoMessage {
+  MessageHeader header{};
+  Camera camera{};
+};
+
+/// Each decodes a message of its kind, of ROS 1 or ROS 2.
+/// Errors, which name the topic, the time and the field: kParse for a message that is not what its
+/// type says (lengths beyond its end, fields beyond a point, sizes that contradict each other);
+/// kInvalidInput for a camera that is none (never calibrated: K is zero). Memory: no more than a
+/// small multiple of the message.
+Expected<CloudMessage> DecodePointCloud(const BagMessage& message);
+Expected<ImageMessage> DecodeImage(const BagMessage& message);
+Expected<EncodedImageMessage> DecodeEncodedImage(const BagMessage& message);
+Expected<CameraInfoMessage> DecodeCameraInfo(const BagMessage& message);
+
+/// The header alone, of a message of any of the four kinds.
+Expected<MessageHeader> DecodeHeader(const BagMessage& message);
+
+/// "jpg" or "png", by the first bytes; "bin" for anything else.
+std::string ExtensionOf(const EncodedImageMessage& image);
+
+}  // namespace sextant

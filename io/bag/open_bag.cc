@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "io/bag/mapped_file.h"
+#include "io/bag/open_bytes.h"
+#include "io/bag/rosbag1_records.h"
+#include "io/number_text.h"
+
+namespace sextant {
+namespace {
+
+using std::string_view_literals::operator""sv;
+
+bool IsRecording(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  return extension == ".db3" || extension == ".mcap" || extension == ".bag";
+}
+
+// The one recording in a folder, as ROS 2 writes it beside its metadata.yaml.
+Expected<std::filesystem::path> RecordingIn(const std::filesystem::path& folder) {
+  std::filesystem::path found;
+  int count = 0;
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    if (!IsRecording(it->path())) continue;
+    ++count;
+    if (count == 1 || it->path() < found) found = it->path();
+  }
+  const std::string name = Printable(folder.string(), 200);
+  if (error)
+    return MakeError(ErrorCode::kIo, fmt::format("cannot read '{}': {}", name, error.message()));
+  if (count == 1) return found;
+  if (count == 0) {
+    return MakeError(ErrorCode::kIo,
+                     fmt::format("the folder '{}' has no .db3, .mcap or .bag", name));
+  }
+  return MakeError(ErrorCode::kIo,
+                   fmt::format("the folder '{}' has {} recordings; name one of them, "
+                               "such as '{}'",
+                               name, count, Printable(found.string(), 200)));
+}
+
+}  // namespace
+
+Expected<std::unique_ptr<Bag>> OpenBag(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    const Expected<std::filesystem::path> inside = RecordingIn(path);
+    if (!inside) return tl::unexpected<Error>(inside.error());
+    return OpenBag(*inside);
+  }
+  const Expected<std::shared_ptr<const MappedFile>> file = MappedFile::Open(path);
+  if (!file) return tl::unexpected<Error>(file.error());
+  const std::string_view bytes = (*file)->bytes();
+  if (bytes.starts_with("#ROSBAG"sv)) return OpenRosbag1(bytes, path.string(), *file);
+  if (bytes.starts_with("\x89MCAP"sv)) return OpenMcap(bytes, path.string(), *file);
+  if (bytes.starts_with("SQLite format 3\0"sv)) return OpenRosbag2Sqlite(path);
+  const char* hint = bytes.starts_with("\x28\xb5\x2f\xfd"sv)
+                         ? "; it is compressed as a whole: run `unzstd` on it first"
+                         : "";
+  return MakeError(ErrorCode::kParse,
+                   fmt::format("{}: byte 0: expected a recording: .bag of ROS 1, .db3 of ROS 2 or "
+                               ".mcap{}",
+                               Printable(path.string(), 200), hint));
+}
+
+}  // namespace sextant

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <map>
+
+#include "io/bag/byte_reader.h"
+#include "io/bag/decompress.h"
+#include "io/bag/open_bytes.h"
+#include "io/bag/rosbag1_records.h"
+#include "io/bag/topic_table.h"
+#include "io/number_text.h"
+
+namespace sextant {
+namespace {
+
+// A chunk as it lies in the file.
+struct Chunk {
+  std::size_t begin = 0;
+  Compression compression = Compression::kNone;
+  std::size_t size = 0;  // Once decompressed.
+  std::string_view data;
+};
+
+// Index of a topic by the number of its connection.
+using Connections = std::map<std::uint32_t, std::size_t>;
+
+class Rosbag1 final : public Bag {
+ public:
+  Rosbag1(std::string_view bytes, const std::string& file, std::shared_ptr<const void> owner)
+      : bytes_(bytes), file_(Printable(file, 200)), owner_(std::move(owner)) {}
+
+  std::string_view format() const override { return "ROS 1 bag"; }
+
+  Expected<void> Open();
+  Expected<void> Read(const std::vector<std::size_t>& topic_indices,
+                      const Visitor& visit) const override;
+
+ private:
+  Expected<void> CheckBagHeader(BagRecords& records);
+  Expected<void> TakeRecord(const BagRecords& records, const BagRecord& record);
+  Expected<void> TakeChunk(const BagRecords& records, const BagRecord& record);
+  Expected<void> TakeIndex(const BagRecords& records, const BagRecord& record);
+  Expected<void> CountContents();
+  Expected<void> VisitChunk(const Chunk& chunk, const Visitor& visit) const;
+
+  std::string_view bytes_;
+  std::string file_;
+  std::shared_ptr<const void> owner_;
+  bool has_index_ = false;
+  std::vector<Chunk> chunks_;
+  Connections connections_;
+  std::map<std::uint32_t, BagTopic> indexed_;  // Counts and times by connection.
+};
+
+// Adds the topic of a connection record. Its data is a header too, which states the type.
+Expected<void> AddConnection(const BagRecords& records, const BagRecord& record,
+                             std::vector<BagTopic>& topics, Connections& connections) {
+  const std::optional<std::uint32_t> id = Uint32Field(record.fields, "conn");
+  const std::optional<BagFields> description = ParseBagFields(record.data);
+  if (!id || !description || !record.fields.contains("topic")) {
+    return records.Fail("expected a connection with conn, topic and type");
+  }
+  const std::size_t topic = TopicIndex(topics, TextField(record.fields, "topic"),
+                                       TextField(*description, "type"), MessageEncoding::kRos1);
+  const auto [place, is_new] = connections.emplace(*id, topic);
+  if (!is_new && place->second != topic) {
+    return records.Fail(fmt::format("the connection {} stands for two topics", *id));
+  }
+  return {};
+}
+
+Expected<void> Rosbag1::Open() {
+  if (!bytes_.starts_with(kRosbag1Magic)) {
+    return MakeError(ErrorCode::kParse,
+                     fmt::format("{}: byte 0: expected a ROS 1 bag of version 2.0, got {}; `rosbag "
+                                 "fix` brings old ones to it",
+                                 file_, Quoted(bytes_.substr(0, kRosbag1Magic.size()))));
+  }
+  BagRecords records(bytes_.substr(kRosbag1Magic.size()), kRosbag1Magic.size(), file_);
+  if (Expected<void> ok = CheckBagHeader(records); !ok) return ok;
+  while (true) {
+    const Expected<std::optional<BagRecord>> record = records.Next();
+    if (!record) return tl::unexpected<Error>(record.error());
+    if (!*record) break;
+    if (Expected<void> ok = TakeRecord(records, **record); !ok) return ok;
+  }
+  if (!has_index_) return CountContents();
+  for (const auto& [id, counted] : indexed_) {
+    const auto connection = connections_.find(id);
+    if (connection == connections_.end()) {
+      return records.Fail(fmt::format("the index names the connection {}, which is not there", id));
+    }
+    BagTopic& topic = topics_[connection->second];
+    const bool first = topic.count == 0;
+    topic.first_ns = first ? counted.first_ns : std::min(topic.first_ns, counted.first_ns);
+    topic.last_ns = first ? counted.last_ns : std::max(topic.last_ns, counted.last_ns);
+    topic.count += counted.count;
+  }
+  return {};
+}
+
+Expected<void> Rosbag1::CheckBagHeader(BagRecords& records) {
+  const Expected<std::optional<BagRecord>> record = records.Next();
+  if (!record) return tl::unexpected<Error>(record.error());
+  if (!*record || OpOf((*record)->fields) != BagOp::kBagHeader) {
+    return records.Fail("expected the bag's header");
+  }
+  const BagFields& fields = (*record)->fields;
+  if (!TextField(fields, "encryptor").empty()) {
+    return records.Fail("this bag is encrypted; decrypt it with ROS first");
+  }
+  // A recorder fills it in when it closes the bag.
+  has_index_ = Uint64Field(fields, "index_pos").value_or(0) != 0;
+  return {};
+}
+
+Expected<void> Rosbag1::TakeRecord(const BagRecords& records, const BagRecord& record) {
+  const std::optional<BagOp> op = OpOf(record.fields);
+  if (!op) return records.Fail("a record states no operation");
+  if (*op == BagOp::kChunk) return TakeChunk(records, record);
+  if (*op == BagOp::kIndexData) return TakeIndex(records, record);
+  if (*op == BagOp::kConnection) return AddConnection(records, record, topics_, connections_);
+  return {};
+}
+
+Expected<void> Rosbag1::TakeChunk(const BagRecords& records, const BagRecord& record) {
+  const Expected<Compression> compression =
+      CompressionNamed(TextField(record.fields, "compression"));
+  if (!compression) return records.Fail(compression.error().message);
+  const std::optional<std::uint32_t> size = Uint32Field(record.fields, "size");
+  if (!size) return records.Fail("expected the size of a chunk");
+  chunks_.push_back({records.record_begin(), *compression, *size, record.data});
+  return {};
+}
+
+Expected<void> Rosbag1::TakeIndex(const BagRecords& records, const BagRecord& record) {
+  constexpr std::size_t kEntrySize = 12;
+  const std::optional<std::uint32_t> id = Uint32Field(record.fields, "conn");
+  const std::optional<std::uint32_t> count = Uint32Field(record.fields, "count");
+  if (!id || !count || record.data.size() != kEntrySize * *count) {
+    return records.Fail("expected an index of conn and count, 12 bytes an entry");
+  }
+  BagTopic& counted = indexed_[*id];
+  ByteReader in(record.data);
+  for (std::uint32_t i = 0; i < *count; ++i) {
+    const std::int64_t seconds = in.Take<std::uint32_t>();
+    const std::int64_t nanoseconds = in.Take<std::uint32_t>();
+    in.Take<std::uint32_t>();  // Where in its chunk; messages are found without it.
+    CountMessage(counted, seconds * 1'000'000'000 + nanoseconds);
+  }
+  return {};
+}
+
+// A recorder that was stopped hard leaves no index: the chunks tell all.
+Expected<void> Rosbag1::CountContents() {
+  topics_.clear();
+  connections_.clear();
+  for (const Chunk& chunk : chunks_) {
+    const Expected<std::string> contents = Decompress(chunk.compression, chunk.data, chunk.size);
+    if (!contents) break;  // Read() says what is wrong with it.
+    BagRecords records(*contents, 0, fmt::format("{}: chunk at byte {}", file_, chunk.begin));
+    while (true) {
+      const Expected<std::optional<BagRecord>> record = records.Next();
+      if (!record) return tl::unexpected<Error>(record.error());
+      if (!*record) break;
+      const std::optional<BagOp> op = OpOf((*record)->fields);
+      if (op == BagOp::kConnection) {
+        Expected<void> ok = AddConnection(records, **record, topics_, connections_);
+        if (!ok) return ok;
+      }
+      if (op != BagOp::kMessage) continue;
+      const auto known = connections_.find(Uint32Field((*record)->fields, "conn").value_or(~0U));
+      const std::optional<std::int64_t> time = TimeField((*record)->fields, "time");
+      if (known != connections_.end() && time) CountMessage(topics_[known->second], *time);
+    }
+  }
+  return {};
+}
+
+Expected<void> Rosbag1::Read(const std::vector<std::size_t>& topic_indices,
+                             const Visitor& visit) const {
+  std::vector<bool> wanted(topics_.size(), false);
+  for (const std::size_t index : topic_indices) wanted.at(index) = true;
+  const Visitor filtered = [&](const BagMessage& message) -> Expected<void> {
+    return wanted[message.topic_index] ? visit(message) : Expected<void>();
+  };
+  for (const Chunk& chunk : chunks_) {
+    if (Expected<void> ok = VisitChunk(chunk, filtered); !ok) return ok;
+  }
+  return {};
+}
+
+Expected<void> Rosbag1::VisitChunk(const Chunk& chunk, const Visitor& visit) const {
+  const std::string where = fmt::format("{}: chunk at byte {}", file_, chunk.begin);
+  Expected<std::string> unpacked;
+  std::string_view contents = chunk.data;
+  if (chunk.compression != Compression::kNone || chunk.size != chunk.data.size()) {
+    unpacked = Decompress(chunk.compression, chunk.data, chunk.size);
+    if (!unpacked) {
+      return MakeError(ErrorCode::kParse, fmt::format("{}: {}", where, unpacked.error().message));
+    }
+    contents = *unpacked;
+  }
+  BagRecords records(contents, 0, where);
+  while (true) {
+    const Expected<std::optional<BagRecord>> record = records.Next();
+    if (!record) return tl::unexpected<Error>(record.error());
+    if (!*record) return {};
+    const BagFields& fields = (*record)->fields;
+    if (OpOf(fields) != BagOp::kMessage) continue;
+    const std::optional<std::uint32_t> id = Uint32Field(fields, "conn");
+    const std::optional<std::int64_t> time = TimeField(fields, "time");
+    const auto known = id ? connections_.find(*id) : connections_.end();
+    if (!time || known == connections_.end()) {
+      return records.Fail("expected a message with its time and a known connection");
+    }
+    const BagMessage message{&topics_[known->second], known->second, *time, (*record)->data};
+    if (Expected<void> ok = visit(message); !ok) return ok;
+  }
+}
+
+}  // namespace
+
+Expected<std::unique_ptr<Bag>> OpenRosbag1(std::string_view bytes, const std::string& file,
+                                           std::shared_ptr<const void> owner) {
+  auto bag = std::make_unique<Rosbag1>(bytes, file, std::move(owner));
+  if (Expected<void> ok = bag->Open(); !ok) return tl::unexpected<Error>(std::move(ok.error()));
+  return std::unique_ptr<Bag>(std::move(bag));
+}
+
+}  // namespace sextant
