@@ -59,9 +59,12 @@ bool IsFlat(std::span<const Pair2d3d> pairs, const Triple& triple) {
   return !(a.cross(b).norm() > 1e-6 * std::max(a.squaredNorm(), b.squaredNorm()));
 }
 
-// How badly a pose explains the pairs: points that it does not project, then squared pixels.
-std::pair<int, double> Misfit(const CalibrationProblem& problem, const Rigid3d& pose) {
-  std::pair<int, double> misfit{0, 0.0};
+// How badly a pose explains the pairs: points that it does not project, then squared pixels. Only
+// that it is worse where it is worse than `give_up`.
+using Misfit = std::pair<int, double>;
+
+Misfit MisfitOf(const CalibrationProblem& problem, const Rigid3d& pose, const Misfit& give_up) {
+  Misfit misfit{0, 0.0};
   for (const Pair2d3d& pair : problem.pairs_2d3d) {
     const auto residual = ReprojectionResidual(*problem.camera, pose, pair);
     if (residual) {
@@ -69,6 +72,7 @@ std::pair<int, double> Misfit(const CalibrationProblem& problem, const Rigid3d& 
     } else {
       ++misfit.first;
     }
+    if (misfit > give_up) break;
   }
   return misfit;
 }
@@ -98,14 +102,16 @@ TriplePoses SolveTriple(const CalibrationProblem& problem, const Indices& indice
 // answer. It does not look at residuals, so the covariance of its solution stays honest.
 Triple SteadiestTriple(const CalibrationProblem& problem, const std::vector<Triple>& triples,
                        const Rigid3d& near_answer) {
+  const Camera& camera = *problem.camera;
+  const std::vector<Pair2d3d>& pairs = problem.pairs_2d3d;
   Triple best = triples.front();
+  const auto information = ProjectionInformation(camera, pairs, near_answer);
+  if (!information) return best;
   double least = std::numeric_limits<double>::infinity();
   for (const Triple& triple : triples) {
-    const Camera& camera = *problem.camera;
-    const std::vector<Pair2d3d>& pairs = problem.pairs_2d3d;
     const auto covariance = RelativeTripleCovariance(camera, pairs, triple, near_answer);
     if (!covariance) continue;
-    const double variance = ProjectedVariance(camera, pairs, *covariance, near_answer);
+    const double variance = covariance->cwiseProduct(*information).sum();
     if (variance < least) {
       least = variance;
       best = triple;
@@ -149,9 +155,15 @@ class P3pSolver final : public Solver {
   }
 
   static Rigid3d Best(const CalibrationProblem& problem, const std::vector<Rigid3d>& poses) {
-    return *std::min_element(poses.begin(), poses.end(), [&](const auto& a, const auto& b) {
-      return Misfit(problem, a) < Misfit(problem, b);
-    });
+    const Rigid3d* best = &poses.front();
+    Misfit least{std::numeric_limits<int>::max(), 0.0};
+    for (const Rigid3d& pose : poses) {
+      const Misfit misfit = MisfitOf(problem, pose, least);
+      if (!(misfit < least)) continue;
+      least = misfit;
+      best = &pose;
+    }
+    return *best;
   }
 
   void DoHypothesize(const CalibrationProblem& problem, std::span<const int> sample,

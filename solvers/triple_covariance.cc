@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/triple_covariance.h"
 
-#include <limits>
-
 #include "solvers/reprojection_covariance.h"
 #include "solvers/residuals.h"
 #include "solvers/subset.h"
@@ -19,15 +17,15 @@ std::optional<Matrix6d> RelativeTripleCovariance(const Camera& camera,
   return ReprojectionCovariance(camera, used, pose);
 }
 
-double ProjectedVariance(const Camera& camera, std::span<const Pair2d3d> pairs,
-                         const Matrix6d& covariance, const Rigid3d& pose) {
-  double sum = 0.0;
+std::optional<Matrix6d> ProjectionInformation(const Camera& camera, std::span<const Pair2d3d> pairs,
+                                              const Rigid3d& pose) {
+  Matrix6d information = Matrix6d::Zero();
   for (const Pair2d3d& pair : pairs) {
     const auto jacobian = ReprojectionJacobian(camera, pose, pair);
-    if (!jacobian) return std::numeric_limits<double>::infinity();
-    sum += (*jacobian * covariance * jacobian->transpose()).trace();
+    if (!jacobian) return std::nullopt;
+    information.noalias() += jacobian->transpose() * *jacobian;
   }
-  return sum;
+  return information;
 }
 
 std::optional<Matrix6d> TripleCovariance(const Camera& camera, std::span<const Pair2d3d> pairs,
@@ -41,9 +39,11 @@ std::optional<Matrix6d> TripleCovariance(const Camera& camera, std::span<const P
     if (!residual) return std::nullopt;
     squares += residual->squaredNorm();
   }
+  const std::optional<Matrix6d> information = ProjectionInformation(camera, pairs, pose);
+  if (!information) return std::nullopt;
   // Within the triple the residuals are zero and the projected variance is one a coordinate.
   const double others = static_cast<double>(pairs.size()) - 3.0;
-  const double expected = 2.0 * others + ProjectedVariance(camera, pairs, *relative, pose) - 6.0;
+  const double expected = 2.0 * others + relative->cwiseProduct(*information).sum() - 6.0;
   return Matrix6d(squares / expected * *relative);
 }
 

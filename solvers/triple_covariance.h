@@ -19,10 +19,10 @@ std::optional<Matrix6d> RelativeTripleCovariance(const Camera& camera,
                                                  std::span<const Pair2d3d> pairs,
                                                  const Triple& triple, const Rigid3d& pose);
 
-/// The variance [px^2] that the error of the pose adds to all projections; infinite where a point
-/// does not project.
-double ProjectedVariance(const Camera& camera, std::span<const Pair2d3d> pairs,
-                         const Matrix6d& covariance, const Rigid3d& pose);
+/// sum_i J_i^T J_i over all projections [px^2]. An error of the pose of covariance C adds
+/// tr(C sum_i J_i^T J_i) to their variance. None where a point does not project.
+std::optional<Matrix6d> ProjectionInformation(const Camera& camera, std::span<const Pair2d3d> pairs,
+                                              const Rigid3d& pose);
 
 /// RelativeTripleCovariance in absolute units. Pixels that state no sigma get it from the pairs
 /// outside the triple, whose residuals carry the error of the pose besides their own; none where
