@@ -45,6 +45,10 @@ struct CatalogueOptions {
   bool markdown = false;
 };
 
+struct LidarsOptions {
+  bool markdown = false;
+};
+
 struct ConvertOptions {
   std::string from;
   std::string to;
@@ -68,6 +72,7 @@ int RunSolve(const SolveOptions& options);
 int RunCompare(const CompareOptions& options);
 int RunAverage(const AverageOptions& options);
 int RunCatalogue(const CatalogueOptions& options);
+int RunLidars(const LidarsOptions& options);
 int RunConvert(const ConvertOptions& options);
 int RunAccuracy(const AccuracyOptions& options);
 int RunSimulatePairs(const SimulatePairsOptions& options);

@@ -95,6 +95,11 @@ void AddCatalogue(CLI::App& app, CatalogueOptions& options) {
   command.footer("Examples:\n  sextant solvers\n  sextant solvers ransac");
 }
 
+void AddLidars(CLI::App& app, LidarsOptions& options) {
+  CLI::App& command = *app.add_subcommand("lidars", "The LiDARs that can be simulated");
+  command.add_flag("--markdown", options.markdown, "For a page");
+}
+
 void AddConvert(CLI::App& app, ConvertOptions& options) {
   CLI::App& command =
       *app.add_subcommand("convert", "From one format of correspondences to another");
@@ -165,6 +170,7 @@ int Main(int argc, char** argv) {
   CompareOptions compare;
   AverageOptions average;
   CatalogueOptions catalogue;
+  LidarsOptions lidars;
   ConvertOptions convert;
   AccuracyOptions accuracy;
   SimulatePairsOptions simulate;
@@ -172,6 +178,7 @@ int Main(int argc, char** argv) {
   AddCompare(app, compare);
   AddAverage(app, average);
   AddCatalogue(app, catalogue);
+  AddLidars(app, lidars);
   AddConvert(app, convert);
   AddAccuracy(app, accuracy);
   AddSimulate(app, simulate);
@@ -184,6 +191,7 @@ int Main(int argc, char** argv) {
   if (app.got_subcommand("compare")) return RunCompare(compare);
   if (app.got_subcommand("average")) return RunAverage(average);
   if (app.got_subcommand("solvers")) return RunCatalogue(catalogue);
+  if (app.got_subcommand("lidars")) return RunLidars(lidars);
   if (app.got_subcommand("convert")) return RunConvert(convert);
   if (app.got_subcommand("accuracy")) return RunAccuracy(accuracy);
   return RunSimulatePairs(simulate);
