@@ -57,9 +57,10 @@ std::string DescribeCamera(const CameraEstimate& camera) {
   return text;
 }
 
+// `inliers` is null where the solver does not say which pairs of this kind it used.
 template <class Pair>
 std::string DescribeResiduals(const std::vector<Pair>& pairs, const std::vector<double>& residuals,
-                              const std::vector<int>& inliers, const char* unit, double scale) {
+                              const std::vector<int>* inliers, const char* unit, double scale) {
   if (residuals.empty()) return {};
   if (residuals.size() > kMostResiduals) {
     return fmt::format("  residuals of {} pairs: see --json\n", residuals.size());
@@ -67,10 +68,12 @@ std::string DescribeResiduals(const std::vector<Pair>& pairs, const std::vector<
   TextTable table(
       {"  pair", "view", "board", "corner", fmt::format("residual [{}]", unit), "used"});
   for (std::size_t i = 0; i < residuals.size(); ++i) {
-    const bool used = std::binary_search(inliers.begin(), inliers.end(), static_cast<int>(i));
+    const bool used = inliers != nullptr &&
+                      std::binary_search(inliers->begin(), inliers->end(), static_cast<int>(i));
     table.AddRow({fmt::format("  {}", i + 1), std::to_string(pairs[i].id.view),
                   std::to_string(pairs[i].id.board), std::to_string(pairs[i].id.corner),
-                  fmt::format("{:.2f}", residuals[i] * scale), used ? "yes" : "no"});
+                  fmt::format("{:.2f}", residuals[i] * scale),
+                  inliers == nullptr ? "-" : (used ? "yes" : "no")});
   }
   return table.Plain();
 }
@@ -97,7 +100,8 @@ bool Any(const std::vector<ComparisonRow>& rows, bool (*has)(const ComparisonRow
 
 }  // namespace
 
-std::string DescribeReport(const CalibrationProblem& problem, const SolveReport& report) {
+std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& spec,
+                           const SolveReport& report) {
   const Evaluation& evaluation = report.evaluation;
   std::string text = report.solver + "\n" + DescribePose(report.cam_from_lidar);
   if (evaluation.rmse_m) {
@@ -122,9 +126,14 @@ std::string DescribeReport(const CalibrationProblem& problem, const SolveReport&
         t.x(), t.y(), t.z(), euler.yaw * kDegPerRad, euler.pitch * kDegPerRad,
         euler.roll * kDegPerRad);
   }
+  // The inliers are of one kind only; see Estimate.
+  const bool of_points = spec.needs.pairs_3d3d > 0;
+  const std::vector<int>* point_inliers = of_points ? &report.inliers : nullptr;
+  const std::vector<int>* pixel_inliers =
+      !of_points && spec.needs.pairs_2d3d > 0 ? &report.inliers : nullptr;
   text +=
-      DescribeResiduals(problem.pairs_3d3d, evaluation.per_pair_m, report.inliers, "mm", kMmPerM);
-  text += DescribeResiduals(problem.pairs_2d3d, evaluation.per_pair_px, report.inliers, "px", 1.0);
+      DescribeResiduals(problem.pairs_3d3d, evaluation.per_pair_m, point_inliers, "mm", kMmPerM);
+  text += DescribeResiduals(problem.pairs_2d3d, evaluation.per_pair_px, pixel_inliers, "px", 1.0);
   return text;
 }
 

@@ -10,7 +10,8 @@
 namespace sextant::cli {
 
 /// Everything that `sextant solve` says of one answer.
-std::string DescribeReport(const CalibrationProblem& problem, const SolveReport& report);
+std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& spec,
+                           const SolveReport& report);
 
 /// The table of `sextant compare`, a row a solver, and the reasons of those that did not answer.
 std::string DescribeComparison(const std::vector<ComparisonRow>& rows);

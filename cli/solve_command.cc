@@ -84,7 +84,7 @@ int RunSolve(const SolveOptions& options) {
   const ComparisonRow& row = rows.front();
   std::string text;
   if (row.report) {
-    text = DescribeReport(problem, *row.report);
+    text = DescribeReport(problem, (*solver)->spec(), *row.report);
     if (row.from_truth) {
       text += fmt::format("  error against the truth    {:.2f} mm, {:.4f} deg\n",
                           row.from_truth->translation_m * 1e3,

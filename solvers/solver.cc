@@ -121,7 +121,9 @@ Expected<void> CheckProblem(const CalibrationProblem& problem, const SolverSpec&
     if (needs.pairs_2d3d == 0) return {};
     if (!problem.camera) {
       return MakeError(ErrorCode::kMissingData,
-                       spec.name + " needs the camera's intrinsics, and the problem has none");
+                       spec.name +
+                           " needs the camera's intrinsics, and the problem has none; give them "
+                           "in the problem or with --camera");
     }
     return ValidateCamera(*problem.camera);
   });
