@@ -50,6 +50,8 @@ class DepthKernel {
 
   void SearchFromKernel();
   void SearchFromWeakPerspective();
+  /// The candidates that the answer `near` may have been.
+  void SearchNear();
   /// Starts Gauss-Newton at a pose.
   void SearchFrom(const Rigid3d& cam_from_lidar);
   /// The error of the best improper rotation that the first eigenvector gives; infinite where that
@@ -60,6 +62,7 @@ class DepthKernel {
   using Square = Eigen::Matrix<double, kDepths, kDepths>;
   using Columns = Eigen::Matrix<double, 3, kDepths>;
 
+  Depths DepthsOf(const Rigid3d& cam_from_lidar) const;
   Columns InCamera(const Depths& z) const;
   Depths Scaled(const Depths& z) const;
   Depths FromTwoEigenvectors() const;
@@ -286,12 +289,24 @@ void DepthKernel<kAxes>::SearchFromWeakPerspective() {
 }
 
 template <int kAxes>
-void DepthKernel<kAxes>::SearchFrom(const Rigid3d& cam_from_lidar) {
+auto DepthKernel<kAxes>::DepthsOf(const Rigid3d& cam_from_lidar) const -> Depths {
   Depths z;
   z(0) = (cam_from_lidar * data_.frame.centroid).z();
   const Eigen::Matrix3d turned = cam_from_lidar.rotation.toRotationMatrix() * data_.frame.axes;
   z.template tail<kAxes>() =
       (turned.row(2).template head<kAxes>().transpose().array() * deviation_.array()).matrix();
+  return z;
+}
+
+template <int kAxes>
+void DepthKernel<kAxes>::SearchNear() {
+  Consider(Scaled(eigenvectors_.col(0)));
+  Consider(Refined(DepthsOf(*near_)));
+}
+
+template <int kAxes>
+void DepthKernel<kAxes>::SearchFrom(const Rigid3d& cam_from_lidar) {
+  const Depths z = DepthsOf(cam_from_lidar);
   Consider(z);
   Consider(Refined(z));
 }
@@ -312,8 +327,12 @@ double DepthKernel<kAxes>::MirroredSumSquares() const {
 template <int kAxes>
 double Search(const Correspondences& data, const Rigid3d* near, Candidate& best) {
   DepthKernel<kAxes> kernel(data, near);
-  kernel.SearchFromKernel();
-  kernel.SearchFromWeakPerspective();
+  if (near != nullptr) {
+    kernel.SearchNear();
+  } else {
+    kernel.SearchFromKernel();
+    kernel.SearchFromWeakPerspective();
+  }
   if (data.frame.different_count == 4) {
     const TrianglePoses found = PosesOfWidestTriangle(data);
     for (int i = 0; i < found.count; ++i) {
