@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/lidar/board_agreement.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace sextant {
+namespace {
+
+constexpr double kBand_m = 0.08;  // Around the board, where its plane must end.
+constexpr double kLeastFilled = 0.9;
+constexpr double kMostContinued = 0.35;
+constexpr double kLeastShare = 0.7;
+constexpr double kMostRms = 2.2;  // Sigmas; a board of the wrong size has more.
+constexpr int kFewestEdgePoints = 8;
+constexpr int kFewestPoints = 16;
+
+// How far a point is beyond the rectangle's nearest side; negative inside.
+double Beyond(const Eigen::Vector2d& point, double width, double height) {
+  return std::max(std::abs(point.x()) - 0.5 * width, std::abs(point.y()) - 0.5 * height);
+}
+
+}  // namespace
+
+BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const Board& board) {
+  BoardAgreement agreement;
+  const LidarPlane& plane = patch.plane;
+  const Eigen::Vector3d center = plane.At(patch.fit.center);
+  const double reach = 0.5 * std::hypot(board.top_right_m, board.right_bottom_m) + 2.0 * kBand_m;
+  const double cosine = std::cos(std::min(1.5, std::atan2(reach, center.norm()) * 1.1));
+  const Eigen::Vector3d toward = center.normalized();
+  const Eigen::Rotation2Dd turn(-patch.fit.angle_rad);
+  const double near = 0.02 + 4.0 * plane.sigma_m;
+  const double margin = 0.015 + scan.azimuth_step_rad() * center.norm();
+  int hit = 0;
+  int through = 0;
+  int around = 0;
+  int around_on_plane = 0;
+  for (int ring = 0; ring < scan.rings(); ++ring) {
+    bool any = false;
+    for (const RingPoint& point : scan.ring(ring)) {
+      if (point.point.dot(toward) < cosine * point.range_m) continue;
+      const std::optional<Eigen::Vector2d> there = plane.Meet(point.point);
+      if (!there) continue;
+      const Eigen::Vector2d q = turn * (*there - patch.fit.center);
+      const double beyond = Beyond(q, board.top_right_m, board.right_bottom_m);
+      const double off = plane.normal.dot(point.point - plane.origin);
+      const bool in_opening =
+          board.hole && Beyond(q - board.hole->center_in_board_m, board.hole->width_m,
+                               board.hole->height_m) < margin;
+      if (beyond < -margin && !in_opening) {
+        if (std::abs(off) <= near) {
+          ++hit;
+          any = true;
+        } else if (off > 0.0) {
+          ++through;
+        }
+      } else if (beyond > margin && beyond < margin + kBand_m) {
+        ++around;
+        around_on_plane += std::abs(off) <= near ? 1 : 0;
+      }
+    }
+    agreement.rings += any ? 1 : 0;
+  }
+  agreement.points = hit;
+  agreement.filled = hit > 0 ? static_cast<double>(hit) / (hit + through) : 0.0;
+  agreement.continued = around > 0 ? static_cast<double>(around_on_plane) / around : 0.0;
+  return agreement;
+}
+
+std::optional<std::string> WhyNot(const BoardPatch& patch, const Board& board) {
+  const BoardAgreement& agreement = patch.agreement;
+  if (agreement.rings < kFewestRings) {
+    return fmt::format(
+        "only {} rings cross it, {} are needed: hold it nearer or use a sensor with "
+        "more rings",
+        agreement.rings, kFewestRings);
+  }
+  if (static_cast<int>(patch.edges.size()) < kFewestEdgePoints) {
+    return fmt::format("only {} edge points, {} are needed", patch.edges.size(), kFewestEdgePoints);
+  }
+  if (agreement.points < kFewestPoints) {
+    return fmt::format("only {} returns on it, {} are needed", agreement.points, kFewestPoints);
+  }
+  if (patch.fit.share < kLeastShare || patch.fit.rms > kMostRms) {
+    return fmt::format(
+        "its outline is not {:.3f} x {:.3f} m: {:.0f} % of the edge points fit, {:.1f} sigma rms",
+        board.top_right_m, board.right_bottom_m, 100.0 * patch.fit.share, patch.fit.rms);
+  }
+  if (agreement.filled < kLeastFilled) {
+    return fmt::format("{:.0f} % of the rays pass through it", 100.0 * (1.0 - agreement.filled));
+  }
+  if (agreement.continued > kMostContinued) {
+    return fmt::format("its plane goes on beyond it ({:.0f} % around it), as a wall's does",
+                       100.0 * agreement.continued);
+  }
+  return std::nullopt;
+}
+
+}  // namespace sextant

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "features/lidar/board_finder.h"
+
+namespace sextant {
+
+/// Follows every ray onto the placed board and around it.
+BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const Board& board);
+
+/// Why the patch is not this board; none where it is.
+std::optional<std::string> WhyNot(const BoardPatch& patch, const Board& board);
+
+}  // namespace sextant

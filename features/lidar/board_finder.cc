@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/lidar/board_finder.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "features/lidar/board_agreement.h"
+#include "features/lidar/ring_clusters.h"
+
+namespace sextant {
+namespace {
+
+constexpr double kHeldBy = 1.6;       // A hand or a stand may lengthen a run beyond the board.
+constexpr int kPlanesPerCluster = 3;  // A person who holds a board is flat in places too.
+constexpr int kFewestInCluster = 16;
+constexpr double kSameSize_m = 0.03;  // Boards closer in size are told apart by their order.
+
+double Diagonal(const Board& board) { return std::hypot(board.top_right_m, board.right_bottom_m); }
+
+// Small where the outline agrees; compares boards of different sizes on one patch.
+double Disagreement(const BoardPatch& patch) {
+  return patch.fit.rms + 4.0 * (1.0 - patch.fit.share) + 2.0 * (1.0 - patch.agreement.filled) +
+         2.0 * patch.agreement.continued;
+}
+
+class Finder {
+ public:
+  Finder(const ScanRings& scan, std::span<const Board> boards, const BoardSearchOptions& options)
+      : scan_(scan), boards_(boards), options_(options), random_(options.seed) {}
+
+  BoardSearch Find() {
+    double longest = 0.0;
+    for (const Board& board : boards_) longest = std::max(longest, Diagonal(board));
+    for (const RingCluster& cluster :
+         ClusterRings(scan_, {.longest_run_m = kHeldBy * longest, .jump_m = 0.06})) {
+      SearchCluster(cluster);
+    }
+    std::ranges::stable_sort(search_.rejected, std::greater<>{}, &RejectedPatch::points);
+    Assign();
+    return std::move(search_);
+  }
+
+ private:
+  bool InRegion(const Eigen::Vector3d& point) const {
+    return !options_.region || ((point.array() >= options_.region->low.array()).all() &&
+                                (point.array() <= options_.region->high.array()).all());
+  }
+
+  void SearchCluster(const RingCluster& cluster) {
+    std::vector<std::size_t> places;
+    for (const RingRun& run : cluster) {
+      for (std::size_t i = run.first; i < run.first + run.count; ++i) {
+        if (InRegion(scan_.points()[i].point)) places.push_back(i);
+      }
+    }
+    std::ranges::sort(places);
+    for (int i = 0; i < kPlanesPerCluster; ++i) {
+      if (static_cast<int>(places.size()) < kFewestInCluster) return;
+      if (!SearchPlane(places)) return;
+    }
+  }
+
+  // Takes the points of the plane that holds most of them out of `places`.
+  bool SearchPlane(std::vector<std::size_t>& places) {
+    std::vector<Eigen::Vector3d> points;
+    points.reserve(places.size());
+    for (const std::size_t place : places) points.push_back(scan_.points()[place].point);
+    const PlaneSearch search{.threshold_m = 0.03, .iterations = 60, .smallest_share = 0.25};
+    const std::optional<FoundPlane> found = FindPlane(points, search, random_);
+    if (!found) return false;
+    std::vector<std::size_t> on_plane;
+    std::vector<std::size_t> rest;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const bool on = next < found->inliers.size() && found->inliers[next] == static_cast<int>(i);
+      next += on ? 1U : 0U;
+      (on ? on_plane : rest).push_back(places[i]);
+    }
+    Propose(found->plane, on_plane);
+    places = std::move(rest);
+    return true;
+  }
+
+  void Propose(const LidarPlane& plane, const std::vector<std::size_t>& on_plane) {
+    BoardPatch best;
+    std::string why = "fewer than four edge points, or all its edges parallel";
+    std::vector<BoardPatch> accepted;
+    for (std::size_t b = 0; b < boards_.size(); ++b) {
+      BoardPatch patch{.board = static_cast<int>(b), .plane = plane, .on_plane = on_plane};
+      patch.edges = FindEdgePoints(scan_, plane, on_plane, EdgeOptionsOf(boards_[b]));
+      const std::optional<RectangleFit> fit = FitRectangle(patch.edges, boards_[b]);
+      if (!fit) continue;
+      patch.fit = *fit;
+      patch.agreement = AgreementOf(scan_, patch, boards_[b]);
+      const std::optional<std::string> reason = WhyNot(patch, boards_[b]);
+      if (reason) {
+        why = *reason;
+      } else {
+        accepted.push_back(std::move(patch));
+      }
+    }
+    if (accepted.empty()) {
+      search_.rejected.push_back(
+          {plane.origin, RingsOf(on_plane), static_cast<int>(on_plane.size()), std::move(why)});
+    } else {
+      proposals_.push_back(std::move(accepted));
+    }
+  }
+
+  EdgeOptions EdgeOptionsOf(const Board& board) const {
+    return {.hollow = board.hole.has_value(),
+            .half_step = options_.half_step,
+            .growth_rad = options_.growth_rad,
+            .divergence_rad = options_.divergence_rad};
+  }
+
+  int RingsOf(const std::vector<std::size_t>& places) const {
+    int rings = 0;
+    int ring = 0;
+    std::size_t last = scan_.points().size();
+    for (const std::size_t place : places) {
+      while (place >= scan_.first(ring + 1)) ++ring;
+      rings += static_cast<std::size_t>(ring) != last ? 1 : 0;
+      last = static_cast<std::size_t>(ring);
+    }
+    return rings;
+  }
+
+  // Each patch goes to the board that it agrees with best, the best pair first; then boards of
+  // nearly the same size are put into order from left to right.
+  void Assign() {
+    std::vector<bool> used(proposals_.size(), false);
+    std::vector<bool> placed(boards_.size(), false);
+    while (true) {
+      const BoardPatch* best = nullptr;
+      std::size_t from = 0;
+      for (std::size_t p = 0; p < proposals_.size(); ++p) {
+        if (used[p]) continue;
+        for (const BoardPatch& patch : proposals_[p]) {
+          if (placed[static_cast<std::size_t>(patch.board)]) continue;
+          if (best == nullptr || Disagreement(patch) < Disagreement(*best)) {
+            best = &patch;
+            from = p;
+          }
+        }
+      }
+      if (best == nullptr) break;
+      used[from] = true;
+      placed[static_cast<std::size_t>(best->board)] = true;
+      search_.found.push_back(*best);
+    }
+    OrderFromLeft();
+    std::ranges::sort(search_.found, {}, &BoardPatch::board);
+    for (std::size_t p = 0; p < proposals_.size(); ++p) {
+      if (used[p]) continue;
+      const BoardPatch& patch = proposals_[p].front();
+      search_.rejected.push_back({patch.plane.At(patch.fit.center), patch.agreement.rings,
+                                  patch.agreement.points,
+                                  "a better one was found for every board of its size"});
+    }
+  }
+
+  bool SameSize(int a, int b) const {
+    const Board& first = boards_[static_cast<std::size_t>(a)];
+    const Board& second = boards_[static_cast<std::size_t>(b)];
+    return std::abs(first.top_right_m - second.top_right_m) < kSameSize_m &&
+           std::abs(first.right_bottom_m - second.right_bottom_m) < kSameSize_m &&
+           first.hole.has_value() == second.hole.has_value();
+  }
+
+  // Refits the patches that change their board.
+  void OrderFromLeft() {
+    std::vector<BoardPatch>& found = search_.found;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      for (std::size_t j = i + 1; j < found.size(); ++j) {
+        BoardPatch& a = found[i];
+        BoardPatch& b = found[j];
+        if (!SameSize(a.board, b.board)) continue;
+        // Left is the larger azimuth, seen between the two.
+        const bool a_is_left = a.plane.origin.cross(b.plane.origin).z() < 0.0;
+        if (a_is_left == (a.board < b.board)) continue;
+        std::swap(a.board, b.board);
+        Refit(a);
+        Refit(b);
+      }
+    }
+  }
+
+  void Refit(BoardPatch& patch) const {
+    const Board& board = boards_[static_cast<std::size_t>(patch.board)];
+    const std::optional<RectangleFit> fit = FitRectangle(patch.edges, board);
+    if (!fit) return;
+    patch.fit = *fit;
+    patch.agreement = AgreementOf(scan_, patch, board);
+  }
+
+  const ScanRings& scan_;
+  std::span<const Board> boards_;
+  const BoardSearchOptions& options_;
+  Random random_;
+  BoardSearch search_;
+  std::vector<std::vector<BoardPatch>> proposals_;  // For each patch, every board that it may be.
+};
+
+}  // namespace
+
+Expected<BoardSearch> FindBoards(const ScanRings& scan, std::span<const Board> boards,
+                                 const BoardSearchOptions& options) {
+  for (const Board& board : boards) {
+    if (!(board.top_right_m > 0.0) || !(board.right_bottom_m > 0.0)) {
+      return MakeError(ErrorCode::kInvalidInput,
+                       fmt::format("board {} has no size ({} x {} m)", board.id, board.top_right_m,
+                                   board.right_bottom_m));
+    }
+  }
+  if (boards.empty()) {
+    return MakeError(ErrorCode::kInvalidInput, "no board to look for: its size must be known");
+  }
+  return Finder(scan, boards, options).Find();
+}
+
+}  // namespace sextant

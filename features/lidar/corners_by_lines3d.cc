@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "features/lidar/corner_geometry.h"
+
+namespace sextant {
+namespace {
+
+constexpr double kThreshold_m = 0.01;  // The paper's.
+
+struct Line3d {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
+
+  double Distance(const Eigen::Vector3d& p) const { return direction.cross(p - point).norm(); }
+};
+
+struct Junction {
+  Eigen::Vector3d middle;
+  double gap_m;
+};
+
+// The shortest segment between two lines; none where they are parallel.
+std::optional<Junction> Join(const Line3d& a, const Line3d& b) {
+  const Eigen::Vector3d across = a.direction.cross(b.direction);
+  const double sine2 = across.squaredNorm();
+  if (sine2 < 0.01) return std::nullopt;
+  const Eigen::Vector3d between = b.point - a.point;
+  const Eigen::Vector3d on_a =
+      a.point + a.direction * (between.cross(b.direction).dot(across) / sine2);
+  const Eigen::Vector3d on_b =
+      b.point + b.direction * (between.cross(a.direction).dot(across) / sine2);
+  return Junction{0.5 * (on_a + on_b), (on_b - on_a).norm()};
+}
+
+Line3d LeastSquaresLine(const std::vector<Eigen::Vector3d>& points) {
+  Line3d line;
+  for (const Eigen::Vector3d& p : points) line.point += p;
+  line.point /= static_cast<double>(points.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : points) {
+    scatter += (p - line.point) * (p - line.point).transpose();
+  }
+  line.direction = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(2);
+  return line;
+}
+
+// The inliers of the best line through two of the points, all pairs tried: a side has few points,
+// so RANSAC need not draw. Without refitting only the two themselves are kept.
+std::vector<int> Consensus(const BoardPatch& patch, const std::vector<int>& members, bool refit) {
+  const auto at = [&](int i) -> const Eigen::Vector3d& {
+    return patch.edges[static_cast<std::size_t>(i)].last_return;
+  };
+  std::vector<int> best;
+  std::vector<int> pair;
+  double least = 0.0;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    for (std::size_t j = i + 1; j < members.size(); ++j) {
+      const Eigen::Vector3d along = at(members[j]) - at(members[i]);
+      if (along.norm() < kThreshold_m) continue;
+      const Line3d line{at(members[i]), along.normalized()};
+      std::vector<int> inliers;
+      double sum = 0.0;
+      for (const int k : members) {
+        const double distance = line.Distance(at(k));
+        if (distance > kThreshold_m) continue;
+        inliers.push_back(k);
+        sum += distance;
+      }
+      if (inliers.size() > best.size() || (inliers.size() == best.size() && sum < least)) {
+        best = std::move(inliers);
+        pair = {members[i], members[j]};
+        least = sum;
+      }
+    }
+  }
+  return refit ? best : pair;
+}
+
+// All corners from all points, so that their covariance can be had by differences.
+class LineCorners {
+ public:
+  LineCorners(const BoardPatch& patch, std::vector<std::vector<int>> members)
+      : members_(std::move(members)) {
+    for (const std::vector<int>& side : members_) {
+      points_.emplace_back();
+      for (const int i : side) {
+        points_.back().push_back(patch.edges[static_cast<std::size_t>(i)].last_return);
+      }
+      lines_.push_back(LeastSquaresLine(points_.back()));
+    }
+  }
+
+  std::optional<Junction> Corner(int corner) const {
+    return Join(lines_[static_cast<std::size_t>(SideBefore(corner))],
+                lines_[static_cast<std::size_t>(SideAfter(corner))]);
+  }
+
+  // Derivative of every corner by a displacement of one point of a side along `direction`.
+  Eigen::VectorXd MovedBy(std::size_t side, std::size_t member, const Eigen::Vector3d& direction) {
+    constexpr double kStep_m = 1e-6;
+    Eigen::Vector3d& point = points_[side][member];
+    const Eigen::Vector3d kept_point = point;
+    const Line3d kept = lines_[side];
+    const auto count = static_cast<int>(lines_.size());
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(3 * count);
+    for (const double sign : {1.0, -1.0}) {
+      point = kept_point + sign * kStep_m * direction;
+      lines_[side] = LeastSquaresLine(points_[side]);
+      // The sign of a direction is arbitrary and does not move a corner.
+      for (int corner = 0; corner < count; ++corner) {
+        if (SideBefore(corner) != static_cast<int>(side) &&
+            SideAfter(corner) != static_cast<int>(side)) {
+          continue;
+        }
+        if (const std::optional<Junction> junction = Corner(corner)) {
+          moved.segment<3>(3 * corner) += sign * junction->middle / (2.0 * kStep_m);
+        }
+      }
+    }
+    point = kept_point;
+    lines_[side] = kept;
+    return moved;
+  }
+
+  const std::vector<std::vector<int>>& members() const { return members_; }
+
+ private:
+  std::vector<std::vector<int>> members_;
+  std::vector<std::vector<Eigen::Vector3d>> points_;
+  std::vector<Line3d> lines_;
+};
+
+// Each last return is off along its ray by the range noise and along its ring by its place within
+// a step. The mean of the latter, half a step, is a bias and not part of a covariance.
+Eigen::MatrixXd CovarianceOf(LineCorners& corners, const BoardPatch& patch) {
+  const auto rows = static_cast<Eigen::Index>(3 * corners.members().size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(rows, rows);
+  for (std::size_t side = 0; side < corners.members().size(); ++side) {
+    for (std::size_t k = 0; k < corners.members()[side].size(); ++k) {
+      const EdgePoint& edge = patch.edges[static_cast<std::size_t>(corners.members()[side][k])];
+      const Eigen::Vector3d ray = edge.last_return.normalized();
+      const Eigen::Vector3d along =
+          patch.plane.x_axis * edge.outward.x() + patch.plane.y_axis * edge.outward.y();
+      const double range_sigma = patch.plane.sigma_m / std::abs(patch.plane.normal.dot(ray));
+      const Eigen::VectorXd by_range = corners.MovedBy(side, k, ray) * range_sigma;
+      const Eigen::VectorXd by_step = corners.MovedBy(side, k, along) *
+                                      std::hypot(edge.step_m / std::sqrt(12.0), edge.beam_sigma_m);
+      covariance += by_range * by_range.transpose() + by_step * by_step.transpose();
+    }
+  }
+  return covariance;
+}
+
+}  // namespace
+
+Expected<LidarCorners> CornersByLines3d(const BoardPatch& patch, const Board& board, bool refit) {
+  const Expected<std::vector<std::vector<int>>> groups = GroupBySide(patch, board);
+  if (!groups) return tl::unexpected(groups.error());
+  std::vector<std::vector<int>> inliers;
+  for (std::size_t side = 0; side < groups->size(); ++side) {
+    inliers.push_back(Consensus(patch, (*groups)[side], refit));
+    if (inliers.back().size() < 2) {
+      return MakeError(ErrorCode::kTooFewPairs,
+                       fmt::format("board {}: no two returns of side {} are {} m apart", board.id,
+                                   side, kThreshold_m));
+    }
+  }
+  LineCorners lines(patch, std::move(inliers));
+  LidarCorners corners;
+  corners.board = patch.board;
+  std::vector<double> gaps;
+  for (int i = 0; i < SidesOf(board); ++i) {
+    const std::optional<Junction> junction = lines.Corner(i);
+    if (!junction) {
+      return MakeError(
+          ErrorCode::kDegenerate,
+          fmt::format("board {}: the edges that meet in corner {} are parallel", board.id, i));
+    }
+    corners.in_lidar.push_back(junction->middle);
+    gaps.push_back(junction->gap_m);
+  }
+  corners.covariance = CovarianceOf(lines, patch);
+  corners.checks = ChecksOf(patch, board, corners.in_lidar);
+  corners.checks.line_gaps_m = std::move(gaps);
+  return corners;
+}
+
+}  // namespace sextant

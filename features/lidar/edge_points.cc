@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/lidar/edge_points.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace sextant {
+namespace {
+
+constexpr double kMostGapSteps = 2.5;  // Within an interval: one drop-out.
+
+double Wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
+
+class EdgeFinder {
+ public:
+  EdgeFinder(const ScanRings& scan, const LidarPlane& plane, const EdgeOptions& options)
+      : scan_(scan),
+        plane_(plane),
+        options_(options),
+        middle_(std::atan2(plane.origin.y(), plane.origin.x())) {}
+
+  // The edges of one ring; `places` of its points on the plane.
+  void AddRing(int ring, std::vector<std::size_t> places, std::vector<EdgePoint>& edges) const {
+    std::ranges::sort(places, {}, [&](std::size_t i) { return Azimuth(i); });
+    AddEdge(ring, places.front(), -1, false, edges);
+    for (std::size_t i = 1; options_.hollow && i < places.size(); ++i) {
+      const double gap = Azimuth(places[i]) - Azimuth(places[i - 1]);
+      if (gap <= kMostGapSteps * scan_.azimuth_step_rad()) continue;
+      AddEdge(ring, places[i - 1], +1, true, edges);
+      AddEdge(ring, places[i], -1, true, edges);
+    }
+    AddEdge(ring, places.back(), +1, false, edges);
+  }
+
+ private:
+  // Relative to the board, so that the seam behind the sensor does not matter.
+  double Azimuth(std::size_t place) const {
+    return Wrapped(scan_.points()[place].azimuth_rad - middle_);
+  }
+
+  // The next return of the ring beyond the edge, where the sensor saw anything there.
+  std::optional<RingPoint> Beyond(int ring, std::size_t place, int sign) const {
+    const std::size_t first = scan_.first(ring);
+    const std::size_t count = scan_.first(ring + 1) - first;
+    const std::size_t next =
+        first +
+        (place - first + count + static_cast<std::size_t>(sign > 0 ? 1 : count - 1)) % count;
+    const double gap = std::abs(Azimuth(next) - Azimuth(place));
+    if (next == place || gap > kMostGapSteps * scan_.azimuth_step_rad()) return std::nullopt;
+    return scan_.points()[next];
+  }
+
+  std::optional<Eigen::Vector2d> MeetTurned(const RingPoint& point, double angle_rad) const {
+    return plane_.Meet(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()) * point.point);
+  }
+
+  bool Hides(const RingPoint& beyond) const {
+    const std::optional<Eigen::Vector2d> there = plane_.Meet(beyond.point);
+    const double nearer = 0.05 + 5.0 * plane_.sigma_m;
+    return there && beyond.range_m < plane_.At(*there).norm() - nearer;
+  }
+
+  void AddEdge(int ring, std::size_t place, int sign, bool inner,
+               std::vector<EdgePoint>& edges) const {
+    const RingPoint& last = scan_.points()[place];
+    double step = scan_.azimuth_step_rad();
+    if (const std::optional<RingPoint> beyond = Beyond(ring, place, sign)) {
+      if (Hides(*beyond)) return;
+      step =
+          std::clamp(std::abs(Wrapped(beyond->azimuth_rad - last.azimuth_rad)), 0.5 * step, step);
+    }
+    const double correction = (options_.half_step ? 0.5 * step : 0.0) - options_.growth_rad;
+    const auto edge = MeetTurned(last, sign * correction);
+    const auto on = MeetTurned(last, 0.0);
+    const auto off = MeetTurned(last, sign * step);
+    if (!edge || !on || !off || (*off - *on).norm() < 1e-9) return;
+    edges.push_back({.in_plane = *edge,
+                     .outward = (*off - *on).normalized(),
+                     .step_m = (*off - *on).norm(),
+                     .beam_sigma_m = 0.5 * options_.divergence_rad * last.range_m,
+                     .inner = inner,
+                     .ring = ring,
+                     .last_return = last.point});
+  }
+
+  const ScanRings& scan_;
+  const LidarPlane& plane_;
+  const EdgeOptions& options_;
+  double middle_;
+};
+
+}  // namespace
+
+std::vector<EdgePoint> FindEdgePoints(const ScanRings& scan, const LidarPlane& plane,
+                                      std::span<const std::size_t> on_plane,
+                                      const EdgeOptions& options) {
+  const EdgeFinder finder(scan, plane, options);
+  std::vector<EdgePoint> edges;
+  int ring = 0;
+  for (std::size_t i = 0; i < on_plane.size();) {
+    while (on_plane[i] >= scan.first(ring + 1)) ++ring;
+    std::vector<std::size_t> places;
+    while (i < on_plane.size() && on_plane[i] < scan.first(ring + 1))
+      places.push_back(on_plane[i++]);
+    if (places.size() >= 2) finder.AddRing(ring, std::move(places), edges);
+  }
+  return edges;
+}
+
+}  // namespace sextant

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "features/lidar/lidar_plane.h"
+#include "features/lidar/scan_rings.h"
+
+namespace sextant {
+
+/// Where a ring leaves the board, in the board's plane.
+///
+/// The true edge lies somewhere between the last return on the board and the first beyond it, so
+/// its position along the ring is uniform over one step; the estimate is the middle. The ray's
+/// angles are far better known than its range, so positions are rays met with the plane.
+struct EdgePoint {
+  Eigen::Vector2d in_plane = Eigen::Vector2d::Zero();  ///< Estimate of the edge [m].
+  Eigen::Vector2d outward = Eigen::Vector2d::UnitX();  ///< Unit, along the ring, off the board.
+  double step_m = 0.0;                                 ///< Distance of neighbouring samples there.
+  double beam_sigma_m = 0.0;  ///< Of the beam's own width, across the ring.
+  bool inner = false;         ///< Of a hollow board's opening.
+  int ring = 0;
+  Eigen::Vector3d last_return = Eigen::Vector3d::Zero();  ///< As measured, uncorrected [m].
+};
+
+struct EdgeOptions {
+  bool hollow = false;      ///< Gaps within a ring are edges of the opening.
+  bool half_step = true;    ///< Off: the last return itself, as the paper takes it.
+  double growth_rad = 0.0;  ///< By how much a beam sees an edge too far out; see LidarBoardOptions.
+  double divergence_rad = 0.003;  ///< Full angle of the beam.
+};
+
+/// First and last return of each ring among the plane's points; edges that something nearer hides
+/// are left out. `on_plane`: places within scan.points().
+std::vector<EdgePoint> FindEdgePoints(const ScanRings& scan, const LidarPlane& plane,
+                                      std::span<const std::size_t> on_plane,
+                                      const EdgeOptions& options);
+
+}  // namespace sextant

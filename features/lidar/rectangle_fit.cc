@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/lidar/rectangle_fit.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace sextant {
+namespace {
+
+constexpr double kHuber = 2.0;    // Sigmas; a uniform error stays within 1.73.
+constexpr double kOutlier = 4.0;  // Sigmas.
+constexpr int kIterations = 12;
+constexpr int kStarts = 10;
+constexpr int kFewestEdges = 4;
+
+// Outward normals of the sides 0 to 3 in the board's frame: y = -h/2 is the first.
+const std::array<Eigen::Vector2d, 4> kNormals = {Eigen::Vector2d(0, -1), Eigen::Vector2d(1, 0),
+                                                 Eigen::Vector2d(0, 1), Eigen::Vector2d(-1, 0)};
+
+struct SidePlace {
+  int side = -1;
+  double distance = 0.0;                              // Signed, beyond the side [m].
+  double sigma = 1.0;                                 // [m].
+  Eigen::Vector3d by_pose = Eigen::Vector3d::Zero();  // Derivative by (center, angle).
+};
+
+class Fitter {
+ public:
+  Fitter(std::span<const EdgePoint> edges, const Board& board)
+      : edges_(edges), board_(board), half_(0.5 * board.top_right_m, 0.5 * board.right_bottom_m) {}
+
+  Eigen::Vector3d Start(double angle) const {
+    const Eigen::Rotation2Dd turn(angle);
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::max());
+    Eigen::Vector2d high = -low;
+    for (const EdgePoint& edge : edges_) {
+      const Eigen::Vector2d q = turn.inverse() * edge.in_plane;
+      low = low.cwiseMin(q);
+      high = high.cwiseMax(q);
+    }
+    const Eigen::Vector2d center = turn * (0.5 * (low + high));
+    return {center.x(), center.y(), angle};
+  }
+
+  SidePlace Place(const EdgePoint& edge, const Eigen::Vector3d& pose) const {
+    const Eigen::Rotation2Dd turn(pose.z());
+    const Eigen::Vector2d in_board = turn.inverse() * (edge.in_plane - pose.head<2>());
+    const Eigen::Vector2d out = turn.inverse() * edge.outward;
+    const bool inner = edge.inner && board_.hole;
+    const Eigen::Vector2d offset =
+        inner ? board_.hole->center_in_board_m : Eigen::Vector2d(Eigen::Vector2d::Zero());
+    const Eigen::Vector2d half =
+        inner ? Eigen::Vector2d(0.5 * board_.hole->width_m, 0.5 * board_.hole->height_m) : half_;
+    const Eigen::Vector2d q = in_board - offset;
+    const int side = inner ? EnteredSide(q, out, half) : LeftSide(q, out, half);
+    const Eigen::Vector2d& normal = kNormals[static_cast<std::size_t>(side)];
+    SidePlace place;
+    place.side = inner ? side + kCornersPerBoard : side;
+    place.distance = normal.dot(q) - normal.cwiseAbs().dot(half);
+    const double along = normal.dot(out);
+    place.sigma = std::sqrt(along * along * edge.step_m * edge.step_m / 12.0 +
+                            edge.beam_sigma_m * edge.beam_sigma_m + 1e-12);
+    const Eigen::Vector2d normal_in_plane = turn * normal;
+    place.by_pose << -normal_in_plane, normal.x() * in_board.y() - normal.y() * in_board.x();
+    return place;
+  }
+
+  // Sum of Huber's loss over the edges, and the step that reduces it.
+  double Step(const Eigen::Vector3d& pose, Eigen::Vector3d& step) const {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    double cost = 0.0;
+    for (const EdgePoint& edge : edges_) {
+      const SidePlace place = Place(edge, pose);
+      const double r = place.distance / place.sigma;
+      const double size = std::abs(r);
+      const double weight = size <= kHuber ? 1.0 : kHuber / size;
+      cost += size <= kHuber ? r * r : kHuber * (2.0 * size - kHuber);
+      const Eigen::Vector3d j = place.by_pose / place.sigma;
+      normal += weight * j * j.transpose();
+      gradient += weight * j * r;
+    }
+    // A little damping: a start may leave a direction open that the answer does not.
+    normal.diagonal() *= 1.0 + 1e-6;
+    normal.diagonal().array() += 1e-3;
+    step = -normal.ldlt().solve(gradient);
+    return cost;
+  }
+
+  std::optional<RectangleFit> Finish(const Eigen::Vector3d& pose) const {
+    RectangleFit fit{.center = pose.head<2>(),
+                     .angle_rad = pose.z(),
+                     .covariance = Eigen::Matrix3d::Zero(),
+                     .sides = {},
+                     .rms = 0.0,
+                     .rms_m = 0.0,
+                     .share = 0.0};
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    double chi2 = 0.0;
+    double squares = 0.0;
+    int used = 0;
+    for (const EdgePoint& edge : edges_) {
+      const SidePlace place = Place(edge, pose);
+      const double r = place.distance / place.sigma;
+      const bool belongs = std::abs(r) <= kOutlier;
+      fit.sides.push_back(belongs ? place.side : -1);
+      if (!belongs) continue;
+      const Eigen::Vector3d j = place.by_pose / place.sigma;
+      information += j * j.transpose();
+      chi2 += r * r;
+      squares += place.distance * place.distance;
+      ++used;
+    }
+    if (used < kFewestEdges) return std::nullopt;
+    // Angles in units of the board's half diagonal, so that both kinds of unknowns compare.
+    Eigen::Vector3d scale(1.0, 1.0, 1.0 / half_.norm());
+    const Eigen::Matrix3d scaled = scale.asDiagonal() * information * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scaled, Eigen::EigenvaluesOnly);
+    if (eigen.eigenvalues()(0) < 1e-4 * eigen.eigenvalues()(2)) return std::nullopt;
+    // A prior of four residuals of one sigma keeps few residuals from claiming none at all.
+    constexpr double kPrior = 4.0;
+    const double variance = (chi2 + kPrior) / (used - 3 + kPrior);
+    fit.covariance = variance * information.inverse();
+    fit.rms = std::sqrt(chi2 / used);
+    fit.rms_m = std::sqrt(squares / used);
+    fit.share = static_cast<double>(used) / static_cast<double>(edges_.size());
+    return fit;
+  }
+
+ private:
+  // The side through which a line from q along `out` leaves the rectangle.
+  static int LeftSide(const Eigen::Vector2d& q, const Eigen::Vector2d& out,
+                      const Eigen::Vector2d& half) {
+    int side = 0;
+    double soonest = std::numeric_limits<double>::max();
+    for (int k = 0; k < kCornersPerBoard; ++k) {
+      const Eigen::Vector2d& normal = kNormals[static_cast<std::size_t>(k)];
+      const double along = normal.dot(out);
+      if (along < 1e-9) continue;
+      const double t = (normal.cwiseAbs().dot(half) - normal.dot(q)) / along;
+      if (t < soonest) {
+        soonest = t;
+        side = k;
+      }
+    }
+    return side;
+  }
+
+  // The side through which it enters one.
+  static int EnteredSide(const Eigen::Vector2d& q, const Eigen::Vector2d& out,
+                         const Eigen::Vector2d& half) {
+    int side = 0;
+    double latest = std::numeric_limits<double>::lowest();
+    for (int k = 0; k < kCornersPerBoard; ++k) {
+      const Eigen::Vector2d& normal = kNormals[static_cast<std::size_t>(k)];
+      const double along = normal.dot(out);
+      if (along > -1e-9) continue;
+      const double t = (normal.cwiseAbs().dot(half) - normal.dot(q)) / along;
+      if (t > latest) {
+        latest = t;
+        side = k;
+      }
+    }
+    return side;
+  }
+
+  std::span<const EdgePoint> edges_;
+  const Board& board_;
+  Eigen::Vector2d half_;
+};
+
+}  // namespace
+
+std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const Board& board) {
+  if (static_cast<int>(edges.size()) < kFewestEdges) return std::nullopt;
+  const Fitter fitter(edges, board);
+  const double hanging =
+      std::numbers::pi / 2.0 - std::atan2(board.right_bottom_m, board.top_right_m);
+  double least = std::numeric_limits<double>::max();
+  Eigen::Vector3d best = Eigen::Vector3d::Zero();
+  for (int i = 0; i < kStarts; ++i) {
+    const double share = (i + 0.5) / kStarts - 0.5;
+    Eigen::Vector3d pose = fitter.Start(hanging + share * std::numbers::pi / 2.0);
+    Eigen::Vector3d step;
+    double cost = 0.0;
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+      cost = fitter.Step(pose, step);
+      pose += step;
+      if (step.norm() < 1e-7) break;
+    }
+    cost = fitter.Step(pose, step);
+    if (std::abs(pose.z() - hanging) <= std::numbers::pi / 4.0 + 0.02 && cost < least) {
+      least = cost;
+      best = pose;
+    }
+  }
+  if (least == std::numeric_limits<double>::max()) return std::nullopt;
+  return fitter.Finish(best);
+}
+
+}  // namespace sextant

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "features/lidar/scan_rings.h"
+
+namespace sextant {
+
+/// Neighbouring returns of one ring without a jump of range between them. A run that crosses the
+/// seam behind the sensor is cut there in two, which clustering joins again.
+struct RingRun {
+  int ring = 0;
+  std::size_t first = 0;  ///< Place within ScanRings::points().
+  std::size_t count = 0;
+};
+
+/// Runs that touch each other: one object as far as ranges tell.
+using RingCluster = std::vector<RingRun>;
+
+struct ClusterOptions {
+  double longest_run_m = 1.0;  ///< Longer runs are walls and floors and left out.
+  double jump_m = 0.06;  ///< A larger step of range parts two objects: 3 sigma of two returns.
+};
+
+/// Objects no wider than asked for. Two returns belong together where the surface between them is
+/// inclined by at most 60 degrees (between rings) or 75 (within a ring) against the ray's normal.
+/// Degenerate: a board that touches a wall is part of the wall.
+std::vector<RingCluster> ClusterRings(const ScanRings& scan, const ClusterOptions& options);
+
+}  // namespace sextant

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "base/error.h"
+#include "geometry/point_cloud.h"
+
+namespace sextant {
+
+/// A return, in the LiDAR's spherical coordinates too.
+struct RingPoint {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< In the LiDAR frame [m].
+  double range_m = 0.0;
+  double azimuth_rad = 0.0;  ///< About z from x, in (-pi, pi].
+  int index = 0;             ///< Within the cloud.
+};
+
+/// A scan sorted as the sensor swept it: rings from the lowest up, each by ascending azimuth.
+class ScanRings {
+ public:
+  /// Returns that are not finite or nearer than 1 cm are left out. Rings are taken from the cloud;
+  /// where it does not tell them, from elevations that repeat; where none do (a rosette), they are
+  /// bands of elevation as wide as points are apart.
+  /// Errors: kMissingData where no return is left; kInvalidInput where a field's length differs
+  /// from that of the points.
+  static Expected<ScanRings> Build(const PointCloud& cloud);
+
+  int rings() const { return static_cast<int>(starts_.size()) - 1; }
+  std::span<const RingPoint> ring(int i) const {
+    const auto k = static_cast<std::size_t>(i);
+    return std::span(points_).subspan(starts_[k], starts_[k + 1] - starts_[k]);
+  }
+  std::span<const RingPoint> points() const { return points_; }
+  /// Place of a ring's first point within points().
+  std::size_t first(int ring) const { return starts_[static_cast<std::size_t>(ring)]; }
+
+  /// Median angle between neighbours of a ring, and between neighbouring rings.
+  double azimuth_step_rad() const { return azimuth_step_rad_; }
+  double elevation_step_rad() const { return elevation_step_rad_; }
+
+ private:
+  std::vector<RingPoint> points_;
+  std::vector<std::size_t> starts_;
+  double azimuth_step_rad_ = 0.0;
+  double elevation_step_rad_ = 0.0;
+};
+
+}  // namespace sextant
