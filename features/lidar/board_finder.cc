@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
 
 #include "features/lidar/board_agreement.h"
 #include "features/lidar/ring_clusters.h"
@@ -17,6 +17,10 @@ namespace {
 constexpr double kHeldBy = 1.6;       // A hand or a stand may lengthen a run beyond the board.
 constexpr int kPlanesPerCluster = 3;  // A person who holds a board is flat in places too.
 constexpr int kFewestInCluster = 16;
+// Of the board's diagonal, that the box round a patch's points may span: half where the last rings
+// miss its corners, sqrt 2 where it hangs from a corner, more with a hand or a stand.
+constexpr double kSmallestShare = 0.4;
+constexpr double kLargestShare = 2.5;
 constexpr double kSameSize_m = 0.03;  // Boards closer in size are told apart by their order.
 
 double Diagonal(const Board& board) { return std::hypot(board.top_right_m, board.right_bottom_m); }
@@ -37,7 +41,7 @@ class Finder {
     for (const Board& board : boards_) longest = std::max(longest, Diagonal(board));
     for (const RingCluster& cluster :
          ClusterRings(scan_, {.longest_run_m = kHeldBy * longest, .jump_m = 0.06})) {
-      SearchCluster(cluster);
+      if (cluster.front().ring + 2 <= cluster.back().ring) SearchCluster(cluster);
     }
     std::ranges::stable_sort(search_.rejected, std::greater<>{}, &RejectedPatch::points);
     Assign();
@@ -80,9 +84,27 @@ class Finder {
       next += on ? 1U : 0U;
       (on ? on_plane : rest).push_back(places[i]);
     }
-    Propose(found->plane, on_plane);
+    if (OfBoardSize(found->plane, on_plane)) Propose(found->plane, on_plane);
     places = std::move(rest);
     return true;
+  }
+
+  // Whether the patch is neither far smaller nor far larger than every board: what is cheap to tell
+  // spares the rest.
+  bool OfBoardSize(const LidarPlane& plane, const std::vector<std::size_t>& on_plane) const {
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::max());
+    Eigen::Vector2d high = -low;
+    for (const std::size_t place : on_plane) {
+      const Eigen::Vector3d d = scan_.points()[place].point - plane.origin;
+      const Eigen::Vector2d p(plane.x_axis.dot(d), plane.y_axis.dot(d));
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    const double diagonal = (high - low).norm();
+    return std::ranges::any_of(boards_, [&](const Board& board) {
+      return diagonal > kSmallestShare * Diagonal(board) &&
+             diagonal < kLargestShare * Diagonal(board);
+    });
   }
 
   void Propose(const LidarPlane& plane, const std::vector<std::size_t>& on_plane) {

@@ -4,15 +4,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
+
+#include "features/lidar/azimuth.h"
 
 namespace sextant {
 namespace {
 
 constexpr double kMostGapSteps = 2.5;  // Within an interval: one drop-out.
-
-double Wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
 class EdgeFinder {
  public:
@@ -38,7 +37,7 @@ class EdgeFinder {
  private:
   // Relative to the board, so that the seam behind the sensor does not matter.
   double Azimuth(std::size_t place) const {
-    return Wrapped(scan_.points()[place].azimuth_rad - middle_);
+    return WrapAngle(scan_.points()[place].azimuth_rad - middle_);
   }
 
   // The next return of the ring beyond the edge, where the sensor saw anything there.
@@ -70,7 +69,7 @@ class EdgeFinder {
     if (const std::optional<RingPoint> beyond = Beyond(ring, place, sign)) {
       if (Hides(*beyond)) return;
       step =
-          std::clamp(std::abs(Wrapped(beyond->azimuth_rad - last.azimuth_rad)), 0.5 * step, step);
+          std::clamp(std::abs(WrapAngle(beyond->azimuth_rad - last.azimuth_rad)), 0.5 * step, step);
     }
     const double correction = (options_.half_step ? 0.5 * step : 0.0) - options_.growth_rad;
     const auto edge = MeetTurned(last, sign * correction);

@@ -12,6 +12,7 @@ namespace sextant {
 namespace {
 
 constexpr int kFewestPoints = 6;
+constexpr std::size_t kMostCounted = 300;  // Enough to tell which of two planes holds more.
 constexpr double kLeastSigma_m = 1e-6;     // Noise-free scans.
 constexpr double kLeastIncidence = 0.139;  // sin 8 deg: closer to edge-on the edges mean nothing.
 
@@ -95,20 +96,22 @@ std::optional<FoundPlane> FindPlane(std::span<const Eigen::Vector3d> points,
   std::optional<HalfSpace> best;
   std::size_t most = 0;
   std::array<int, 3> sample{};
+  const std::size_t stride = 1 + points.size() / kMostCounted;
   for (int i = 0; i < search.iterations; ++i) {
     random.Sample(count, sample);
     const std::optional<HalfSpace> plane = ThroughThree(points, sample);
     if (!plane) continue;
     std::size_t hits = 0;
-    for (const Eigen::Vector3d& point : points) {
-      hits += std::abs(plane->Distance(point)) <= search.threshold_m ? 1U : 0U;
+    for (std::size_t k = 0; k < points.size(); k += stride) {
+      hits += std::abs(plane->Distance(points[k])) <= search.threshold_m ? 1U : 0U;
     }
     if (hits > most) {
       most = hits;
       best = plane;
     }
   }
-  if (!best || static_cast<double>(most) < search.smallest_share * count) return std::nullopt;
+  if (!best || static_cast<double>(most * stride) < search.smallest_share * count)
+    return std::nullopt;
   FoundPlane found;
   found.inliers = Within(points, *best, search.threshold_m);
   for (int round = 0; round < 4; ++round) {

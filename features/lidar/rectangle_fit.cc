@@ -17,6 +17,9 @@ constexpr double kHuber = 2.0;    // Sigmas; a uniform error stays within 1.73.
 constexpr double kOutlier = 4.0;  // Sigmas.
 constexpr int kIterations = 12;
 constexpr int kStarts = 10;
+constexpr int kFirstIterations = 3;
+constexpr int kFinalists = 3;
+constexpr double kAngleSlack_rad = 0.02;
 constexpr int kFewestEdges = 4;
 
 // Outward normals of the sides 0 to 3 in the board's frame: y = -h/2 is the first.
@@ -48,10 +51,11 @@ class Fitter {
     return {center.x(), center.y(), angle};
   }
 
-  SidePlace Place(const EdgePoint& edge, const Eigen::Vector3d& pose) const {
-    const Eigen::Rotation2Dd turn(pose.z());
-    const Eigen::Vector2d in_board = turn.inverse() * (edge.in_plane - pose.head<2>());
-    const Eigen::Vector2d out = turn.inverse() * edge.outward;
+  // `turn` is the rotation by the pose's angle.
+  SidePlace Place(const EdgePoint& edge, const Eigen::Vector3d& pose,
+                  const Eigen::Matrix2d& turn) const {
+    const Eigen::Vector2d in_board = turn.transpose() * (edge.in_plane - pose.head<2>());
+    const Eigen::Vector2d out = turn.transpose() * edge.outward;
     const bool inner = edge.inner && board_.hole;
     const Eigen::Vector2d offset =
         inner ? board_.hole->center_in_board_m : Eigen::Vector2d(Eigen::Vector2d::Zero());
@@ -76,8 +80,9 @@ class Fitter {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
     double cost = 0.0;
+    const Eigen::Matrix2d turn = Eigen::Rotation2Dd(pose.z()).toRotationMatrix();
     for (const EdgePoint& edge : edges_) {
-      const SidePlace place = Place(edge, pose);
+      const SidePlace place = Place(edge, pose, turn);
       const double r = place.distance / place.sigma;
       const double size = std::abs(r);
       const double weight = size <= kHuber ? 1.0 : kHuber / size;
@@ -105,8 +110,9 @@ class Fitter {
     double chi2 = 0.0;
     double squares = 0.0;
     int used = 0;
+    const Eigen::Matrix2d turn = Eigen::Rotation2Dd(pose.z()).toRotationMatrix();
     for (const EdgePoint& edge : edges_) {
-      const SidePlace place = Place(edge, pose);
+      const SidePlace place = Place(edge, pose, turn);
       const double r = place.distance / place.sigma;
       const bool belongs = std::abs(r) <= kOutlier;
       fit.sides.push_back(belongs ? place.side : -1);
@@ -175,6 +181,21 @@ class Fitter {
   Eigen::Vector2d half_;
 };
 
+struct Candidate {
+  Eigen::Vector3d pose = Eigen::Vector3d::Zero();
+  double cost = 0.0;
+};
+
+void Improve(const Fitter& fitter, int iterations, Candidate& candidate) {
+  Eigen::Vector3d step;
+  for (int i = 0; i < iterations; ++i) {
+    fitter.Step(candidate.pose, step);
+    candidate.pose += step;
+    if (step.norm() < 1e-7) break;
+  }
+  candidate.cost = fitter.Step(candidate.pose, step);
+}
+
 }  // namespace
 
 std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const Board& board) {
@@ -182,26 +203,23 @@ std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const
   const Fitter fitter(edges, board);
   const double hanging =
       std::numbers::pi / 2.0 - std::atan2(board.right_bottom_m, board.top_right_m);
-  double least = std::numeric_limits<double>::max();
-  Eigen::Vector3d best = Eigen::Vector3d::Zero();
+  std::array<Candidate, kStarts> candidates;
   for (int i = 0; i < kStarts; ++i) {
     const double share = (i + 0.5) / kStarts - 0.5;
-    Eigen::Vector3d pose = fitter.Start(hanging + share * std::numbers::pi / 2.0);
-    Eigen::Vector3d step;
-    double cost = 0.0;
-    for (int iteration = 0; iteration < kIterations; ++iteration) {
-      cost = fitter.Step(pose, step);
-      pose += step;
-      if (step.norm() < 1e-7) break;
-    }
-    cost = fitter.Step(pose, step);
-    if (std::abs(pose.z() - hanging) <= std::numbers::pi / 4.0 + 0.02 && cost < least) {
-      least = cost;
-      best = pose;
-    }
+    Candidate& candidate = candidates[static_cast<std::size_t>(i)];
+    candidate.pose = fitter.Start(hanging + share * std::numbers::pi / 2.0);
+    Improve(fitter, kFirstIterations, candidate);
   }
-  if (least == std::numeric_limits<double>::max()) return std::nullopt;
-  return fitter.Finish(best);
+  std::ranges::sort(candidates, {}, &Candidate::cost);
+  const Candidate* best = nullptr;
+  for (Candidate& candidate : std::span(candidates).first(kFinalists)) {
+    Improve(fitter, kIterations, candidate);
+    const double off = std::abs(candidate.pose.z() - hanging);
+    if (off > std::numbers::pi / 4.0 + kAngleSlack_rad) continue;
+    if (best == nullptr || candidate.cost < best->cost) best = &candidate;
+  }
+  if (best == nullptr) return std::nullopt;
+  return fitter.Finish(best->pose);
 }
 
 }  // namespace sextant

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
+
+#include "features/lidar/azimuth.h"
 
 namespace sextant {
 namespace {
@@ -38,8 +39,6 @@ std::vector<RingRun> RunsOf(const ScanRings& scan, int ring, const ClusterOption
   return runs;
 }
 
-double Wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
-
 double ElevationOf(const RingPoint& point) { return std::asin(point.point.z() / point.range_m); }
 
 // The return of a run that is nearest in azimuth.
@@ -61,15 +60,15 @@ bool Touch(const ScanRings& scan, const RingRun& a, const RingRun& b,
   // Azimuths relative to the middle of a, so that the seam does not matter.
   const double middle = 0.5 * (a0.azimuth_rad + a1.azimuth_rad);
   const double half = 0.5 * (a1.azimuth_rad - a0.azimuth_rad) + 1.5 * scan.azimuth_step_rad();
-  const double from = Wrapped(b0.azimuth_rad - middle);
+  const double from = WrapAngle(b0.azimuth_rad - middle);
   const double to = from + (b1.azimuth_rad - b0.azimuth_rad);
   if (to < -half || from > half) return false;
   const double shared = middle + 0.5 * (std::max(from, -half) + std::min(to, half));
   const double offset = b0.azimuth_rad - (middle + from);  // 0 or a whole turn.
   const RingPoint& p = NearestInAzimuth(scan, a, shared);
   const RingPoint& q = NearestInAzimuth(scan, b, shared + offset);
-  const double gap =
-      std::abs(ElevationOf(p) - ElevationOf(q)) + std::abs(Wrapped(p.azimuth_rad - q.azimuth_rad));
+  const double gap = std::abs(ElevationOf(p) - ElevationOf(q)) +
+                     std::abs(WrapAngle(p.azimuth_rad - q.azimuth_rad));
   return std::abs(p.range_m - q.range_m) <=
          std::max(options.jump_m, kSlopeBetweenRings * gap * std::min(p.range_m, q.range_m));
 }

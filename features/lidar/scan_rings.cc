@@ -20,10 +20,6 @@ double Median(std::vector<double>& values) {
   return *middle;
 }
 
-double ElevationOf(const Eigen::Vector3d& point) {
-  return std::atan2(point.z(), point.head<2>().norm());
-}
-
 // Rings by elevations that repeat: sorted, they fall into steps with empty gaps between them. Empty
 // where they do not, as with a rosette.
 std::vector<int> RingsOfElevations(const std::vector<double>& elevations) {
@@ -66,6 +62,20 @@ std::vector<int> BandsOfElevation(const std::vector<double>& elevations,
   return rings;
 }
 
+std::vector<int> RecoverRings(const std::vector<RingPoint>& points) {
+  std::vector<double> elevations;
+  elevations.reserve(points.size());
+  for (const RingPoint& point : points) {
+    elevations.push_back(std::asin(point.point.z() / point.range_m));
+  }
+  std::vector<int> rings = RingsOfElevations(elevations);
+  if (!rings.empty()) return rings;
+  std::vector<double> azimuths;
+  azimuths.reserve(points.size());
+  for (const RingPoint& point : points) azimuths.push_back(point.azimuth_rad);
+  return BandsOfElevation(elevations, azimuths);
+}
+
 }  // namespace
 
 Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
@@ -77,8 +87,6 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
   }
   std::vector<RingPoint> kept;
   std::vector<int> ring_of;
-  std::vector<double> elevations;
-  std::vector<double> azimuths;
   kept.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3d& point = cloud.points[i];
@@ -91,24 +99,19 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
     return MakeError(ErrorCode::kMissingData,
                      fmt::format("none of the scan's {} points is a finite return", count));
   }
-  elevations.reserve(kept.size());
-  for (const RingPoint& point : kept) elevations.push_back(ElevationOf(point.point));
-  if (ring_of.empty()) ring_of = RingsOfElevations(elevations);
-  if (ring_of.empty()) {
-    for (const RingPoint& point : kept) azimuths.push_back(point.azimuth_rad);
-    ring_of = BandsOfElevation(elevations, azimuths);
-  }
+  if (ring_of.empty()) ring_of = RecoverRings(kept);
 
-  // Ring numbers may be sparse or count downwards: order them by their median elevation.
+  // Ring numbers may be sparse or count downwards: order them by their median elevation,
+  // found among sines, which sort alike.
   const int highest = *std::ranges::max_element(ring_of);
   std::vector<std::vector<double>> of_ring(static_cast<std::size_t>(highest) + 1);
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    of_ring[static_cast<std::size_t>(ring_of[i])].push_back(elevations[i]);
+    of_ring[static_cast<std::size_t>(ring_of[i])].push_back(kept[i].point.z() / kept[i].range_m);
   }
   std::vector<std::pair<double, int>> by_elevation;
   for (std::size_t ring = 0; ring < of_ring.size(); ++ring) {
     if (!of_ring[ring].empty())
-      by_elevation.emplace_back(Median(of_ring[ring]), static_cast<int>(ring));
+      by_elevation.emplace_back(std::asin(Median(of_ring[ring])), static_cast<int>(ring));
   }
   std::ranges::sort(by_elevation);
 
