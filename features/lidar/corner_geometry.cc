@@ -27,7 +27,7 @@ Expected<std::vector<std::vector<int>>> GroupBySide(const BoardPatch& patch, con
   constexpr std::size_t kNeeded = 2;
   std::vector<std::vector<int>> groups(static_cast<std::size_t>(SidesOf(board)));
   for (std::size_t i = 0; i < patch.edges.size(); ++i) {
-    if (patch.fit.sides[i] < 0) continue;
+    if (patch.fit.sides[i] < 0 || patch.edges[i].across) continue;
     groups[static_cast<std::size_t>(patch.fit.sides[i])].push_back(static_cast<int>(i));
   }
   for (std::size_t side = 0; side < groups.size(); ++side) {

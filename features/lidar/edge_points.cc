@@ -34,7 +34,46 @@ class EdgeFinder {
     AddEdge(ring, places.back(), +1, false, edges);
   }
 
+  // Where the board ends between its outermost ring and the next one, `sign` +1 above or -1 below.
+  // Nothing is known where the sensor has no such ring or it meets the plane too.
+  void AddEnd(int ring, std::vector<std::size_t> places, int sign,
+              std::vector<EdgePoint>& edges) const {
+    const int next = ring + sign;
+    if (next < 0 || next >= scan_.rings() || scan_.ring(next).empty()) return;
+    std::ranges::sort(places, {}, [&](std::size_t i) { return Azimuth(i); });
+    const RingPoint& last = scan_.points()[places[places.size() / 2]];
+    const RingPoint& beyond = NearestInAzimuth(next, last.azimuth_rad);
+    const double gap = WrapAngle(beyond.azimuth_rad - last.azimuth_rad);
+    const auto on = MeetTurned(last, 0.0);
+    const auto off = MeetTurned(beyond, -gap);
+    if (!on || !off || (*off - *on).norm() < 1e-9) return;
+    if (std::abs(gap) < kMostGapSteps * scan_.azimuth_step_rad()) {
+      const double distance = std::abs(plane_.normal.dot(beyond.point - plane_.origin));
+      if (Hides(beyond) || distance < 0.01 + 3.0 * plane_.sigma_m) return;
+    }
+    EdgePoint edge{.in_plane = options_.half_step ? Eigen::Vector2d(0.5 * (*on + *off)) : *on,
+                   .outward = (*off - *on).normalized(),
+                   .step_m = (*off - *on).norm(),
+                   .beam_sigma_m = 0.5 * options_.divergence_rad * last.range_m,
+                   .across = true,
+                   .inner = false,
+                   .ring = ring,
+                   .last_return = last.point};
+    edge.in_plane -= edge.outward * options_.growth_rad * last.range_m;
+    edges.push_back(edge);
+  }
+
  private:
+  const RingPoint& NearestInAzimuth(int ring, double azimuth_rad) const {
+    const std::span<const RingPoint> points = scan_.ring(ring);
+    const auto after = std::ranges::lower_bound(points, azimuth_rad, {}, &RingPoint::azimuth_rad);
+    const RingPoint& b = after == points.end() ? points.front() : *after;
+    const RingPoint& a = after == points.begin() ? points.back() : *std::prev(after);
+    const bool first = std::abs(WrapAngle(a.azimuth_rad - azimuth_rad)) <
+                       std::abs(WrapAngle(b.azimuth_rad - azimuth_rad));
+    return first ? a : b;
+  }
+
   // Relative to the board, so that the seam behind the sensor does not matter.
   double Azimuth(std::size_t place) const {
     return WrapAngle(scan_.points()[place].azimuth_rad - middle_);
@@ -80,6 +119,7 @@ class EdgeFinder {
                      .outward = (*off - *on).normalized(),
                      .step_m = (*off - *on).norm(),
                      .beam_sigma_m = 0.5 * options_.divergence_rad * last.range_m,
+                     .across = false,
                      .inner = inner,
                      .ring = ring,
                      .last_return = last.point});
@@ -99,13 +139,18 @@ std::vector<EdgePoint> FindEdgePoints(const ScanRings& scan, const LidarPlane& p
   const EdgeFinder finder(scan, plane, options);
   std::vector<EdgePoint> edges;
   int ring = 0;
+  std::vector<std::size_t> places;
+  bool first = true;
   for (std::size_t i = 0; i < on_plane.size();) {
     while (on_plane[i] >= scan.first(ring + 1)) ++ring;
-    std::vector<std::size_t> places;
+    places.clear();
     while (i < on_plane.size() && on_plane[i] < scan.first(ring + 1))
       places.push_back(on_plane[i++]);
-    if (places.size() >= 2) finder.AddRing(ring, std::move(places), edges);
+    if (first) finder.AddEnd(ring, places, -1, edges);
+    first = false;
+    if (places.size() >= 2) finder.AddRing(ring, places, edges);
   }
+  if (!first) finder.AddEnd(ring, places, +1, edges);
   return edges;
 }
 

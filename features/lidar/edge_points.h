@@ -10,7 +10,7 @@
 
 namespace sextant {
 
-/// Where a ring leaves the board, in the board's plane.
+/// Where the samples of a ring leave the board, in the board's plane.
 ///
 /// The true edge lies somewhere between the last return on the board and the first beyond it, so
 /// its position along the ring is uniform over one step; the estimate is the middle. The ray's
@@ -20,6 +20,7 @@ struct EdgePoint {
   Eigen::Vector2d outward = Eigen::Vector2d::UnitX();  ///< Unit, along the ring, off the board.
   double step_m = 0.0;                                 ///< Distance of neighbouring samples there.
   double beam_sigma_m = 0.0;  ///< Of the beam's own width, across the ring.
+  bool across = false;        ///< Between two rings: the board's upper or lower end.
   bool inner = false;         ///< Of a hollow board's opening.
   int ring = 0;
   Eigen::Vector3d last_return = Eigen::Vector3d::Zero();  ///< As measured, uncorrected [m].
@@ -32,8 +33,9 @@ struct EdgeOptions {
   double divergence_rad = 0.003;  ///< Full angle of the beam.
 };
 
-/// First and last return of each ring among the plane's points; edges that something nearer hides
-/// are left out. `on_plane`: places within scan.points().
+/// First and last return of each ring among the plane's points, and the middles of the highest and
+/// lowest ring, where the edge lies before the next one. Edges that something nearer hides are left
+/// out. `on_plane`: places within scan.points().
 std::vector<EdgePoint> FindEdgePoints(const ScanRings& scan, const LidarPlane& plane,
                                       std::span<const std::size_t> on_plane,
                                       const EdgeOptions& options);
