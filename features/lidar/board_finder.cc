@@ -21,6 +21,7 @@ constexpr int kFewestInCluster = 16;
 // miss its corners, sqrt 2 where it hangs from a corner, more with a hand or a stand.
 constexpr double kSmallestShare = 0.4;
 constexpr double kLargestShare = 2.5;
+constexpr std::size_t kNobody = std::numeric_limits<std::size_t>::max();
 constexpr double kSameSize_m = 0.03;  // Boards closer in size are told apart by their order.
 
 double Diagonal(const Board& board) { return std::hypot(board.top_right_m, board.right_bottom_m); }
@@ -134,10 +135,8 @@ class Finder {
   }
 
   EdgeOptions EdgeOptionsOf(const Board& board) const {
-    return {.hollow = board.hole.has_value(),
-            .half_step = options_.half_step,
-            .growth_rad = options_.growth_rad,
-            .divergence_rad = options_.divergence_rad};
+    return {
+        .hollow = board.hole.has_value(), .correct = options_.correct_edges, .beam = options_.beam};
   }
 
   int RingsOf(const std::vector<std::size_t>& places) const {
@@ -152,38 +151,45 @@ class Finder {
     return rings;
   }
 
-  // Each patch goes to the board that it agrees with best, the best pair first; then boards of
-  // nearly the same size are put into order from left to right.
+  // As many patches as possible get a board of their own (augmenting paths), those that agree best
+  // first; then boards of nearly the same size are put into order from left to right.
   void Assign() {
-    std::vector<bool> used(proposals_.size(), false);
-    std::vector<bool> placed(boards_.size(), false);
-    while (true) {
-      const BoardPatch* best = nullptr;
-      std::size_t from = 0;
-      for (std::size_t p = 0; p < proposals_.size(); ++p) {
-        if (used[p]) continue;
-        for (const BoardPatch& patch : proposals_[p]) {
-          if (placed[static_cast<std::size_t>(patch.board)]) continue;
-          if (best == nullptr || Disagreement(patch) < Disagreement(*best)) {
-            best = &patch;
-            from = p;
-          }
-        }
-      }
-      if (best == nullptr) break;
-      used[from] = true;
-      placed[static_cast<std::size_t>(best->board)] = true;
-      search_.found.push_back(*best);
+    for (std::vector<BoardPatch>& proposal : proposals_) {
+      std::ranges::sort(proposal, {}, Disagreement);
     }
-    OrderFromLeft();
-    std::ranges::sort(search_.found, {}, &BoardPatch::board);
+    std::ranges::stable_sort(proposals_, {}, [](const std::vector<BoardPatch>& proposal) {
+      return Disagreement(proposal.front());
+    });
+    owner_.assign(boards_.size(), kNobody);
     for (std::size_t p = 0; p < proposals_.size(); ++p) {
-      if (used[p]) continue;
+      std::vector<bool> asked(boards_.size(), false);
+      if (Place(p, asked)) continue;
       const BoardPatch& patch = proposals_[p].front();
       search_.rejected.push_back({patch.plane.At(patch.fit.center), patch.agreement.rings,
                                   patch.agreement.points,
-                                  "a better one was found for every board of its size"});
+                                  "better ones were found for every board of its size"});
     }
+    for (std::size_t b = 0; b < boards_.size(); ++b) {
+      if (owner_[b] == kNobody) continue;
+      for (const BoardPatch& patch : proposals_[owner_[b]]) {
+        if (patch.board == static_cast<int>(b)) search_.found.push_back(patch);
+      }
+    }
+    OrderFromLeft();
+    std::ranges::sort(search_.found, {}, &BoardPatch::board);
+  }
+
+  bool Place(std::size_t proposal, std::vector<bool>& asked) {
+    for (const BoardPatch& patch : proposals_[proposal]) {
+      const auto board = static_cast<std::size_t>(patch.board);
+      if (asked[board]) continue;
+      asked[board] = true;
+      if (owner_[board] == kNobody || Place(owner_[board], asked)) {
+        owner_[board] = proposal;
+        return true;
+      }
+    }
+    return false;
   }
 
   bool SameSize(int a, int b) const {
@@ -225,6 +231,7 @@ class Finder {
   const BoardSearchOptions& options_;
   Random random_;
   BoardSearch search_;
+  std::vector<std::size_t> owner_;                  // The proposal that has a board.
   std::vector<std::vector<BoardPatch>> proposals_;  // For each patch, every board that it may be.
 };
 

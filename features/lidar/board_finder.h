@@ -25,9 +25,8 @@ struct LidarRegion {
 
 struct BoardSearchOptions {
   std::optional<LidarRegion> region{};
-  bool half_step = true;          ///< Correct edges by half the distance of two samples.
-  double growth_rad = 0.0015;     ///< By how much the sensor sees an edge too far out.
-  double divergence_rad = 0.003;  ///< Full angle of its beam.
+  bool correct_edges = true;  ///< For the samples' distance and the beam's width; see EdgePoint.
+  LidarBeam beam{};
   std::uint64_t seed = 1;
 };
 

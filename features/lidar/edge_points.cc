@@ -11,6 +11,7 @@
 namespace sextant {
 namespace {
 
+constexpr double kSpotSigma = 0.18;    // Of the spot's width: how the edge seen varies.
 constexpr double kMostGapSteps = 2.5;  // Within an interval: one drop-out.
 
 class EdgeFinder {
@@ -51,15 +52,16 @@ class EdgeFinder {
       const double distance = std::abs(plane_.normal.dot(beyond.point - plane_.origin));
       if (Hides(beyond) || distance < 0.01 + 3.0 * plane_.sigma_m) return;
     }
-    EdgePoint edge{.in_plane = options_.half_step ? Eigen::Vector2d(0.5 * (*on + *off)) : *on,
+    const double spot = options_.beam.SpotAt(last.range_m);
+    EdgePoint edge{.in_plane = *on,
                    .outward = (*off - *on).normalized(),
                    .step_m = (*off - *on).norm(),
-                   .beam_sigma_m = 0.5 * options_.divergence_rad * last.range_m,
+                   .beam_sigma_m = kSpotSigma * spot,
                    .across = true,
                    .inner = false,
                    .ring = ring,
                    .last_return = last.point};
-    edge.in_plane -= edge.outward * options_.growth_rad * last.range_m;
+    if (options_.correct) edge.in_plane += edge.outward * (0.5 * edge.step_m - 0.5 * spot);
     edges.push_back(edge);
   }
 
@@ -110,7 +112,8 @@ class EdgeFinder {
       step =
           std::clamp(std::abs(WrapAngle(beyond->azimuth_rad - last.azimuth_rad)), 0.5 * step, step);
     }
-    const double correction = (options_.half_step ? 0.5 * step : 0.0) - options_.growth_rad;
+    const double spot = options_.beam.SpotAt(last.range_m);
+    const double correction = options_.correct ? 0.5 * step - 0.5 * spot / last.range_m : 0.0;
     const auto edge = MeetTurned(last, sign * correction);
     const auto on = MeetTurned(last, 0.0);
     const auto off = MeetTurned(last, sign * step);
@@ -118,7 +121,7 @@ class EdgeFinder {
     edges.push_back({.in_plane = *edge,
                      .outward = (*off - *on).normalized(),
                      .step_m = (*off - *on).norm(),
-                     .beam_sigma_m = 0.5 * options_.divergence_rad * last.range_m,
+                     .beam_sigma_m = kSpotSigma * spot,
                      .across = false,
                      .inner = inner,
                      .ring = ring,

@@ -26,11 +26,19 @@ struct EdgePoint {
   Eigen::Vector3d last_return = Eigen::Vector3d::Zero();  ///< As measured, uncorrected [m].
 };
 
+/// The spot that a beam makes, as wide as aperture + divergence x range. An edge is seen too far
+/// out by half of it, for the strongest echo wins; what lies behind makes that vary.
+struct LidarBeam {
+  double aperture_m = 0.0095;     ///< As it leaves; VLP-16.
+  double divergence_rad = 0.003;  ///< Full angle; VLP-16.
+
+  double SpotAt(double range_m) const { return aperture_m + divergence_rad * range_m; }
+};
+
 struct EdgeOptions {
-  bool hollow = false;      ///< Gaps within a ring are edges of the opening.
-  bool half_step = true;    ///< Off: the last return itself, as the paper takes it.
-  double growth_rad = 0.0;  ///< By how much a beam sees an edge too far out; see LidarBoardOptions.
-  double divergence_rad = 0.003;  ///< Full angle of the beam.
+  bool hollow = false;  ///< Gaps within a ring are edges of the opening.
+  bool correct = true;  ///< Off: the last return itself, as the paper takes it.
+  LidarBeam beam{};
 };
 
 /// First and last return of each ring among the plane's points, and the middles of the highest and
