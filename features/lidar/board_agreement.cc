@@ -13,6 +13,8 @@ namespace {
 constexpr double kBand_m = 0.08;  // Around the board, where its plane must end.
 constexpr double kLeastFilled = 0.9;
 constexpr double kMostContinued = 0.35;
+constexpr double kLeastContained = 0.8;
+constexpr double kLeastVisible = 0.5;
 constexpr double kLeastShare = 0.7;
 constexpr double kMostRms = 2.2;  // Sigmas; a board of the wrong size has more.
 constexpr int kFewestEdgePoints = 8;
@@ -24,6 +26,12 @@ double Beyond(const Eigen::Vector2d& point, double width, double height) {
 }
 
 }  // namespace
+
+double BeyondBoard(const BoardPatch& patch, const Board& board, const Eigen::Vector2d& in_plane) {
+  const Eigen::Vector2d in_board =
+      Eigen::Rotation2Dd(-patch.fit.angle_rad) * (in_plane - patch.fit.center);
+  return Beyond(in_board, board.top_right_m, board.right_bottom_m);
+}
 
 BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const Board& board) {
   BoardAgreement agreement;
@@ -37,6 +45,7 @@ BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const
   const double margin = 0.015 + scan.azimuth_step_rad() * center.norm();
   int hit = 0;
   int through = 0;
+  int hidden = 0;
   int around = 0;
   int around_on_plane = 0;
   for (int ring = 0; ring < scan.rings(); ++ring) {
@@ -55,8 +64,8 @@ BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const
         if (std::abs(off) <= near) {
           ++hit;
           any = true;
-        } else if (off > 0.0) {
-          ++through;
+        } else {
+          ++(off > 0.0 ? through : hidden);
         }
       } else if (beyond > margin && beyond < margin + kBand_m) {
         ++around;
@@ -65,8 +74,16 @@ BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const
     }
     agreement.rings += any ? 1 : 0;
   }
+  std::size_t inside = 0;
+  for (const std::size_t place : patch.on_plane) {
+    const std::optional<Eigen::Vector2d> there = plane.Meet(scan.points()[place].point);
+    inside += there && BeyondBoard(patch, board, *there) < margin ? 1U : 0U;
+  }
+  agreement.contained = static_cast<double>(inside) /
+                        static_cast<double>(std::max<std::size_t>(1, patch.on_plane.size()));
   agreement.points = hit;
   agreement.filled = hit > 0 ? static_cast<double>(hit) / (hit + through) : 0.0;
+  agreement.visible = 1.0 - static_cast<double>(hidden) / std::max(1, hit + through + hidden);
   agreement.continued = around > 0 ? static_cast<double>(around_on_plane) / around : 0.0;
   return agreement;
 }
@@ -90,8 +107,16 @@ std::optional<std::string> WhyNot(const BoardPatch& patch, const Board& board) {
         "its outline is not {:.3f} x {:.3f} m: {:.0f} % of the edge points fit, {:.1f} sigma rms",
         board.top_right_m, board.right_bottom_m, 100.0 * patch.fit.share, patch.fit.rms);
   }
+  if (agreement.contained < kLeastContained) {
+    return fmt::format("{:.0f} % of its flat surface lies beyond a board of {:.3f} x {:.3f} m",
+                       100.0 * (1.0 - agreement.contained), board.top_right_m,
+                       board.right_bottom_m);
+  }
   if (agreement.filled < kLeastFilled) {
     return fmt::format("{:.0f} % of the rays pass through it", 100.0 * (1.0 - agreement.filled));
+  }
+  if (agreement.visible < kLeastVisible) {
+    return fmt::format("something nearer hides {:.0f} % of it", 100.0 * (1.0 - agreement.visible));
   }
   if (agreement.continued > kMostContinued) {
     return fmt::format("its plane goes on beyond it ({:.0f} % around it), as a wall's does",

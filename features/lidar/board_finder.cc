@@ -16,7 +16,12 @@ namespace {
 
 constexpr double kHeldBy = 1.6;       // A hand or a stand may lengthen a run beyond the board.
 constexpr int kPlanesPerCluster = 3;  // A person who holds a board is flat in places too.
-constexpr int kFewestInCluster = 16;
+constexpr int kFewestInCluster = 10;
+constexpr double kAround_m = 0.05;
+constexpr double kLeastJump_m = 0.06;
+constexpr double kJumpSigmas = 4.5;  // Two returns differ by sqrt 2 sigma; three of these.
+constexpr double kLeastThreshold_m = 0.03;
+constexpr double kPlaneSigmas = 2.5;
 // Of the board's diagonal, that the box round a patch's points may span: half where the last rings
 // miss its corners, sqrt 2 where it hangs from a corner, more with a hand or a stand.
 constexpr double kSmallestShare = 0.4;
@@ -40,9 +45,11 @@ class Finder {
   BoardSearch Find() {
     double longest = 0.0;
     for (const Board& board : boards_) longest = std::max(longest, Diagonal(board));
-    for (const RingCluster& cluster :
-         ClusterRings(scan_, {.longest_run_m = kHeldBy * longest, .jump_m = 0.06})) {
-      if (cluster.front().ring + 2 <= cluster.back().ring) SearchCluster(cluster);
+    const ClusterOptions options{
+        .longest_run_m = kHeldBy * longest,
+        .jump_m = std::max(kLeastJump_m, kJumpSigmas * scan_.range_sigma_m())};
+    for (const RingCluster& cluster : ClusterRings(scan_, options)) {
+      if (cluster.front().ring < cluster.back().ring) SearchCluster(cluster);
     }
     std::ranges::stable_sort(search_.rejected, std::greater<>{}, &RejectedPatch::points);
     Assign();
@@ -74,7 +81,10 @@ class Finder {
     std::vector<Eigen::Vector3d> points;
     points.reserve(places.size());
     for (const std::size_t place : places) points.push_back(scan_.points()[place].point);
-    const PlaneSearch search{.threshold_m = 0.03, .iterations = 60, .smallest_share = 0.25};
+    const PlaneSearch search{
+        .threshold_m = std::max(kLeastThreshold_m, kPlaneSigmas * scan_.range_sigma_m()),
+        .iterations = 60,
+        .smallest_share = 0.25};
     const std::optional<FoundPlane> found = FindPlane(points, search, random_);
     if (!found) return false;
     std::vector<std::size_t> on_plane;
@@ -85,8 +95,9 @@ class Finder {
       next += on ? 1U : 0U;
       (on ? on_plane : rest).push_back(places[i]);
     }
-    if (OfBoardSize(found->plane, on_plane)) Propose(found->plane, on_plane);
     places = std::move(rest);
+    if (!OfBoardSize(found->plane, on_plane)) return true;
+    if (Propose(found->plane, on_plane)) Erase(proposals_.back(), places);
     return true;
   }
 
@@ -108,8 +119,19 @@ class Finder {
     });
   }
 
-  void Propose(const LidarPlane& plane, const std::vector<std::size_t>& on_plane) {
-    BoardPatch best;
+  // Takes out what else lies on or close before a board that was found: its noisiest returns would
+  // make a second one.
+  void Erase(const std::vector<BoardPatch>& proposal, std::vector<std::size_t>& places) const {
+    const BoardPatch& patch = proposal.front();
+    const Board& board = boards_[static_cast<std::size_t>(patch.board)];
+    std::erase_if(places, [&](std::size_t place) {
+      const std::optional<Eigen::Vector2d> there = patch.plane.Meet(scan_.points()[place].point);
+      return there && BeyondBoard(patch, board, *there) < kAround_m;
+    });
+  }
+
+  // Whether it may be one of the boards.
+  bool Propose(const LidarPlane& plane, const std::vector<std::size_t>& on_plane) {
     std::string why = "fewer than four edge points, or all its edges parallel";
     std::vector<BoardPatch> accepted;
     for (std::size_t b = 0; b < boards_.size(); ++b) {
@@ -126,12 +148,14 @@ class Finder {
         accepted.push_back(std::move(patch));
       }
     }
-    if (accepted.empty()) {
+    const bool any = !accepted.empty();
+    if (!any) {
       search_.rejected.push_back(
           {plane.origin, RingsOf(on_plane), static_cast<int>(on_plane.size()), std::move(why)});
     } else {
       proposals_.push_back(std::move(accepted));
     }
+    return any;
   }
 
   EdgeOptions EdgeOptionsOf(const Board& board) const {
@@ -160,6 +184,7 @@ class Finder {
     std::ranges::stable_sort(proposals_, {}, [](const std::vector<BoardPatch>& proposal) {
       return Disagreement(proposal.front());
     });
+    DropDoubles();
     owner_.assign(boards_.size(), kNobody);
     for (std::size_t p = 0; p < proposals_.size(); ++p) {
       std::vector<bool> asked(boards_.size(), false);
@@ -177,6 +202,21 @@ class Finder {
     }
     OrderFromLeft();
     std::ranges::sort(search_.found, {}, &BoardPatch::board);
+  }
+
+  // One board that the clustering took apart: the part that agrees best stands for it.
+  void DropDoubles() {
+    std::vector<std::vector<BoardPatch>> kept;
+    for (std::vector<BoardPatch>& proposal : proposals_) {
+      const BoardPatch& patch = proposal.front();
+      const Eigen::Vector3d center = patch.plane.At(patch.fit.center);
+      const double reach = 0.5 * Diagonal(boards_[static_cast<std::size_t>(patch.board)]);
+      const bool is_double = std::ranges::any_of(kept, [&](const std::vector<BoardPatch>& other) {
+        return (other.front().plane.At(other.front().fit.center) - center).norm() < reach;
+      });
+      if (!is_double) kept.push_back(std::move(proposal));
+    }
+    proposals_ = std::move(kept);
   }
 
   bool Place(std::size_t proposal, std::vector<bool>& asked) {

@@ -35,6 +35,8 @@ struct BoardAgreement {
   int rings = 0;
   int points = 0;          ///< On the board.
   double filled = 0.0;     ///< Share of the rays onto the board that end on it.
+  double visible = 0.0;    ///< Share of them that nothing nearer stops.
+  double contained = 0.0;  ///< Share of the patch's points that lie within the board.
   double continued = 0.0;  ///< Share of those around it that end in its plane too.
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace sextant {
 namespace {
@@ -20,30 +21,33 @@ double Median(std::vector<double>& values) {
   return *middle;
 }
 
-// Rings by elevations that repeat: sorted, they fall into steps with empty gaps between them. Empty
-// where they do not, as with a rosette.
+// Rings by elevations that repeat: sorted, they fall into steps with empty gaps between them. Beams
+// that leave beside the origin smear a ring's elevations, so that small gaps may part one ring: the
+// smallest gap counts for which no two rings are far closer than is usual. Empty where elevations
+// do not repeat, as with a rosette.
 std::vector<int> RingsOfElevations(const std::vector<double>& elevations) {
   std::vector<std::size_t> order(elevations.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::ranges::sort(order,
-                    [&](std::size_t a, std::size_t b) { return elevations[a] < elevations[b]; });
-  constexpr double kGap_rad = 0.05 * std::numbers::pi / 180.0;
-  std::vector<int> rings(elevations.size(), 0);
-  int ring = 0;
-  double widest = 0.0;
-  double start = elevations[order[0]];
-  for (std::size_t i = 1; i < order.size(); ++i) {
-    if (elevations[order[i]] - elevations[order[i - 1]] > kGap_rad) {
-      widest = std::max(widest, elevations[order[i - 1]] - start);
-      start = elevations[order[i]];
-      ++ring;
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return elevations[i]; });
+  for (const double gap_deg : {0.02, 0.05, 0.1, 0.2, 0.4, 0.8}) {
+    const double gap = gap_deg * std::numbers::pi / 180.0;
+    std::vector<int> rings(elevations.size(), 0);
+    std::vector<double> lows = {elevations[order[0]]};
+    double widest = 0.0;
+    for (std::size_t i = 1; i < order.size(); ++i) {
+      const double elevation = elevations[order[i]];
+      if (elevation - elevations[order[i - 1]] > gap) lows.push_back(elevation);
+      widest = std::max(widest, elevation - lows.back());
+      rings[order[i]] = static_cast<int>(lows.size()) - 1;
     }
-    rings[order[i]] = ring;
+    if (lows.size() < 4 || lows.size() > kMostRings) continue;
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < lows.size(); ++i) steps.push_back(lows[i] - lows[i - 1]);
+    const double least = *std::ranges::min_element(steps);
+    const double usual = Median(steps);
+    if (least > 0.25 * usual && widest < 0.5 * usual) return rings;
   }
-  widest = std::max(widest, elevations[order.back()] - start);
-  const double mean_step = (elevations[order.back()] - elevations[order[0]]) / std::max(1, ring);
-  const bool repeat = ring >= 3 && ring < kMostRings && widest < 0.5 * mean_step;
-  return repeat ? rings : std::vector<int>{};
+  return {};
 }
 
 // Bands as high as the points are apart on average over the solid angle that they cover.
@@ -74,6 +78,22 @@ std::vector<int> RecoverRings(const std::vector<RingPoint>& points) {
   azimuths.reserve(points.size());
   for (const RingPoint& point : points) azimuths.push_back(point.azimuth_rad);
   return BandsOfElevation(elevations, azimuths);
+}
+
+// A flat surface's second difference of range is noise alone, of sqrt 6 sigma; the median leaves
+// out where objects begin.
+double RangeSigma(const ScanRings& scan) {
+  constexpr double kSigmaOfMedian = 1.0 / 0.6745;
+  std::vector<double> bends;
+  bends.reserve(scan.points().size());
+  for (int ring = 0; ring < scan.rings(); ++ring) {
+    const std::span<const RingPoint> points = scan.ring(ring);
+    for (std::size_t i = 2; i < points.size(); ++i) {
+      bends.push_back(
+          std::abs(points[i - 2].range_m - 2.0 * points[i - 1].range_m + points[i].range_m));
+    }
+  }
+  return kSigmaOfMedian * Median(bends) / std::sqrt(6.0);
 }
 
 }  // namespace
@@ -140,6 +160,7 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
     }
   }
   scan.azimuth_step_rad_ = Median(steps);
+  scan.range_sigma_m_ = RangeSigma(scan);
   steps.clear();
   for (std::size_t i = 1; i < by_elevation.size(); ++i) {
     steps.push_back(by_elevation[i].first - by_elevation[i - 1].first);

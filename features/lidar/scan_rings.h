@@ -41,11 +41,15 @@ class ScanRings {
   double azimuth_step_rad() const { return azimuth_step_rad_; }
   double elevation_step_rad() const { return elevation_step_rad_; }
 
+  /// Range noise [m], from how far returns are off the middle of their two neighbours.
+  double range_sigma_m() const { return range_sigma_m_; }
+
  private:
   std::vector<RingPoint> points_;
   std::vector<std::size_t> starts_;
   double azimuth_step_rad_ = 0.0;
   double elevation_step_rad_ = 0.0;
+  double range_sigma_m_ = 0.0;
 };
 
 }  // namespace sextant

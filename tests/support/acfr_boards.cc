@@ -34,7 +34,7 @@ RingPoints FirstPass(const PointCloud& board) {
     if (pass.second && azimuth < pass.first + 0.002) continue;
     rings[ring].push_back({board.points[i], azimuth});
   }
-  for (auto& [ring, points] : rings) std::ranges::sort(points, {}, &RingPoint::azimuth_rad);
+  for (auto& [ring, points] : rings) std::ranges::sort(points, {}, &BoardReturn::azimuth_rad);
   return rings;
 }
 
@@ -44,7 +44,7 @@ Plane FitPlane(const RingPoints& board) {
   for (int iteration = 0; iteration < 8; ++iteration) {
     std::vector<Eigen::Vector3d> inliers;
     for (const auto& [ring, points] : board) {
-      for (const RingPoint& p : points) {
+      for (const BoardReturn& p : points) {
         const double off = plane.normal.dot(p.point - plane.center);
         if (std::abs(off) < limit) inliers.push_back(p.point);
       }

@@ -16,13 +16,13 @@ namespace sextant::test {
 inline constexpr int kAcfrScans[] = {2, 5, 9, 16, 20, 26, 30};
 
 /// A point of a board in a scan.
-struct RingPoint {
+struct BoardReturn {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   double azimuth_rad = 0.0;
 };
 
 /// A board's points by ring, each ring from its least azimuth.
-using RingPoints = std::map<int, std::vector<RingPoint>>;
+using RingPoints = std::map<int, std::vector<BoardReturn>>;
 
 /// Points of a real scan's board. The recording's scans are 363 degrees long: where both ends lie
 /// on the board, the second pass over it is left out.

@@ -29,11 +29,11 @@ void AddWalls(Scene& scene) {
   constexpr double kHeight_m = 3.0;
   for (int i = 0; i < 4; ++i) {
     const double azimuth = 0.5 * std::numbers::pi * i;
-    scene.walls.push_back({.name = "wall",
-                           .world_from_wall = {Facing(azimuth),
-                                               At(azimuth, kHalf_m, kFloor_m + 0.5 * kHeight_m)},
-                           .width_m = 2.0 * kHalf_m,
-                           .height_m = kHeight_m});
+    scene.walls.push_back(
+        {.name = "wall",
+         .world_from_wall = {Facing(azimuth), At(azimuth, kHalf_m, kFloor_m + 0.5 * kHeight_m)},
+         .width_m = 2.0 * kHalf_m,
+         .height_m = kHeight_m});
   }
   scene.walls.push_back(
       {.name = "floor",
@@ -52,8 +52,7 @@ SceneBoard Hang(const Board& board, const Hanging& hanging) {
   placed.board = board;
   placed.world_from_board.translation = At(azimuth, hanging.distance_m, hanging.height_m);
   placed.world_from_board.rotation =
-      Facing(azimuth) *
-      Eigen::AngleAxisd(hanging.yaw_deg * kRadPerDeg, Eigen::Vector3d::UnitY()) *
+      Facing(azimuth) * Eigen::AngleAxisd(hanging.yaw_deg * kRadPerDeg, Eigen::Vector3d::UnitY()) *
       Eigen::AngleAxisd(hanging.pitch_deg * kRadPerDeg, Eigen::Vector3d::UnitX()) *
       Eigen::AngleAxisd(hanging.turn_deg * kRadPerDeg, Eigen::Vector3d::UnitZ());
   return placed;
@@ -79,12 +78,11 @@ Scene FurnishedRoom(Random& random) {
   const double turn = random.Uniform(-0.5, 0.5);
   const double width = random.Uniform(0.5, 1.2);
   const double height = random.Uniform(0.8, 2.0);
-  scene.boxes.push_back(
-      {.name = "cupboard",
-       .world_from_box = {Facing(cupboard) *
-                              Eigen::Quaterniond(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY())),
-                          At(cupboard, cupboard_at, -1.0 + 0.5 * height)},
-       .size_m = Eigen::Vector3d(width, height, 0.5)});
+  scene.boxes.push_back({.name = "cupboard",
+                         .world_from_box = {Facing(cupboard) * Eigen::Quaterniond(Eigen::AngleAxisd(
+                                                                   turn, Eigen::Vector3d::UnitY())),
+                                            At(cupboard, cupboard_at, -1.0 + 0.5 * height)},
+                         .size_m = Eigen::Vector3d(width, height, 0.5)});
   return scene;
 }
 
@@ -117,8 +115,8 @@ std::vector<Board> BoardsIn(const Scene& scene) {
 Eigen::Vector3d TrueCorner(const SceneBoard& placed, int corner) {
   const double x = corner == 1 || corner == 2 ? 0.5 : -0.5;
   const double y = corner >= 2 ? 0.5 : -0.5;
-  return placed.world_from_board * Eigen::Vector3d(x * placed.board.top_right_m,
-                                                   y * placed.board.right_bottom_m, 0.0);
+  return placed.world_from_board *
+         Eigen::Vector3d(x * placed.board.top_right_m, y * placed.board.right_bottom_m, 0.0);
 }
 
 }  // namespace sextant::test

@@ -13,8 +13,8 @@ struct Hanging {
   double azimuth_deg = 0.0;
   double distance_m = 1.8;
   double height_m = 0.0;
-  double turn_deg = 45.0;   ///< In its plane; 45 hangs a square board from its corner 0.
-  double yaw_deg = 0.0;     ///< Out of the square view, about the vertical.
+  double turn_deg = 45.0;  ///< In its plane; 45 hangs a square board from its corner 0.
+  double yaw_deg = 0.0;    ///< Out of the square view, about the vertical.
   double pitch_deg = 0.0;
 };
 

@@ -68,7 +68,7 @@ BoardStatistics MeanOfSimulations(const Scene& scene) {
       board[scan.cloud.ring[i]].push_back({p, std::atan2(p.y(), p.x())});
     }
     for (auto& [ring, points] : board) {
-      std::ranges::sort(points, {}, &test::RingPoint::azimuth_rad);
+      std::ranges::sort(points, {}, &test::BoardReturn::azimuth_rad);
     }
     const BoardStatistics one = Measure(board);
     mean.points += one.points / kSimulations;
