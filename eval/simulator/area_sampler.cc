@@ -45,6 +45,9 @@ class Block {
       : view_(view), tile_(camera, left - 1, top - 1) {
     if (!tile_.any_ray()) return;
     view.FindCandidates(tile_.axis(), tile_.half_angle_rad(), candidates_);
+    // Twice the diagonal of a pixel, about.
+    const double sliver_rad = 4.0 * tile_.half_angle_rad() / RayTile::kPixels;
+    has_sliver_ = view.HasSliver(candidates_, sliver_rad);
     seen_.resize(RayTile::kCorners * RayTile::kCorners);
     for (int row = 0; row < RayTile::kCorners; ++row) {
       for (int column = 0; column < RayTile::kCorners; ++column) {
@@ -71,7 +74,7 @@ class Block {
         At(row, column).patch.radiance, At(row, column + 1).patch.radiance,
         At(row + 1, column + 1).patch.radiance, At(row + 1, column).patch.radiance};
     const double of_corners = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-    if (IsOnePatch(row, column) && !IsNearLayers(row, column)) return of_corners;
+    if (!has_sliver_ && IsOnePatch(row, column) && !IsNearLayers(row, column)) return of_corners;
     FindSurfacesAround(row, column);
     const PixelRays rays = RaysOf(row, column);
     const auto radiance_at = [&](const Eigen::Vector2d& at) {
@@ -130,8 +133,13 @@ class Block {
            first.SamePatch(At(row + 1, column + 1));
   }
 
-  // What the corners of the pixel and of its neighbours see.
+  // What the corners of the pixel and of its neighbours see; all there is where that may pass
+  // between them.
   void FindSurfacesAround(int row, int column) {
+    if (has_sliver_) {
+      around_ = candidates_;
+      return;
+    }
     around_.clear();
     for (int y = row - 1; y <= row + 2; ++y) {
       for (int x = column - 1; x <= column + 2; ++x) {
@@ -152,6 +160,7 @@ class Block {
   const CameraView& view_;
   RayTile tile_;
   std::vector<int> candidates_;
+  bool has_sliver_ = false;
   std::vector<int> around_;
   std::vector<SquareSample> samples_;
   std::vector<Seen> seen_;

@@ -197,6 +197,22 @@ void CameraView::FindCandidates(const Eigen::Vector3d& axis, double half_angle_r
   }
 }
 
+bool CameraView::HasSliver(std::span<const int> candidates, double width_rad) const {
+  const int rectangles = static_cast<int>(rectangles_.size());
+  return std::ranges::any_of(candidates, [&](int index) {
+    if (index >= rectangles) {
+      const ViewCylinder& pole = cylinders_[static_cast<std::size_t>(index - rectangles)];
+      const Eigen::Vector3d middle = pole.base_in_cam + 0.5 * pole.height_m * pole.axis_in_cam;
+      return 2.0 * pole.radius_m < width_rad * middle.norm();
+    }
+    const ViewRectangle& face = rectangles_[static_cast<std::size_t>(index)];
+    const double distance = face.center_in_cam.norm();
+    const double foreshortening = std::abs(face.normal_in_cam.dot(face.center_in_cam)) / distance;
+    const double side_m = 2.0 * std::min(face.half_width_m, face.half_height_m);
+    return side_m * foreshortening < width_rad * distance;
+  });
+}
+
 Seen CameraView::Cast(const Eigen::Vector3d& ray, std::span<const int> candidates) const {
   const int rectangles = static_cast<int>(rectangles_.size());
   Seen seen;

@@ -40,6 +40,9 @@ class CameraView {
   void FindCandidates(const Eigen::Vector3d& axis, double half_angle_rad,
                       std::vector<int>& candidates) const;
 
+  /// Whether one of the candidates looks narrower than `width_rad`: a pole, a board from its edge.
+  bool HasSliver(std::span<const int> candidates, double width_rad) const;
+
   /// The nearest of the candidates along a ray (camera frame, any length).
   Seen Cast(const Eigen::Vector3d& ray, std::span<const int> candidates) const;
 

@@ -138,6 +138,29 @@ TEST(RenderImage, KeepsTheMeanOfWhatIsSmallerThanAPixel) {
   EXPECT_NEAR(cv::mean(middle)[0], 135.0, 1.0);
 }
 
+// A pole of 0.3 px, wherever it stands between the pixels' corners: its share of each row's light.
+TEST(RenderImage, ShowsWhatIsNarrowerThanAPixel) {
+  Eigen::Matrix3d axes;
+  axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  for (const double shift_px : {0.0, 0.25, 0.5, 0.8}) {
+    sextant::Scene scene;
+    scene.cameras = {{.intrinsics = kCamera, .world_from_cam = {Eigen::Quaterniond(axes), {}}}};
+    scene.cameras[0].world_from_cam.translation.setZero();
+    scene.cylinders = {{.name = "pole",
+                        .base_in_world = {1.0, -shift_px / 150.0, -1.0},
+                        .radius_m = 0.001,
+                        .height_m = 2.0,
+                        .surface = {.albedo = 1.0}}};
+    scene.background_albedo = 90.0 / 255.0;
+    const cv::Mat image = *RenderImage(scene, 0, EvenLight());
+    for (const int y : {0, 30, 59, 119}) {
+      // 165 levels between the two; two pixels are rounded.
+      EXPECT_NEAR((cv::sum(image.row(y))[0] - 90.0 * image.cols) / 165.0, 0.3, 0.01)
+          << "row " << y << ", shift " << shift_px;
+    }
+  }
+}
+
 TEST(RenderImage, LosesTheLightOfTheFarthestCornerThatVignettingSays) {
   sextant::Scene scene = OneBoardScene(kCamera, TagBoard(), At(0, 0, -1));
   scene.background_albedo = 200.0 / 255.0;
