@@ -74,14 +74,14 @@ class SpecParser {
     return true;
   }
 
-  // Signs belong to the words, for values such as -1e-3.
+  // Signs belong to the words, for values such as -1e-3; slashes, for paths.
   std::string Word() {
     SkipBlanks();
     const std::size_t start = position_;
     while (position_ < text_.size()) {
       const char c = text_[position_];
       const bool belongs = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' ||
-                           c == '.' || c == '-' || c == '+';
+                           c == '.' || c == '-' || c == '+' || c == '/';
       if (!belongs) break;
       ++position_;
     }

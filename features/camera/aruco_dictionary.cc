@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/camera/aruco_dictionary.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
+#include <filesystem>
+#include <opencv2/core/persistence.hpp>
 
 namespace sextant {
 namespace {
@@ -51,6 +56,56 @@ std::optional<cv::Ptr<cv::aruco::Dictionary>> FindArucoDictionary(std::string_vi
     if (name == entry.name) return cv::aruco::getPredefinedDictionary(entry.dictionary);
   }
   return std::nullopt;
+}
+
+Expected<cv::Ptr<cv::aruco::Dictionary>> ReadArucoDictionary(const std::string& path) {
+  const auto dictionary = cv::makePtr<cv::aruco::Dictionary>();
+  // OpenCV prints a message of its own for a file that is not there.
+  if (std::error_code error; !std::filesystem::is_regular_file(path, error)) {
+    return MakeError(ErrorCode::kIo, fmt::format("{}: there is no dictionary of that name", path));
+  }
+  try {
+    const cv::FileStorage file(path, cv::FileStorage::READ);
+    if (!file.isOpened()) {
+      return MakeError(ErrorCode::kIo, fmt::format("{}: the dictionary cannot be opened", path));
+    }
+    // readDictionary trusts the file to have as many bits as it says.
+    const int size = static_cast<int>(file["markersize"]);
+    const int count = static_cast<int>(file["nmarkers"]);
+    if (size < 3 || size > 16 || count < 1 || count > 65536) {
+      return MakeError(ErrorCode::kParse,
+                       fmt::format("{}: expected nmarkers from 1 to 65536 and markersize from 3 to "
+                                   "16, got {} and {}",
+                                   path, count, size));
+    }
+    for (int id = 0; id < count; ++id) {
+      const std::string bits = static_cast<std::string>(file[fmt::format("marker_{}", id)]);
+      const auto bit_count = std::ranges::count(bits, '0') + std::ranges::count(bits, '1');
+      if (bit_count != size * size || std::ssize(bits) != bit_count) {
+        return MakeError(ErrorCode::kParse, fmt::format("{}: marker_{}: expected {} digits 0 or 1",
+                                                        path, id, size * size));
+      }
+    }
+    dictionary->readDictionary(file.root());
+  } catch (const cv::Exception& error) {
+    return MakeError(ErrorCode::kParse, fmt::format("{}: not a dictionary: {}", path, error.err));
+  }
+  return dictionary;
+}
+
+TagPattern MakeArucoPattern(const cv::aruco::Dictionary& dictionary, int id) {
+  const int bits = dictionary.markerSize;
+  const cv::Mat inner =
+      cv::aruco::Dictionary::getBitsFromByteList(dictionary.bytesList.rowRange(id, id + 1), bits);
+  TagPattern pattern{.cells = bits + 2, .edge_first = 0, .edge_cells = bits + 2, .white = {}};
+  pattern.white.assign(static_cast<std::size_t>(pattern.cells * pattern.cells), 0);
+  for (int row = 0; row < bits; ++row) {
+    for (int column = 0; column < bits; ++column) {
+      pattern.white[static_cast<std::size_t>((row + 1) * pattern.cells + column + 1)] =
+          inner.at<std::uint8_t>(row, column);
+    }
+  }
+  return pattern;
 }
 
 }  // namespace sextant

@@ -15,21 +15,6 @@
 namespace sextant {
 namespace {
 
-TagPattern ArucoPattern(const cv::aruco::Dictionary& dictionary, int id) {
-  const int bits = dictionary.markerSize;
-  const cv::Mat inner =
-      cv::aruco::Dictionary::getBitsFromByteList(dictionary.bytesList.rowRange(id, id + 1), bits);
-  TagPattern pattern{.cells = bits + 2, .edge_first = 0, .edge_cells = bits + 2, .white = {}};
-  pattern.white.assign(static_cast<std::size_t>(pattern.cells * pattern.cells), 0);
-  for (int row = 0; row < bits; ++row) {
-    for (int column = 0; column < bits; ++column) {
-      pattern.white[static_cast<std::size_t>((row + 1) * pattern.cells + column + 1)] =
-          inner.at<std::uint8_t>(row, column);
-    }
-  }
-  return pattern;
-}
-
 TagPattern AprilTagPattern(apriltag_family_t& family, int id) {
   const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> image(apriltag_to_image(&family, id),
                                                                  image_u8_destroy);
@@ -78,8 +63,36 @@ Expected<TagPattern> MakeTagPattern(std::string_view family, int id) {
         ErrorCode::kInvalidInput,
         fmt::format("tag family {} has the ids 0 to {}, not {}", family, *count - 1, id));
   }
-  if (const auto dictionary = FindArucoDictionary(family)) return ArucoPattern(**dictionary, id);
+  if (const auto dictionary = FindArucoDictionary(family))
+    return MakeArucoPattern(**dictionary, id);
   return AprilTagPattern(*MakeAprilTagFamily(family), id);
+}
+
+std::optional<int> QuarterTurns(const TagPattern& from, const TagPattern& to) {
+  const int side = from.edge_cells;
+  if (side != to.edge_cells) return std::nullopt;
+  const auto agrees = [&](int turns) {
+    for (int row = 0; row < side; ++row) {
+      for (int column = 0; column < side; ++column) {
+        int r = row;
+        int c = column;
+        for (int i = 0; i < turns; ++i) {
+          const int turned = side - 1 - r;
+          r = c;
+          c = turned;
+        }
+        if (from.IsWhite(row + from.edge_first, column + from.edge_first) !=
+            to.IsWhite(r + to.edge_first, c + to.edge_first)) {
+          return false;
+        }
+      }
+    }
+    return true;
+  };
+  for (int turns = 0; turns < 4; ++turns) {
+    if (agrees(turns)) return turns;
+  }
+  return std::nullopt;
 }
 
 }  // namespace sextant

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,9 +13,9 @@ namespace sextant {
 
 /// What is printed for a tag: a square of cells, from the detectors' own libraries.
 struct TagPattern {
-  int cells = 0;                    ///< Along a side, all that the library prints.
-  int edge_first = 0;               ///< First cell of the square whose corners detectors report...
-  int edge_cells = 0;               ///< ...and its side in cells.
+  int cells = 0;       ///< Along a side, all that the library prints.
+  int edge_first = 0;  ///< First cell of the square whose corners detectors report...
+  int edge_cells = 0;  ///< ...and its side in cells.
   std::vector<std::uint8_t> white{};  ///< Row by row from the tag's top-left: 1 white, 0 black.
 
   bool IsWhite(int row, int column) const {
@@ -31,5 +32,10 @@ Expected<int> TagCount(std::string_view family);
 
 /// Errors: kUnknownName; kInvalidInput for an id that the family does not have.
 Expected<TagPattern> MakeTagPattern(std::string_view family, int id);
+
+/// By how many quarters clockwise `from` is turned against `to`, comparing the squares whose
+/// corners detectors report; none where no turn makes them equal. OpenCV's dictionaries of
+/// AprilTag's families call another corner the first than AprilTag does.
+std::optional<int> QuarterTurns(const TagPattern& from, const TagPattern& to);
 
 }  // namespace sextant

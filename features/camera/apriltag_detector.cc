@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/camera/apriltag_detector.h"
+
+#include <mutex>
+
+#include "features/camera/apriltag_family.h"
+
+namespace sextant {
+namespace {
+
+struct AprilTagOptions {
+  std::size_t family = 0;
+  int threads = 1;
+  double decimate = 1.0;
+  double blur_px = 0.0;
+  bool refine_edges = true;
+  int hamming = -1;
+  double min_margin = 0.0;
+};
+
+OptionSet<AprilTagOptions> Options() {
+  OptionSet<AprilTagOptions> options;
+  options.Choice("family", &AprilTagOptions::family, AprilTagFamilyNames(), "what is looked for")
+      .Count("threads", &AprilTagOptions::threads, 1, 256, "threads for one image")
+      .Real("decimate", &AprilTagOptions::decimate, "1", 1.0, 16.0,
+            "quads are looked for in the image reduced by this: 1, 1.5 or a whole number")
+      .Real("blur_px", &AprilTagOptions::blur_px, "px", -10.0, 10.0,
+            "sigma of the blur before quads are looked for; negative sharpens")
+      .Choice("refine_edges", &AprilTagOptions::refine_edges, {"false", "true"},
+              "snap the edges to gradients of the full image")
+      .Count("hamming", &AprilTagOptions::hamming, -1, 2,
+             "wrong bits that are corrected; -1: as many up to 2 as take less than 32 MB")
+      .Real("min_margin", &AprilTagOptions::min_margin, "grey levels", 0.0, 255.0,
+            "least decision margin of a tag");
+  return options;
+}
+
+// The library makes a table of three slots of 16 bytes for each code with each set of wrong bits.
+int AffordableHamming(const apriltag_family_t& family) {
+  constexpr double kMostBytes = 32e6;
+  const double bits = family.nbits;
+  const double bytes_a_set = 48.0 * family.ncodes;
+  if (bytes_a_set * (1.0 + bits + 0.5 * bits * (bits - 1.0)) < kMostBytes) return 2;
+  return bytes_a_set * (1.0 + bits) < kMostBytes ? 1 : 0;
+}
+
+// The library's detector works on one image at a time.
+class Engine {
+ public:
+  explicit Engine(const AprilTagOptions& options)
+      : family_(MakeAprilTagFamily(AprilTagFamilyNames()[options.family])),
+        detector_(apriltag_detector_create(), apriltag_detector_destroy) {
+    const int hamming = options.hamming < 0 ? AffordableHamming(*family_) : options.hamming;
+    apriltag_detector_add_family_bits(detector_.get(), family_.get(), hamming);
+    detector_->nthreads = options.threads;
+    detector_->quad_decimate = static_cast<float>(options.decimate);
+    detector_->quad_sigma = static_cast<float>(options.blur_px);
+    detector_->refine_edges = options.refine_edges;
+  }
+  ~Engine() { apriltag_detector_clear_families(detector_.get()); }
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  zarray_t* Detect(const cv::Mat& grey) {
+    image_u8_t image = {grey.cols, grey.rows, static_cast<std::int32_t>(grey.step), grey.data};
+    return apriltag_detector_detect(detector_.get(), &image);
+  }
+
+ private:
+  AprilTagFamily family_;
+  std::unique_ptr<apriltag_detector_t, void (*)(apriltag_detector_t*)> detector_;
+};
+
+class AprilTagDetector final : public TagDetector {
+ public:
+  AprilTagDetector(std::string name, const AprilTagOptions& options)
+      : TagDetector(std::move(name)), options_(options) {
+    idle_.push_back(std::make_unique<Engine>(options));
+  }
+
+ private:
+  Detections DoDetect(const cv::Mat& grey) const override {
+    std::unique_ptr<Engine> engine = Take();
+    const std::unique_ptr<zarray_t, void (*)(zarray_t*)> quads(engine->Detect(grey),
+                                                               apriltag_detections_destroy);
+    Detections found;
+    for (int i = 0; i < zarray_size(quads.get()); ++i) {
+      apriltag_detection_t* tag = nullptr;
+      zarray_get(quads.get(), i, &tag);
+      if (tag->decision_margin >= options_.min_margin) found.tags.push_back(FromLibrary(*tag));
+    }
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(engine));
+    return found;
+  }
+
+  std::unique_ptr<Engine> Take() const {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!idle_.empty()) {
+        std::unique_ptr<Engine> engine = std::move(idle_.back());
+        idle_.pop_back();
+        return engine;
+      }
+    }
+    return std::make_unique<Engine>(options_);
+  }
+
+  // The library goes counter-clockwise as seen, from the tag's own bottom-left.
+  TagDetection FromLibrary(const apriltag_detection_t& tag) const {
+    // Measured against rendered tags, see docs/detectors.md.
+    const double shift_px = options_.refine_edges ? 0.5 : 0.445 - 0.075 * (options_.decimate - 1.0);
+    TagDetection detection{.family = AprilTagFamilyNames()[options_.family],
+                           .id = tag.id,
+                           .corners_px = {},
+                           .decision_margin = static_cast<double>(tag.decision_margin),
+                           .hamming = tag.hamming};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double* corner = tag.p[3 - k];
+      detection.corners_px[k] = Eigen::Vector2d(corner[0], corner[1]).array() - shift_px;
+    }
+    return detection;
+  }
+
+  AprilTagOptions options_;
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<Engine>> idle_;  ///< As many as ever worked at once.
+};
+
+}  // namespace
+
+TagDetectorEntry AprilTagDetectorEntry() {
+  return {
+      .name = "apriltag",
+      .summary = "the AprilTag 3 library",
+      .example = "apriltag(family=tag36h11,decimate=2)",
+      .options = Options().Describe(),
+      .make = [](const std::string& name, const OptionValues& values) -> Expected<TagDetectorPtr> {
+        const Expected<AprilTagOptions> options = Options().Parse(values);
+        if (!options) return tl::unexpected<Error>(options.error());
+        return std::make_shared<AprilTagDetector>(name, *options);
+      }};
+}
+
+}  // namespace sextant

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/camera/aruco_detector.h"
+
+#include <opencv2/aruco.hpp>
+
+#include "features/camera/aruco_dictionary.h"
+#include "features/camera/tag_reading.h"
+
+namespace sextant {
+namespace {
+
+enum class Refinement { kNone, kSubpix, kContour, kAprilTag };
+
+constexpr std::string_view kFamilyPrefix = "aruco_";
+constexpr const char* kFileOption = "file";
+
+// "6x6_250" for "aruco_6x6_250".
+const std::vector<std::string>& DictionaryChoices() {
+  static const std::vector<std::string> choices = [] {
+    std::vector<std::string> names;
+    for (const std::string& name : ArucoDictionaryNames()) {
+      names.push_back(name.substr(kFamilyPrefix.size()));
+    }
+    return names;
+  }();
+  return choices;
+}
+
+struct ArucoOptions {
+  std::size_t dictionary = 0;
+  Refinement refine = Refinement::kNone;
+  int window_px = 5;
+  double min_perimeter = 0.03;
+  double error_correction = 0.6;
+};
+
+OptionSet<ArucoOptions> Options() {
+  OptionSet<ArucoOptions> options;
+  options.Choice("dictionary", &ArucoOptions::dictionary, DictionaryChoices(), "what is looked for")
+      .Choice("refine", &ArucoOptions::refine, {"none", "subpix", "contour", "apriltag"},
+              "how OpenCV refines corners")
+      .Count("window_px", &ArucoOptions::window_px, 1, 50, "half the window of subpix [px]")
+      .Real("min_perimeter", &ArucoOptions::min_perimeter, "image sides", 0.001, 4.0,
+            "least perimeter of a tag, in longer sides of the image")
+      .Real("error_correction", &ArucoOptions::error_correction, "1", 0.0, 1.0,
+            "share of the correctable bits that is corrected");
+  return options;
+}
+
+// Measured against rendered tags, see docs/detectors.md.
+Quad Normalised(const Quad& corners, Refinement refine) {
+  constexpr double kNoneInward = 0.445;
+  constexpr double kContourInward = 0.49;
+  constexpr double kSubpixInward = 0.08;
+  constexpr double kAprilTagShift_px = 0.445;
+  switch (refine) {
+    case Refinement::kNone:
+      return MoveEdgesOut(corners, kNoneInward);
+    case Refinement::kContour:
+      return MoveEdgesOut(corners, kContourInward);
+    case Refinement::kSubpix:
+      return MoveEdgesOut(corners, kSubpixInward);
+    case Refinement::kAprilTag:
+      break;
+  }
+  Quad moved = corners;
+  for (Eigen::Vector2d& corner : moved) corner.array() -= kAprilTagShift_px;
+  return moved;
+}
+
+class ArucoDetector final : public TagDetector {
+ public:
+  ArucoDetector(std::string name, std::string family, cv::Ptr<cv::aruco::Dictionary> dictionary,
+                const ArucoOptions& options)
+      : TagDetector(std::move(name)),
+        family_(std::move(family)),
+        dictionary_(std::move(dictionary)),
+        parameters_(cv::aruco::DetectorParameters::create()),
+        refine_(options.refine) {
+    parameters_->cornerRefinementMethod = static_cast<int>(options.refine);
+    parameters_->cornerRefinementWinSize = options.window_px;
+    parameters_->minMarkerPerimeterRate = options.min_perimeter;
+    parameters_->errorCorrectionRate = options.error_correction;
+  }
+
+ private:
+  Detections DoDetect(const cv::Mat& grey) const override {
+    std::vector<std::vector<cv::Point2f>> corners;
+    std::vector<int> ids;
+    cv::aruco::detectMarkers(grey, dictionary_, corners, ids, parameters_);
+    Detections found;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      Quad quad;
+      for (std::size_t k = 0; k < 4; ++k) quad[k] = {corners[i][k].x, corners[i][k].y};
+      quad = Normalised(quad, refine_);
+      const TagReading reading = ReadTag(grey, quad, MakeArucoPattern(*dictionary_, ids[i]));
+      found.tags.push_back({.family = family_,
+                            .id = ids[i],
+                            .corners_px = quad,
+                            .decision_margin = reading.margin,
+                            .hamming = reading.wrong_cells});
+    }
+    return found;
+  }
+
+  std::string family_;
+  cv::Ptr<cv::aruco::Dictionary> dictionary_;
+  cv::Ptr<cv::aruco::DetectorParameters> parameters_;
+  Refinement refine_;
+};
+
+Expected<TagDetectorPtr> Make(const std::string& name, const OptionValues& values) {
+  const Expected<ArucoOptions> options = Options().Parse(values);
+  if (!options) return tl::unexpected<Error>(options.error());
+  bool names_dictionary = false;
+  std::string file;
+  for (const auto& [option, text] : values) {
+    if (option == kFileOption) file = text;
+    if (option == "dictionary") names_dictionary = true;
+  }
+  if (names_dictionary == !file.empty()) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     "detector 'aruco' needs either a dictionary or the file of one, as in "
+                     "aruco(dictionary=6x6_250)");
+  }
+  if (!file.empty()) {
+    const auto own = ReadArucoDictionary(file);
+    if (!own) return tl::unexpected<Error>(own.error());
+    return std::make_shared<ArucoDetector>(name, file, *own, *options);
+  }
+  const std::string& family = ArucoDictionaryNames()[options->dictionary];
+  return std::make_shared<ArucoDetector>(name, family, *FindArucoDictionary(family), *options);
+}
+
+}  // namespace
+
+TagDetectorEntry ArucoDetectorEntry() {
+  std::vector<OptionDoc> options = Options().Describe();
+  options.front().default_value = "none: to be given";
+  options.push_back({.name = kFileOption,
+                     .default_value = "none",
+                     .unit = "path",
+                     .meaning = "a dictionary in OpenCV's form, in place of `dictionary`"});
+  return {.name = "aruco",
+          .summary = "OpenCV's aruco module",
+          .example = "aruco(dictionary=6x6_250,refine=subpix)",
+          .options = std::move(options),
+          .make = Make};
+}
+
+}  // namespace sextant

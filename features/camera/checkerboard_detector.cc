@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/camera/checkerboard_detector.h"
+
+#include <algorithm>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+
+namespace sextant {
+namespace {
+
+struct CheckerOptions {
+  int columns = 7;
+  int rows = 5;
+  bool accurate = true;
+};
+
+OptionSet<CheckerOptions> Options() {
+  OptionSet<CheckerOptions> options;
+  options.Count("columns", &CheckerOptions::columns, 3, 1000, "inner corners along x")
+      .Count("rows", &CheckerOptions::rows, 3, 1000, "inner corners along y")
+      .Choice("accurate", &CheckerOptions::accurate, {"false", "true"},
+              "sample sectors on an enlarged image");
+  return options;
+}
+
+// Mean grey level of the squares that meet at the first corner and lie outside, diagonally, of the
+// board's inner corners: one square. Found by going on from the second diagonal corner over it.
+double OuterSquareGrey(const cv::Mat& grey, const Eigen::Vector2d& corner,
+                       const Eigen::Vector2d& next_diagonal) {
+  const Eigen::Vector2d middle = corner - 0.5 * (next_diagonal - corner);
+  const int x = std::clamp(static_cast<int>(std::lround(middle.x())), 1, grey.cols - 2);
+  const int y = std::clamp(static_cast<int>(std::lround(middle.y())), 1, grey.rows - 2);
+  return cv::mean(grey(cv::Rect(x - 1, y - 1, 3, 3)))[0];
+}
+
+// The corners in the order of the class comment, whatever order the library chose.
+void Orient(const cv::Mat& grey, CheckerDetection& found) {
+  std::vector<Eigen::Vector2d>& corners = found.corners_px;
+  const auto columns = static_cast<std::ptrdiff_t>(found.inner_columns);
+  const auto at = [&](std::ptrdiff_t row, std::ptrdiff_t column) {
+    return corners[static_cast<std::size_t>(row * columns + column)];
+  };
+  const Eigen::Vector2d along = at(0, columns - 1) - at(0, 0);
+  const Eigen::Vector2d across = corners.back() - at(0, columns - 1);
+  if (along.x() * across.y() - along.y() * across.x() < 0.0) {
+    for (auto row = corners.begin(); row != corners.end(); row += columns) {
+      std::reverse(row, row + columns);
+    }
+  }
+  found.is_turn_known = (found.inner_columns + found.inner_rows) % 2 == 1;
+  const double first = OuterSquareGrey(grey, corners[0], at(1, 1));
+  const double last = OuterSquareGrey(grey, corners.back(), at(found.inner_rows - 2, columns - 2));
+  const bool turn = found.is_turn_known ? last < first : corners.back().y() < corners.front().y();
+  if (turn) std::reverse(corners.begin(), corners.end());
+}
+
+class CheckerboardDetector final : public TagDetector {
+ public:
+  CheckerboardDetector(std::string name, const CheckerOptions& options)
+      : TagDetector(std::move(name)), options_(options) {}
+
+ private:
+  Detections DoDetect(const cv::Mat& grey) const override {
+    int flags = cv::CALIB_CB_NORMALIZE_IMAGE;
+    if (options_.accurate) flags |= cv::CALIB_CB_ACCURACY;
+    std::vector<cv::Point2f> corners;
+    const cv::Size size(options_.columns, options_.rows);
+    // Neither search finds all that the other does.
+    if (!cv::findChessboardCornersSB(grey, size, corners, flags) &&
+        !cv::findChessboardCornersSB(grey, size, corners, flags | cv::CALIB_CB_EXHAUSTIVE)) {
+      return {};
+    }
+    CheckerDetection found{.inner_columns = options_.columns, .inner_rows = options_.rows};
+    for (const cv::Point2f& corner : corners) found.corners_px.emplace_back(corner.x, corner.y);
+    Orient(grey, found);
+    return {.tags = {}, .checkers = {std::move(found)}};
+  }
+
+  CheckerOptions options_;
+};
+
+}  // namespace
+
+TagDetectorEntry CheckerboardDetectorEntry() {
+  return {
+      .name = "checkerboard",
+      .summary = "OpenCV's sector-based detector of checkerboards",
+      .example = "checkerboard(columns=7,rows=5)",
+      .options = Options().Describe(),
+      .make = [](const std::string& name, const OptionValues& values) -> Expected<TagDetectorPtr> {
+        const Expected<CheckerOptions> options = Options().Parse(values);
+        if (!options) return tl::unexpected<Error>(options.error());
+        return std::make_shared<CheckerboardDetector>(name, *options);
+      }};
+}
+
+}  // namespace sextant

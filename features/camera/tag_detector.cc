@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/camera/tag_detector.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <opencv2/core.hpp>
+#include <tuple>
+
+#include "base/nearest_name.h"
+#include "features/camera/apriltag_detector.h"
+#include "features/camera/aruco_detector.h"
+#include "features/camera/checkerboard_detector.h"
+#include "features/camera/grey_image.h"
+#include "features/camera/tag_pattern.h"
+#include "solvers/spec.h"
+
+namespace sextant {
+namespace {
+
+Expected<void> CheckOptions(const TagDetectorEntry& entry, const OptionValues& options) {
+  std::vector<std::string> known;
+  for (const OptionDoc& doc : entry.options) known.push_back(doc.name);
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    const std::string& name = options[i].first;
+    if (std::ranges::count(known, name) == 0) {
+      return MakeError(ErrorCode::kUnknownName,
+                       fmt::format("detector '{}' has no option '{}'; {}", entry.name, name,
+                                   SuggestName(name, known)));
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      if (options[j].first == name) {
+        return MakeError(ErrorCode::kInvalidOption, fmt::format("detector '{}': option '{}' is "
+                                                                "given twice",
+                                                                entry.name, name));
+      }
+    }
+  }
+  return {};
+}
+
+void Sort(std::vector<TagDetection>& tags) {
+  std::ranges::sort(tags, [](const TagDetection& a, const TagDetection& b) {
+    return std::tie(a.family, a.id, a.corners_px[0].x(), a.corners_px[0].y()) <
+           std::tie(b.family, b.id, b.corners_px[0].x(), b.corners_px[0].y());
+  });
+}
+
+}  // namespace
+
+Expected<Detections> TagDetector::Detect(const cv::Mat& image) const {
+  const Expected<cv::Mat> grey = ToGrey(image);
+  if (!grey) return tl::unexpected<Error>(grey.error());
+  try {
+    Detections found = DoDetect(*grey);
+    Sort(found.tags);
+    return found;
+  } catch (const cv::Exception& error) {
+    return MakeError(ErrorCode::kInvalidInput,
+                     fmt::format("{} refuses the image: {}", name_, error.err));
+  }
+}
+
+const std::vector<TagDetectorEntry>& TagDetectorEntries() {
+  static const std::vector<TagDetectorEntry> entries = {
+      ArucoDetectorEntry(), AprilTagDetectorEntry(), CheckerboardDetectorEntry()};
+  return entries;
+}
+
+Expected<TagDetectorPtr> MakeTagDetector(std::string_view spec) {
+  const Expected<SpecNode> node = ParseSpec(spec);
+  if (!node) return tl::unexpected<Error>(node.error());
+  std::vector<std::string> known;
+  for (const TagDetectorEntry& entry : TagDetectorEntries()) {
+    known.push_back(entry.name);
+    if (entry.name != node->name) continue;
+    if (!node->inner.empty()) {
+      return MakeError(ErrorCode::kInvalidOption,
+                       fmt::format("detector '{}' takes option=value in its parentheses, got '{}'; "
+                                   "write {}",
+                                   entry.name, node->inner.front().name, entry.example));
+    }
+    if (Expected<void> ok = CheckOptions(entry, node->options); !ok) {
+      return tl::unexpected<Error>(std::move(ok.error()));
+    }
+    return entry.make(FormatSpec(*node), node->options);
+  }
+  return MakeError(ErrorCode::kUnknownName, fmt::format("unknown detector '{}'; {}", node->name,
+                                                        SuggestName(node->name, known)));
+}
+
+Expected<std::string> DetectorSpecFor(std::string_view family) {
+  if (Expected<int> count = TagCount(family); !count) return tl::unexpected<Error>(count.error());
+  constexpr std::string_view kAruco = "aruco_";
+  if (family.starts_with(kAruco)) {
+    return fmt::format("aruco(dictionary={})", family.substr(kAruco.size()));
+  }
+  return fmt::format("apriltag(family={})", family);
+}
+
+}  // namespace sextant

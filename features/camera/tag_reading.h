@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+
+#include "features/camera/quad.h"
+#include "features/camera/tag_pattern.h"
+
+namespace sextant {
+
+/// How well the cells of a tag in an image agree with what is printed.
+struct TagReading {
+  double margin = 0.0;  ///< Mean |grey - threshold| of the cells inside the border, grey levels.
+  int wrong_cells = 0;  ///< Of those inside the border.
+};
+
+/// Reads the middle of each cell inside `corners_px` (8-bit grey image). The threshold is half way
+/// between the mean of the cells that should be black and of those that should be white. Cells
+/// outside the image count as wrong.
+TagReading ReadTag(const cv::Mat& grey, const Quad& corners_px, const TagPattern& pattern);
+
+}  // namespace sextant

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/camera/undistortion.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "geometry/distortion.h"
+
+namespace sextant {
+
+std::optional<Undistortion::Point> Undistortion::Straighten(const Eigen::Vector2d& pixel) const {
+  if (!camera_ || camera_->model == CameraModel::kPinhole) {
+    return Point{.straight_px = pixel, .straight_by_pixel = Eigen::Matrix2d::Identity()};
+  }
+  const std::optional<Eigen::Vector3d> ray = Unproject(*camera_, pixel);
+  if (!ray || !(ray->z() > 0.0)) return std::nullopt;
+  const Eigen::Vector2d focal(camera_->fx_px, camera_->fy_px);
+  const Eigen::Vector2d centre(camera_->cx_px, camera_->cy_px);
+  const Eigen::Vector2d undistorted = ray->hnormalized();
+  const std::optional<Distorted> distorted = Distort(*camera_, undistorted);
+  if (!distorted) return std::nullopt;
+  return Point{.straight_px = focal.cwiseProduct(undistorted) + centre,
+               .straight_by_pixel = focal.asDiagonal() * distorted->by_undistorted.inverse() *
+                                    focal.cwiseInverse().asDiagonal()};
+}
+
+std::optional<Undistortion::Bent> Undistortion::Bend(const Eigen::Vector2d& straight_px) const {
+  if (!camera_ || camera_->model == CameraModel::kPinhole) {
+    return Bent{.pixel = straight_px, .pixel_by_straight = Eigen::Matrix2d::Identity()};
+  }
+  const Eigen::Vector2d focal(camera_->fx_px, camera_->fy_px);
+  const Eigen::Vector2d centre(camera_->cx_px, camera_->cy_px);
+  const std::optional<Distorted> distorted =
+      Distort(*camera_, (straight_px - centre).cwiseQuotient(focal));
+  if (!distorted) return std::nullopt;
+  return Bent{.pixel = focal.cwiseProduct(distorted->point) + centre,
+              .pixel_by_straight = focal.asDiagonal() * distorted->by_undistorted *
+                                   focal.cwiseInverse().asDiagonal()};
+}
+
+}  // namespace sextant

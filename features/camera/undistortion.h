@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "geometry/camera.h"
+
+namespace sextant {
+
+/// Pixels of a camera and of the same camera without distortion, where straight edges are straight.
+/// Without a camera both are the same.
+class Undistortion {
+ public:
+  Undistortion() = default;
+  explicit Undistortion(const Camera& camera) : camera_(camera) {}
+
+  struct Point {
+    Eigen::Vector2d straight_px = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d straight_by_pixel = Eigen::Matrix2d::Identity();
+  };
+
+  /// None outside the lens model's domain.
+  std::optional<Point> Straighten(const Eigen::Vector2d& pixel) const;
+
+  struct Bent {
+    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d pixel_by_straight = Eigen::Matrix2d::Identity();
+  };
+  std::optional<Bent> Bend(const Eigen::Vector2d& straight_px) const;
+
+ private:
+  std::optional<Camera> camera_;
+};
+
+}  // namespace sextant
