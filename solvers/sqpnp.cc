@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/sqpnp.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,14 +10,10 @@
 
 #include "solvers/correspondences.h"
 #include "solvers/max_trace_rotation.h"
-#include "solvers/pnp_solver.h"
-#include "solvers/registry.h"
+#include "solvers/rotation_cost.h"
 
 namespace sextant {
 namespace {
-
-using Vector9d = Eigen::Matrix<double, 9, 1>;
-using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
 // Costs of exact data, relative to the points' variance, with a wide margin.
 constexpr double kRounding = 1e-12;
@@ -31,107 +26,6 @@ constexpr double kThin = 0.05;
 // are starts too.
 constexpr int kMaxForTriangle = 5;
 constexpr double kWellExplained = 1e-3;
-
-/// The cost mean_i |x_i - u_i z_i|^2 + |y_i - v_i z_i|^2 = r^T omega r, with the entries of the
-/// rotation (camera from principal axes) row by row in r, and the centroid that goes with it.
-class RotationCost {
- public:
-  explicit RotationCost(const Correspondences& data);
-
-  const Matrix9d& omega() const { return omega_; }
-  double operator()(const Eigen::Matrix3d& rotation) const;
-  Eigen::Vector3d Centroid(const Eigen::Matrix3d& rotation) const;
-  /// Descends to the nearest minimum.
-  Eigen::Matrix3d Minimize(Eigen::Matrix3d rotation) const;
-
- private:
-  Matrix9d omega_;
-  Eigen::Matrix<double, 3, 9> centroid_by_rotation_;
-};
-
-Vector9d Entries(const Eigen::Matrix3d& rotation) {
-  Vector9d entries;
-  entries << rotation.row(0).transpose(), rotation.row(1).transpose(), rotation.row(2).transpose();
-  return entries;
-}
-
-RotationCost::RotationCost(const Correspondences& data) {
-  const ImageMoments& m = data.moments;
-  const Eigen::Vector3d u0 = m.u.topRightCorner<1, 3>().transpose();
-  const Eigen::Vector3d v0 = m.v.topRightCorner<1, 3>().transpose();
-  const Eigen::Vector3d w0 = m.w.topRightCorner<1, 3>().transpose();
-  // In camera coordinates x' = x - u_mean z, y' = y - v_mean z the image points are about their
-  // mean, and the best centroid is x' = u0 . r3, y' = v0 . r3, z = depth . r.
-  Vector9d depth;
-  depth << u0, v0, -w0;
-  depth /= m.Spread();
-  const Eigen::Matrix3d squares = data.frame.deviation.cwiseAbs2().asDiagonal();
-  omega_.setZero();
-  omega_.block<3, 3>(0, 0) = squares;
-  omega_.block<3, 3>(3, 3) = squares;
-  omega_.block<3, 3>(0, 6) = -m.u.bottomRightCorner<3, 3>();
-  omega_.block<3, 3>(3, 6) = -m.v.bottomRightCorner<3, 3>();
-  omega_.block<3, 3>(6, 0) = omega_.block<3, 3>(0, 6);
-  omega_.block<3, 3>(6, 3) = omega_.block<3, 3>(3, 6);
-  omega_.block<3, 3>(6, 6) =
-      m.w.bottomRightCorner<3, 3>() - u0 * u0.transpose() - v0 * v0.transpose();
-  omega_ -= m.Spread() * depth * depth.transpose();
-
-  // From those coordinates back to the camera's, on both sides.
-  const Eigen::Vector2d mean = m.mean;
-  omega_.rightCols<3>() -= mean.x() * omega_.leftCols<3>() + mean.y() * omega_.middleCols<3>(3);
-  omega_.bottomRows<3>() -= mean.x() * omega_.topRows<3>() + mean.y() * omega_.middleRows<3>(3);
-  Vector9d z = depth;
-  z.tail<3>() -= mean.x() * depth.head<3>() + mean.y() * depth.segment<3>(3);
-  centroid_by_rotation_.row(0) = mean.x() * z.transpose();
-  centroid_by_rotation_.row(1) = mean.y() * z.transpose();
-  centroid_by_rotation_.row(2) = z.transpose();
-  centroid_by_rotation_.block<1, 3>(0, 6) += u0.transpose();
-  centroid_by_rotation_.block<1, 3>(1, 6) += v0.transpose();
-}
-
-double RotationCost::operator()(const Eigen::Matrix3d& rotation) const {
-  const Vector9d r = Entries(rotation);
-  return std::max(0.0, r.dot(omega_ * r));
-}
-
-Eigen::Vector3d RotationCost::Centroid(const Eigen::Matrix3d& rotation) const {
-  return centroid_by_rotation_ * Entries(rotation);
-}
-
-Eigen::Matrix3d RotationCost::Minimize(Eigen::Matrix3d rotation) const {
-  constexpr int kMaxSteps = 15;
-  constexpr double kSmallStep = 1e-8;
-  for (int i = 0; i < kMaxSteps; ++i) {
-    const Eigen::Vector3d r1 = rotation.row(0);
-    const Eigen::Vector3d r2 = rotation.row(1);
-    const Eigen::Vector3d r3 = rotation.row(2);
-    // Derivative of the entries by a turn omega: row k of Hat(omega) R.
-    Eigen::Matrix<double, 9, 3> turn = Eigen::Matrix<double, 9, 3>::Zero();
-    turn.block<3, 1>(0, 1) = r3;
-    turn.block<3, 1>(0, 2) = -r2;
-    turn.block<3, 1>(3, 0) = -r3;
-    turn.block<3, 1>(3, 2) = r1;
-    turn.block<3, 1>(6, 0) = r2;
-    turn.block<3, 1>(6, 1) = -r1;
-    const Vector9d slope = omega_ * Entries(rotation);
-    const Eigen::Vector3d gradient = turn.transpose() * slope;
-    const Eigen::Matrix<double, 9, 3> turned_slope = omega_.lazyProduct(turn);
-    const Eigen::Matrix3d convex = turn.transpose().lazyProduct(turned_slope);
-    // Second order of Exp(omega) R against the slope: the curvature of the constraints.
-    const Eigen::Matrix3d product = rotation * Eigen::Map<const Eigen::Matrix3d>(slope.data());
-    Eigen::Matrix3d hessian = convex + 0.5 * (product + product.transpose());
-    hessian.diagonal().array() -= product.trace();
-    Eigen::LLT<Eigen::Matrix3d> factor(hessian);
-    if (factor.info() != Eigen::Success) factor.compute(convex);
-    if (factor.info() != Eigen::Success) break;
-    const Eigen::Vector3d step = -factor.solve(gradient);
-    const Eigen::Quaterniond turned(1.0, 0.5 * step.x(), 0.5 * step.y(), 0.5 * step.z());
-    rotation = turned.normalized() * rotation;
-    if (step.squaredNorm() < kSmallStep * kSmallStep) break;
-  }
-  return rotation;
-}
 
 /// A minimum, in principal axes.
 struct Minimum {
@@ -299,27 +193,6 @@ Expected<SqpnpFit> SolveSqpnp(std::span<const Eigen::Vector2d> image_points,
   }
   if (fit.count == 0) return UnexplainedError();
   return fit;
-}
-
-SolverEntry SqpnpEntry() {
-  return {
-      .name = "sqpnp",
-      .summary = "global least squares of the distances from the lines of sight, times depth",
-      .needs = "3 or more 2D-3D pairs, not on one line; with 3 the answer is ambiguous",
-      .reference = "Terzakis and Lourakis 2020 (ECCV)",
-      .example = "sqpnp",
-      .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
-        return std::make_shared<PnpSolver>(
-            SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = 3}},
-            [](const PnpInput& input) -> Expected<PnpPoses> {
-              const Expected<SqpnpFit> fit =
-                  SolveSqpnp(input.image_points, input.points, input.choice);
-              if (!fit) return tl::unexpected<Error>(fit.error());
-              return PnpPoses{.poses = fit->cam_from_lidar, .count = fit->count};
-            },
-            PnpCovariance::kObjectSpace);
-      },
-  };
 }
 
 }  // namespace sextant
