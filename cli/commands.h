@@ -67,6 +67,18 @@ struct AccuracyOptions {
   bool markdown = false;
 };
 
+struct MarkOptions {
+  std::string cloud_path;
+  std::string image_path;                   ///< Empty: none.
+  std::string camera_path;                  ///< Empty: one is assumed.
+  std::vector<std::string> cam_from_lidar;  ///< A file, or x y z qw qx qy qz; empty: the axes.
+  std::vector<int> ids;                     ///< Of the boards, from left to right.
+  std::string out_path = "polygons.yaml";
+  std::string render_path;  ///< A picture of the window to write instead of opening it.
+  int width_px = 1280;      ///< Of the window.
+  int height_px = 800;
+};
+
 /// Each runs one command, prints its answer or one line of error, and returns the exit code.
 int RunSolve(const SolveOptions& options);
 int RunCompare(const CompareOptions& options);
@@ -75,6 +87,7 @@ int RunCatalogue(const CatalogueOptions& options);
 int RunLidars(const LidarsOptions& options);
 int RunConvert(const ConvertOptions& options);
 int RunAccuracy(const AccuracyOptions& options);
+int RunMark(const MarkOptions& options);
 int RunSimulatePairs(const SimulatePairsOptions& options);
 
 }  // namespace sextant::cli

@@ -160,6 +160,42 @@ void AddAccuracy(CLI::App& app, AccuracyOptions& options) {
       "  sextant accuracy --outliers --solvers 'ransac(p3p),gnc(epnp)'");
 }
 
+void AddMark(CLI::App& app, MarkOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("mark", "Edges in a scan and corners in its photo, marked by hand");
+  command.add_option("--cloud", options.cloud_path, "The scan: PCD, PLY, KITTI .bin or CSV")
+      ->required();
+  command.add_option("--image", options.image_path, "Its photo");
+  command.add_option("--camera", options.camera_path,
+                     "Intrinsics; default: a camera 90 degrees wide is assumed");
+  command
+      .add_option("--cam-from-lidar", options.cam_from_lidar,
+                  "Rough pose: results (JSON), rts.txt, or X Y Z QW QX QY QZ; default: the camera "
+                  "looks\nalong the LiDAR's x axis")
+      ->expected(1, 7);
+  command.add_option("--ids", options.ids,
+                     "Ids of the boards from left to right; default: 0, 1, ...");
+  command.add_option("--out", options.out_path, "Polygon file to write, or to go on with")
+      ->capture_default_str();
+  command.add_option("--render", options.render_path,
+                     "Write a picture (PNG) of the window instead of opening it");
+  command.add_option("--width", options.width_px, "Of the window [px]")
+      ->check(CLI::Range(320, 8192))
+      ->capture_default_str();
+  command.add_option("--height", options.height_px, "Of the window [px]")
+      ->check(CLI::Range(240, 8192))
+      ->capture_default_str();
+  command.footer(
+      "Draw an area of four clicks round each edge of a board, where the rings leave it: the "
+      "top-left\n"
+      "edge first, then clockwise, boards from left to right. h shows the keys. Marks that are not "
+      "saved\n"
+      "are kept beside --out, and the next start goes on with them.\n"
+      "Examples:\n"
+      "  sextant mark --cloud scan.pcd\n"
+      "  sextant mark --cloud scan.pcd --image photo.png --camera camera.yaml --out session.yaml");
+}
+
 int Main(int argc, char** argv) {
   CLI::App app(kIntroduction, "sextant");
   app.set_version_flag("--version", std::string(Version()));
@@ -174,6 +210,7 @@ int Main(int argc, char** argv) {
   ConvertOptions convert;
   AccuracyOptions accuracy;
   SimulatePairsOptions simulate;
+  MarkOptions mark;
   AddSolve(app, solve);
   AddCompare(app, compare);
   AddAverage(app, average);
@@ -182,6 +219,7 @@ int Main(int argc, char** argv) {
   AddConvert(app, convert);
   AddAccuracy(app, accuracy);
   AddSimulate(app, simulate);
+  AddMark(app, mark);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -194,6 +232,7 @@ int Main(int argc, char** argv) {
   if (app.got_subcommand("lidars")) return RunLidars(lidars);
   if (app.got_subcommand("convert")) return RunConvert(convert);
   if (app.got_subcommand("accuracy")) return RunAccuracy(accuracy);
+  if (app.got_subcommand("mark")) return RunMark(mark);
   return RunSimulatePairs(simulate);
 }
 

@@ -29,7 +29,7 @@ pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)
 string(APPEND SEXTANT_FIND_DEPENDENCIES "pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)\n")
 find_package(CLI11 REQUIRED)
 # The program only: OpenCV maps over a hundred shared objects into a process.
-find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs)
+find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs highgui)
 
 # Recordings of ROS: optional. lz4 and zstd are named as the linker knows them, as not every
 # distribution has CMake files of theirs.

@@ -37,7 +37,7 @@ TEST(Cli, HelpTeachesEveryCommand) {
   const ProgramRun top = RunSextant("--help");
   EXPECT_EQ(top.exit_code, 0);
   for (const char* command :
-       {"solve", "compare", "average", "solvers", "convert", "accuracy", "simulate"}) {
+       {"solve", "compare", "average", "solvers", "convert", "accuracy", "simulate", "mark"}) {
     EXPECT_THAT(top.out, HasSubstr(command));
     const ProgramRun help = RunSextant(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0);

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+// `sextant mark` as a person uses it: a window on a display, a mouse and keys.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+
+#include "cli/mark_canvas.h"
+#include "cli/mark_viewport.h"
+#include "io/pcd_file.h"
+#include "io/polygon_file.h"
+#include "support/drawn_board.h"
+#include "support/run_program.h"
+#include "support/virtual_display.h"
+
+namespace sextant {
+namespace {
+
+using cli::MarkViewport;
+using test::BackgroundProgram;
+using test::Eventually;
+using test::TestFolder;
+using test::VirtualDisplay;
+using testing::HasSubstr;
+
+constexpr int kWidth = 1280;
+constexpr int kHeight = 800;
+constexpr double kSeconds = 20.0;  // For what takes a fraction of one on an idle machine.
+
+std::string InFolder(const char* name) { return (TestFolder() / name).string(); }
+
+// A scan of the paper's board, and the projection in which it is shown.
+struct Drawing {
+  Scene scene = test::HungBoards(1);
+  ScanMarks projection{.camera = AssumedCamera(1280, 720), .cam_from_lidar = AxesCamFromLidar()};
+  MarkViewport view{kWidth, kHeight, cli::kMarkBar_px, 1280, 720};
+  MarkedBoard board = test::DrawBoard(0, test::CornersOf(scene.boards[0], {}), projection, 0.05);
+};
+
+void WriteScan(const Scene& scene) {
+  const SimulatedScan scan = test::Scan(scene, test::Model("vlp16"), {.seed = 5});
+  test::WriteText(InFolder("scan.pcd"), FormatPcd(scan.cloud));
+}
+
+// The window, once it shows.
+class OpenWindow {
+ public:
+  OpenWindow(const VirtualDisplay& display, const std::vector<std::string>& more = {})
+      : display_(display), program_(Command(more), {display.variable()}, InFolder("log")) {
+    id_ = FindWindow("--sync");
+    EXPECT_NE(id_, "") << test::ReadText(InFolder("log"));
+  }
+
+  int Wait() { return program_.Wait(kSeconds); }
+  void Press(const std::string& key) { display_.Do("key " + key); }
+
+  // The window stands in the corner of the screen: no window manager moves it.
+  void Click(const std::vector<Eigen::Vector2d>& canvas, int button = 1) {
+    std::string events;
+    for (const Eigen::Vector2d& at : canvas) {
+      events += fmt::format("mousemove {:.0f} {:.0f} click {} ", at.x(), at.y(), button);
+    }
+    display_.Do(events);
+  }
+
+  // The wheel; then waits for the window that may take the place of this one.
+  void TurnWheel(const Eigen::Vector2d& canvas, int notches) {
+    Click({canvas}, 2);  // Middle: does nothing but shows that the pointer is there.
+    for (int i = 0; i < notches; ++i) display_.Do("click 4");
+    Eventually(3.0, [&] {
+      const std::string now = FindWindow("");
+      return now != id_ && !now.empty() && now.find('\n') == now.rfind('\n');
+    });
+    id_ = FindWindow("");
+  }
+
+ private:
+  static std::vector<std::string> Command(const std::vector<std::string>& more) {
+    std::vector<std::string> command = {SEXTANT_BINARY,       "mark",  "--cloud",
+                                        InFolder("scan.pcd"), "--out", InFolder("polygons.yaml")};
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  }
+
+  std::string FindWindow(const char* option) const {
+    return display_.Do(fmt::format("search {} --onlyvisible --name '^sextant mark$'", option));
+  }
+
+  const VirtualDisplay& display_;
+  BackgroundProgram program_;
+  std::string id_;
+};
+
+std::vector<Eigen::Vector2d> OnCanvas(const MarkViewport& view, const Quadrilateral& edge) {
+  std::vector<Eigen::Vector2d> clicks;
+  for (const Eigen::Vector2d& pixel : edge) clicks.push_back(view.ToCanvas(pixel));
+  return clicks;
+}
+
+// What the autosave file holds once it holds as many edges and clicks.
+bool IsKept(std::size_t edges, std::size_t clicks) {
+  return Eventually(kSeconds, [&] {
+    const Expected<ScanMarks> kept = ReadPolygons(InFolder("polygons.yaml.autosave"));
+    if (!kept) return false;
+    const std::size_t found = kept->boards.empty() ? 0 : kept->boards[0].edges.size();
+    return found == edges && kept->unfinished.size() == clicks;
+  });
+}
+
+TEST(Mark, ABoardDrawnByClicksIsSaved) {
+  if (!VirtualDisplay::IsInstalled()) GTEST_SKIP() << VirtualDisplay::kAbsent;
+  const Drawing drawing;
+  WriteScan(drawing.scene);
+  const VirtualDisplay display(TestFolder().string());
+  OpenWindow window(display);
+  const std::vector<Quadrilateral>& edges = drawing.board.edges;
+  window.Click(OnCanvas(drawing.view, edges[0]));
+  ASSERT_TRUE(IsKept(1, 0));
+  window.Click({{300, 300}, {310, 310}});
+  ASSERT_TRUE(IsKept(1, 2));
+  window.Click({{400, 400}}, 3);  // The right button undoes.
+  window.Press("u");
+  ASSERT_TRUE(IsKept(1, 0));
+  window.Click(OnCanvas(drawing.view, edges[1]));
+  ASSERT_TRUE(IsKept(2, 0));
+  MarkViewport near = drawing.view;
+  const Eigen::Vector2d at(640, 400);
+  window.TurnWheel(at, 2);
+  near.ZoomAt(at, 1.25 * 1.25);
+  window.Click(OnCanvas(near, edges[2]));
+  window.Click(OnCanvas(near, edges[3]));
+  ASSERT_TRUE(IsKept(4, 0));
+  window.Press("s");
+  ASSERT_TRUE(Eventually(kSeconds, [] {
+    return std::filesystem::exists(InFolder("polygons.yaml")) &&
+           !std::filesystem::exists(InFolder("polygons.yaml.autosave"));
+  }));
+  window.Press("q");
+  EXPECT_EQ(window.Wait(), 0);
+  EXPECT_THAT(test::ReadText(InFolder("log")), HasSubstr("1 boards with 4 edges"));
+
+  const Expected<ScanMarks> marks = ReadPolygons(InFolder("polygons.yaml"));
+  ASSERT_TRUE(marks) << marks.error().message;
+  ASSERT_EQ(marks->boards.size(), 1U);
+  ASSERT_EQ(marks->boards[0].edges.size(), 4U);
+  EXPECT_TRUE(marks->unfinished.empty());
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      // The pointer stands on whole pixels of the canvas, within half of one of what was meant.
+      EXPECT_LT((marks->boards[0].edges[i][k] - edges[i][k]).norm(), 0.8) << i << " " << k;
+    }
+  }
+}
+
+TEST(Mark, WhatIsNotSavedIsThereAtTheNextStart) {
+  if (!VirtualDisplay::IsInstalled()) GTEST_SKIP() << VirtualDisplay::kAbsent;
+  const Drawing drawing;
+  WriteScan(drawing.scene);
+  cv::imwrite(InFolder("photo.png"), cv::Mat(720, 1280, CV_8UC3, cv::Scalar(90, 120, 90)));
+  const VirtualDisplay display(TestFolder().string());
+  {
+    OpenWindow window(display);
+    window.Click(OnCanvas(drawing.view, drawing.board.edges[0]));
+    window.Click({{300, 300}});
+    ASSERT_TRUE(IsKept(1, 1));
+    window.Press("q");
+    window.Press("q");  // The first asks.
+    EXPECT_EQ(window.Wait(), 1);
+    EXPECT_THAT(test::ReadText(InFolder("log")), HasSubstr("polygons.yaml.autosave"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(InFolder("polygons.yaml")));
+  OpenWindow window(display, {"--image", InFolder("photo.png")});
+  window.Click({{340, 300}, {340, 340}, {300, 340}});
+  ASSERT_TRUE(IsKept(2, 0));
+  window.Press("c");
+  window.Click({{600, 200}, {700, 300}});
+  window.Press("s");
+  window.Press("q");
+  EXPECT_EQ(window.Wait(), 0) << test::ReadText(InFolder("log"));
+  const Expected<ScanMarks> marks = ReadPolygons(InFolder("polygons.yaml"));
+  ASSERT_TRUE(marks) << marks.error().message;
+  EXPECT_EQ(marks->boards[0].edges.size(), 2U);
+  ASSERT_EQ(marks->corners.size(), 2U);
+  EXPECT_EQ(marks->corners[1].corner, 1);
+  EXPECT_LT((marks->corners[1].pixel - drawing.view.ToPixel({700, 300})).norm(), 0.8);
+}
+
+test::ProgramRun Mark(const std::string& arguments) {
+  return test::RunProgram(std::string("env -u DISPLAY -u WAYLAND_DISPLAY ") + SEXTANT_BINARY,
+                          "mark " + arguments);
+}
+
+TEST(Mark, WithoutADisplayItSaysWhatToDo) {
+  const test::ProgramRun none = Mark("--cloud scan.pcd");
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("DISPLAY is not set"));
+  EXPECT_THAT(none.err, HasSubstr("xvfb-run"));
+  const test::ProgramRun dead =
+      test::RunProgram(std::string("env DISPLAY=:4711 ") + SEXTANT_BINARY, "mark --cloud scan.pcd");
+  EXPECT_EQ(dead.exit_code, 2);
+  EXPECT_THAT(dead.err, HasSubstr("nothing answers on DISPLAY=:4711"));
+}
+
+TEST(Mark, ItsPictureCanBeHadWithoutADisplay) {
+  const Drawing drawing;
+  WriteScan(drawing.scene);
+  ScanMarks marks = drawing.projection;
+  marks.boards = {drawing.board};
+  test::WriteText(InFolder("polygons.yaml"), FormatPolygons(marks));
+  const std::string files =
+      "--cloud " + InFolder("scan.pcd") + " --out " + InFolder("polygons.yaml");
+  const test::ProgramRun run = Mark(files + " --render " + InFolder("window.png"));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const cv::Mat picture = cv::imread(InFolder("window.png"));
+  EXPECT_EQ(picture.size(), cv::Size(kWidth, kHeight));
+  EXPECT_EQ(Mark(files + " --render window.bmp").exit_code, 2);
+}
+
+TEST(Mark, RefusesWhatItCannotUse) {
+  const Drawing drawing;
+  WriteScan(drawing.scene);
+  const std::string scan = "--cloud " + InFolder("scan.pcd") + " --out " + InFolder("p.yaml") +
+                           " --render " + InFolder("w.png") + " ";
+  EXPECT_THAT(Mark(scan + "--image " + InFolder("scan.pcd")).err, HasSubstr("can be read"));
+  EXPECT_THAT(Mark(scan + "--cam-from-lidar 0 0 0 1").err, HasSubstr("X Y Z QW QX QY QZ"));
+  EXPECT_THAT(Mark(scan + "--cam-from-lidar 0 0 0 1 1 0 0").err, HasSubstr("length 1"));
+  // The camera looks up.
+  EXPECT_THAT(Mark(scan + "--cam-from-lidar 0 0 -9 1 0 0 0").err, HasSubstr("is in view"));
+  ScanMarks other = drawing.projection;
+  other.camera.fx_px = 500.0;
+  test::WriteText(InFolder("p.yaml"), FormatPolygons(other));
+  EXPECT_THAT(Mark(scan + "--cam-from-lidar 0 0 0 0.5 0.5 -0.5 0.5").err,
+              HasSubstr("another projection"));
+}
+
+}  // namespace
+}  // namespace sextant

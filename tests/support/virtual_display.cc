@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "support/virtual_display.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+namespace sextant::test {
+namespace {
+
+bool IsOnPath(const std::string& program) {
+  return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+}  // namespace
+
+void SleepBriefly() { std::this_thread::sleep_for(std::chrono::milliseconds(50)); }
+
+BackgroundProgram::BackgroundProgram(const std::vector<std::string>& command,
+                                     const std::vector<std::string>& environment,
+                                     const std::string& log) {
+  std::vector<std::string> words = {"env"};
+  words.insert(words.end(), environment.begin(), environment.end());
+  words.insert(words.end(), command.begin(), command.end());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  pid_ = fork();
+  if (pid_ != 0) return;
+  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  const int nothing = open("/dev/null", O_RDONLY);
+  dup2(nothing, STDIN_FILENO);
+  dup2(file, STDOUT_FILENO);
+  dup2(file, STDERR_FILENO);
+  execvp(arguments[0], arguments.data());
+  _exit(127);
+}
+
+BackgroundProgram::~BackgroundProgram() {
+  if (pid_ <= 0) return;
+  kill(pid_, SIGTERM);
+  if (Wait(5.0) == -1 && pid_ > 0) {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+}
+
+int BackgroundProgram::Wait(double seconds) {
+  int status = 0;
+  const bool ended = Eventually(seconds, [&] { return waitpid(pid_, &status, WNOHANG) == pid_; });
+  if (!ended) return -1;
+  pid_ = -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+bool VirtualDisplay::IsInstalled() { return IsOnPath("Xvfb") && IsOnPath("xdotool"); }
+
+VirtualDisplay::VirtualDisplay(const std::string& folder) {
+  // The server chooses a free number and writes it to its standard output.
+  const std::string log = folder + "/display";
+  server_ = std::make_unique<BackgroundProgram>(
+      std::vector<std::string>{"Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-screen", "0",
+                               "1400x900x24"},
+      std::vector<std::string>{}, log);
+  const bool started = Eventually(20.0, [&] {
+    std::ifstream stream(log);
+    for (std::string line; std::getline(stream, line) && !stream.eof();) {
+      if (line.empty() || line.find_first_not_of("0123456789") != std::string::npos) continue;
+      variable_ = "DISPLAY=:" + line;
+      return true;
+    }
+    return false;
+  });
+  if (!started) ADD_FAILURE() << "Xvfb did not start; see " << log;
+}
+
+std::string VirtualDisplay::Do(const std::string& arguments) const {
+  const std::string command = variable_ + " timeout 30 xdotool " + arguments + " 2>/dev/null";
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return {};
+  std::string text;
+  std::array<char, 256> buffer{};
+  while (fgets(buffer.data(), static_cast<int>(buffer.size()), pipe) != nullptr) {
+    text += buffer.data();
+  }
+  pclose(pipe);
+  return text;
+}
+
+}  // namespace sextant::test
