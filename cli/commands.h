@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,20 @@ struct SimulatePairsOptions {
   std::string out = "session.yaml";
 };
 
+struct SimulateSessionOptions {
+  std::string scene_path;
+  std::string out = "session";
+  std::string level = "full";
+  std::string pcd = "binary";
+  std::string sheet_path;  ///< Empty: none.
+  std::uint64_t seed = 1;
+  int scans = 1;
+  double interval_s = 1.0;
+  bool ideal = false;
+  double lidar_sigma_m = 0.0068;
+  std::optional<double> pixel_sigma_px;  ///< None: as the level has it.
+};
+
 struct AccuracyOptions {
   std::string solvers;  ///< Empty: every one that finds a whole pose; the robust ones for outliers.
   int trials = 0;       ///< 0: 2000 a condition, or 100 scenes a cell of the study of outliers.
@@ -88,6 +103,7 @@ int RunLidars(const LidarsOptions& options);
 int RunConvert(const ConvertOptions& options);
 int RunAccuracy(const AccuracyOptions& options);
 int RunMark(const MarkOptions& options);
+int RunSimulateSession(const SimulateSessionOptions& options);
 int RunSimulatePairs(const SimulatePairsOptions& options);
 
 }  // namespace sextant::cli

@@ -111,11 +111,44 @@ void AddConvert(CLI::App& app, ConvertOptions& options) {
   command.footer("Example:\n  sextant convert points.txt session.yaml");
 }
 
-void AddSimulate(CLI::App& app, SimulatePairsOptions& options) {
-  CLI::App& command = *app.add_subcommand("simulate", "Sessions whose truth is known");
-  command.require_subcommand(1);
+void AddSimulateSession(CLI::App& command, SimulateSessionOptions& options) {
+  command.add_option("SCENE", options.scene_path,
+                     "Scene file (YAML); a set of them is in experiments/scenes");
+  command
+      .add_option("--out", options.out,
+                  "Folder to write; a run that was stopped goes on where it was")
+      ->capture_default_str();
+  command.add_option("--scans", options.scans, "How many scans, with their images")
+      ->capture_default_str();
+  command.add_option("--seed", options.seed, "The same seed gives the same bytes")
+      ->capture_default_str();
+  command
+      .add_option("--level", options.level,
+                  "full: points and images; corners: as extractors find them; pairs: pixels marked "
+                  "by a\nperson")
+      ->capture_default_str();
+  command.add_option("--interval", options.interval_s, "From one scan to the next [s]")
+      ->capture_default_str();
+  command.add_flag("--ideal", options.ideal, "Sensors without noise, blur and spot of the beam");
+  command.add_option("--pcd", options.pcd, "ascii, binary or binary_compressed")
+      ->capture_default_str();
+  command
+      .add_option("--lidar-sigma", options.lidar_sigma_m,
+                  "Levels corners and pairs: LiDAR corner noise per axis [m]")
+      ->capture_default_str();
+  command.add_option("--pixel-sigma", options.pixel_sigma_px,
+                     "Levels corners and pairs: corner noise in the image [px]; default 1 and 3.5");
+  command.add_option("--sheet", options.sheet_path,
+                     "Draw image, scan and edges of the first scan (.png)");
+  command.footer(
+      "Examples:\n"
+      "  sextant simulate experiments/scenes/paper_two_boards.yaml --out session --scans 5\n"
+      "  sextant simulate pairs --views 5 --seed 7 --out session.yaml");
+}
+
+void AddSimulatePairs(CLI::App& command, SimulatePairsOptions& options) {
   CLI::App& pairs = *command.add_subcommand(
-      "pairs", "Corners of the paper's two boards, as extractors find them");
+      "pairs", "Corners of the paper's two boards, hung anew for each view");
   PairSimulation& simulation = options.simulation;
   pairs.add_option("--out", options.out, "Problem file to write")->capture_default_str();
   pairs.add_option("--seed", simulation.seed, "The same seed gives the same bytes")
@@ -139,6 +172,12 @@ void AddSimulate(CLI::App& app, SimulatePairsOptions& options) {
   pairs.add_option("--pixel-sigma", simulation.pixel_sigma_px, "Corner noise in the image [px]")
       ->capture_default_str();
   pairs.footer("Example:\n  sextant simulate pairs --views 5 --seed 7 --out session.yaml");
+}
+
+void AddSimulate(CLI::App& app, SimulateSessionOptions& session, SimulatePairsOptions& pairs) {
+  CLI::App& command = *app.add_subcommand("simulate", "Sessions whose truth is known");
+  AddSimulateSession(command, session);
+  AddSimulatePairs(command, pairs);
 }
 
 void AddAccuracy(CLI::App& app, AccuracyOptions& options) {
@@ -209,8 +248,9 @@ int Main(int argc, char** argv) {
   LidarsOptions lidars;
   ConvertOptions convert;
   AccuracyOptions accuracy;
-  SimulatePairsOptions simulate;
   MarkOptions mark;
+  SimulateSessionOptions session;
+  SimulatePairsOptions pairs;
   AddSolve(app, solve);
   AddCompare(app, compare);
   AddAverage(app, average);
@@ -218,8 +258,8 @@ int Main(int argc, char** argv) {
   AddLidars(app, lidars);
   AddConvert(app, convert);
   AddAccuracy(app, accuracy);
-  AddSimulate(app, simulate);
   AddMark(app, mark);
+  AddSimulate(app, session, pairs);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -233,7 +273,8 @@ int Main(int argc, char** argv) {
   if (app.got_subcommand("convert")) return RunConvert(convert);
   if (app.got_subcommand("accuracy")) return RunAccuracy(accuracy);
   if (app.got_subcommand("mark")) return RunMark(mark);
-  return RunSimulatePairs(simulate);
+  if (app.get_subcommand("simulate")->got_subcommand("pairs")) return RunSimulatePairs(pairs);
+  return RunSimulateSession(session);
 }
 
 }  // namespace

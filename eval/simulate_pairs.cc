@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "eval/simulator/corner_noise.h"
 
 namespace sextant {
 namespace {
@@ -69,39 +70,11 @@ std::vector<Eigen::Vector3d> HangBoard(const Board& board, int index, Random& ra
   return in_cam;
 }
 
-Eigen::Matrix3d CameraCovariance(const PairSimulation& simulation, const Eigen::Vector3d& in_cam) {
-  const Eigen::Vector3d ray = in_cam.normalized();
-  const double lateral = simulation.camera_lateral_sigma_m * simulation.camera_lateral_sigma_m;
-  const double depth = simulation.camera_depth_sigma_m * simulation.camera_depth_sigma_m;
-  return lateral * Eigen::Matrix3d::Identity() + (depth - lateral) * ray * ray.transpose();
-}
-
-void AddCorner(const PairSimulation& simulation, const PairId& id, const Eigen::Vector3d& in_cam,
-               Random& random, SimulatedSession& session) {
-  CalibrationProblem& problem = session.problem;
-  const Eigen::Vector3d ray = in_cam.normalized();
-  const Eigen::Vector3d lateral_noise = simulation.camera_lateral_sigma_m * NormalVector(random);
-  const double depth_noise = simulation.camera_depth_sigma_m * random.Normal();
-  const Eigen::Vector3d lidar_noise = simulation.lidar_sigma_m * NormalVector(random);
-  Eigen::Vector2d pixel = *Project(*problem.camera, in_cam);
-  for (int i = 0; i < 2; ++i) pixel[i] += simulation.pixel_sigma_px * random.Normal();
-
-  const Eigen::Vector3d measured_in_cam =
-      in_cam + lateral_noise - lateral_noise.dot(ray) * ray + depth_noise * ray;
-  const Eigen::Vector3d measured_in_lidar =
-      session.true_cam_from_lidar.Inverse() * in_cam + lidar_noise;
-  const double lidar_variance = simulation.lidar_sigma_m * simulation.lidar_sigma_m;
-  problem.pairs_3d3d.push_back({.point_in_cam = measured_in_cam,
-                                .point_in_lidar = measured_in_lidar,
-                                .covariance_in_cam = CameraCovariance(simulation, in_cam) +
-                                                     lidar_variance * Eigen::Matrix3d::Identity(),
-                                .id = id});
-  // A LiDAR error across the ray moves the projection by f / z pixels a metre.
-  const double lidar_px = problem.camera->fx_px / in_cam.z() * simulation.lidar_sigma_m;
-  problem.pairs_2d3d.push_back({.pixel = pixel,
-                                .point_in_lidar = measured_in_lidar,
-                                .sigma_px = std::hypot(simulation.pixel_sigma_px, lidar_px),
-                                .id = id});
+CornerNoise NoiseOf(const PairSimulation& simulation) {
+  return {.lidar_sigma_m = simulation.lidar_sigma_m,
+          .camera_lateral_sigma_m = simulation.camera_lateral_sigma_m,
+          .camera_depth_sigma_m = simulation.camera_depth_sigma_m,
+          .pixel_sigma_px = simulation.pixel_sigma_px};
 }
 
 void DisplaceOutliers(const PairSimulation& simulation, Random& random,
@@ -155,8 +128,10 @@ Expected<SimulatedSession> SimulatePairs(const PairSimulation& simulation) {
     for (const Board& board : boards) {
       const std::vector<Eigen::Vector3d> in_cam = HangBoard(board, board.id, random);
       for (int corner = 0; corner < kCornersPerBoard; ++corner) {
-        AddCorner(simulation, {view, board.id, corner}, in_cam[static_cast<std::size_t>(corner)],
-                  random, session);
+        const Eigen::Vector3d& point = in_cam[static_cast<std::size_t>(corner)];
+        AddMeasuredCorner(NoiseOf(simulation), {view, board.id, corner}, point,
+                          session.true_cam_from_lidar.Inverse() * point,
+                          *Project(*session.problem.camera, point), random, session.problem);
       }
     }
   }

@@ -62,14 +62,18 @@ Camera ReadCameraBlock(YamlFields& in, const YamlNode& node) {
 
 void WriteCameraBlock(YamlText& out, const Camera& camera) {
   out.Line("camera:");
-  out.Line("  model: {}", CameraModelName(camera.model));
-  out.Line("  width_px: {}", camera.width_px);
-  out.Line("  height_px: {}", camera.height_px);
-  out.Line("  fx_px: {}", camera.fx_px);
-  out.Line("  fy_px: {}", camera.fy_px);
-  out.Line("  cx_px: {}", camera.cx_px);
-  out.Line("  cy_px: {}", camera.cy_px);
-  out.Line("  distortion: {}", YamlList(camera.distortion));
+  WriteCameraKeys(out, "  ", camera);
+}
+
+void WriteCameraKeys(YamlText& out, const std::string& indent, const Camera& camera) {
+  out.Line("{}model: {}", indent, CameraModelName(camera.model));
+  out.Line("{}width_px: {}", indent, camera.width_px);
+  out.Line("{}height_px: {}", indent, camera.height_px);
+  out.Line("{}fx_px: {}", indent, camera.fx_px);
+  out.Line("{}fy_px: {}", indent, camera.fy_px);
+  out.Line("{}cx_px: {}", indent, camera.cx_px);
+  out.Line("{}cy_px: {}", indent, camera.cy_px);
+  out.Line("{}distortion: {}", indent, YamlList(camera.distortion));
 }
 
 }  // namespace sextant

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "geometry/camera.h"
@@ -22,5 +23,7 @@ Camera ReadCameraBlock(YamlFields& in, const YamlNode& node);
 
 /// The lines of the block, from "camera:" on.
 void WriteCameraBlock(YamlText& out, const Camera& camera);
+/// The lines of its keys, each after `indent`.
+void WriteCameraKeys(YamlText& out, const std::string& indent, const Camera& camera);
 
 }  // namespace sextant

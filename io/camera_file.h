@@ -24,6 +24,10 @@ namespace sextant {
 Expected<Camera> ReadCamera(const std::filesystem::path& path);
 Expected<Camera> ParseCamera(std::string_view text, const std::string& file);
 
+/// The ROS calibration YAML of a camera that it reads back to the bit: plumb_bob,
+/// rational_polynomial or equidistant, an identity for the rectification, and K as the projection.
+std::string FormatCameraInfo(const Camera& camera, const std::string& name);
+
 Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file);
 Expected<Camera> ParseCameraIni(std::string_view text, const std::string& file);
 

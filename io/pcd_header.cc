@@ -13,6 +13,12 @@
 namespace sextant {
 namespace {
 
+// In the order of PcdEncoding.
+const std::array<std::string, 3>& EncodingNames() {
+  static const std::array<std::string, 3> names = {"ascii", "binary", "binary_compressed"};
+  return names;
+}
+
 constexpr std::int64_t kMostPoints = 1'000'000'000;
 constexpr std::int64_t kMostCount = 1'000'000;
 constexpr std::size_t kMostFields = 256;
@@ -108,15 +114,13 @@ std::optional<std::int64_t> ReadNumber(LineReader& in, std::string_view name) {
 }
 
 void ReadEncoding(LineReader& in, Lines& lines) {
-  static const std::array<std::string, 3> kNames = {"ascii", "binary", "binary_compressed"};
   if (!in.HasFields(2, "DATA ascii, binary or binary_compressed")) return;
-  const auto found = std::find(kNames.begin(), kNames.end(), in.Field(1));
-  if (found == kNames.end()) {
-    in.Fail(ErrorCode::kParse, fmt::format("unknown encoding {}; {}", Quoted(in.Field(1)),
-                                           SuggestName(in.Field(1).substr(0, 40), kNames)));
-    return;
+  const Expected<PcdEncoding> encoding = FindPcdEncoding(in.Field(1));
+  if (encoding) {
+    lines.encoding = *encoding;
+  } else {
+    in.Fail(ErrorCode::kParse, encoding.error().message);
   }
-  lines.encoding = static_cast<PcdEncoding>(found - kNames.begin());
 }
 
 void ReadLine(LineReader& in, Lines& lines) {
@@ -172,6 +176,20 @@ std::size_t PointCount(LineReader& in, const Lines& lines) {
 }
 
 }  // namespace
+
+Expected<PcdEncoding> FindPcdEncoding(std::string_view name) {
+  const auto found = std::find(EncodingNames().begin(), EncodingNames().end(), name);
+  if (found != EncodingNames().end()) {
+    return static_cast<PcdEncoding>(found - EncodingNames().begin());
+  }
+  return MakeError(ErrorCode::kUnknownName,
+                   fmt::format("unknown encoding {}; {}", Quoted(name),
+                               SuggestName(name.substr(0, 40), EncodingNames())));
+}
+
+std::string_view ToString(PcdEncoding encoding) {
+  return EncodingNames()[static_cast<std::size_t>(encoding)];
+}
 
 const PcdField* PcdHeader::Find(std::string_view name) const {
   const auto found = std::find_if(fields.begin(), fields.end(), [&](const PcdField& field) {

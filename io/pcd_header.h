@@ -12,6 +12,10 @@ namespace sextant {
 
 enum class PcdEncoding { kAscii, kBinary, kBinaryCompressed };
 
+/// "ascii", "binary" or "binary_compressed". Error: kUnknownName, with the nearest known.
+Expected<PcdEncoding> FindPcdEncoding(std::string_view name);
+std::string_view ToString(PcdEncoding encoding);
+
 struct PcdField {
   std::string name{};
   char type = 'F';           ///< F floating point, U unsigned, I signed.

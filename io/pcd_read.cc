@@ -63,6 +63,13 @@ Expected<CloudFields> FindFields(const PcdHeader& header, const std::string& fil
   return fields;
 }
 
+// NaN for what a float cannot be.
+float ToFloat(double value) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  return std::abs(value) <= kMost ? static_cast<float>(value)
+                                  : std::numeric_limits<float>::quiet_NaN();
+}
+
 // Gathers points and judges their values; the first error is kept by its caller.
 class CloudBuilder {
  public:
@@ -78,7 +85,7 @@ class CloudBuilder {
     const bool is_return = values.point.allFinite();
     cloud_.points.push_back(is_return ? values.point : Eigen::Vector3d::Constant(kNaN));
     if (fields_.intensity != nullptr) {
-      cloud_.intensity.push_back(static_cast<float>(values.intensity));
+      cloud_.intensity.push_back(ToFloat(values.intensity));
     }
     if (fields_.time != nullptr) {
       cloud_.time_s.push_back(fields_.time->type == 'F' ? values.time : 1e-9 * values.time);
@@ -122,7 +129,7 @@ double AsciiValue(LineReader& in, const PcdField* field) {
   const bool is_whole = stop == text.data() + text.size();
   if (error == std::errc() && is_whole) {
     if (!std::isfinite(value)) return kNaN;
-    return field->type == 'F' && field->size == 4 ? static_cast<float>(value) : value;
+    return field->type == 'F' && field->size == 4 ? ToFloat(value) : value;
   }
   return in.Real(field->position, field->name);
 }

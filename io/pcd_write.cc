@@ -45,7 +45,8 @@ std::vector<Column> ColumnsOf(const PointCloud& cloud) {
   return columns;
 }
 
-std::string Header(const std::vector<Column>& columns, std::size_t points, const char* encoding) {
+std::string Header(const std::vector<Column>& columns, std::size_t points,
+                   std::string_view encoding) {
   std::string fields;
   std::string sizes;
   std::string types;
@@ -111,10 +112,10 @@ std::string FormatPcd(const PointCloud& cloud, PcdEncoding encoding) {
     for (const Column& column : columns) {
       for (std::size_t i = 0; i < points; ++i) AppendBytes(column, i, data);
     }
-    return Header(columns, points, "binary_compressed") + Compressed(data);
+    return Header(columns, points, ToString(encoding)) + Compressed(data);
   }
   const bool is_ascii = encoding == PcdEncoding::kAscii;
-  std::string text = Header(columns, points, is_ascii ? "ascii" : "binary");
+  std::string text = Header(columns, points, ToString(encoding));
   for (std::size_t i = 0; i < points; ++i) {
     for (std::size_t k = 0; k < columns.size(); ++k) {
       if (!is_ascii) {

@@ -67,6 +67,36 @@ pairs_3d3d: []
   EXPECT_EQ(camera->distortion[0], 0.1);
 }
 
+TEST(CameraFile, CameraInfoReadsBackToTheBit) {
+  Camera camera{.width_px = 1280,
+                .height_px = 720,
+                .fx_px = 700.1,
+                .fy_px = 699.9,
+                .cx_px = 639.3,
+                .cy_px = 358.7};
+  const auto expect_round_trip = [&] {
+    const Expected<Camera> again = ParseCamera(FormatCameraInfo(camera, "cam"), "c.yaml");
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again->model, camera.model);
+    EXPECT_EQ(again->width_px, camera.width_px);
+    EXPECT_EQ(again->height_px, camera.height_px);
+    EXPECT_EQ(again->fx_px, camera.fx_px);
+    EXPECT_EQ(again->fy_px, camera.fy_px);
+    EXPECT_EQ(again->cx_px, camera.cx_px);
+    EXPECT_EQ(again->cy_px, camera.cy_px);
+    EXPECT_EQ(again->distortion, camera.distortion);
+  };
+  expect_round_trip();
+  camera.model = CameraModel::kBrownConrady;
+  camera.distortion = {-0.17, 0.025, 1.9e-4, -1.8e-3, 3.1e-3};
+  expect_round_trip();
+  camera.distortion[7] = 1e-3;
+  expect_round_trip();
+  camera.model = CameraModel::kEquidistant;
+  camera.distortion = {-0.054, 0.04, -0.01, 0.003};
+  expect_round_trip();
+}
+
 class BadCameraTest : public testing::TestWithParam<BadText> {};
 
 TEST_P(BadCameraTest, EndsInOneLineThatSaysWhereAndWhat) {

@@ -53,6 +53,8 @@ std::vector<SourceFile> ReadSourceTree() {
   return files;
 }
 
+std::filesystem::path SourceRoot() { return SEXTANT_SOURCE_DIR; }
+
 bool IsCpp(const SourceFile& file) {
   return file.path.ends_with(".cc") || file.path.ends_with(".h");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct SourceFile {
 /// Every text file of the project by path: sources, build files, scripts and pages; not what was
 /// built, nor hidden folders.
 std::vector<SourceFile> ReadSourceTree();
+
+/// The project's root.
+std::filesystem::path SourceRoot();
 
 /// Whether it is a C++ file.
 bool IsCpp(const SourceFile& file);

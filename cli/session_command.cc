@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/image_file.h"
+#include "cli/load.h"
+#include "cli/progress.h"
+#include "eval/simulator/contact_sheet.h"
+#include "eval/simulator/scene_file.h"
+#include "eval/simulator/session.h"
+#include "io/text_file.h"
+
+namespace sextant::cli {
+namespace {
+
+constexpr const char* kCommand = "simulate";
+
+Expected<SessionOptions> SessionOptionsOf(const SimulateSessionOptions& options) {
+  const Expected<SessionLevel> level = FindSessionLevel(options.level);
+  if (!level) return tl::unexpected<Error>(level.error());
+  const Expected<PcdEncoding> encoding = FindPcdEncoding(options.pcd);
+  if (!encoding) return tl::unexpected<Error>(encoding.error());
+  SessionOptions session;
+  session.folder = options.out;
+  session.level = *level;
+  session.seed = options.seed;
+  session.scans = options.scans;
+  session.interval_s = options.interval_s;
+  session.ideal = options.ideal;
+  session.encoding = *encoding;
+  session.noise.lidar_sigma_m = options.lidar_sigma_m;
+  constexpr double kMarkedByAPerson_px = 3.5;
+  constexpr double kFoundInTheImage_px = 1.0;
+  const bool is_marked = *level == SessionLevel::kPairs;
+  session.noise.pixel_sigma_px =
+      options.pixel_sigma_px.value_or(is_marked ? kMarkedByAPerson_px : kFoundInTheImage_px);
+  session.encode_image = EncodePng;
+  return session;
+}
+
+Expected<void> WriteSheet(const Scene& scene, const SimulateSessionOptions& options) {
+  const Expected<cv::Mat> sheet = DrawContactSheet(scene, options.seed);
+  if (!sheet) return tl::unexpected<Error>(sheet.error());
+  const Expected<std::string> bytes = EncodePng(*sheet);
+  if (!bytes) return tl::unexpected<Error>(bytes.error());
+  return WriteFileAtomically(options.sheet_path, *bytes);
+}
+
+}  // namespace
+
+int RunSimulateSession(const SimulateSessionOptions& options) {
+  if (options.scene_path.empty()) {
+    return Refuse(kCommand, {ErrorCode::kInvalidOption,
+                             "expected a scene file, or the subcommand pairs; scenes are in "
+                             "experiments/scenes"});
+  }
+  const Expected<std::string> text = ReadTextFile(options.scene_path);
+  if (!text) return Refuse(kCommand, text.error());
+  const Expected<Scene> scene = ParseScene(*text, options.scene_path);
+  if (!scene) return Refuse(kCommand, scene.error());
+  Expected<SessionOptions> session = SessionOptionsOf(options);
+  if (!session) return Refuse(kCommand, session.error());
+  auto progress = std::make_unique<Progress>("simulating", CountSessionFiles(*scene, *session));
+  session->step = [&] { progress->Step(); };
+  const Expected<SessionReport> report = SimulateSession(*scene, *text, *session);
+  progress.reset();
+  if (!report) {
+    return Refuse(kCommand,
+                  {report.error().code, report.error().code == ErrorCode::kIo
+                                            ? report.error().message
+                                            : options.scene_path + ": " + report.error().message});
+  }
+  if (!options.sheet_path.empty()) {
+    if (const Expected<void> ok = WriteSheet(*scene, options); !ok) {
+      return Refuse(kCommand, ok.error());
+    }
+  }
+  fmt::print("{}: {} scans of {}, {} files written, {} kept; the truth is in truth.yaml\n",
+             options.out, options.scans, scene->name, report->written, report->kept);
+  return kAnswered;
+}
+
+}  // namespace sextant::cli
