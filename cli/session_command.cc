@@ -77,8 +77,8 @@ int RunSimulateSession(const SimulateSessionOptions& options) {
       return Refuse(kCommand, ok.error());
     }
   }
-  fmt::print("{}: {} scans of {}, {} files written, {} kept; the truth is in truth.yaml\n",
-             options.out, options.scans, scene->name, report->written, report->kept);
+  fmt::print("{}: scene {}, scans: {}, files written: {}, kept: {}; the truth is in truth.yaml\n",
+             options.out, scene->name, options.scans, report->written, report->kept);
   return kAnswered;
 }
 

@@ -181,7 +181,7 @@ Expected<cv::Mat> DrawContactSheet(const Scene& scene, std::uint64_t seed) {
   std::vector<cv::Mat> panels = {ImagePanel(*image), DrawScan(view, scan->cloud),
                                  DrawEdges(view, scan->cloud, boards)};
   Caption(panels[0], "image of " + scene.cameras[0].name);
-  Caption(panels[1], "scan of " + model->title + ", seen from it; colour: range");
+  Caption(panels[1], "scan of " + model->name + ", seen from it; colour: range");
   Caption(panels[2], "points at jumps in range; grey: true outlines");
   cv::Mat sheet;
   cv::hconcat(panels, sheet);

@@ -105,7 +105,7 @@ TEST(Simulate, AKilledRunGoesOnWhereItWas) {
   const fs::file_time_type before = fs::last_write_time(killed + "/cam_001.png");
   const ProgramRun resumed = RunSextant("simulate " + scene + " --scans 8 --out " + killed);
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
-  EXPECT_EQ(resumed.out.find(" 0 kept"), std::string::npos) << resumed.out;
+  EXPECT_EQ(resumed.out.find("kept: 0;"), std::string::npos) << resumed.out;
   EXPECT_EQ(fs::last_write_time(killed + "/cam_001.png"), before);
   EXPECT_EQ(FilesIn(killed), FilesIn(whole));
 }
@@ -116,7 +116,7 @@ TEST(Simulate, MoreScansMayBeAskedForButNothingElseChanged) {
   ASSERT_EQ(RunSextant("simulate " + scene + " --out " + out).exit_code, 0);
   const ProgramRun more = RunSextant("simulate " + scene + " --scans 2 --out " + out);
   EXPECT_EQ(more.exit_code, 0) << more.err;
-  EXPECT_THAT(more.out, HasSubstr("2 files written, 2 kept"));
+  EXPECT_THAT(more.out, HasSubstr("files written: 2, kept: 2"));
   const ProgramRun seed = RunSextant("simulate " + scene + " --seed 9 --out " + out);
   EXPECT_EQ(seed.exit_code, 2);
   EXPECT_THAT(seed.err, HasSubstr("the folder holds another simulation"));
