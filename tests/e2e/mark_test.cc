@@ -10,6 +10,8 @@
 
 #include "cli/mark_canvas.h"
 #include "cli/mark_viewport.h"
+#include "features/lidar/corner_extractor.h"
+#include "features/lidar/polygon_edges.h"
 #include "io/pcd_file.h"
 #include "io/polygon_file.h"
 #include "support/drawn_board.h"
@@ -43,6 +45,23 @@ struct Drawing {
 void WriteScan(const Scene& scene) {
   const SimulatedScan scan = test::Scan(scene, test::Model("vlp16"), {.seed = 5});
   test::WriteText(InFolder("scan.pcd"), FormatPcd(scan.cloud));
+}
+
+// Of the scan in the file, chosen by the marks. The medians of these extractors are 2.2, 4.7 and
+// 12 mm; `most_m` is four times as much.
+void ExpectCornersNear(const SceneBoard& board, const ScanMarks& marks, const char* extractor,
+                       double most_m) {
+  const Expected<PointCloud> cloud = ReadPcd(InFolder("scan.pcd"));
+  ASSERT_TRUE(cloud) << cloud.error().message;
+  const auto patches =
+      PatchesFromPolygons(*ScanRings::Build(*cloud), marks, std::vector<Board>{board.board});
+  ASSERT_TRUE(patches) << patches.error().message;
+  const auto corners = ExtractCorners(extractor, patches->front(), board.board);
+  ASSERT_TRUE(corners) << corners.error().message;
+  const test::BoardCorners truth = test::CornersOf(board, {});
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    EXPECT_LT((corners->in_lidar[i] - truth[i]).norm(), most_m) << extractor << " " << i;
+  }
 }
 
 // The window, once it shows.
@@ -153,6 +172,9 @@ TEST(Mark, ABoardDrawnByClicksIsSaved) {
       EXPECT_LT((marks->boards[0].edges[i][k] - edges[i][k]).norm(), 0.8) << i << " " << k;
     }
   }
+  ExpectCornersNear(drawing.scene.boards[0], *marks, "rectangle", 0.010);
+  ExpectCornersNear(drawing.scene.boards[0], *marks, "plane_lines", 0.020);
+  ExpectCornersNear(drawing.scene.boards[0], *marks, "lines3d", 0.050);
 }
 
 TEST(Mark, WhatIsNotSavedIsThereAtTheNextStart) {
