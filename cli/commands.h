@@ -94,6 +94,12 @@ struct MarkOptions {
   int height_px = 800;
 };
 
+struct BagOptions {
+  std::string path;
+  std::string extract_folder;  ///< Empty: nothing is written.
+  double tolerance_s = 0.05;
+};
+
 /// Each runs one command, prints its answer or one line of error, and returns the exit code.
 int RunSolve(const SolveOptions& options);
 int RunCompare(const CompareOptions& options);
@@ -101,6 +107,7 @@ int RunAverage(const AverageOptions& options);
 int RunCatalogue(const CatalogueOptions& options);
 int RunLidars(const LidarsOptions& options);
 int RunConvert(const ConvertOptions& options);
+int RunBag(const BagOptions& options);
 int RunAccuracy(const AccuracyOptions& options);
 int RunMark(const MarkOptions& options);
 int RunSimulateSession(const SimulateSessionOptions& options);

@@ -111,6 +111,27 @@ void AddConvert(CLI::App& app, ConvertOptions& options) {
   command.footer("Example:\n  sextant convert points.txt session.yaml");
 }
 
+void AddBag(CLI::App& app, BagOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("bag", "What a recording holds, and its scans and images");
+  command
+      .add_option("FILE", options.path,
+                  "Recording: .bag of ROS 1, .db3 of ROS 2 or its folder, or .mcap")
+      ->required();
+  command.add_option(
+      "--extract", options.extract_folder,
+      "Write scans (.pcd), images, camera_info (.yaml) and pairs.csv into this folder");
+  command
+      .add_option("--tolerance", options.tolerance_s,
+                  "How far apart scan and image of a pair may be [s]")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  command.footer(
+      "A scan and an image are a pair where no other two left are closer in time; each is used "
+      "once.\n"
+      "Examples:\n  sextant bag session.bag\n  sextant bag session.bag --extract session");
+}
+
 void AddSimulateSession(CLI::App& command, SimulateSessionOptions& options) {
   command.add_option("SCENE", options.scene_path,
                      "Scene file (YAML); a set of them is in experiments/scenes");
@@ -247,6 +268,7 @@ int Main(int argc, char** argv) {
   CatalogueOptions catalogue;
   LidarsOptions lidars;
   ConvertOptions convert;
+  BagOptions bag;
   AccuracyOptions accuracy;
   MarkOptions mark;
   SimulateSessionOptions session;
@@ -258,6 +280,7 @@ int Main(int argc, char** argv) {
   AddLidars(app, lidars);
   AddConvert(app, convert);
   AddAccuracy(app, accuracy);
+  AddBag(app, bag);
   AddMark(app, mark);
   AddSimulate(app, session, pairs);
   try {
@@ -271,6 +294,7 @@ int Main(int argc, char** argv) {
   if (app.got_subcommand("solvers")) return RunCatalogue(catalogue);
   if (app.got_subcommand("lidars")) return RunLidars(lidars);
   if (app.got_subcommand("convert")) return RunConvert(convert);
+  if (app.got_subcommand("bag")) return RunBag(bag);
   if (app.got_subcommand("accuracy")) return RunAccuracy(accuracy);
   if (app.got_subcommand("mark")) return RunMark(mark);
   if (app.get_subcommand("simulate")->got_subcommand("pairs")) return RunSimulatePairs(pairs);

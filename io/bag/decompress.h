@@ -16,7 +16,8 @@ Expected<Compression> CompressionNamed(std::string_view name);
 
 /// The `size` bytes that were compressed (lz4: the frame format). The memory taken grows with what
 /// is found, not with what `size` promises, and over 64 MiB no more than 256 times the compressed
-/// bytes are accepted. Error: kParse, which does not name the file.
+/// bytes are accepted (zstd may take its window besides, 128 MiB at most). Error: kParse, which
+/// does not name the file.
 Expected<std::string> Decompress(Compression compression, std::string_view bytes, std::size_t size);
 
 /// The same for one zstd frame that states its own size.

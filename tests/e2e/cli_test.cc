@@ -36,8 +36,8 @@ std::string SimulatedSession(const std::string& options = "") {
 TEST(Cli, HelpTeachesEveryCommand) {
   const ProgramRun top = RunSextant("--help");
   EXPECT_EQ(top.exit_code, 0);
-  for (const char* command :
-       {"solve", "compare", "average", "solvers", "convert", "accuracy", "simulate", "mark"}) {
+  for (const char* command : {"solve", "compare", "average", "solvers", "convert", "accuracy",
+                              "simulate", "mark", "bag"}) {
     EXPECT_THAT(top.out, HasSubstr(command));
     const ProgramRun help = RunSextant(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0);

@@ -60,7 +60,7 @@ const std::map<std::string_view, Folders>& OnlyIn() {
       {"sqlite3", {"io/bag", "tests"}},
       {"bzlib", {"io/bag"}},
       {"lz4", {"io/bag"}},
-      {"zstd", {"io/bag", "tests"}},
+      {"zstd", {"io/bag"}},
       {"yaml-cpp/", {"io", "eval", "tests"}},
       {"nlohmann/", {"io", "eval", "bench", "cli", "tests"}},
       {"CLI/", {"cli"}},

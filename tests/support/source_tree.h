@@ -14,6 +14,9 @@ struct SourceFile {
   std::vector<std::string> lines;
 };
 
+/// The project's root.
+std::filesystem::path SourceFolder();
+
 /// Every text file of the project by path: sources, build files, scripts and pages; not what was
 /// built, nor hidden folders.
 std::vector<SourceFile> ReadSourceTree();

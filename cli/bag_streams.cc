@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/bag_streams.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "cli/image_png.h"
+#include "io/camera_info.h"
+#include "io/pcd_file.h"
+#include "io/text_file.h"
+
+namespace sextant::cli {
+namespace {
+
+bool IsImage(MessageKind kind) {
+  return kind == MessageKind::kImage || kind == MessageKind::kEncodedImage;
+}
+
+// What a message becomes on the disk; none for a camera that is the one before.
+struct Extracted {
+  std::string extension;
+  std::string bytes;
+};
+
+class Extractor {
+ public:
+  Extractor(const Bag& bag, std::string folder) : bag_(bag), folder_(std::move(folder)) {}
+
+  Expected<void> Take(const BagMessage& message) {
+    const Expected<MessageHeader> header = DecodeHeader(message);
+    if (!header) return tl::unexpected<Error>(header.error());
+    const std::string name = MessageName(numbers_[message.topic_index]++, header->stamp_ns);
+    const Expected<std::optional<Extracted>> file = Convert(message);
+    if (!file) return tl::unexpected<Error>(file.error());
+    if (!*file) return {};
+    const std::filesystem::path folder = FolderOf(message.topic_index);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) {
+      return MakeError(ErrorCode::kIo, fmt::format("cannot make the folder '{}': {}",
+                                                   folder.string(), error.message()));
+    }
+    extensions_[message.topic_index] = (*file)->extension;
+    ++files_;
+    return WriteFileAtomically(folder / (name + (*file)->extension), (*file)->bytes);
+  }
+
+  // Two topics whose names give one folder get folders of their own.
+  std::filesystem::path FolderOf(std::size_t topic) {
+    const auto known = folders_.find(topic);
+    if (known != folders_.end()) return folder_ / std::filesystem::path(known->second);
+    std::string name = FolderName(bag_.topics()[topic].name);
+    while (!taken_.insert(name).second) name += '_';
+    folders_[topic] = name;
+    return folder_ / std::filesystem::path(name);
+  }
+
+  std::string FileName(std::size_t topic, std::size_t number, std::int64_t stamp_ns) {
+    return fmt::format("{}/{}{}", FolderOf(topic).filename().string(),
+                       MessageName(number, stamp_ns), extensions_[topic]);
+  }
+  int files() const { return files_; }
+
+ private:
+  Expected<std::optional<Extracted>> Convert(const BagMessage& message) {
+    switch (message.topic->kind) {
+      case MessageKind::kPointCloud:
+        return DecodePointCloud(message).map([](const CloudMessage& scan) {
+          return std::optional<Extracted>({".pcd", FormatPcd(scan.cloud)});
+        });
+      case MessageKind::kEncodedImage:
+        return DecodeEncodedImage(message).map([](const EncodedImageMessage& image) {
+          return std::optional<Extracted>({"." + ExtensionOf(image), image.data});
+        });
+      case MessageKind::kImage:
+        return DecodeImage(message).and_then(EncodePng).map([](std::string png) {
+          return std::optional<Extracted>({".png", std::move(png)});
+        });
+      case MessageKind::kCameraInfo:
+        return DecodeCameraInfo(message).map([&](const CameraInfoMessage& info) {
+          std::string text = FormatCameraInfo(info.camera, info.header.frame);
+          std::string& before = cameras_[message.topic_index];
+          if (text == before) return std::optional<Extracted>();
+          before = text;
+          return std::optional<Extracted>({".yaml", std::move(text)});
+        });
+      case MessageKind::kOther:
+        break;
+    }
+    return std::optional<Extracted>();
+  }
+
+  const Bag& bag_;
+  std::filesystem::path folder_;
+  std::map<std::size_t, std::size_t> numbers_;  // Of the next message, by topic.
+  std::map<std::size_t, std::string> folders_;
+  std::set<std::string> taken_;
+  std::map<std::size_t, std::string> extensions_;
+  std::map<std::size_t, std::string> cameras_;
+  int files_ = 0;
+};
+
+std::string PairsText(const BagStreams& all, Extractor& files) {
+  std::string text = "scan,image,image_less_scan_s\n";
+  for (const BagPairing& pairing : all.pairings) {
+    const BagStream& scans = all.streams[pairing.scans];
+    const BagStream& images = all.streams[pairing.images];
+    for (const StampPair& pair : pairing.pairs.pairs) {
+      text += fmt::format("{},{},{:.9f}\n",
+                          files.FileName(scans.topic, pair.first, scans.stamps_ns[pair.first]),
+                          files.FileName(images.topic, pair.second, images.stamps_ns[pair.second]),
+                          1e-9 * static_cast<double>(pair.difference_ns));
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+Expected<BagStreams> ReadStreams(const Bag& bag, std::int64_t tolerance_ns) {
+  BagStreams all;
+  std::vector<std::size_t> topics;
+  std::map<std::size_t, std::size_t> stream_of;
+  for (std::size_t i = 0; i < bag.topics().size(); ++i) {
+    const MessageKind kind = bag.topics()[i].kind;
+    if (kind != MessageKind::kPointCloud && !IsImage(kind)) continue;
+    topics.push_back(i);
+    stream_of[i] = all.streams.size();
+    all.streams.push_back({.topic = i, .stamps_ns = {}});
+  }
+  const Expected<void> read = bag.Read(topics, [&](const BagMessage& message) -> Expected<void> {
+    const Expected<MessageHeader> header = DecodeHeader(message);
+    if (!header) return tl::unexpected<Error>(header.error());
+    all.streams[stream_of[message.topic_index]].stamps_ns.push_back(header->stamp_ns);
+    return {};
+  });
+  if (!read) return tl::unexpected<Error>(read.error());
+  for (std::size_t scans = 0; scans < all.streams.size(); ++scans) {
+    if (bag.topics()[all.streams[scans].topic].kind != MessageKind::kPointCloud) continue;
+    for (std::size_t images = 0; images < all.streams.size(); ++images) {
+      if (!IsImage(bag.topics()[all.streams[images].topic].kind)) continue;
+      all.pairings.push_back(
+          {scans, images,
+           PairByStamp(all.streams[scans].stamps_ns, all.streams[images].stamps_ns, tolerance_ns)});
+    }
+  }
+  return all;
+}
+
+std::string MessageName(std::size_t number, std::int64_t stamp_ns) {
+  return fmt::format("{:06}_{}", number, stamp_ns);
+}
+
+std::string FolderName(const std::string& topic) {
+  std::string name;
+  for (const char c : topic) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (plain || c == '-') {
+      name += c;
+    } else if (!name.empty() && name.size() < 200) {
+      name += '_';
+    }
+  }
+  return name.empty() ? "topic" : name.substr(0, 200);
+}
+
+Expected<int> ExtractBag(const Bag& bag, const BagStreams& streams, const std::string& folder) {
+  Extractor files(bag, folder);
+  std::vector<std::size_t> topics;
+  for (std::size_t i = 0; i < bag.topics().size(); ++i) {
+    if (bag.topics()[i].kind != MessageKind::kOther) topics.push_back(i);
+  }
+  const Expected<void> read =
+      bag.Read(topics, [&files](const BagMessage& message) { return files.Take(message); });
+  if (!read) return tl::unexpected<Error>(read.error());
+  if (files.files() == 0) {
+    return MakeError(ErrorCode::kMissingData, "there is nothing in it to extract");
+  }
+  if (Expected<void> ok = WriteFileAtomically(std::filesystem::path(folder) / "pairs.csv",
+                                              PairsText(streams, files));
+      !ok) {
+    return tl::unexpected<Error>(std::move(ok.error()));
+  }
+  return files.files() + 1;
+}
+
+}  // namespace sextant::cli

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "io/camera_file.h"
+#include "io/cloud_file.h"
+#include "support/real_data.h"
+#include "support/run_program.h"
+#include "support/source_tree.h"
+
+namespace sextant {
+namespace {
+
+using test::ProgramRun;
+using test::TestFolder;
+using testing::HasSubstr;
+
+ProgramRun RunBag(const std::string& arguments) {
+  return test::RunProgram(SEXTANT_BINARY, "bag " + arguments);
+}
+
+std::string Seed(const std::string& name) {
+  return (test::SourceFolder() / "tests/fuzz/corpus" / name).string();
+}
+
+#ifdef SEXTANT_WITH_BAG
+// The seed has a scan, an image of 2 x 2 and an encoded one, all of one moment.
+TEST(BagCommand, ListsTopicsAndPairs) {
+  const ProgramRun run = RunBag(Seed("rosbag1/lz4"));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("ROS 1 bag, 3 topics, 3 messages, 0.000 s from 1970-01-01"));
+  EXPECT_THAT(run.out, HasSubstr("sensor_msgs/PointCloud2"));
+  EXPECT_THAT(run.out, HasSubstr("/p with /i, within 0.05 s: 1 pairs"));
+  EXPECT_THAT(run.out, HasSubstr("/p with /c"));
+  EXPECT_THAT(run.out, HasSubstr("without a partner: 0 scans, 0 images"));
+}
+
+TEST(BagCommand, ExtractsWhatOtherCommandsRead) {
+  const std::filesystem::path folder = TestFolder() / "out";
+  const ProgramRun run = RunBag(Seed("rosbag1/none") + " --extract " + folder.string());
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const Expected<PointCloud> scan = ReadCloud(folder / "p/000000_5000000007.pcd");
+  ASSERT_TRUE(scan) << scan.error().message;
+  EXPECT_EQ(scan->points[1], Eigen::Vector3d(4, 5, 6));
+  EXPECT_THAT(test::ReadText(folder / "i/000000_5000000007.png"), HasSubstr("PNG"));
+  EXPECT_EQ(test::ReadText(folder / "c/000000_5000000007.jpg"), "\xff\xd8\xff");
+  EXPECT_EQ(test::ReadText(folder / "pairs.csv"),
+            "scan,image,image_less_scan_s\n"
+            "p/000000_5000000007.pcd,i/000000_5000000007.png,0.000000000\n"
+            "p/000000_5000000007.pcd,c/000000_5000000007.jpg,0.000000000\n");
+}
+
+TEST(BagCommand, CameraInfoIsWrittenAsAFileThatIsReadBack) {
+  const std::filesystem::path folder = TestFolder() / "out";
+  const ProgramRun run = RunBag(Seed("mcap/zstd") + " --extract " + folder.string());
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const Expected<Camera> camera = ReadCamera(folder / "info/000000_5000000007.yaml");
+  ASSERT_TRUE(camera) << camera.error().message;
+  EXPECT_EQ(camera->model, CameraModel::kBrownConrady);
+  EXPECT_EQ(camera->distortion[0], 0.1);
+  EXPECT_EQ(camera->cx_px, 320.0);
+}
+
+TEST(BagCommand, ExtractsARealRecording) {
+  SEXTANT_REAL_DATA(bag, "fiducials/aruco_images.bag");
+  const std::filesystem::path folder = TestFolder() / "out";
+  const ProgramRun run = RunBag(bag.string() + " --extract " + folder.string());
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("No pairs: it takes a topic of scans"));
+  // One image, one camera for all its 15 messages, pairs.csv.
+  EXPECT_THAT(run.out, HasSubstr(": 3 files"));
+}
+
+TEST(BagCommand, RefusesWhatIsNoRecording) {
+  const ProgramRun run = RunBag(Seed("ply/ascii"));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("byte 0: expected a recording"));
+  EXPECT_EQ(RunBag("/none.bag").exit_code, 2);
+}
+#else
+TEST(BagCommand, SaysHowToGetIt) {
+  const ProgramRun run = RunBag(Seed("rosbag1/lz4"));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("-DSEXTANT_BAG=ON"));
+}
+#endif
+
+}  // namespace
+}  // namespace sextant

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// ROS 2's recordings: the seeds of the fuzz targets, which no code of ours wrote, and their damage.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include "base/random.h"
+#include "io/bag/bag.h"
+#include "io/bag/messages.h"
+#include "io/bag/open_bytes.h"
+#include "support/run_program.h"
+#include "support/source_tree.h"
+
+namespace sextant {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::filesystem::path Seed(const std::string& name) {
+  return test::SourceFolder() / "tests/fuzz/corpus" / name;
+}
+
+// One cloud and one camera, whatever the container and its compression.
+class SeedTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(SeedTest, HasACloudAndACamera) {
+  const Expected<std::unique_ptr<Bag>> bag = OpenBag(Seed(GetParam()));
+  ASSERT_TRUE(bag) << bag.error().message;
+  ASSERT_EQ((*bag)->topics().size(), 2U);
+  EXPECT_EQ((*bag)->topics()[0].type, "sensor_msgs/PointCloud2");
+  EXPECT_EQ((*bag)->topics()[1].name, "/info");
+  EXPECT_EQ((*bag)->topics()[1].first_ns, 9);
+  int seen = 0;
+  const Expected<void> read =
+      (*bag)->Read({0, 1}, [&](const BagMessage& message) -> Expected<void> {
+        ++seen;
+        EXPECT_EQ(DecodeHeader(message).value().stamp_ns, 5'000'000'007);
+        EXPECT_EQ(DecodeHeader(message).value().frame, "lidar");
+        if (message.topic_index == 0) {
+          const PointCloud cloud = DecodePointCloud(message).value().cloud;
+          EXPECT_THAT(cloud.points,
+                      ElementsAre(Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(4, 5, 6)));
+          EXPECT_THAT(cloud.ring, testing::UnorderedElementsAre(0, 1));
+        } else {
+          const Camera camera = DecodeCameraInfo(message).value().camera;
+          EXPECT_EQ(camera.fx_px, 500.0);
+          EXPECT_EQ(camera.width_px, 640);
+          EXPECT_EQ(camera.distortion[0], 0.1);
+        }
+        return {};
+      });
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(seen, 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, SeedTest,
+                         testing::Values("mcap/plain", "mcap/lz4", "mcap/zstd", "rosbag2/plain",
+                                         "rosbag2/zstd"));
+
+// The first error of opening and of decoding all; empty where there is none.
+std::string ReadAll(const Expected<std::unique_ptr<Bag>>& bag) {
+  if (!bag) return bag.error().message;
+  std::vector<std::size_t> all((*bag)->topics().size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  const Expected<void> read = (*bag)->Read(all, [](const BagMessage& message) -> Expected<void> {
+    const auto cloud = DecodePointCloud(message);
+    const auto camera = DecodeCameraInfo(message);
+    if (cloud || camera) return {};
+    return tl::unexpected<Error>(message.topic->kind == MessageKind::kCameraInfo ? camera.error()
+                                                                                 : cloud.error());
+  });
+  return read ? std::string() : read.error().message;
+}
+
+TEST(Ros2, EveryDamageIsReadOrRefusedInOneLine) {
+  const std::filesystem::path damaged = test::TestFolder() / "damaged.db3";
+  for (const char* name : {"mcap/plain", "mcap/lz4", "mcap/zstd", "rosbag2/plain"}) {
+    const std::string whole = test::ReadText(Seed(name));
+    Random random(4);
+    int refused = 0;
+    for (int trial = 0; trial < 400; ++trial) {
+      std::string bytes = whole;
+      const std::uint64_t at = random.Below(bytes.size());
+      bytes[at] = static_cast<char>(random.Below(256));
+      if (random.Below(4) == 0) bytes.resize(random.Below(bytes.size()));
+      std::string message;
+      if (std::string(name).starts_with("mcap")) {
+        message = ReadAll(OpenMcap(bytes, "f", nullptr));
+      } else {
+        test::WriteText(damaged, bytes);
+        message = ReadAll(OpenRosbag2Sqlite(damaged));
+      }
+      refused += message.empty() ? 0 : 1;
+      EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+      EXPECT_LT(message.size(), 700U) << message;
+    }
+    EXPECT_GT(refused, 100) << name;
+  }
+}
+
+BagMessage Message(const BagTopic& topic, std::string_view data) { return {&topic, 0, 9, data}; }
+
+TEST(Ros2, MessagesThatLieAreRefusedWithTheField) {
+  const BagTopic topic{.name = "/points",
+                       .type = "sensor_msgs/PointCloud2",
+                       .kind = MessageKind::kPointCloud,
+                       .encoding = MessageEncoding::kCdr};
+  const auto refusal = [&](std::string_view data) {
+    return DecodePointCloud(Message(topic, data)).error().message;
+  };
+  EXPECT_THAT(refusal(""),
+              HasSubstr("/points at 0.000000009 s: encapsulation: expected plain CDR"));
+  EXPECT_THAT(refusal(std::string(4, '\0')), HasSubstr("header.stamp: goes beyond the message"));
+  // Little endian: stamp, frame "", height 1, width 1, then 2^31 fields.
+  std::string lying(
+      "\0\1\0\0"
+      "\5\0\0\0"
+      "\7\0\0\0"
+      "\1\0\0\0"
+      "\0\0\0\0"
+      "\1\0\0\0"
+      "\1\0\0\0"
+      "\0\0\0\x80",
+      32);
+  EXPECT_THAT(refusal(lying), HasSubstr("fields: states 2147483648 entries"));
+}
+
+TEST(Ros2, AFolderIsTheOneRecordingInIt) {
+  const std::filesystem::path folder = test::TestFolder() / "session";
+  std::filesystem::create_directory(folder);
+  EXPECT_THAT(OpenBag(folder).error().message, HasSubstr("has no .db3"));
+  std::filesystem::copy_file(Seed("rosbag2/plain"), folder / "session_0.db3");
+  EXPECT_TRUE(OpenBag(folder));
+  std::filesystem::copy_file(Seed("mcap/plain"), folder / "session_1.mcap");
+  EXPECT_THAT(OpenBag(folder).error().message, HasSubstr("has 2 recordings; name one of them"));
+}
+
+TEST(Ros2, ADatabaseOfSomethingElseIsNamed) {
+  const std::filesystem::path path = test::TestFolder() / "other.db3";
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  sqlite3_exec(database, "CREATE TABLE a(b)", nullptr, nullptr, nullptr);
+  sqlite3_close(database);
+  EXPECT_THAT(
+      OpenBag(path).error().message,
+      HasSubstr("expected a recording of ROS 2 (SQLite with the tables topics and messages)"));
+}
+
+}  // namespace
+}  // namespace sextant
