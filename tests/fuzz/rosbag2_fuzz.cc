@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// SQLite wants a file: one in memory.
+// SQLite wants a file with a path of its own: one that each input overwrites.
 #include <fmt/format.h>
-#include <sys/mman.h>
 #include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include "io/bag/open_bytes.h"
 #include "tests/fuzz/read_bag.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const int fd = memfd_create("rosbag2", 0);
-  if (fd < 0 || write(fd, data, size) != static_cast<ssize_t>(size)) std::abort();
-  sextant::test::ReadWholeBag(sextant::OpenRosbag2Sqlite(fmt::format("/proc/self/fd/{}", fd)));
-  close(fd);
+  static const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / fmt::format("sextant_fuzz_{}.db3", getpid());
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  sextant::test::ReadWholeBag(sextant::OpenRosbag2Sqlite(path));
+  std::filesystem::remove(path);
   return 0;
 }
