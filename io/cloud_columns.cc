@@ -48,6 +48,7 @@ constexpr std::array kKnownNames = {
     KnownName{"offset_time", &CloudColumns::time, 1e-9},
     KnownName{"adjustedtime", &CloudColumns::time, 1e-6},
     KnownName{"timestamp", &CloudColumns::time},
+    KnownName{"time_stamp", &CloudColumns::time},
 };
 
 std::string Normalised(std::string_view name) {

@@ -30,10 +30,10 @@ struct CloudColumns {
 
 /// By the names that drivers and tools use, upper or lower case, with or without CloudCompare's
 /// `scalar_`: x y z (VeloView: Points_m_XYZ:0 to 2, Points:0 to 2), intensity (reflectivity,
-/// remission, i), ring (laser_id, channel, line), time (t, offset_time [ns], adjustedtime [us],
-/// timestamp; time_us, time_ns); of two names for one thing the first in this list. Other columns
-/// (azimuth, distance, normals, colours) are left alone.
-/// Error: kParse where x, y or z is missing or a name stands twice; it does not name the file.
+/// remission, i), ring (laser_id, channel, line), time (t, time_us, time_ns, offset_time [ns],
+/// adjustedtime [us], timestamp, time_stamp); of two names for one thing the first in this list.
+/// Other columns (azimuth, distance, normals, colours) are left alone. Error: kParse where x, y or
+/// z is missing or a name stands twice; it does not name the file.
 Expected<CloudColumns> FindCloudColumns(std::span<const NamedColumn> columns);
 
 }  // namespace sextant
