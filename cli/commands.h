@@ -19,7 +19,7 @@ inline constexpr int kWrongUse = 2;  ///< Wrong usage, or an input or output tha
 struct InputOptions {
   std::string problem_path;
   std::string camera_path;  ///< Empty: the problem's own.
-  std::string boards_path;  ///< marker_coordinates.txt; empty: the problem's own.
+  std::string boards_path;  ///< Board file or marker_coordinates.txt; empty: the problem's own.
   bool reorder = false;
   std::string json_path;  ///< Empty: none; "-": standard output, and no text there.
 };

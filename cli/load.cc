@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <vector>
+
+#include "io/board_file.h"
 #include "io/camera_file.h"
 #include "io/marker_files.h"
 #include "io/read_problem.h"
@@ -11,6 +15,12 @@
 namespace sextant::cli {
 namespace {
 
+// Sizes are all that is asked of boards here, so a marker_coordinates.txt may have any number.
+Expected<std::vector<Board>> ReadNamedBoards(const std::filesystem::path& path) {
+  if (path.extension() == ".yaml" || path.extension() == ".yml") return ReadBoards(path);
+  return ReadMarkerCoordinates(path).map(BoardsOf);
+}
+
 Expected<void> AddNamedFiles(const InputOptions& options, CalibrationProblem& problem) {
   if (!options.camera_path.empty()) {
     const Expected<Camera> camera = ReadCamera(options.camera_path);
@@ -18,9 +28,9 @@ Expected<void> AddNamedFiles(const InputOptions& options, CalibrationProblem& pr
     problem.camera = *camera;
   }
   if (!options.boards_path.empty()) {
-    const Expected<std::vector<MarkerBoard>> boards = ReadMarkerCoordinates(options.boards_path);
+    const Expected<std::vector<Board>> boards = ReadNamedBoards(options.boards_path);
     if (!boards) return tl::unexpected<Error>(boards.error());
-    problem.boards = BoardsOf(*boards);
+    problem.boards = *boards;
   }
   return {};
 }

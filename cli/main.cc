@@ -37,7 +37,8 @@ void AddInput(CLI::App& command, InputOptions& input) {
   command.add_option("--camera", input.camera_path,
                      "Intrinsics: ROS camera_info YAML, OpenCV YAML, or .ini");
   command.add_option("--boards", input.boards_path,
-                     "Known board sizes: marker_coordinates.txt of the original package");
+                     "Known board sizes: a board file (YAML), or marker_coordinates.txt of the\n"
+                     "original package");
   command.add_flag("--reorder", input.reorder, kReorderHelp);
   command.add_option("--json", input.json_path, "Write the results as JSON; - for standard output");
 }

@@ -141,6 +141,14 @@ TEST(Simulate, TheFastLevelsAreProblemFiles) {
         RunSextant("compare " + out + "/" + level + "_cam.yaml --solvers " + solver);
     EXPECT_EQ(compared.exit_code, 0) << compared.err;
     EXPECT_THAT(compared.out, HasSubstr("error [mm]"));
+    const ProgramRun with_boards =
+        RunSextant("compare " + out + "/" + level + "_cam.yaml --solvers " + solver + " --boards " +
+                   out + "/boards.yaml");
+    EXPECT_EQ(with_boards.exit_code, 0) << with_boards.err;
+    const ProgramRun no_boards =
+        RunSextant("compare " + out + "/" + level + "_cam.yaml --boards " + out + "/cam_info.yaml");
+    EXPECT_EQ(no_boards.exit_code, 2);
+    EXPECT_THAT(no_boards.err, HasSubstr("cam_info.yaml:1: boards: unknown key"));
   }
 }
 
