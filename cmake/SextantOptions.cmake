@@ -9,6 +9,7 @@ else()
 endif()
 option(SEXTANT_WARNINGS_AS_ERRORS "Fail the build on a warning" ${known_compiler})
 option(SEXTANT_BENCH "Build the benchmarks" ON)
+option(SEXTANT_ROSBAG_ORACLE "Hold our ROS 1 bags to librosbag-storage in the tests" OFF)
 option(SEXTANT_FUZZ "Build the fuzz targets (clang)" OFF)
 set(SEXTANT_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined")
 

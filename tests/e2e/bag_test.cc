@@ -26,8 +26,17 @@ std::string Seed(const std::string& name) {
 }
 
 #ifdef SEXTANT_WITH_BAG
+constexpr bool kIsBuilt = true;
+#else
+constexpr bool kIsBuilt = false;
+#endif
+
+#define SKIP_WHERE_NOT_BUILT() \
+  if (!kIsBuilt) GTEST_SKIP() << "built without recordings of ROS (SEXTANT_BAG)"
+
 // The seed has a scan, an image of 2 x 2 and an encoded one, all of one moment.
 TEST(BagCommand, ListsTopicsAndPairs) {
+  SKIP_WHERE_NOT_BUILT();
   const ProgramRun run = RunBag(Seed("rosbag1/lz4"));
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("ROS 1 bag, 3 topics, 3 messages, 0.000 s from 1970-01-01"));
@@ -38,6 +47,7 @@ TEST(BagCommand, ListsTopicsAndPairs) {
 }
 
 TEST(BagCommand, ExtractsWhatOtherCommandsRead) {
+  SKIP_WHERE_NOT_BUILT();
   const std::filesystem::path folder = TestFolder() / "out";
   const ProgramRun run = RunBag(Seed("rosbag1/none") + " --extract " + folder.string());
   EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -53,6 +63,7 @@ TEST(BagCommand, ExtractsWhatOtherCommandsRead) {
 }
 
 TEST(BagCommand, CameraInfoIsWrittenAsAFileThatIsReadBack) {
+  SKIP_WHERE_NOT_BUILT();
   const std::filesystem::path folder = TestFolder() / "out";
   const ProgramRun run = RunBag(Seed("mcap/zstd") + " --extract " + folder.string());
   EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -64,6 +75,7 @@ TEST(BagCommand, CameraInfoIsWrittenAsAFileThatIsReadBack) {
 }
 
 TEST(BagCommand, ExtractsARealRecording) {
+  SKIP_WHERE_NOT_BUILT();
   SEXTANT_REAL_DATA(bag, "fiducials/aruco_images.bag");
   const std::filesystem::path folder = TestFolder() / "out";
   const ProgramRun run = RunBag(bag.string() + " --extract " + folder.string());
@@ -73,19 +85,13 @@ TEST(BagCommand, ExtractsARealRecording) {
   EXPECT_THAT(run.out, HasSubstr(": 3 files"));
 }
 
-TEST(BagCommand, RefusesWhatIsNoRecording) {
+TEST(BagCommand, RefusesWhatIsNoRecordingOrSaysHowToReadIt) {
   const ProgramRun run = RunBag(Seed("ply/ascii"));
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("byte 0: expected a recording"));
+  EXPECT_THAT(run.err,
+              HasSubstr(kIsBuilt ? "byte 0: expected a recording" : "with -DSEXTANT_BAG=ON"));
   EXPECT_EQ(RunBag("/none.bag").exit_code, 2);
 }
-#else
-TEST(BagCommand, SaysHowToGetIt) {
-  const ProgramRun run = RunBag(Seed("rosbag1/lz4"));
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("-DSEXTANT_BAG=ON"));
-}
-#endif
 
 }  // namespace
 }  // namespace sextant

@@ -144,6 +144,23 @@ INSTANTIATE_TEST_SUITE_P(Compressions, RoundTripTest,
                          testing::Values(BagCompression::kNone, BagCompression::kBz2,
                                          BagCompression::kLz4));
 
+#ifdef SEXTANT_ROSBAG_DUMP
+TEST_P(RoundTripTest, RosReadsWhatWeWrite) {
+  const test::ProgramRun run =
+      test::RunProgram(SEXTANT_ROSBAG_DUMP, WrittenBag(GetParam(), 3000).string());
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const std::string scan = " velodyne 3000 22 x0 y4 z8 intensity12 ring16 time18\n";
+  EXPECT_EQ(run.out, "/points 1700000000000000000" + scan +
+                         "/image_raw 1700000000000000001 4 3 mono8 0123456789abcde\n"
+                         "/image/compressed 1700000000000000002 jpeg 4\n"
+                         "/camera_info 1700000000000000010 plumb_bob 5 500 501 0\n"
+                         "/camera_info 1700000000000000011 plumb_bob 5 500 501 0\n"
+                         "/camera_info 1700000000000000012 equidistant 4 500 501 0\n"
+                         "/points 1700000001000000000" +
+                         scan);
+}
+#endif
+
 TEST(Rosbag1, TopicsHaveCountsAndTimes) {
   const Expected<std::unique_ptr<Bag>> bag = OpenBag(WrittenBag(BagCompression::kLz4));
   ASSERT_TRUE(bag) << bag.error().message;
