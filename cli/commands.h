@@ -87,6 +87,7 @@ struct MarkOptions {
   std::string image_path;                   ///< Empty: none.
   std::string camera_path;                  ///< Empty: one is assumed.
   std::vector<std::string> cam_from_lidar;  ///< A file, or x y z qw qx qy qz; empty: the axes.
+  double yaw_deg = 0.0;                     ///< Of the assumed camera, to the left.
   std::vector<int> ids;                     ///< Of the boards, from left to right.
   std::string out_path = "polygons.yaml";
   std::string render_path;  ///< A picture of the window to write instead of opening it.

@@ -229,11 +229,19 @@ void AddMark(CLI::App& app, MarkOptions& options) {
   command.add_option("--image", options.image_path, "Its photo");
   command.add_option("--camera", options.camera_path,
                      "Intrinsics; default: a camera 90 degrees wide is assumed");
+  CLI::Option* const pose =
+      command
+          .add_option(
+              "--cam-from-lidar", options.cam_from_lidar,
+              "Rough pose: results (JSON), rts.txt, or X Y Z QW QX QY QZ; default: the camera "
+              "looks\nalong the LiDAR's x axis")
+          ->expected(1, 7);
   command
-      .add_option("--cam-from-lidar", options.cam_from_lidar,
-                  "Rough pose: results (JSON), rts.txt, or X Y Z QW QX QY QZ; default: the camera "
-                  "looks\nalong the LiDAR's x axis")
-      ->expected(1, 7);
+      .add_option("--yaw", options.yaw_deg,
+                  "Without a pose: turn the assumed camera to the left by so much [deg]")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->excludes(pose)
+      ->capture_default_str();
   command.add_option("--ids", options.ids,
                      "Ids of the boards from left to right; default: 0, 1, ...");
   command.add_option("--out", options.out_path, "Polygon file to write, or to go on with")
@@ -253,7 +261,7 @@ void AddMark(CLI::App& app, MarkOptions& options) {
       "saved\n"
       "are kept beside --out, and the next start goes on with them.\n"
       "Examples:\n"
-      "  sextant mark --cloud scan.pcd\n"
+      "  sextant mark --cloud scan.pcd --yaw 90\n"
       "  sextant mark --cloud scan.pcd --image photo.png --camera camera.yaml --out session.yaml");
 }
 

@@ -11,7 +11,7 @@
 namespace sextant::cli {
 namespace {
 
-// One for each edge, from the top-left clockwise; blue, green, red.
+// One for each edge, from the top-left clockwise; as blue, green, red.
 const cv::Scalar kEdgeColors[] = {{120, 220, 90}, {90, 200, 255}, {230, 140, 255}, {255, 190, 100}};
 const cv::Scalar kBackground(30, 26, 24);
 const cv::Scalar kDrawing(255, 255, 255);
@@ -80,6 +80,8 @@ void DrawQuadrilateral(const Quadrilateral& quadrilateral, const MarkViewport& v
 }
 
 void DrawBoards(const MarkSession& session, const MarkViewport& view, cv::Mat& canvas) {
+  const RangeColors colors(session.returns());
+  const double radius = DotRadius(view.scale());
   for (const MarkedBoard& board : session.marks().boards) {
     for (std::size_t i = 0; i < board.edges.size(); ++i) {
       DrawQuadrilateral(board.edges[i], view, kEdgeColors[i], canvas);
@@ -88,7 +90,8 @@ void DrawBoards(const MarkSession& session, const MarkViewport& view, cv::Mat& c
       for (const ProjectedReturn& r : session.returns()) {
         const Eigen::Vector2d at = view.ToCanvas(r.pixel);
         if (!IsOn(canvas, at) || !Contains(board.edges[i], r.pixel)) continue;
-        Dot(canvas, at, DotRadius(view.scale()) + 0.6, kEdgeColors[i]);
+        Dot(canvas, at, radius + 1.2, kDrawing);
+        Dot(canvas, at, radius, colors.Of(r.range_m));
       }
       Label(canvas, view.ToCanvas(CenterOf(board.edges[i])) - Eigen::Vector2d(12, -5),
             fmt::format("{}.{}", board.id, i + 1), kDrawing);

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
+#include <numbers>
 #include <opencv2/imgcodecs.hpp>
 
 #include "io/camera_file.h"
@@ -93,7 +93,11 @@ Expected<Rigid3d> PoseFromNumbers(const std::vector<std::string>& texts) {
 }
 
 Expected<Rigid3d> ChoosePose(const MarkOptions& options) {
-  if (options.cam_from_lidar.empty()) return AxesCamFromLidar();
+  if (options.cam_from_lidar.empty()) {
+    constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+    const Eigen::AngleAxisd turn(-kRadPerDeg * options.yaw_deg, Eigen::Vector3d::UnitZ());
+    return AxesCamFromLidar() * Rigid3d{Eigen::Quaterniond(turn), Eigen::Vector3d::Zero()};
+  }
   if (options.cam_from_lidar.size() == 1) return PoseFromFile(options.cam_from_lidar.front());
   return PoseFromNumbers(options.cam_from_lidar);
 }
@@ -111,7 +115,8 @@ Expected<void> GoOnWith(const std::filesystem::path& path, const MarkOptions& op
                         MarkInput& input) {
   const Expected<ScanMarks> kept = ReadPolygons(path);
   if (!kept) return tl::unexpected<Error>(kept.error());
-  const bool asked = !options.camera_path.empty() || !options.cam_from_lidar.empty();
+  const bool asked =
+      !options.camera_path.empty() || !options.cam_from_lidar.empty() || options.yaw_deg != 0.0;
   const bool fits_photo = input.photo.empty() || (kept->camera.width_px == input.photo.cols &&
                                                   kept->camera.height_px == input.photo.rows);
   if ((asked && !SameProjection(*kept, input.marks)) || !fits_photo) {
@@ -156,8 +161,8 @@ Expected<MarkInput> LoadMarkInput(const MarkOptions& options) {
   input.returns = ProjectScan(*scan, input.marks.camera, input.marks.cam_from_lidar);
   if (input.returns.empty()) {
     return MakeError(ErrorCode::kDegenerate,
-                     fmt::format("{}: none of its {} points is in view; give --cam-from-lidar (the "
-                                 "camera looks along the LiDAR's x axis where it is not given)",
+                     fmt::format("{}: none of its {} points is in view; turn the camera with --yaw "
+                                 "or give --cam-from-lidar",
                                  options.cloud_path, scan->points.size()));
   }
   return input;

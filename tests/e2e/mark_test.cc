@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <numbers>
 #include <opencv2/imgcodecs.hpp>
-#include <sstream>
 
 #include "cli/mark_canvas.h"
 #include "cli/mark_viewport.h"
@@ -14,6 +14,7 @@
 #include "features/lidar/polygon_edges.h"
 #include "io/pcd_file.h"
 #include "io/polygon_file.h"
+#include "io/results_json.h"
 #include "support/drawn_board.h"
 #include "support/run_program.h"
 #include "support/virtual_display.h"
@@ -241,12 +242,53 @@ TEST(Mark, ItsPictureCanBeHadWithoutADisplay) {
   EXPECT_EQ(Mark(files + " --render window.bmp").exit_code, 2);
 }
 
+// How many pixels of the window's picture two ways of starting it differ in.
+int DifferingPixels(const std::string& a, const std::string& b) {
+  const std::string files = "--cloud " + InFolder("scan.pcd") + " --out " + InFolder("none.yaml");
+  std::vector<cv::Mat> pictures;
+  for (const std::string& options : {a, b}) {
+    const test::ProgramRun run = Mark(files + " --render " + InFolder("w.png") + " " + options);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    pictures.push_back(cv::imread(InFolder("w.png"), cv::IMREAD_GRAYSCALE));
+  }
+  return cv::countNonZero(pictures[0] != pictures[1]);
+}
+
+TEST(Mark, APoseMayComeAsNumbersFromFilesOrAsAYaw) {
+  const Drawing drawing;
+  WriteScan(drawing.scene);
+  const Eigen::AngleAxisd turn(-0.25 * std::numbers::pi, Eigen::Vector3d::UnitZ());
+  const Rigid3d pose = AxesCamFromLidar() * Rigid3d{Eigen::Quaterniond(turn), {0, 0, 0}};
+  // To the left: what is ahead and left of the LiDAR is in the middle.
+  EXPECT_LT((pose * Eigen::Vector3d(1.0, 1.0, 0.0)).head<2>().norm(), 1e-9);
+  const Eigen::Quaterniond& q = pose.rotation;
+  const std::string numbers =
+      fmt::format("--cam-from-lidar 0 0 0 {} {} {} {}", q.w(), q.x(), q.y(), q.z());
+  const Eigen::Matrix4d m = pose.Matrix();
+  std::string rows;
+  for (int i = 0; i < 4; ++i) {
+    rows += fmt::format("{} {} {} {}\n", m(i, 0), m(i, 1), m(i, 2), m(i, 3));
+  }
+  test::WriteText(InFolder("rts.txt"), rows);
+  SolveReport report;
+  report.cam_from_lidar = pose;
+  ResultFile results;
+  results.results.push_back({"p3p", MakeError(ErrorCode::kDegenerate, "on a line")});
+  results.results.push_back({"kabsch", report});
+  test::WriteText(InFolder("results.json"), FormatResults(results));
+  EXPECT_GT(DifferingPixels(numbers, ""), 1000);
+  EXPECT_EQ(DifferingPixels(numbers, "--yaw 45"), 0);
+  EXPECT_EQ(DifferingPixels(numbers, "--cam-from-lidar " + InFolder("rts.txt")), 0);
+  EXPECT_EQ(DifferingPixels(numbers, "--cam-from-lidar " + InFolder("results.json")), 0);
+}
+
 TEST(Mark, RefusesWhatItCannotUse) {
   const Drawing drawing;
   WriteScan(drawing.scene);
   const std::string scan = "--cloud " + InFolder("scan.pcd") + " --out " + InFolder("p.yaml") +
                            " --render " + InFolder("w.png") + " ";
   EXPECT_THAT(Mark(scan + "--image " + InFolder("scan.pcd")).err, HasSubstr("can be read"));
+  EXPECT_EQ(Mark(scan + "--cam-from-lidar a.json --yaw 5").exit_code, 2);
   EXPECT_THAT(Mark(scan + "--cam-from-lidar 0 0 0 1").err, HasSubstr("X Y Z QW QX QY QZ"));
   EXPECT_THAT(Mark(scan + "--cam-from-lidar 0 0 0 1 1 0 0").err, HasSubstr("length 1"));
   // The camera looks up.
