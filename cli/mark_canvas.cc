@@ -79,20 +79,30 @@ void DrawQuadrilateral(const Quadrilateral& quadrilateral, const MarkViewport& v
   cv::polylines(canvas, corners, true, color, 1, cv::LINE_AA, kShift);
 }
 
-void DrawBoards(const MarkSession& session, const MarkViewport& view, cv::Mat& canvas) {
+// Those that an area holds, with a rim of white; rims first, for neighbours touch.
+void DrawReturnsIn(const Quadrilateral& area, const MarkSession& session, const MarkViewport& view,
+                   cv::Mat& canvas) {
+  std::vector<ProjectedReturn> inside;
+  for (const ProjectedReturn& r : session.returns()) {
+    if (IsOn(canvas, view.ToCanvas(r.pixel)) && Contains(area, r.pixel)) inside.push_back(r);
+  }
   const RangeColors colors(session.returns());
   const double radius = DotRadius(view.scale());
+  for (const ProjectedReturn& r : inside) {
+    Dot(canvas, view.ToCanvas(r.pixel), radius + 1.5, kDrawing);
+  }
+  for (const ProjectedReturn& r : inside) {
+    Dot(canvas, view.ToCanvas(r.pixel), radius, colors.Of(r.range_m));
+  }
+}
+
+void DrawBoards(const MarkSession& session, const MarkViewport& view, cv::Mat& canvas) {
   for (const MarkedBoard& board : session.marks().boards) {
     for (std::size_t i = 0; i < board.edges.size(); ++i) {
       DrawQuadrilateral(board.edges[i], view, kEdgeColors[i], canvas);
     }
+    for (const Quadrilateral& edge : board.edges) DrawReturnsIn(edge, session, view, canvas);
     for (std::size_t i = 0; i < board.edges.size(); ++i) {
-      for (const ProjectedReturn& r : session.returns()) {
-        const Eigen::Vector2d at = view.ToCanvas(r.pixel);
-        if (!IsOn(canvas, at) || !Contains(board.edges[i], r.pixel)) continue;
-        Dot(canvas, at, radius + 1.2, kDrawing);
-        Dot(canvas, at, radius, colors.Of(r.range_m));
-      }
       Label(canvas, view.ToCanvas(CenterOf(board.edges[i])) - Eigen::Vector2d(12, -5),
             fmt::format("{}.{}", board.id, i + 1), kDrawing);
     }

@@ -19,21 +19,29 @@ const cv::Scalar kWarning(90, 150, 255);
 const cv::Scalar kBar(45, 40, 38);
 constexpr double kTextSize = 0.5;
 
+// Keys and what they do; without keys, what stands over both columns.
+struct HelpLine {
+  const char* keys;
+  const char* text;
+};
 constexpr std::array kHelp = {
-    "Draw an area of four clicks round each edge of a board,",
-    "so that it holds where the rings leave the board:",
-    "top-left edge first, then clockwise; boards left to right.",
-    "",
-    "left click      mark",
-    "right click, u  undo            r    redo",
-    "n, b            next board, board before",
-    "d               delete board",
-    "e, c            edges in the scan, corners in the photo",
-    "wheel, + -      zoom            f    fit",
-    "drag, arrows    move the picture",
-    "v               scan and photo, scan, photo",
-    "s               save            q    quit",
-    "h               this help",
+    HelpLine{"", "Draw an area of four clicks round each edge of a board, so that"},
+    HelpLine{"", "it holds where the rings leave the board: top-left edge first,"},
+    HelpLine{"", "then clockwise; boards from left to right."},
+    HelpLine{"", ""},
+    HelpLine{"left click", "mark"},
+    HelpLine{"right click, u", "undo"},
+    HelpLine{"r", "redo"},
+    HelpLine{"n, b", "next board, board before"},
+    HelpLine{"d", "delete board"},
+    HelpLine{"e, c", "edges in the scan, corners in the photo"},
+    HelpLine{"wheel, + -", "zoom"},
+    HelpLine{"f", "whole picture"},
+    HelpLine{"drag, arrows", "move the picture"},
+    HelpLine{"v", "scan and photo, scan, photo"},
+    HelpLine{"s", "save"},
+    HelpLine{"q", "quit"},
+    HelpLine{"h", "this help"},
 };
 
 const std::array<cv::Vec3b, 256>& Turbo() {
@@ -62,7 +70,7 @@ void Shade(cv::Mat& canvas, cv::Rect where) {
   where &= cv::Rect(0, 0, canvas.cols, canvas.rows);
   if (where.empty()) return;
   cv::Mat part = canvas(where);
-  cv::addWeighted(part, 0.15, cv::Mat(part.size(), part.type(), kBar), 0.85, 0.0, part);
+  cv::addWeighted(part, 0.08, cv::Mat(part.size(), part.type(), kBar), 0.92, 0.0, part);
 }
 
 void DrawLegend(const RangeColors& colors, int bar_px, cv::Mat& canvas) {
@@ -82,13 +90,21 @@ void DrawLegend(const RangeColors& colors, int bar_px, cv::Mat& canvas) {
 
 void DrawHelp(cv::Mat& canvas) {
   constexpr int kLine = 22;
+  constexpr int kColumn = 140;
   int widest = 0;
-  for (const char* line : kHelp) widest = std::max(widest, WidthOf(line));
+  for (const HelpLine& line : kHelp) {
+    const int indent = *line.keys != '\0' ? kColumn : 0;
+    widest = std::max(widest, indent + WidthOf(line.text));
+  }
   const int height = kLine * static_cast<int>(kHelp.size()) + 24;
   const int x = (canvas.cols - widest) / 2;
   int y = (canvas.rows - height) / 2;
   Shade(canvas, {x - 20, y, widest + 40, height});
-  for (const char* line : kHelp) Text(canvas, line, x, y += kLine, kText);
+  for (const HelpLine& line : kHelp) {
+    y += kLine;
+    Text(canvas, line.keys, x, y, kMessage);
+    Text(canvas, line.text, *line.keys != '\0' ? x + kColumn : x, y, kText);
+  }
 }
 
 void DrawWarnings(const std::vector<std::string>& warnings, int bar_px, cv::Mat& canvas) {
