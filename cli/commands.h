@@ -55,6 +55,22 @@ struct ConvertOptions {
   std::string to;
 };
 
+struct DetectOptions {
+  std::vector<std::string> images;
+  std::string board_path;    ///< Empty: all tags that the detector finds.
+  std::string camera_path;   ///< Empty: no poses.
+  std::string detector;      ///< Empty: the usual ones of the boards' families.
+  std::string overlay_path;  ///< Empty: none.
+  std::string json_path;
+  bool quick = false;  ///< Without looking into why a tag is missing.
+};
+
+struct DetectorStudyCommandOptions {
+  int trials = 200;
+  std::uint64_t seed = 1;
+  bool markdown = false;
+};
+
 struct SimulatePairsOptions {
   PairSimulation simulation;
   std::string out = "session.yaml";
@@ -107,6 +123,8 @@ int RunCompare(const CompareOptions& options);
 int RunAverage(const AverageOptions& options);
 int RunCatalogue(const CatalogueOptions& options);
 int RunLidars(const LidarsOptions& options);
+int RunDetect(const DetectOptions& options);
+int RunDetectors(const DetectorStudyCommandOptions& options);
 int RunConvert(const ConvertOptions& options);
 int RunBag(const BagOptions& options);
 int RunAccuracy(const AccuracyOptions& options);

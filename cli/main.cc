@@ -101,6 +101,40 @@ void AddLidars(CLI::App& app, LidarsOptions& options) {
   command.add_flag("--markdown", options.markdown, "For a page");
 }
 
+void AddDetect(CLI::App& app, DetectOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("detect", "Tags and boards in images: corners, poses, what is missing");
+  command.add_option("IMAGE", options.images, "Photos, examined in parallel")->required();
+  command.add_option("--board", options.board_path,
+                     "What hangs there: board YAML or marker_coordinates.txt; else all tags of "
+                     "--detector");
+  command.add_option("--camera", options.camera_path,
+                     "Intrinsics, for poses and corners in the camera frame");
+  command.add_option("--detector", options.detector,
+                     "aruco, apriltag or checkerboard, with options; see sextant detectors");
+  command.add_option("--overlay", options.overlay_path,
+                     "Draw what was found (.png or .jpg); of many images out-NAME.png each");
+  command.add_option("--json", options.json_path,
+                     "Write the results as JSON; - for standard output");
+  command.add_flag("--quick", options.quick, "Do not look into why a tag is missing");
+  command.footer(
+      "Examples:\n"
+      "  sextant detect photo.jpg --board board.yaml --camera camera.yaml --overlay out.png\n"
+      "  sextant detect *.png --detector 'aruco(dictionary=6x6_250)' --json -");
+}
+
+void AddDetectors(CLI::App& app, DetectorStudyCommandOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "detectors", "Options of the tag detectors, and how well each finds corners");
+  command.add_option("--trials", options.trials, "Rendered tags; 0: the options only")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--seed", options.seed, "The same seed gives the same figures")
+      ->capture_default_str();
+  command.add_flag("--markdown", options.markdown, "As a page");
+  command.footer("Example:\n  sextant detectors --trials 500");
+}
+
 void AddConvert(CLI::App& app, ConvertOptions& options) {
   CLI::App& command =
       *app.add_subcommand("convert", "From one format of correspondences to another");
@@ -278,6 +312,8 @@ int Main(int argc, char** argv) {
   LidarsOptions lidars;
   ConvertOptions convert;
   BagOptions bag;
+  DetectOptions detect;
+  DetectorStudyCommandOptions detectors;
   AccuracyOptions accuracy;
   MarkOptions mark;
   SimulateSessionOptions session;
@@ -288,6 +324,8 @@ int Main(int argc, char** argv) {
   AddCatalogue(app, catalogue);
   AddLidars(app, lidars);
   AddConvert(app, convert);
+  AddDetect(app, detect);
+  AddDetectors(app, detectors);
   AddAccuracy(app, accuracy);
   AddBag(app, bag);
   AddMark(app, mark);
@@ -302,6 +340,8 @@ int Main(int argc, char** argv) {
   if (app.got_subcommand("average")) return RunAverage(average);
   if (app.got_subcommand("solvers")) return RunCatalogue(catalogue);
   if (app.got_subcommand("lidars")) return RunLidars(lidars);
+  if (app.got_subcommand("detect")) return RunDetect(detect);
+  if (app.got_subcommand("detectors")) return RunDetectors(detectors);
   if (app.got_subcommand("convert")) return RunConvert(convert);
   if (app.got_subcommand("bag")) return RunBag(bag);
   if (app.got_subcommand("accuracy")) return RunAccuracy(accuracy);

@@ -61,13 +61,13 @@ class CheckerboardDetector final : public TagDetector {
 
  private:
   Detections DoDetect(const cv::Mat& grey) const override {
-    int flags = cv::CALIB_CB_NORMALIZE_IMAGE;
-    if (options_.accurate) flags |= cv::CALIB_CB_ACCURACY;
+    const int accuracy = options_.accurate ? cv::CALIB_CB_ACCURACY : 0;
     std::vector<cv::Point2f> corners;
     const cv::Size size(options_.columns, options_.rows);
-    // Neither search finds all that the other does.
-    if (!cv::findChessboardCornersSB(grey, size, corners, flags) &&
-        !cv::findChessboardCornersSB(grey, size, corners, flags | cv::CALIB_CB_EXHAUSTIVE)) {
+    // Equalising the image loses boards of low contrast and finds others in uneven light.
+    const int thorough = accuracy | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE;
+    if (!cv::findChessboardCornersSB(grey, size, corners, accuracy) &&
+        !cv::findChessboardCornersSB(grey, size, corners, thorough)) {
       return {};
     }
     CheckerDetection found{.inner_columns = options_.columns, .inner_rows = options_.rows};

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/commands.h"
+#include "cli/detect_report.h"
+#include "cli/photo_file.h"
+#include "cli/load.h"
+#include "cli/progress.h"
+#include "features/camera/grey_image.h"
+#include "io/board_file.h"
+#include "io/camera_file.h"
+
+namespace sextant::cli {
+namespace {
+
+constexpr const char* kUsualDetector = "apriltag(family=tag36h11)";
+
+// What is looked for: boards, or whatever tags one detector finds.
+struct Search {
+  std::optional<BoardFinder> finder;
+  TagDetectorPtr detector;
+  bool explain = true;
+
+  std::vector<Board> Boards() const { return finder ? finder->boards() : std::vector<Board>(); }
+  std::optional<Camera> GetCamera() const {
+    return finder ? finder->camera() : std::optional<Camera>();
+  }
+};
+
+Expected<Search> MakeSearch(const DetectOptions& options) {
+  Search search{.finder = {}, .detector = {}, .explain = !options.quick};
+  if (options.board_path.empty()) {
+    Expected<TagDetectorPtr> detector =
+        MakeTagDetector(options.detector.empty() ? kUsualDetector : options.detector);
+    if (!detector) return tl::unexpected<Error>(detector.error());
+    search.detector = std::move(*detector);
+    return search;
+  }
+  const Expected<std::vector<Board>> boards = ReadBoards(options.board_path);
+  if (!boards) return tl::unexpected<Error>(boards.error());
+  std::optional<Camera> camera;
+  if (!options.camera_path.empty()) {
+    const Expected<Camera> read = ReadCamera(options.camera_path);
+    if (!read) return tl::unexpected<Error>(read.error());
+    camera = *read;
+  }
+  Expected<BoardFinder> finder = BoardFinder::Make(*boards, camera, options.detector);
+  if (!finder) {
+    return MakeError(finder.error().code,
+                     fmt::format("{}: {}", options.board_path, finder.error().message));
+  }
+  search.finder = std::move(*finder);
+  return search;
+}
+
+void ExplainAll(const Search& search, const cv::Mat& grey, ImageReport& report) {
+  const std::vector<Board>& boards = search.finder->boards();
+  const Camera* camera = search.finder->camera() ? &*search.finder->camera() : nullptr;
+  for (const SeenBoard& seen : report.seen.boards) {
+    const BoardPose* pose = seen.pose && *seen.pose ? &**seen.pose : nullptr;
+    for (const std::size_t tag : seen.missing_tags) {
+      MissingTag why{.cause = MissingCause::kNotThere, .text = "not looked into (--quick)"};
+      if (search.explain) why = ExplainMissing(grey, boards[seen.index].tags[tag], camera, pose);
+      report.missing.push_back({.board = seen.index, .tag = tag, .why = std::move(why)});
+    }
+  }
+}
+
+Expected<ImageReport> Examine(const Search& search, const cv::Mat& image) {
+  ImageReport report{.path = {}, .size = image.size()};
+  const Expected<cv::Mat> grey = ToGrey(image);
+  if (!grey) return tl::unexpected<Error>(grey.error());
+  if (search.finder) {
+    Expected<SeenBoards> seen = search.finder->Find(*grey);
+    if (!seen) return tl::unexpected<Error>(seen.error());
+    report.seen = std::move(*seen);
+    ExplainAll(search, *grey, report);
+    return report;
+  }
+  Expected<Detections> found = search.detector->Detect(*grey);
+  if (!found) return tl::unexpected<Error>(found.error());
+  report.seen.strangers = std::move(found->tags);
+  const bool is_empty = report.seen.strangers.empty() && found->checkers.empty();
+  if (is_empty && search.explain) report.other_families = FindOtherFamilies(*grey, "", {});
+  return report;
+}
+
+// out.png for one image; out-NAME.png for each of many.
+std::filesystem::path OverlayPath(const DetectOptions& options, const std::string& image) {
+  const std::filesystem::path out(options.overlay_path);
+  if (options.images.size() == 1) return out;
+  return out.parent_path() /
+         (out.stem().string() + "-" + std::filesystem::path(image).stem().string() +
+          out.extension().string());
+}
+
+ImageResult ExamineFile(const Search& search, const DetectOptions& options,
+                        const std::string& path) {
+  const Expected<cv::Mat> image = ReadImage(path);
+  if (!image) return tl::unexpected<Error>(image.error());
+  Expected<ImageReport> report = Examine(search, *image);
+  if (!report) {
+    return MakeError(report.error().code, fmt::format("{}: {}", path, report.error().message));
+  }
+  report->path = path;
+  if (!options.overlay_path.empty()) {
+    const cv::Mat drawn = DrawDetection(*image, *report, search.Boards(), search.GetCamera());
+    if (Expected<void> ok = WriteImage(drawn, OverlayPath(options, path)); !ok) {
+      return tl::unexpected<Error>(ok.error());
+    }
+  }
+  return report;
+}
+
+bool FoundSomething(const ImageReport& report) {
+  if (!report.seen.strangers.empty()) return true;
+  return std::ranges::any_of(report.seen.boards, [](const SeenBoard& board) {
+    return !board.tags.empty() || board.checker;
+  });
+}
+
+}  // namespace
+
+int RunDetect(const DetectOptions& options) {
+  const Expected<Search> search = MakeSearch(options);
+  if (!search) return Refuse("detect", search.error());
+  std::vector<ImageResult> results(options.images.size());
+  {
+    Progress progress("images", static_cast<long>(results.size()));
+    tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
+      results[i] = ExamineFile(*search, options, options.images[i]);
+      progress.Step();
+    });
+  }
+  std::string text;
+  bool any_failed = false;
+  bool any_found = false;
+  for (const ImageResult& result : results) {
+    if (!result) {
+      Refuse("detect", result.error());
+      any_failed = true;
+      continue;
+    }
+    any_found = any_found || FoundSomething(*result);
+    text += DescribeDetection(*result, search->Boards());
+  }
+  const int exit_code = any_failed ? kWrongUse : any_found ? kAnswered : kNoAnswer;
+  return Deliver("detect", options.json_path, text,
+                 FormatDetections(options.images, results, search->Boards()), exit_code);
+}
+
+}  // namespace sextant::cli

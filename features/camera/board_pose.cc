@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/camera/board_pose.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "geometry/so3.h"
+#include "solvers/ippe.h"
+#include "solvers/refine_pose.h"
+
+namespace sextant {
+namespace {
+
+constexpr double kOtherWayRefused = 9.2;  ///< -2 ln of 1 %.
+
+struct Whitened {
+  const BoardPoints* points;
+  Eigen::LLT<Eigen::MatrixXd> factor;  ///< Of the covariance.
+};
+
+struct Minimum {
+  Rigid3d pose;
+  double chi_square = 0.0;
+  double squares_px2 = 0.0;
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+};
+
+Eigen::Vector3d InBoard(const Eigen::Vector2d& point) { return {point.x(), point.y(), 0.0}; }
+
+// Cost, and the normal equations of Perturb's (dphi, dt); none where a point does not project.
+std::optional<Minimum> Evaluate(const Camera& camera, std::span<const Whitened> groups,
+                                const Rigid3d& pose) {
+  Minimum minimum;
+  minimum.pose = pose;
+  for (const Whitened& group : groups) {
+    const auto n = static_cast<Eigen::Index>(group.points->pixels.size());
+    Eigen::VectorXd residual(2 * n);
+    Eigen::Matrix<double, Eigen::Dynamic, 6> jacobian(2 * n, 6);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const Eigen::Vector3d turned = pose.rotation * InBoard(group.points->in_board_m[k]);
+      const auto image = ProjectWithJacobian(camera, turned + pose.translation);
+      if (!image) return std::nullopt;
+      residual.segment<2>(2 * i) = group.points->pixels[k] - image->pixel;
+      jacobian.block<2, 3>(2 * i, 0) = -image->pixel_by_point * Hat(turned);
+      jacobian.block<2, 3>(2 * i, 3) = image->pixel_by_point;
+    }
+    minimum.squares_px2 += residual.squaredNorm();
+    group.factor.matrixL().solveInPlace(residual);
+    group.factor.matrixL().solveInPlace(jacobian);
+    minimum.chi_square += residual.squaredNorm();
+    minimum.information += jacobian.transpose() * jacobian;
+    minimum.gradient += jacobian.transpose() * residual;
+  }
+  return minimum;
+}
+
+std::optional<Minimum> Refine(const Camera& camera, std::span<const Whitened> groups,
+                              const Rigid3d& start) {
+  constexpr int kMaxIterations = 100;
+  constexpr double kLastStep = 1e-10;
+  std::optional<Minimum> best = Evaluate(camera, groups, start);
+  double damping = 1e-4;
+  for (int i = 0; best && i < kMaxIterations; ++i) {
+    Matrix6d damped = best->information;
+    damped.diagonal() *= 1.0 + damping;
+    const Vector6d step = damped.ldlt().solve(best->gradient);
+    if (!step.allFinite()) return std::nullopt;
+    const auto next = Evaluate(camera, groups, Perturb(best->pose, step));
+    const bool fell = next && next->chi_square <= best->chi_square;
+    if (fell) best = next;
+    if (step.norm() < kLastStep * (1.0 + best->pose.translation.norm())) return best;
+    damping = fell ? std::max(0.1 * damping, 1e-12) : 10.0 * damping;
+    if (damping > 1e12) return best;
+  }
+  return std::nullopt;
+}
+
+Expected<std::vector<Whitened>> Whiten(std::span<const BoardPoints> groups) {
+  std::vector<Whitened> whitened;
+  for (const BoardPoints& group : groups) {
+    const auto n = std::ssize(group.pixels);
+    const bool sizes_agree = std::ssize(group.in_board_m) == n &&
+                             group.covariance_px2.rows() == 2 * n &&
+                             group.covariance_px2.cols() == 2 * n;
+    if (!sizes_agree) {
+      return MakeError(ErrorCode::kInvalidInput,
+                       fmt::format("{} points, {} pixels and a covariance of {} x {} do not belong "
+                                   "together",
+                                   group.in_board_m.size(), n, group.covariance_px2.rows(),
+                                   group.covariance_px2.cols()));
+    }
+    whitened.push_back({&group, group.covariance_px2.llt()});
+    if (whitened.back().factor.info() != Eigen::Success) {
+      return MakeError(ErrorCode::kInvalidInput,
+                       "the covariance of a board's pixels is not positive definite");
+    }
+  }
+  return whitened;
+}
+
+Expected<IppeFit> StartsOf(const Camera& camera, const BoardPoints& group) {
+  std::vector<Eigen::Vector2d> image;
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < group.pixels.size(); ++i) {
+    const std::optional<Eigen::Vector3d> ray = Unproject(camera, group.pixels[i]);
+    if (!ray) continue;
+    image.emplace_back(ray->hnormalized());
+    points.push_back(InBoard(group.in_board_m[i]));
+  }
+  return SolveIppe(image, points);
+}
+
+// Refinements of one start and of another that end at the same minimum differ by rounding.
+bool IsSame(const Rigid3d& a, const Rigid3d& b) {
+  const PoseDistance distance = DistanceBetween(a, b);
+  return distance.rotation_rad < 1e-4 &&
+         distance.translation_m < 1e-4 * (1.0 + a.translation.norm());
+}
+
+}  // namespace
+
+Expected<BoardPose> EstimateBoardPose(const Camera& camera, std::span<const BoardPoints> groups) {
+  if (groups.empty()) {
+    return MakeError(ErrorCode::kTooFewPairs, "no tag or checkerboard of the board was seen");
+  }
+  const Expected<std::vector<Whitened>> whitened = Whiten(groups);
+  if (!whitened) return tl::unexpected<Error>(whitened.error());
+  std::vector<Minimum> minima;
+  Error failure{ErrorCode::kNoConvergence, "no pose of the board fits its points"};
+  for (const BoardPoints& group : groups) {
+    const Expected<IppeFit> starts = StartsOf(camera, group);
+    if (!starts) {
+      failure = starts.error();
+      continue;
+    }
+    for (int i = 0; i < starts->count; ++i) {
+      const auto minimum =
+          Refine(camera, *whitened, starts->cam_from_lidar[static_cast<std::size_t>(i)]);
+      if (minimum) minima.push_back(*minimum);
+    }
+  }
+  if (minima.empty()) return tl::unexpected<Error>(failure);
+  std::ranges::stable_sort(minima, {}, &Minimum::chi_square);
+  const Minimum& best = minima.front();
+  const std::optional<Matrix6d> inverse = InvertInformation(best.information);
+  if (!inverse) {
+    return MakeError(ErrorCode::kDegenerate, "the board's points leave its pose undetermined");
+  }
+  BoardPose pose{.cam_from_board = best.pose, .chi_square = best.chi_square};
+  for (const BoardPoints& group : groups)
+    pose.residuals += 2 * static_cast<int>(group.pixels.size());
+  pose.rms_px = std::sqrt(2.0 * best.squares_px2 / pose.residuals);
+  const double misfit =
+      pose.residuals > 6 ? std::max(1.0, best.chi_square / (pose.residuals - 6)) : 1.0;
+  pose.covariance = misfit * *inverse;
+  for (const Minimum& other : minima) {
+    if (IsSame(other.pose, best.pose)) continue;
+    const double worse = (other.chi_square - best.chi_square) / misfit;
+    if (worse > kOtherWayRefused) break;
+    pose.ambiguous_with = other.pose;
+    pose.ambiguity_chi_square = worse;
+    break;
+  }
+  return pose;
+}
+
+std::vector<Eigen::Vector3d> BoardCorners(const Board& board) {
+  std::vector<Eigen::Vector3d> corners;
+  const auto add = [&corners](const Eigen::Vector2d& centre, double width, double height) {
+    for (const auto& [x, y] :
+         {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)}) {
+      corners.emplace_back(centre.x() + 0.5 * width * x, centre.y() + 0.5 * height * y, 0.0);
+    }
+  };
+  add(Eigen::Vector2d::Zero(), board.top_right_m, board.right_bottom_m);
+  if (board.hole) add(board.hole->center_in_board_m, board.hole->width_m, board.hole->height_m);
+  return corners;
+}
+
+PointsInCam ToCamera(const BoardPose& pose, std::span<const Eigen::Vector3d> points_in_board) {
+  PointsInCam result;
+  Eigen::Matrix<double, Eigen::Dynamic, 6> jacobian(3 * std::ssize(points_in_board), 6);
+  for (std::size_t i = 0; i < points_in_board.size(); ++i) {
+    const Eigen::Vector3d turned = pose.cam_from_board.rotation * points_in_board[i];
+    result.points.push_back(turned + pose.cam_from_board.translation);
+    const auto at = 3 * static_cast<Eigen::Index>(i);
+    jacobian.block<3, 3>(at, 0) = -Hat(turned);
+    jacobian.block<3, 3>(at, 3) = Eigen::Matrix3d::Identity();
+  }
+  result.covariance = jacobian * pose.covariance * jacobian.transpose();
+  return result;
+}
+
+}  // namespace sextant

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/camera/find_boards.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "features/camera/grey_image.h"
+#include "features/camera/tag_pattern.h"
+#include "geometry/board_check.h"
+#include "solvers/spec.h"
+
+namespace sextant {
+namespace {
+
+std::string CheckerKey(const BoardChecker& checker) {
+  return fmt::format("{}x{}", checker.inner_columns, checker.inner_rows);
+}
+
+// "aruco(refine=subpix)" and "aruco_original" make "aruco(dictionary=original,refine=subpix)".
+Expected<std::string> SpecFor(const std::string& family, const std::string& detector) {
+  const Expected<std::string> usual = DetectorSpecFor(family);
+  if (!usual || detector.empty()) return usual;
+  Expected<SpecNode> wanted = ParseSpec(detector);
+  if (!wanted) return tl::unexpected<Error>(wanted.error());
+  const SpecNode node = *ParseSpec(*usual);
+  std::pair<std::string, std::string> option = node.options.front();
+  // OpenCV reads AprilTag's families too.
+  if (wanted->name == "aruco" && node.name == "apriltag") option.first = "dictionary";
+  if (wanted->name != "aruco" && wanted->name != node.name) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("detector '{}' does not read tags of {}; {} does", wanted->name,
+                                 family, node.name));
+  }
+  wanted->options.insert(wanted->options.begin(), option);
+  return FormatSpec(*wanted);
+}
+
+// The tag as the boards' family numbers its corners, where the other library's detector of that
+// family found it.
+TagDetection AsFamily(TagDetection tag, const std::string& family) {
+  if (tag.family == family) return tag;
+  const Expected<TagPattern> own = MakeTagPattern(tag.family, tag.id);
+  const Expected<TagPattern> wanted = MakeTagPattern(family, tag.id);
+  const std::optional<int> turns = own && wanted ? QuarterTurns(*wanted, *own) : std::nullopt;
+  if (turns) tag.corners_px = StartingAt(tag.corners_px, *turns);
+  tag.family = family;
+  return tag;
+}
+
+Expected<void> CheckBoards(const std::vector<Board>& boards) {
+  std::set<std::pair<std::string, int>> tags;
+  for (const Board& board : boards) {
+    if (board.tags.empty() && !board.checker) {
+      return MakeError(
+          ErrorCode::kInvalidInput,
+          fmt::format("board {} has neither tags nor a checkerboard to look for", board.id));
+    }
+    for (const BoardTag& tag : board.tags) {
+      if (Expected<TagPattern> pattern = MakeTagPattern(tag.family, tag.id); !pattern) {
+        return MakeError(pattern.error().code,
+                         fmt::format("board {}: {}", board.id, pattern.error().message));
+      }
+      if (!tags.emplace(tag.family, tag.id).second) {
+        return MakeError(ErrorCode::kInvalidInput,
+                         fmt::format("tag {} of {} is on two boards", tag.id, tag.family));
+      }
+    }
+  }
+  return {};
+}
+
+BoardPoints PointsOf(const BoardTag& tag, const SeenTag& seen) {
+  BoardPoints points;
+  const std::array<Eigen::Vector2d, 4> corners = TagCorners(tag);
+  points.in_board_m.assign(corners.begin(), corners.end());
+  const Quad& pixels = seen.refined ? seen.refined->corners_px : seen.detection.corners_px;
+  points.pixels.assign(pixels.begin(), pixels.end());
+  if (seen.refined) {
+    points.covariance_px2 = seen.refined->covariance_px2;
+  } else {
+    points.covariance_px2 = kDetectorSigma_px * kDetectorSigma_px * Matrix8d::Identity();
+  }
+  return points;
+}
+
+BoardPoints PointsOf(const BoardChecker& checker, const CheckerDetection& seen) {
+  BoardPoints points;
+  for (int row = 0; row < checker.inner_rows; ++row) {
+    for (int column = 0; column < checker.inner_columns; ++column) {
+      points.in_board_m.emplace_back(checker.center_in_board_m +
+                                     checker.square_m *
+                                         Eigen::Vector2d(column - 0.5 * (checker.inner_columns - 1),
+                                                         row - 0.5 * (checker.inner_rows - 1)));
+    }
+  }
+  points.pixels = seen.corners_px;
+  const auto size = 2 * std::ssize(points.pixels);
+  points.covariance_px2 =
+      kCheckerSigma_px * kCheckerSigma_px * Eigen::MatrixXd::Identity(size, size);
+  return points;
+}
+
+}  // namespace
+
+Expected<BoardFinder> BoardFinder::Make(std::vector<Board> boards, std::optional<Camera> camera,
+                                        const std::string& detector) {
+  if (Expected<void> ok = CheckBoards(boards); !ok) return tl::unexpected<Error>(ok.error());
+  BoardFinder finder;
+  const auto add = [&finder](const std::string& key, const std::string& spec) -> Expected<void> {
+    Expected<TagDetectorPtr> made = MakeTagDetector(spec);
+    if (!made) return tl::unexpected<Error>(made.error());
+    finder.detectors_[key] = std::move(*made);
+    return {};
+  };
+  for (const Board& board : boards) {
+    for (const BoardTag& tag : board.tags) {
+      if (finder.detectors_.contains(tag.family)) continue;
+      const Expected<std::string> spec = SpecFor(tag.family, detector);
+      if (!spec) return tl::unexpected<Error>(spec.error());
+      if (Expected<void> ok = add(tag.family, *spec); !ok) return tl::unexpected<Error>(ok.error());
+    }
+    if (!board.checker) continue;
+    const Expected<void> ok =
+        add(CheckerKey(*board.checker),
+            fmt::format("checkerboard(columns={},rows={})", board.checker->inner_columns,
+                        board.checker->inner_rows));
+    if (!ok) return tl::unexpected<Error>(ok.error());
+  }
+  finder.boards_ = std::move(boards);
+  finder.camera_ = std::move(camera);
+  return finder;
+}
+
+Expected<SeenBoards> BoardFinder::Find(const cv::Mat& image) const {
+  const Expected<cv::Mat> grey = ToGrey(image);
+  if (!grey) return tl::unexpected<Error>(grey.error());
+  if (camera_ && camera_->width_px > 0 &&
+      (grey->cols != camera_->width_px || grey->rows != camera_->height_px)) {
+    return MakeError(ErrorCode::kInvalidInput,
+                     fmt::format("the image has {} x {} pixels, expected the camera's {} x {}",
+                                 grey->cols, grey->rows, camera_->width_px, camera_->height_px));
+  }
+  Detections found;
+  for (const auto& [family, detector] : detectors_) {
+    Expected<Detections> some = detector->Detect(*grey);
+    if (!some) return tl::unexpected<Error>(some.error());
+    for (TagDetection& tag : some->tags) {
+      found.tags.push_back(AsFamily(std::move(tag), family));
+    }
+    for (CheckerDetection& checker : some->checkers) found.checkers.push_back(std::move(checker));
+  }
+  SeenBoards seen;
+  for (std::size_t i = 0; i < boards_.size(); ++i) {
+    seen.boards.push_back(Assign(i, *grey, found));
+    if (camera_) AddPose(seen.boards.back());
+  }
+  seen.strangers = std::move(found.tags);
+  return seen;
+}
+
+// Takes what belongs to the board out of `found`.
+SeenBoard BoardFinder::Assign(std::size_t index, const cv::Mat& grey, Detections& found) const {
+  const Board& board = boards_[index];
+  const Undistortion undistortion = camera_ ? Undistortion(*camera_) : Undistortion();
+  SeenBoard seen{.index = index};
+  for (std::size_t i = 0; i < board.tags.size(); ++i) {
+    const BoardTag& tag = board.tags[i];
+    std::vector<TagDetection> here;
+    std::erase_if(found.tags, [&](const TagDetection& detection) {
+      const bool is_it = detection.family == tag.family && detection.id == tag.id;
+      if (is_it) here.push_back(detection);
+      return is_it;
+    });
+    if (here.empty()) seen.missing_tags.push_back(i);
+    if (here.size() > 1) seen.duplicate_tags.push_back(i);
+    if (here.size() != 1) continue;
+    const TagPattern pattern = *MakeTagPattern(tag.family, tag.id);
+    seen.tags.push_back({.index = i,
+                         .detection = here[0],
+                         .refined = RefineTag(grey, here[0].corners_px, pattern, undistortion)});
+  }
+  if (board.checker) {
+    const auto match = std::ranges::find_if(found.checkers, [&](const CheckerDetection& c) {
+      return c.inner_columns == board.checker->inner_columns &&
+             c.inner_rows == board.checker->inner_rows;
+    });
+    seen.is_checker_missing = match == found.checkers.end();
+    if (!seen.is_checker_missing) {
+      seen.checker = *match;
+      found.checkers.erase(match);
+    }
+  }
+  return seen;
+}
+
+void BoardFinder::AddPose(SeenBoard& seen) const {
+  const Board& board = boards_[seen.index];
+  std::vector<BoardPoints> groups;
+  for (const SeenTag& tag : seen.tags) groups.push_back(PointsOf(board.tags[tag.index], tag));
+  if (seen.checker) groups.push_back(PointsOf(*board.checker, *seen.checker));
+  if (groups.empty()) return;
+  seen.pose = EstimateBoardPose(*camera_, groups);
+  if (*seen.pose) seen.corners = ToCamera(**seen.pose, BoardCorners(board));
+}
+
+}  // namespace sextant

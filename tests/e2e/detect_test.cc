@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// `sextant detect` as a user runs it: rendered and real photos, and bad input of every kind.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "eval/simulator/tag_picture.h"
+#include "io/board_file.h"
+#include "support/real_data.h"
+#include "support/run_program.h"
+
+namespace sextant {
+namespace {
+
+using nlohmann::json;
+using test::ProgramRun;
+using test::ReadText;
+using test::TestFolder;
+using test::WriteText;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+ProgramRun Detect(const std::string& arguments) {
+  return test::RunProgram(SEXTANT_BINARY, "detect " + arguments);
+}
+
+std::string PathOf(const std::string& name) { return (TestFolder() / name).string(); }
+
+// A board with one tag and its photo: photo.png, board.yaml and camera.yaml.
+TagPicture MakePhoto() {
+  const Expected<TagPicture> picture =
+      RenderTagPicture({.side_px = 120.0,
+                        .tilt_rad = 0.6,
+                        .image = {.blur_sigma_px = 0.7, .noise_sigma_grey = 3.0}});
+  EXPECT_TRUE(picture) << picture.error().message;
+  EXPECT_TRUE(cv::imwrite(PathOf("photo.png"), picture->image));
+  WriteText(PathOf("board.yaml"), FormatBoards({&picture->board, 1}));
+  const Camera& camera = picture->camera;
+  std::string text = "distortion_model: " +
+                     std::string(camera.distortion[5] == 0.0 ? "plumb_bob" : "rational_polynomial");
+  text += "\nimage_width: " + std::to_string(camera.width_px) +
+          "\nimage_height: " + std::to_string(camera.height_px) + "\nK: [" +
+          std::to_string(camera.fx_px) + ", 0, " + std::to_string(camera.cx_px) + ", 0, " +
+          std::to_string(camera.fy_px) + ", " + std::to_string(camera.cy_px) + ", 0, 0, 1]\nD: [";
+  for (std::size_t i = 0; i < 5; ++i) {
+    text += (i > 0 ? ", " : "") + std::to_string(camera.distortion[i]);
+  }
+  WriteText(PathOf("camera.yaml"), text + "]\n");
+  return *picture;
+}
+
+TEST(Detect, BoardPoseCornersAndOverlay) {
+  const TagPicture picture = MakePhoto();
+  const std::string arguments = PathOf("photo.png") + " --board " + PathOf("board.yaml") +
+                                " --camera " + PathOf("camera.yaml");
+  const ProgramRun run = Detect(arguments + " --overlay " + PathOf("overlay.png"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out,
+              AllOf(HasSubstr("1 of 1 tags"), HasSubstr("cam_from_board"), HasSubstr("corner 3")));
+  const cv::Mat overlay = cv::imread(PathOf("overlay.png"));
+  EXPECT_EQ(overlay.size(), picture.image.size());
+
+  const ProgramRun machine = Detect(arguments + " --json -");
+  ASSERT_EQ(machine.exit_code, 0) << machine.err;
+  const json board = json::parse(machine.out).at("images").at(0).at("boards").at(0);
+  EXPECT_EQ(board.at("tags").at(0).at("id"), picture.board.tags[0].id);
+  EXPECT_EQ(board.at("tags").at(0).at("covariance_px2").size(), 8U);
+  EXPECT_EQ(board.at("corners_in_cam_m").size(), 4U);
+  EXPECT_EQ(board.at("corners_covariance_m2").size(), 12U);
+  const json& t = board.at("pose").at("cam_from_board").at("translation_m");
+  const Eigen::Vector3d found(t.at(0).get<double>(), t.at(1).get<double>(), t.at(2).get<double>());
+  EXPECT_LT((found - picture.cam_from_board.translation).norm(), 0.005);
+}
+
+TEST(Detect, WithoutABoardListsTheTagsOfAFamily) {
+  MakePhoto();
+  const ProgramRun run = Detect(PathOf("photo.png") + " --detector 'aruco(dictionary=original)'");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("tag 26 of aruco_original"));
+  // Nothing of the usual family: it says what there is.
+  const ProgramRun other = Detect(PathOf("photo.png"));
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.out, AllOf(HasSubstr("no tag"), HasSubstr("aruco_original would find: 26")));
+}
+
+TEST(Detect, BadImagesAreNamedAndTheOthersStillRead) {
+  MakePhoto();
+  const cv::Mat photo = cv::imread(PathOf("photo.png"), cv::IMREAD_GRAYSCALE);
+  const std::string whole = ReadText(PathOf("photo.png"));
+  WriteText(PathOf("cut.png"), whole.substr(0, whole.size() / 2));
+  WriteText(PathOf("empty.png"), "");
+  WriteText(PathOf("words.png"), "this is not an image");
+  ASSERT_TRUE(cv::imwrite(PathOf("one.png"), cv::Mat(1, 1, CV_8U, cv::Scalar(0))));
+  cv::Mat deep;
+  photo.convertTo(deep, CV_16U, 257.0);
+  ASSERT_TRUE(cv::imwrite(PathOf("deep.png"), deep));
+  cv::Mat layers[] = {photo, photo, photo, cv::Mat(photo.size(), CV_8U, cv::Scalar(9))};
+  cv::Mat alpha;
+  cv::merge(layers, 4, alpha);
+  ASSERT_TRUE(cv::imwrite(PathOf("alpha.png"), alpha));
+  const std::string detector = " --detector 'aruco(dictionary=original)'";
+  for (const char* good : {"deep.png", "alpha.png"}) {
+    EXPECT_EQ(Detect(PathOf(good) + detector).exit_code, 0) << good;
+  }
+  for (const char* bad : {"cut.png", "empty.png", "words.png", "one.png", "absent.png"}) {
+    const ProgramRun run = Detect(PathOf(bad) + detector);
+    EXPECT_EQ(run.exit_code, 2) << bad;
+    EXPECT_THAT(run.err, HasSubstr(bad));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  }
+  const ProgramRun both = Detect(PathOf("cut.png") + " " + PathOf("photo.png") + detector);
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_THAT(both.out, HasSubstr("tag 26"));
+  EXPECT_THAT(both.err, HasSubstr("cut off"));
+}
+
+TEST(Detect, BadBoardsAndDetectorsAreRefused) {
+  MakePhoto();
+  const std::string photo = PathOf("photo.png");
+  WriteText(PathOf("bad.yaml"),
+            "id: 0\ntop_right_m: 0.3\nright_bottom_m: 0.3\ntags:\n"
+            "  - {family: aruco_original, id: 1, edge_m: 0.2}\n"
+            "  - {family: aruco_original, id: 2, edge_m: 0.2}\n");
+  const ProgramRun overlapping = Detect(photo + " --board " + PathOf("bad.yaml"));
+  EXPECT_EQ(overlapping.exit_code, 2);
+  EXPECT_THAT(overlapping.err, HasSubstr("bad.yaml"));
+  EXPECT_EQ(Detect(photo + " --detector arucoo").exit_code, 2);
+  EXPECT_EQ(Detect(photo + " --overlay /nowhere/a.png").exit_code, 2);
+  EXPECT_EQ(Detect("").exit_code, 2);
+}
+
+TEST(Detect, AWrongDictionaryIsToldFromARealPhoto) {
+  SEXTANT_REAL_DATA(photo, "dhall/photos/setup_view1.jpg");
+  const ProgramRun listed = Detect(photo.string() + " --detector 'aruco(dictionary=6x6_250)'");
+  EXPECT_EQ(listed.exit_code, 1);
+  EXPECT_THAT(listed.out, HasSubstr("aruco_original would find: 26, 582"));
+  WriteText(PathOf("board.yaml"),
+            "id: 0\ntop_right_m: 0.4\nright_bottom_m: 0.4\ntags:\n"
+            "  - {family: aruco_6x6_1000, id: 26, edge_m: 0.2}\n");
+  const ProgramRun missing = Detect(photo.string() + " --board " + PathOf("board.yaml"));
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.out, HasSubstr("no tag of aruco_6x6_1000, but of aruco_original: 26, 582"));
+}
+
+TEST(Detect, NoTagIsSaidPlainly) {
+  SEXTANT_REAL_DATA(image, "ouster64/images/frame3.png");
+  const ProgramRun run = Detect(image.string() + " --quick");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.out, AllOf(HasSubstr("no tag"), Not(HasSubstr("tag36h11:"))));
+}
+
+}  // namespace
+}  // namespace sextant
