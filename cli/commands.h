@@ -55,6 +55,13 @@ struct ConvertOptions {
   std::string to;
 };
 
+struct BoardOptions {
+  std::string board_path;
+  std::string out;
+  std::optional<int> id;  ///< None: every board of the file.
+  double dpi = 150.0;     ///< Of a PNG.
+};
+
 struct DetectOptions {
   std::vector<std::string> images;
   std::string board_path;    ///< Empty: all tags that the detector finds.
@@ -123,6 +130,7 @@ int RunCompare(const CompareOptions& options);
 int RunAverage(const AverageOptions& options);
 int RunCatalogue(const CatalogueOptions& options);
 int RunLidars(const LidarsOptions& options);
+int RunBoard(const BoardOptions& options);
 int RunDetect(const DetectOptions& options);
 int RunDetectors(const DetectorStudyCommandOptions& options);
 int RunConvert(const ConvertOptions& options);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cli/commands.h"
 #include "cli/load.h"
 #include "eval/camera/detector_study.h"
@@ -13,7 +15,10 @@ namespace {
 std::string DescribeEntry(const TagDetectorEntry& entry, bool markdown) {
   TextTable table({"option", "default", "unit", "meaning"}, TextTable::Columns::kWords);
   for (const OptionDoc& doc : entry.options) {
-    table.AddRow({doc.name, doc.default_value, doc.unit, doc.meaning});
+    // Choices stand as a|b, which a table of Markdown would take for columns.
+    std::string unit = doc.unit;
+    std::ranges::replace(unit, '|', ' ');
+    table.AddRow({doc.name, doc.default_value, unit, doc.meaning});
   }
   return fmt::format("{}{}: {}, as in {}\n\n{}\n", markdown ? "### " : "", entry.name,
                      entry.summary, entry.example, markdown ? table.Markdown() : table.Plain());

@@ -101,6 +101,22 @@ void AddLidars(CLI::App& app, LidarsOptions& options) {
   command.add_flag("--markdown", options.markdown, "For a page");
 }
 
+void AddBoard(CLI::App& app, BoardOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("board", "Boards to print at true scale, with a ruler and cut lines");
+  command.add_option("FILE", options.board_path, "Board YAML or marker_coordinates.txt")
+      ->required();
+  command.add_option("--out", options.out, "Written by its extension: .pdf, .svg or .png")
+      ->required();
+  command.add_option("--id", options.id, "One board of the file; a .pdf holds all");
+  command.add_option("--dpi", options.dpi, "Pixels an inch of a .png")
+      ->check(CLI::Range(10.0, 2400.0))
+      ->capture_default_str();
+  command.footer(
+      "Print at 100 %, without fitting to the page, and measure the ruler.\n"
+      "Example:\n  sextant board board.yaml --out target.pdf");
+}
+
 void AddDetect(CLI::App& app, DetectOptions& options) {
   CLI::App& command =
       *app.add_subcommand("detect", "Tags and boards in images: corners, poses, what is missing");
@@ -312,6 +328,7 @@ int Main(int argc, char** argv) {
   LidarsOptions lidars;
   ConvertOptions convert;
   BagOptions bag;
+  BoardOptions board;
   DetectOptions detect;
   DetectorStudyCommandOptions detectors;
   AccuracyOptions accuracy;
@@ -324,6 +341,7 @@ int Main(int argc, char** argv) {
   AddCatalogue(app, catalogue);
   AddLidars(app, lidars);
   AddConvert(app, convert);
+  AddBoard(app, board);
   AddDetect(app, detect);
   AddDetectors(app, detectors);
   AddAccuracy(app, accuracy);
@@ -340,6 +358,7 @@ int Main(int argc, char** argv) {
   if (app.got_subcommand("average")) return RunAverage(average);
   if (app.got_subcommand("solvers")) return RunCatalogue(catalogue);
   if (app.got_subcommand("lidars")) return RunLidars(lidars);
+  if (app.got_subcommand("board")) return RunBoard(board);
   if (app.got_subcommand("detect")) return RunDetect(detect);
   if (app.got_subcommand("detectors")) return RunDetectors(detectors);
   if (app.got_subcommand("convert")) return RunConvert(convert);

@@ -28,6 +28,8 @@ sextant_dependency(PkgConfig REQUIRED)
 pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)
 string(APPEND SEXTANT_FIND_DEPENDENCIES "pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)\n")
 find_package(CLI11 REQUIRED)
+# Draws boards to print; the program only.
+pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 # The program only: OpenCV maps over a hundred shared objects into a process.
 find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs highgui)
 

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "geometry/board.h"
+
+namespace sextant::cli {
+
+enum class DrawingFormat { kPdf, kSvg, kPng };
+
+/// Boards to print at true scale: outline and hole as cut lines, tags and checkerboard, a ruler of
+/// 100 mm to check the printer with, and `source` with the board's id. The page is the board with
+/// 20 mm round it. A PDF has a page for each board, the other formats take one.
+/// Errors: kInvalidInput for a PNG of more than 200 million pixels and for several boards where the
+/// format takes one; kUnknownName and kInvalidInput for tags that no family has.
+Expected<std::string> DrawBoards(const std::vector<Board>& boards, const std::string& source,
+                                 DrawingFormat format, double png_dpi);
+
+}  // namespace sextant::cli
