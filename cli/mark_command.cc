@@ -62,11 +62,15 @@ class Keeper {
   int kept_revision_ = 0;
 };
 
+std::string Counted(std::size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 std::string SummaryOf(const ScanMarks& marks) {
   std::size_t edges = 0;
   for (const MarkedBoard& board : marks.boards) edges += board.edges.size();
-  return fmt::format("{} boards with {} edges, {} corners", marks.boards.size(), edges,
-                     marks.corners.size());
+  return fmt::format("{} with {}, {}", Counted(marks.boards.size(), "board"),
+                     Counted(edges, "edge"), Counted(marks.corners.size(), "corner"));
 }
 
 int Render(const std::string& path, const MarkController& controller, MarkCanvas& canvas) {

@@ -273,8 +273,8 @@ std::vector<std::string> MarkSession::Warnings() const {
       const bool few_rings = count.rings > 0 && count.rings < kFewestRings;
       if (count.returns >= kFewestRings && !few_rings) continue;
       warnings.push_back(
-          fmt::format("board {}: its {} edge holds returns of {} rings, 2 are needed", board.id,
-                      kEdgeNames[i], few_rings ? count.rings : count.returns));
+          fmt::format("board {}: its {} edge holds returns of {} of the 2 rings that a line needs",
+                      board.id, kEdgeNames[i], few_rings ? count.rings : count.returns));
     }
     if (board.edges.empty()) continue;
     const double middle = MiddleOf(board);

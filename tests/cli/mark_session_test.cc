@@ -210,9 +210,10 @@ TEST(MarkSession, WarnsOfBoardsOutOfOrderAndOfEdgesWithoutRings) {
   EXPECT_THAT(session.Warnings(), ElementsAre(HasSubstr("board 1 lies left of the one before")));
   DrawSquare(session, 500.0, 200.0);
   DrawSquare(session, 530.0, 82.0);  // One ring, at 100.
-  EXPECT_THAT(session.Warnings(),
-              ElementsAre(testing::_, HasSubstr("board 2: its top-left edge holds returns of 0"),
-                          HasSubstr("board 2: its top-right edge holds returns of 1 rings")));
+  EXPECT_THAT(
+      session.Warnings(),
+      ElementsAre(testing::_, HasSubstr("board 2: its top-left edge holds returns of 0 of the 2"),
+                  HasSubstr("board 2: its top-right edge holds returns of 1 of the 2 rings")));
 }
 
 }  // namespace

@@ -89,8 +89,8 @@ class OpenWindow {
   // The wheel; then waits for the window that may take the place of this one.
   void TurnWheel(const Eigen::Vector2d& canvas, int notches) {
     Click({canvas}, 2);  // Middle: does nothing but shows that the pointer is there.
-    for (int i = 0; i < notches; ++i) display_.Do("click 4");
-    Eventually(3.0, [&] {
+    display_.Do(fmt::format("click --repeat {} --delay 0 4", notches));
+    Eventually(0.5 * kSeconds, [&] {
       const std::string now = FindWindow("");
       return now != id_ && !now.empty() && now.find('\n') == now.rfind('\n');
     });
@@ -160,7 +160,7 @@ TEST(Mark, ABoardDrawnByClicksIsSaved) {
   }));
   window.Press("q");
   EXPECT_EQ(window.Wait(), 0);
-  EXPECT_THAT(test::ReadText(InFolder("log")), HasSubstr("1 boards with 4 edges"));
+  EXPECT_THAT(test::ReadText(InFolder("log")), HasSubstr("1 board with 4 edges, 0 corners"));
 
   const Expected<ScanMarks> marks = ReadPolygons(InFolder("polygons.yaml"));
   ASSERT_TRUE(marks) << marks.error().message;
