@@ -22,6 +22,8 @@ constexpr std::array<const char*, 4> kEdgeNames = {"top-left", "top-right", "bot
 constexpr int kMostPlanes = 4;         // Board, what is behind it, and what is behind that.
 constexpr double kLeastOutward = 0.1;  // Cosine; a ring along an edge does not leave the board.
 constexpr double kMostGapSteps = 2.5;  // As in edge_points.cc: one drop-out.
+constexpr double kLeastThreshold_m = 0.03;  // As in board_finder.cc, with the next.
+constexpr double kPlaneSigmas = 2.5;
 constexpr double kSquare_m = 0.005;
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -121,8 +123,11 @@ class MarkedPatch {
     for (int k = 0; k < kMostPlanes; ++k) {
       std::vector<Eigen::Vector3d> points;
       for (const std::size_t i : left) points.push_back(scan_.points()[places_[i]].point);
-      const std::optional<FoundPlane> found = FindPlane(
-          points, {.threshold_m = 0.03, .iterations = 200, .smallest_share = 0.1}, random);
+      const PlaneSearch search{
+          .threshold_m = std::max(kLeastThreshold_m, kPlaneSigmas * scan_.range_sigma_m()),
+          .iterations = 200,
+          .smallest_share = 0.1};
+      const std::optional<FoundPlane> found = FindPlane(points, search, random);
       if (!found) break;
       std::vector<std::size_t> on_plane;
       unsigned areas = 0;

@@ -172,6 +172,26 @@ TEST(PolygonEdges, AHollowBoardGivesEightCorners) {
   }
 }
 
+// Three times the paper's noise: the thresholds follow it.
+TEST(PolygonEdges, NoisyRangesAreNoHindrance) {
+  std::vector<double> errors;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const Scene scene = HungBoards(2);
+    const auto patches =
+        PatchesFromPolygons(RingsOf(scene, seed, 0.03), DrawScene(scene), BoardsIn(scene));
+    ASSERT_TRUE(patches) << patches.error().message;
+    for (const BoardPatch& patch : *patches) {
+      const SceneBoard& board = scene.boards[static_cast<std::size_t>(patch.board)];
+      const std::vector<double> of =
+          ErrorsOf(ExtractCorners("rectangle", patch, board.board), board);
+      errors.insert(errors.end(), of.begin(), of.end());
+    }
+  }
+  RecordProperty("rectangle_median_um", static_cast<int>(1e6 * Median(errors)));
+  // In proportion to the noise: 2.2 mm at 1 cm.
+  EXPECT_LT(Median(errors), 0.0075);
+}
+
 struct BadMarks {
   const char* name;
   void (*spoil)(ScanMarks& marks, std::vector<Board>& boards);
