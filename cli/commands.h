@@ -124,9 +124,24 @@ struct BagOptions {
   double tolerance_s = 0.05;
 };
 
+struct BoardsOptions {
+  std::vector<std::string> scans;
+  std::string boards_path;
+  std::string extractor = "rectangle";
+  std::string polygons_path;   ///< Edges marked by hand; empty: boards are searched.
+  std::vector<double> region;  ///< Low and high corner in the LiDAR frame [m]; empty: everywhere.
+  bool raw_edges = false;
+  double aperture_m = 0.0095;
+  double divergence_rad = 0.003;
+  std::uint64_t seed = 1;
+  std::string overlay_path;  ///< Empty: none.
+  std::string json_path;
+};
+
 /// Each runs one command, prints its answer or one line of error, and returns the exit code.
 int RunSolve(const SolveOptions& options);
 int RunCompare(const CompareOptions& options);
+int RunBoards(const BoardsOptions& options);
 int RunAverage(const AverageOptions& options);
 int RunCatalogue(const CatalogueOptions& options);
 int RunLidars(const LidarsOptions& options);

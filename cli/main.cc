@@ -76,6 +76,43 @@ void AddCompare(CLI::App& app, CompareOptions& options) {
       "'kabsch,icp(init=centroid),drop_worst(kabsch,keep=6)'");
 }
 
+void AddBoards(CLI::App& app, BoardsOptions& options) {
+  CLI::App& command = *app.add_subcommand("boards", "Boards in LiDAR scans, and their corners");
+  command
+      .add_option("SCAN", options.scans,
+                  "Scans: PCD, PLY, KITTI .bin or CSV; any number, in parallel")
+      ->required();
+  command
+      .add_option("--board", options.boards_path,
+                  "Boards to look for (YAML, or marker_coordinates.txt of the original package)")
+      ->required();
+  command
+      .add_option("--extractor", options.extractor,
+                  "rectangle (known size), plane_lines, lines3d (the paper's) or lines3d_raw")
+      ->capture_default_str();
+  command.add_option("--polygons", options.polygons_path,
+                     "Take the edges marked with sextant mark instead of searching");
+  command.add_option("--region", options.region, "Search only in x y z x y z [m], LiDAR frame")
+      ->expected(6);
+  command.add_flag("--raw-edges", options.raw_edges,
+                   "Take edges where the last return is, uncorrected for steps and beam width");
+  command.add_option("--beam-aperture", options.aperture_m, "Width of a beam as it leaves [m]")
+      ->capture_default_str();
+  command
+      .add_option("--beam-divergence", options.divergence_rad,
+                  "Its full angle [rad]; VLP-16: 0.003")
+      ->capture_default_str();
+  command.add_option("--seed", options.seed, "Of the search for planes")->capture_default_str();
+  command.add_option("--overlay", options.overlay_path,
+                     "Draw the scan round the boards with their corners (.png; one scan)");
+  command.add_option("--json", options.json_path,
+                     "Write the results as JSON; - for standard output");
+  command.footer(
+      "Examples:\n"
+      "  sextant boards scan.pcd --board boards.yaml\n"
+      "  sextant boards scans/*.pcd --board boards.yaml --extractor lines3d --json corners.json");
+}
+
 void AddAverage(CLI::App& app, AverageOptions& options) {
   CLI::App& command =
       *app.add_subcommand("average", "The single scans and true mean of an avg_values.txt");
@@ -323,6 +360,7 @@ int Main(int argc, char** argv) {
   app.footer(kFirstSteps);
   SolveOptions solve;
   CompareOptions compare;
+  BoardsOptions boards;
   AverageOptions average;
   CatalogueOptions catalogue;
   LidarsOptions lidars;
@@ -337,6 +375,7 @@ int Main(int argc, char** argv) {
   SimulatePairsOptions pairs;
   AddSolve(app, solve);
   AddCompare(app, compare);
+  AddBoards(app, boards);
   AddAverage(app, average);
   AddCatalogue(app, catalogue);
   AddLidars(app, lidars);
@@ -355,6 +394,7 @@ int Main(int argc, char** argv) {
   }
   if (app.got_subcommand("solve")) return RunSolve(solve);
   if (app.got_subcommand("compare")) return RunCompare(compare);
+  if (app.got_subcommand("boards")) return RunBoards(boards);
   if (app.got_subcommand("average")) return RunAverage(average);
   if (app.got_subcommand("solvers")) return RunCatalogue(catalogue);
   if (app.got_subcommand("lidars")) return RunLidars(lidars);

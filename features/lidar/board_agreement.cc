@@ -15,14 +15,25 @@ constexpr double kLeastFilled = 0.9;
 constexpr double kMostContinued = 0.35;
 constexpr double kLeastContained = 0.8;
 constexpr double kLeastVisible = 0.5;
-constexpr double kLeastShare = 0.7;
-constexpr double kMostRms = 2.2;  // Sigmas; a board of the wrong size has more.
+constexpr double kLeastShare = 0.65;
+constexpr double kMostRms = 2.8;  // Sigmas; a board of the wrong size has more.
+constexpr double kLeastDensity = 0.3;
+constexpr int kFewestSides = 3;
 constexpr int kFewestEdgePoints = 8;
 constexpr int kFewestPoints = 16;
 
 // How far a point is beyond the rectangle's nearest side; negative inside.
 double Beyond(const Eigen::Vector2d& point, double width, double height) {
   return std::max(std::abs(point.x()) - 0.5 * width, std::abs(point.y()) - 0.5 * height);
+}
+
+// Of the outer four.
+int SidesSeen(const RectangleFit& fit) {
+  int sides = 0;
+  for (int side = 0; side < kCornersPerBoard; ++side) {
+    sides += std::ranges::count(fit.sides, side) > 0 ? 1 : 0;
+  }
+  return sides;
 }
 
 }  // namespace
@@ -81,6 +92,11 @@ BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const
   }
   agreement.contained = static_cast<double>(inside) /
                         static_cast<double>(std::max<std::size_t>(1, patch.on_plane.size()));
+  double solid = board.top_right_m * board.right_bottom_m;
+  if (board.hole) solid -= board.hole->width_m * board.hole->height_m;
+  const double solid_angle = solid * std::abs(plane.normal.dot(toward)) / center.squaredNorm();
+  agreement.density = static_cast<double>(inside) * scan.azimuth_step_rad() *
+                      scan.elevation_step_rad() / solid_angle;
   agreement.points = hit;
   agreement.filled = hit > 0 ? static_cast<double>(hit) / (hit + through) : 0.0;
   agreement.visible = 1.0 - static_cast<double>(hidden) / std::max(1, hit + through + hidden);
@@ -101,6 +117,13 @@ std::optional<std::string> WhyNot(const BoardPatch& patch, const Board& board) {
   }
   if (agreement.points < kFewestPoints) {
     return fmt::format("only {} returns on it, {} are needed", agreement.points, kFewestPoints);
+  }
+  if (agreement.density < kLeastDensity) {
+    return fmt::format("only {:.0f} % of the returns that a board there would give",
+                       100.0 * agreement.density);
+  }
+  if (const int sides = SidesSeen(patch.fit); sides < kFewestSides) {
+    return fmt::format("edges were seen on {} of its sides, {} are needed", sides, kFewestSides);
   }
   if (patch.fit.share < kLeastShare || patch.fit.rms > kMostRms) {
     return fmt::format(

@@ -31,10 +31,13 @@ constexpr double kSameSize_m = 0.03;  // Boards closer in size are told apart by
 
 double Diagonal(const Board& board) { return std::hypot(board.top_right_m, board.right_bottom_m); }
 
-// Small where the outline agrees; compares boards of different sizes on one patch.
+// Small where the outline agrees, and on the word of many edge points rather than of few; compares
+// boards on one patch and patches for one board.
 double Disagreement(const BoardPatch& patch) {
-  return patch.fit.rms + 4.0 * (1.0 - patch.fit.share) + 2.0 * (1.0 - patch.agreement.filled) +
-         2.0 * patch.agreement.continued;
+  const auto edges = static_cast<double>(patch.edges.size());
+  return (patch.fit.rms + 4.0 * (1.0 - patch.fit.share) + 2.0 * (1.0 - patch.agreement.filled) +
+          2.0 * patch.agreement.continued) /
+         std::sqrt(edges);
 }
 
 class Finder {
@@ -132,13 +135,17 @@ class Finder {
 
   // Whether it may be one of the boards.
   bool Propose(const LidarPlane& plane, const std::vector<std::size_t>& on_plane) {
-    std::string why = "fewer than four edge points, or all its edges parallel";
+    std::string why;
     std::vector<BoardPatch> accepted;
     for (std::size_t b = 0; b < boards_.size(); ++b) {
       BoardPatch patch{.board = static_cast<int>(b), .plane = plane, .on_plane = on_plane};
       patch.edges = FindEdgePoints(scan_, plane, on_plane, EdgeOptionsOf(boards_[b]));
       const std::optional<RectangleFit> fit = FitRectangle(patch.edges, boards_[b]);
-      if (!fit) continue;
+      if (!fit) {
+        why = fmt::format("its edges are not those of a board of {:.3f} x {:.3f} m",
+                          boards_[b].top_right_m, boards_[b].right_bottom_m);
+        continue;
+      }
       patch.fit = *fit;
       patch.agreement = AgreementOf(scan_, patch, boards_[b]);
       const std::optional<std::string> reason = WhyNot(patch, boards_[b]);

@@ -34,6 +34,7 @@ struct BoardSearchOptions {
 struct BoardAgreement {
   int rings = 0;
   int points = 0;          ///< On the board.
+  double density = 0.0;    ///< Returns on it, of those that the sensor's steps make one expect.
   double filled = 0.0;     ///< Share of the rays onto the board that end on it.
   double visible = 0.0;    ///< Share of them that nothing nearer stops.
   double contained = 0.0;  ///< Share of the patch's points that lie within the board.

@@ -12,7 +12,9 @@ namespace {
 
 constexpr double kSlopeWithinRing = 3.73;    // tan 75 deg.
 constexpr double kSlopeBetweenRings = 1.73;  // tan 60 deg.
-constexpr double kMostGapSteps = 3.5;        // A few drop-outs do not part a surface.
+constexpr double kJumpsBetweenRings = 2.0;  // Rings have biases of their own: 8 cm apart were seen.
+constexpr int kPlaces = 5;
+constexpr double kMostGapSteps = 3.5;  // A few drop-outs do not part a surface.
 
 bool Continues(const RingPoint& a, const RingPoint& b, double step_rad,
                const ClusterOptions& options) {
@@ -63,14 +65,22 @@ bool Touch(const ScanRings& scan, const RingRun& a, const RingRun& b,
   const double from = WrapAngle(b0.azimuth_rad - middle);
   const double to = from + (b1.azimuth_rad - b0.azimuth_rad);
   if (to < -half || from > half) return false;
-  const double shared = middle + 0.5 * (std::max(from, -half) + std::min(to, half));
   const double offset = b0.azimuth_rad - (middle + from);  // 0 or a whole turn.
-  const RingPoint& p = NearestInAzimuth(scan, a, shared);
-  const RingPoint& q = NearestInAzimuth(scan, b, shared + offset);
-  const double gap = std::abs(ElevationOf(p) - ElevationOf(q)) +
-                     std::abs(WrapAngle(p.azimuth_rad - q.azimuth_rad));
-  return std::abs(p.range_m - q.range_m) <=
-         std::max(options.jump_m, kSlopeBetweenRings * gap * std::min(p.range_m, q.range_m));
+  const double begin = middle + std::max(from, -half);
+  const double width = std::min(to, half) - std::max(from, -half);
+  // Most of several places must agree: one return alone may be noise or a mixed one.
+  int agreeing = 0;
+  for (int i = 0; i < kPlaces; ++i) {
+    const double azimuth = begin + width * (i + 0.5) / kPlaces;
+    const RingPoint& p = NearestInAzimuth(scan, a, azimuth);
+    const RingPoint& q = NearestInAzimuth(scan, b, azimuth + offset);
+    const double gap = std::abs(ElevationOf(p) - ElevationOf(q)) +
+                       std::abs(WrapAngle(p.azimuth_rad - q.azimuth_rad));
+    const double most = std::max(kJumpsBetweenRings * options.jump_m,
+                                 kSlopeBetweenRings * gap * std::min(p.range_m, q.range_m));
+    agreeing += std::abs(p.range_m - q.range_m) <= most ? 1 : 0;
+  }
+  return 2 * agreeing > kPlaces;
 }
 
 class DisjointSets {

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <optional>
+#include <vector>
+
+#include "cli/boards_report.h"
+#include "cli/commands.h"
+#include "cli/load.h"
+#include "cli/progress.h"
+#include "cli/scan_picture.h"
+#include "features/lidar/polygon_edges.h"
+#include "io/board_file.h"
+#include "io/cloud_file.h"
+#include "io/polygon_file.h"
+
+namespace sextant::cli {
+namespace {
+
+Expected<BoardSearchOptions> SearchOptionsOf(const BoardsOptions& options) {
+  BoardSearchOptions search{.correct_edges = !options.raw_edges,
+                            .beam = {options.aperture_m, options.divergence_rad},
+                            .seed = options.seed};
+  if (options.region.empty()) return search;
+  LidarRegion region;
+  for (int i = 0; i < 3; ++i) {
+    region.low(i) = options.region[static_cast<std::size_t>(i)];
+    region.high(i) = options.region[static_cast<std::size_t>(i + 3)];
+    if (region.low(i) < region.high(i)) continue;
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        fmt::format("--region: expected the lower before the upper corner, x y z x y z "
+                    "in metres; along {} it ends at {} and begins at {}",
+                    "xyz"[i], region.high(i), region.low(i)));
+  }
+  search.region = region;
+  return search;
+}
+
+ScanReport Examine(const std::string& path, const std::vector<Board>& boards,
+                   const std::string& extractor, const BoardSearchOptions& options,
+                   const std::optional<ScanMarks>& marks) {
+  ScanReport report{.path = path};
+  const Expected<PointCloud> cloud = ReadCloud(path);
+  if (!cloud) {
+    report.failure = cloud.error();
+    return report;
+  }
+  const Expected<ScanRings> rings = ScanRings::Build(*cloud);
+  if (!rings) {
+    report.failure = Error{rings.error().code, fmt::format("{}: {}", path, rings.error().message)};
+    return report;
+  }
+  report.returns = static_cast<int>(rings->points().size());
+  report.rings = rings->rings();
+  if (marks) {
+    const Expected<std::vector<BoardPatch>> patches =
+        PatchesFromPolygons(*rings, *marks, boards, options);
+    if (!patches) {
+      report.failure =
+          Error{patches.error().code, fmt::format("{}: {}", path, patches.error().message)};
+      return report;
+    }
+    report.search.found = *patches;
+  } else {
+    report.search = *FindBoards(*rings, boards, options);
+  }
+  for (const BoardPatch& patch : report.search.found) {
+    report.corners.push_back(
+        ExtractCorners(extractor, patch, boards[static_cast<std::size_t>(patch.board)]));
+  }
+  return report;
+}
+
+bool IsWhole(const ScanReport& report, std::size_t boards) {
+  if (report.failure || report.corners.size() < boards) return false;
+  for (const Expected<LidarCorners>& corners : report.corners) {
+    if (!corners) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+int RunBoards(const BoardsOptions& options) {
+  const Expected<std::vector<Board>> boards = ReadBoards(options.boards_path);
+  if (!boards) return Refuse("boards", boards.error());
+  const Expected<BoardSearchOptions> search = SearchOptionsOf(options);
+  if (!search) return Refuse("boards", search.error());
+  std::optional<ScanMarks> marks;
+  if (!options.polygons_path.empty()) {
+    const Expected<ScanMarks> read = ReadPolygons(options.polygons_path);
+    if (!read) return Refuse("boards", read.error());
+    marks = *read;
+  }
+  // Names and sizes are checked before any scan is read.
+  if (const auto known = ExtractCorners(options.extractor, {}, {});
+      !known && known.error().code == ErrorCode::kUnknownName) {
+    return Refuse("boards", known.error());
+  }
+  if (!options.overlay_path.empty() && options.scans.size() > 1) {
+    return Refuse("boards", {ErrorCode::kInvalidOption,
+                             fmt::format("--overlay draws one scan, and {} were given",
+                                         options.scans.size())});
+  }
+  std::vector<ScanReport> reports(options.scans.size());
+  {
+    Progress progress("Scans", static_cast<long>(reports.size()));
+    tbb::parallel_for(std::size_t{0}, reports.size(), [&](std::size_t i) {
+      reports[i] = Examine(options.scans[i], *boards, options.extractor, *search, marks);
+      progress.Step();
+    });
+  }
+  int whole = 0;
+  bool unreadable = false;
+  for (const ScanReport& report : reports) {
+    whole += IsWhole(report, boards->size()) ? 1 : 0;
+    if (!report.failure) continue;
+    unreadable = true;
+    Refuse("boards", *report.failure);
+  }
+  if (!options.overlay_path.empty() && !unreadable) {
+    if (const Expected<void> ok =
+            DrawScan(options.scans[0], reports[0], *boards, options.overlay_path);
+        !ok) {
+      return Refuse("boards", ok.error());
+    }
+  }
+  const int found = whole == static_cast<int>(reports.size()) ? kAnswered : kNoAnswer;
+  return Deliver("boards", options.json_path, DescribeScans(reports, *boards, options.extractor),
+                 ScansJson(reports, *boards, options.extractor), unreadable ? kWrongUse : found);
+}
+
+}  // namespace sextant::cli
