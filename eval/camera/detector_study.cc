@@ -103,6 +103,7 @@ TagPictureOptions Draw(const DetectorStudyOptions& options, int trial) {
   picture.side_px = std::exp(log_side);
   picture.tilt_rad = random.Uniform(0.0, options.most_tilt_rad);
   picture.seed = DeriveSeed(options.seed, kExperiment, 1, static_cast<std::uint64_t>(trial));
+  picture.field = 0.35;  // The largest board must be wholly in the image.
   picture.image.seed = DeriveSeed(options.seed, kExperiment, 2, static_cast<std::uint64_t>(trial));
   picture.image.blur_sigma_px = options.blur_px;
   picture.image.noise_sigma_grey = options.noise_grey;

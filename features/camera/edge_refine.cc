@@ -26,13 +26,14 @@ using Row = Eigen::Matrix<double, kUnknowns, 1>;
 using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
 constexpr double kHuber = 2.5;
-constexpr double kFirstBlur_px = 1.2;   ///< Wide, so that a start far off still feels the edges.
+constexpr double kFirstBlur_px = 1.0;   ///< Wide, so that a start far off still feels the edges.
 constexpr double kLeastBlur_px = 0.25;  ///< A pixel alone blurs by 0.29.
 constexpr double kMostBlur_px = 6.0;
 constexpr double kLeastContrast = 5.0;
-constexpr double kLastStep = 1e-6;  ///< Of the homography, in half sides of the tag.
+constexpr double kLastStep = 5e-5;  ///< Of the homography, in half sides of the tag.
 constexpr double kStalledStep =
     1e-4;  ///< Of a minimum that only rounding and the blur's derivative hide.
+constexpr double kPixelsStillFit_px = 0.7;
 constexpr int kLeastPixelsAnEdge = 6;
 
 // The tag's square is [-1, 1]^2 here, which keeps the normal matrix well scaled.
@@ -93,15 +94,6 @@ class Fit {
     return pixel.grey - (gain * cell.white + state.offset.dot(place));
   }
 
-  double Cost(const State& state, double scale) const {
-    double cost = 0.0;
-    for (const EdgePixel& pixel : pixels_) {
-      const double r = std::abs(Residual(state, pixel, nullptr)) / scale;
-      cost += r < kHuber ? 0.5 * r * r : kHuber * (r - 0.5 * kHuber);
-    }
-    return cost;
-  }
-
   // Gain and offset alone, by linear least squares.
   void FitLight() {
     Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Identity() * 1e-6;
@@ -120,25 +112,14 @@ class Fit {
     state_.offset = light.tail<3>();
   }
 
-  // Robust standard deviation of the residuals.
-  double Scale() const {
-    std::vector<double> sizes;
-    for (const EdgePixel& pixel : pixels_) {
-      sizes.push_back(std::abs(Residual(state_, pixel, nullptr)));
-    }
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    constexpr double kLeast = 0.3;  // Rounding to whole grey levels alone.
-    return std::max(1.4826 * *middle, kLeast);
-  }
-
   // True once no step is left to take.
-  bool Minimise(bool free_blur, int max_iterations) {
+  bool Minimise(int max_iterations) {
     double damping = 1e-4;
+    Evaluate(state_, residuals_, rows_);
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
       const double scale = Scale();
-      Linearise(scale, free_blur);
-      const double before = Cost(state_, scale);
+      Linearise(scale);
+      const double before = Cost(residuals_, scale);
       double size = 0.0;
       bool fell = false;
       for (; damping < 1e8 && !fell; damping *= fell ? 0.1 : 10.0) {
@@ -148,8 +129,13 @@ class Fit {
         if (!step.allFinite()) return false;
         size = step.head<8>().cwiseAbs().maxCoeff();
         const State next = Moved(state_, step);
-        fell = Cost(next, scale) < before;
-        if (fell) state_ = next;
+        Evaluate(next, next_residuals_, next_rows_);
+        fell = Cost(next_residuals_, scale) < before;
+        if (fell) {
+          state_ = next;
+          residuals_.swap(next_residuals_);
+          rows_.swap(next_rows_);
+        }
         if (size < kLastStep) return true;
       }
       if (!fell) return size < kStalledStep;
@@ -161,13 +147,9 @@ class Fit {
   // Of the homography's 8, all else estimated too; to be called at the minimum.
   Matrix8d Covariance(double* noise) {
     const double scale = Scale();
-    Linearise(scale, true);
-    double squares = 0.0;
-    for (const EdgePixel& pixel : pixels_) {
-      const double r = std::min(std::abs(Residual(state_, pixel, nullptr)), kHuber * scale);
-      squares += r * r;
-    }
-    const double variance = squares / static_cast<double>(std::ssize(pixels_) - kUnknowns);
+    Linearise(scale);
+    const double squares = residuals_.cwiseAbs().cwiseMin(kHuber * scale).squaredNorm();
+    const double variance = squares / static_cast<double>(residuals_.size() - kUnknowns);
     *noise = std::sqrt(variance);
     return variance * normal_.ldlt().solve(Normal::Identity()).eval().topLeftCorner<8, 8>();
   }
@@ -175,19 +157,37 @@ class Fit {
   const State& state() const { return state_; }
 
  private:
-  void Linearise(double scale, bool free_blur) {
-    normal_.setZero();
-    right_.setZero();
+  using Rows = Eigen::Matrix<double, kUnknowns, Eigen::Dynamic>;
+
+  void Evaluate(const State& state, Eigen::VectorXd& residuals, Rows& rows) const {
+    residuals.resize(std::ssize(pixels_));
+    rows.resize(Eigen::NoChange, std::ssize(pixels_));
     Row row;
-    for (const EdgePixel& pixel : pixels_) {
-      const double r = Residual(state_, pixel, &row);
-      const double weight = std::min(1.0, kHuber * scale / std::max(std::abs(r), 1e-12));
-      if (!free_blur) row[kBlur] = 0.0;
-      normal_.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-      right_ += weight * r * row;
+    for (Eigen::Index i = 0; i < residuals.size(); ++i) {
+      residuals[i] = Residual(state, pixels_[static_cast<std::size_t>(i)], &row);
+      rows.col(i) = row;
     }
-    normal_ = normal_.selfadjointView<Eigen::Lower>();
-    if (!free_blur) normal_(kBlur, kBlur) = 1.0;
+  }
+
+  static double Cost(const Eigen::VectorXd& residuals, double scale) {
+    const Eigen::ArrayXd size = residuals.array().abs() / scale;
+    return (size < kHuber).select(0.5 * size.square(), kHuber * (size - 0.5 * kHuber)).sum();
+  }
+
+  // Robust standard deviation of the residuals.
+  double Scale() const {
+    Eigen::VectorXd sizes = residuals_.cwiseAbs();
+    const auto middle = sizes.begin() + sizes.size() / 2;
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    constexpr double kLeast = 0.3;  // Rounding to whole grey levels alone.
+    return std::max(1.4826 * *middle, kLeast);
+  }
+
+  void Linearise(double scale) {
+    const Eigen::VectorXd weights = (kHuber * scale / residuals_.array().abs().max(1e-12)).min(1.0);
+    weighted_ = rows_ * weights.asDiagonal();
+    normal_.noalias() = weighted_ * rows_.transpose();
+    right_.noalias() = weighted_ * residuals_;
   }
 
   static State Moved(const State& state, const Row& step) {
@@ -207,6 +207,11 @@ class Fit {
   const TagPattern& pattern_;
   const std::vector<EdgePixel>& pixels_;
   State state_;
+  Eigen::VectorXd residuals_;
+  Eigen::VectorXd next_residuals_;
+  Rows rows_;
+  Rows next_rows_;
+  Rows weighted_;
   Normal normal_ = Normal::Zero();
   Row right_ = Row::Zero();
 };
@@ -268,9 +273,8 @@ Expected<RefinedTag> RefineTag(const cv::Mat& grey, const Quad& start, const Tag
   RefinedTag refined{.corners_px = start};
   Matrix8d by_homography;
   State state;
-  // The first pass, with the wide blur, only brings the edges near; the second says which pixels
-  // are near them.
-  for (const bool is_last : {false, true}) {
+  // A start that was off chose pixels that are off too: these are chosen again, once.
+  for (int pass = 0; pass < 2; ++pass) {
     const auto homography = TagFromStraight(refined.corners_px, undistortion);
     if (!homography) {
       return MakeError(ErrorCode::kDegenerate,
@@ -282,18 +286,18 @@ Expected<RefinedTag> RefineTag(const cv::Mat& grey, const Quad& start, const Tag
     state.tag_from_straight = *homography;
     Fit fit(pattern, pixels, state);
     fit.FitLight();
-    const bool converged = fit.Minimise(is_last, is_last ? options.max_iterations : 4);
+    const bool converged = fit.Minimise(options.max_iterations);
     state = fit.state();
+    const Quad before = refined.corners_px;
     if (!CornersOf(state, undistortion, refined.corners_px, by_homography) ||
-        LargestMove(refined.corners_px, start) > options.max_move_px || (is_last && !converged)) {
+        LargestMove(refined.corners_px, start) > options.max_move_px || (pass == 1 && !converged)) {
       return MakeError(ErrorCode::kNoConvergence,
                        fmt::format("no edges within {} px of the tag's corners fit its pattern",
                                    options.max_move_px));
     }
-    if (is_last) {
-      refined.covariance_px2 =
-          by_homography * fit.Covariance(&refined.noise_grey) * by_homography.transpose();
-    }
+    refined.covariance_px2 =
+        by_homography * fit.Covariance(&refined.noise_grey) * by_homography.transpose();
+    if (converged && LargestMove(refined.corners_px, before) < kPixelsStillFit_px) break;
   }
   refined.blur_px = state.blur_px;
   refined.contrast_grey = state.gain.x();

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tags on an image of 1280 x 720: the libraries' own calls, and ours around them with refinement
+// and the board's pose. One thread. The corners are checked against the truth before anything is
+// timed.
+#include <benchmark/benchmark.h>
+
+extern "C" {
+#include <apriltag/apriltag.h>
+#include <apriltag/tag36h11.h>
+}
+
+#include <opencv2/aruco.hpp>
+
+#include "eval/simulator/camera_model.h"
+#include "eval/simulator/render.h"
+#include "features/camera/find_boards.h"
+#include "geometry/board_check.h"
+#include "geometry/so3.h"
+
+namespace sextant {
+namespace {
+
+constexpr double kMostError_px = 0.1;
+
+struct Photo {
+  cv::Mat image;
+  Camera camera;
+  Board board;
+  Rigid3d cam_from_board;
+};
+
+// Four tags of about 60 px on a board that leans.
+const Photo& ThePhoto() {
+  static const Photo photo = [] {
+    Photo made;
+    made.camera = *FindCameraModel("zed_left");
+    made.board = {.id = 0, .top_right_m = 0.6, .right_bottom_m = 0.6};
+    int id = 1;
+    for (const double x : {-0.15, 0.15}) {
+      for (const double y : {-0.15, 0.15}) {
+        made.board.tags.push_back(
+            {.family = "tag36h11", .id = id++, .edge_m = 0.15, .center_in_board_m = {x, y}});
+      }
+    }
+    made.cam_from_board.rotation = ExpSo3(Eigen::Vector3d(0.2, 0.3, 0.7));
+    made.cam_from_board.translation = {0.1, 0.0, 1.7};
+    Scene scene;
+    scene.cameras.push_back({.name = "cam", .model = "zed_left"});
+    scene.boards.push_back({.board = made.board, .world_from_board = made.cam_from_board});
+    made.image = *RenderImage(scene, 0, {.seed = 1, .blur_sigma_px = 0.7, .noise_sigma_grey = 3.0});
+    return made;
+  }();
+  return photo;
+}
+
+void Ours(benchmark::State& state, const char* detector) {
+  cv::setNumThreads(1);
+  const Photo& photo = ThePhoto();
+  const Expected<BoardFinder> finder = BoardFinder::Make({photo.board}, photo.camera, detector);
+  if (!finder) return state.SkipWithError(finder.error().message.c_str());
+  const Expected<SeenBoards> checked = finder->Find(photo.image);
+  if (!checked || checked->boards[0].tags.size() != photo.board.tags.size()) {
+    return state.SkipWithError("not all tags were found");
+  }
+  for (const SeenTag& tag : checked->boards[0].tags) {
+    const auto corners = TagCorners(photo.board.tags[tag.index]);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Eigen::Vector3d point(corners[k].x(), corners[k].y(), 0.0);
+      const auto truth = Project(photo.camera, photo.cam_from_board * point);
+      if (!tag.refined || (tag.refined->corners_px[k] - *truth).norm() > kMostError_px) {
+        return state.SkipWithError("a corner is off");
+      }
+    }
+  }
+  for (auto _ : state) benchmark::DoNotOptimize(finder->Find(photo.image));
+}
+
+void LibraryAprilTag(benchmark::State& state, float decimate) {
+  const cv::Mat image = ThePhoto().image;
+  apriltag_family_t* family = tag36h11_create();
+  apriltag_detector_t* detector = apriltag_detector_create();
+  apriltag_detector_add_family(detector, family);
+  detector->quad_decimate = decimate;
+  image_u8_t view = {image.cols, image.rows, static_cast<std::int32_t>(image.step), image.data};
+  int count = 0;
+  for (auto _ : state) {
+    zarray_t* found = apriltag_detector_detect(detector, &view);
+    count = zarray_size(found);
+    apriltag_detections_destroy(found);
+  }
+  if (count != 4) state.SkipWithError("not all tags were found");
+  apriltag_detector_destroy(detector);
+  tag36h11_destroy(family);
+}
+
+void LibraryAruco(benchmark::State& state, cv::aruco::CornerRefineMethod refine) {
+  cv::setNumThreads(1);
+  const cv::Mat image = ThePhoto().image;
+  const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_APRILTAG_36h11);
+  const auto parameters = cv::aruco::DetectorParameters::create();
+  parameters->cornerRefinementMethod = refine;
+  std::vector<std::vector<cv::Point2f>> corners;
+  std::vector<int> ids;
+  for (auto _ : state) cv::aruco::detectMarkers(image, dictionary, corners, ids, parameters);
+  if (ids.size() != 4) state.SkipWithError("not all tags were found");
+}
+
+BENCHMARK_CAPTURE(LibraryAprilTag, decimate_1, 1.0F)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Ours, apriltag_decimate_1, "apriltag")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(LibraryAprilTag, decimate_2, 2.0F)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Ours, apriltag_decimate_2, "apriltag(decimate=2)")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(LibraryAruco, none, cv::aruco::CORNER_REFINE_NONE)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(LibraryAruco, subpix, cv::aruco::CORNER_REFINE_SUBPIX)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Ours, aruco, "aruco")->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace sextant
+
+BENCHMARK_MAIN();
