@@ -113,6 +113,10 @@ BENCHMARK_CAPTURE(LibraryAruco, none, cv::aruco::CORNER_REFINE_NONE)->Unit(bench
 BENCHMARK_CAPTURE(LibraryAruco, subpix, cv::aruco::CORNER_REFINE_SUBPIX)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(Ours, aruco, "aruco")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(LibraryAruco, contour, cv::aruco::CORNER_REFINE_CONTOUR)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Ours, aruco_contour, "aruco(refine=contour)")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Ours, aruco_subpix, "aruco(refine=subpix)")->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace sextant
