@@ -17,9 +17,11 @@ constexpr const char* kIntroduction =
 
 constexpr const char* kFirstSteps =
     "First steps:\n"
-    "  sextant simulate pairs --out session.yaml    a session whose truth is known\n"
-    "  sextant compare session.yaml                 every solver on it, with its error\n"
+    "  sextant simulate scene.yaml --out session    scans and images whose truth is known\n"
+    "  sextant detect photo.png --board boards.yaml --camera camera.yaml    boards in a photo\n"
+    "  sextant boards scan.pcd --board boards.yaml  boards in a scan\n"
     "  sextant solve points.txt                     cam_from_lidar from your own correspondences\n"
+    "  sextant compare points.txt                   every solver on them\n"
     "  sextant solvers                              what there is to choose from\n"
     "Each command has its own --help with examples.\n"
     "Exit codes: 0 answered, 1 no answer (and why), 2 wrong usage or unreadable input.";
