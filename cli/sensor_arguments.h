@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cli/commands.h"
+
+namespace CLI {
+class App;
+}
+
+// The arguments of the commands that look at photos, scans and recordings.
+namespace sextant::cli {
+
+void AddDetect(CLI::App& app, DetectOptions& options);
+void AddBoards(CLI::App& app, BoardsOptions& options);
+void AddMark(CLI::App& app, MarkOptions& options);
+void AddBoard(CLI::App& app, BoardOptions& options);
+void AddBag(CLI::App& app, BagOptions& options);
+void AddDetectors(CLI::App& app, DetectorStudyCommandOptions& options);
+
+}  // namespace sextant::cli
