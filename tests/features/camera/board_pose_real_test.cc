@@ -20,38 +20,91 @@ namespace {
 
 using nlohmann::json;
 
-// The package found the pose of each marker from its four pixels, and the board's corners from
-// that.
-TEST(DhallSession, PixelsGiveTheStoredPosesAndBoardCorners) {
-  SEXTANT_REAL_DATA(folder, "dhall");
-  const auto session = folder / "session_2017-05-03";
+// One board of a session of ankitdhall/lidar_camera_calibration, which found the marker's pose from
+// its four pixels, and the board's corners from that.
+struct DhallBoard {
+  Board board{};
+  DetectedMarker marker{};
+  std::vector<Eigen::Vector3d> corners_in_cam{};  ///< As stored.
+
+  Eigen::Vector3d MarkerInBoard() const {
+    const Eigen::Vector2d& center = board.tags[0].center_in_board_m;
+    return {center.x(), center.y(), 0.0};
+  }
+};
+
+std::vector<DhallBoard> ReadSession(const std::filesystem::path& session) {
   const auto markers = ReadDetectedMarkers(session / "transform.txt");
   const auto coordinates = ReadMarkerCoordinates(session / "marker_coordinates.txt");
-  const auto camera = ReadCamera(folder / "zed_left_uurmi.ini");
   const auto pairs = ReadPoints(session / "points.txt");
-  ASSERT_TRUE(markers && coordinates && camera && pairs);
-  const auto boards = BoardsWithTags(*coordinates);
-  ASSERT_TRUE(boards) << boards.error().message;
-  ASSERT_EQ(markers->size(), 2U);
-  ASSERT_EQ(pairs->pairs_3d3d.size(), 8U);
+  const auto boards = coordinates.and_then([](const auto& all) { return BoardsWithTags(all); });
+  std::vector<DhallBoard> read;
+  if (!markers || !boards || !pairs || pairs->pairs_3d3d.size() != 8) return read;
   for (std::size_t b = 0; b < 2; ++b) {
-    const BoardTag& tag = (*boards)[b].tags[0];
-    const DetectedMarker& marker = (*markers)[b];
-    ASSERT_EQ(tag.id, marker.id);
-    const auto corners = TagCorners(tag);
-    const BoardPoints points{.in_board_m = {corners.begin(), corners.end()},
-                             .pixels = {marker.corners_px.begin(), marker.corners_px.end()},
-                             .covariance_px2 = Eigen::MatrixXd::Identity(8, 8)};
+    DhallBoard& board = read.emplace_back();
+    board.board = (*boards)[b];
+    board.marker = (*markers)[b];
+    EXPECT_EQ(board.board.tags[0].id, board.marker.id);
+    for (std::size_t k = 0; k < 4; ++k) {
+      board.corners_in_cam.push_back(pairs->pairs_3d3d[4 * b + k].point_in_cam);
+    }
+  }
+  return read;
+}
+
+// The stored pixels have six digits. What is lost by that moves the pose by 1e-5 m and a corner,
+// half a metre from the marker, by as much again and more: its depth by up to 2.4e-5 m here, which
+// is 1.7 sigma of that rounding, so that a fixed bound closer than this would ask for luck.
+TEST(DhallSession, PixelsGiveTheStoredPosesAndBoardCorners) {
+  SEXTANT_REAL_DATA(folder, "dhall");
+  const auto camera = ReadCamera(folder / "zed_left_uurmi.ini");
+  const std::vector<DhallBoard> session = ReadSession(folder / "session_2017-05-03");
+  ASSERT_TRUE(camera);
+  ASSERT_EQ(session.size(), 2U);
+  constexpr double kStepVariance_px2 = 1e-6 / 12.0;
+  constexpr double kStepVariance_m2 = 1e-12 / 12.0;
+  constexpr double kChiSquare = 16.27;  // Three numbers, 0.1 %.
+  for (const DhallBoard& stored : session) {
+    const auto corners = TagCorners(stored.board.tags[0]);
+    const BoardPoints points{
+        .in_board_m = {corners.begin(), corners.end()},
+        .pixels = {stored.marker.corners_px.begin(), stored.marker.corners_px.end()},
+        .covariance_px2 = Eigen::MatrixXd::Identity(8, 8)};
     const Expected<BoardPose> pose = EstimateBoardPose(*camera, {&points, 1});
     ASSERT_TRUE(pose) << pose.error().message;
-    const Eigen::Vector3d marker_center =
-        pose->cam_from_board *
-        Eigen::Vector3d(tag.center_in_board_m.x(), tag.center_in_board_m.y(), 0.0);
-    EXPECT_LT((marker_center - marker.translation_m).norm(), 1e-5 * 3.0) << b;
-    const PointsInCam in_cam = ToCamera(*pose, BoardCorners((*boards)[b]));
+    const Eigen::Vector3d marker_off =
+        pose->cam_from_board * stored.MarkerInBoard() - stored.marker.translation_m;
+    EXPECT_LT(marker_off.cwiseAbs().maxCoeff(), 1e-5) << stored.marker.id;
+    const PointsInCam in_cam = ToCamera(*pose, BoardCorners(stored.board));
     for (std::size_t k = 0; k < 4; ++k) {
-      EXPECT_LT((in_cam.points[k] - pairs->pairs_3d3d[4 * b + k].point_in_cam).norm(), 3e-5)
-          << b << k;
+      const Eigen::Vector3d off = in_cam.points[k] - stored.corners_in_cam[k];
+      const Eigen::Matrix3d rounding = kStepVariance_px2 * in_cam.CovarianceOf(k) +
+                                       kStepVariance_m2 * Eigen::Matrix3d::Identity();
+      EXPECT_LT(off.dot(rounding.inverse() * off), kChiSquare) << stored.marker.id << " " << k;
+      EXPECT_LT(off.cwiseAbs().maxCoeff(), 2.5e-5) << stored.marker.id << " " << k;
+    }
+  }
+}
+
+// The poses themselves are stored too: no pixels, so what is left is their own six digits.
+TEST(DhallSession, StoredPosesGiveTheStoredBoardCorners) {
+  SEXTANT_REAL_DATA(folder, "dhall/session_2017-05-03");
+  const std::vector<DhallBoard> session = ReadSession(folder);
+  ASSERT_EQ(session.size(), 2U);
+  // The package's marker has z up along the board and y out of it, towards the camera.
+  Eigen::Matrix3d marker_from_board;
+  marker_from_board << -1, 0, 0, 0, 0, -1, 0, -1, 0;
+  for (const DhallBoard& stored : session) {
+    const Eigen::Vector3d& vector = stored.marker.rotation_rad;
+    const Eigen::Matrix3d rotation =
+        Eigen::AngleAxisd(vector.norm(), vector.normalized()).toRotationMatrix() *
+        marker_from_board;
+    const Rigid3d cam_from_board{Eigen::Quaterniond(rotation),
+                                 stored.marker.translation_m - rotation * stored.MarkerInBoard()};
+    const std::vector<Eigen::Vector3d> corners = BoardCorners(stored.board);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Eigen::Vector3d off = cam_from_board * corners[k] - stored.corners_in_cam[k];
+      EXPECT_LT(off.cwiseAbs().maxCoeff(), 4e-6) << stored.marker.id << " " << k;
     }
   }
 }
