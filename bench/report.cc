@@ -42,10 +42,28 @@ struct Goal {
 };
 
 constexpr Goal kGoals[] = {
-    {"kabsch", 8, "umeyama_fixed", 6.0},     {"kabsch", 8, "umeyama_dynamic", 12.0},
-    {"kabsch", 100, "umeyama_dynamic", 6.0}, {"kabsch", 1000000, "umeyama_dynamic", 5.0},
-    {"p3p", 3, "opengv_kneip", 1.8},         {"p3p", 3, "opencv_p3p", 25.0},
-    {"ippe", 8, "opencv_ippe", 10.0},        {"ippe", 20, "opencv_ippe", 10.0},
+    {"kabsch", 8, "umeyama_fixed", 6.0},
+    {"kabsch", 8, "umeyama_dynamic", 12.0},
+    {"kabsch", 100, "umeyama_dynamic", 6.0},
+    {"kabsch", 1000000, "umeyama_dynamic", 5.0},
+    {"p3p", 3, "opengv_kneip", 1.8},
+    {"p3p", 3, "opencv_p3p", 25.0},
+    {"ippe", 8, "opencv_ippe", 10.0},
+    {"ippe", 20, "opencv_ippe", 10.0},
+    {"epnp", 8, "opencv", 5.0},
+    {"epnp", 8, "opengv", 5.0},
+    {"epnp", 20, "opencv", 5.0},
+    {"epnp", 20, "opengv", 5.0},
+    {"epnp", 100, "opencv", 5.0},
+    {"epnp", 100, "opengv", 5.0},
+    {"sqpnp", 8, "opencv", 1.5},
+    {"sqpnp", 20, "opencv", 1.5},
+    {"sqpnp", 100, "opencv", 1.5},
+    {"refine", 20, "opencv_iterative", 25.0},
+    {"refine", 20, "opencv_iterative_from_start", 25.0},
+    {"refine", 20, "ceres_tiny", 1.5},
+    {"ransac_50", 100, "opencv_usac_default", 4.0},
+    {"ransac_50", 100, "opencv_usac_fast", 4.0},
 };
 
 double Nanoseconds(const json& benchmark) {
