@@ -93,6 +93,7 @@ struct SimulateSessionOptions {
   int scans = 1;
   double interval_s = 1.0;
   bool ideal = false;
+  bool bag = false;
   double lidar_sigma_m = 0.0068;
   std::optional<double> pixel_sigma_px;  ///< None: as the level has it.
 };

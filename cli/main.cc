@@ -133,6 +133,7 @@ void AddSimulateSession(CLI::App& command, SimulateSessionOptions& options) {
       ->capture_default_str();
   command.add_option("--interval", options.interval_s, "From one scan to the next [s]")
       ->capture_default_str();
+  command.add_flag("--bag", options.bag, "Also session.bag, of ROS 1, with the scans and images");
   command.add_flag("--ideal", options.ideal, "Sensors without noise, blur and spot of the beam");
   command.add_option("--pcd", options.pcd, "ascii, binary or binary_compressed")
       ->capture_default_str();

@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/image_file.h"
 #include "cli/load.h"
 #include "cli/progress.h"
+#include "cli/session_bag.h"
 #include "eval/simulator/contact_sheet.h"
 #include "eval/simulator/scene_file.h"
 #include "eval/simulator/session.h"
@@ -48,6 +50,14 @@ Expected<void> WriteSheet(const Scene& scene, const SimulateSessionOptions& opti
   return WriteFileAtomically(options.sheet_path, *bytes);
 }
 
+Expected<void> WriteExtras(const Scene& scene, const std::vector<ScanTruth>& scans,
+                           const SimulateSessionOptions& options) {
+  if (options.bag) {
+    if (Expected<void> ok = WriteSessionBag(options.out, scene, scans); !ok) return ok;
+  }
+  return options.sheet_path.empty() ? Expected<void>() : WriteSheet(scene, options);
+}
+
 }  // namespace
 
 int RunSimulateSession(const SimulateSessionOptions& options) {
@@ -62,6 +72,11 @@ int RunSimulateSession(const SimulateSessionOptions& options) {
   if (!scene) return Refuse(kCommand, scene.error());
   Expected<SessionOptions> session = SessionOptionsOf(options);
   if (!session) return Refuse(kCommand, session.error());
+  if (options.bag) {
+    if (const Expected<void> ok = CheckSessionBag(*session); !ok) {
+      return Refuse(kCommand, ok.error());
+    }
+  }
   auto progress = std::make_unique<Progress>("simulating", CountSessionFiles(*scene, *session));
   session->step = [&] { progress->Step(); };
   const Expected<SessionReport> report = SimulateSession(*scene, *text, *session);
@@ -72,13 +87,12 @@ int RunSimulateSession(const SimulateSessionOptions& options) {
                                             ? report.error().message
                                             : options.scene_path + ": " + report.error().message});
   }
-  if (!options.sheet_path.empty()) {
-    if (const Expected<void> ok = WriteSheet(*scene, options); !ok) {
-      return Refuse(kCommand, ok.error());
-    }
+  if (const Expected<void> ok = WriteExtras(*scene, report->scans, options); !ok) {
+    return Refuse(kCommand, ok.error());
   }
-  fmt::print("{}: scene {}, scans: {}, files written: {}, kept: {}; the truth is in truth.yaml\n",
-             options.out, scene->name, options.scans, report->written, report->kept);
+  fmt::print("{}: scene {}, scans: {}, files written: {}, kept: {}; the truth is in truth.yaml{}\n",
+             options.out, scene->name, options.scans, report->written, report->kept,
+             options.bag ? ", scans and images also in session.bag" : "");
   return kAnswered;
 }
 

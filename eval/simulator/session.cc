@@ -96,7 +96,8 @@ class Session {
     }
     if (ok) ok = folder_.Write("truth.yaml", FormatTruth(scene_, options_.seed, truths_));
     if (!ok) return tl::unexpected<Error>(ok.error());
-    return report_;
+    report_.scans = std::move(truths_);
+    return std::move(report_);
   }
 
  private:

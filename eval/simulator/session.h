@@ -7,10 +7,12 @@
 #include <opencv2/core/mat.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/error.h"
 #include "eval/simulator/corner_noise.h"
 #include "eval/simulator/scene.h"
+#include "eval/simulator/truth_yaml.h"
 #include "io/pcd_header.h"
 
 namespace sextant {
@@ -42,6 +44,7 @@ struct SessionOptions {
 struct SessionReport {
   int written = 0;
   int kept = 0;  ///< Complete files of an earlier run with the same configuration.
+  std::vector<ScanTruth> scans{};  ///< Their times and files; all of truth.yaml.
 };
 
 /// Files of scans that SimulateSession will write or keep.

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/session_bag.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "cli/photo_file.h"
+#include "io/bag/rosbag1_writer.h"
+#include "io/camera_file.h"
+#include "io/pcd_file.h"
+
+namespace sextant::cli {
+namespace {
+
+// ROS takes time zero for no time at all, and its tools pass over messages of it.
+constexpr double kSessionStart_s = 1.0;
+// ROS 1 counts seconds in 32 bits.
+constexpr double kLongestSession_s = 4e9;
+
+std::int64_t StampOf(const ScanTruth& scan) {
+  return std::llround(1e9 * (kSessionStart_s + scan.start_time_s));
+}
+
+Expected<CloudMessage> ScanMessage(const std::filesystem::path& file, std::int64_t stamp_ns) {
+  Expected<PointCloud> cloud = ReadPcd(file);
+  if (!cloud) return tl::unexpected<Error>(cloud.error());
+  return CloudMessage{{stamp_ns, "lidar"}, std::move(*cloud)};
+}
+
+Expected<ImageMessage> GreyMessage(const std::filesystem::path& file, const MessageHeader& header) {
+  const Expected<cv::Mat> image = ReadImage(file);
+  if (!image) return tl::unexpected<Error>(image.error());
+  if (image->type() != CV_8UC1) {
+    return MakeError(
+        ErrorCode::kInvalidInput,
+        fmt::format("{}: expected an image of 8-bit grey, as the simulation writes; remove it and "
+                    "simulate again",
+                    file.string()));
+  }
+  ImageMessage message;
+  message.header = header;
+  message.width_px = image->cols;
+  message.height_px = image->rows;
+  message.encoding = "mono8";
+  message.row_bytes = static_cast<std::size_t>(image->cols);
+  for (int row = 0; row < image->rows; ++row) {
+    message.data.append(image->ptr<char>(row), message.row_bytes);
+  }
+  return message;
+}
+
+class SessionRecorder {
+ public:
+  SessionRecorder(std::filesystem::path folder, const Scene& scene, Rosbag1Writer writer)
+      : folder_(std::move(folder)), scene_(scene), writer_(std::move(writer)) {}
+
+  Expected<void> Record(const std::vector<ScanTruth>& scans) {
+    for (const SceneCamera& camera : scene_.cameras) {
+      const Expected<Camera> told = ReadCamera(folder_ / (camera.name + "_info.yaml"));
+      if (!told) return tl::unexpected<Error>(told.error());
+      cameras_.push_back(*told);
+    }
+    for (const ScanTruth& scan : scans) {
+      if (Expected<void> ok = RecordScan(scan); !ok) return ok;
+    }
+    return writer_.Close();
+  }
+
+ private:
+  Expected<void> RecordScan(const ScanTruth& scan) {
+    const std::int64_t stamp_ns = StampOf(scan);
+    const Expected<CloudMessage> points = ScanMessage(folder_ / scan.scan_file, stamp_ns);
+    if (!points) return tl::unexpected<Error>(points.error());
+    Expected<void> ok = writer_.Write("/lidar/points", stamp_ns, *points);
+    for (std::size_t i = 0; ok && i < cameras_.size(); ++i) ok = RecordCamera(scan, i, stamp_ns);
+    return ok;
+  }
+
+  Expected<void> RecordCamera(const ScanTruth& scan, std::size_t camera, std::int64_t stamp_ns) {
+    const std::string& name = scene_.cameras[camera].name;
+    const MessageHeader header = {stamp_ns, name + "_optical"};
+    const Expected<ImageMessage> image = GreyMessage(folder_ / scan.image_files[camera], header);
+    if (!image) return tl::unexpected<Error>(image.error());
+    Expected<void> ok = writer_.Write("/" + name + "/image_raw", stamp_ns, *image);
+    if (!ok) return ok;
+    return writer_.Write("/" + name + "/camera_info", stamp_ns,
+                         CameraInfoMessage{header, cameras_[camera]});
+  }
+
+  std::filesystem::path folder_;
+  const Scene& scene_;
+  Rosbag1Writer writer_;
+  std::vector<Camera> cameras_;
+};
+
+}  // namespace
+
+Expected<void> CheckSessionBag(const SessionOptions& options) {
+  if (options.level != SessionLevel::kFull) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     "--bag: only the level full has scans and images to record");
+  }
+  if (options.scans * options.interval_s > kLongestSession_s) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("--bag: ROS counts time up to {} s, and {} scans, one each {} s, "
+                                 "take longer",
+                                 kLongestSession_s, options.scans, options.interval_s));
+  }
+  return {};
+}
+
+Expected<void> WriteSessionBag(const std::filesystem::path& folder, const Scene& scene,
+                               const std::vector<ScanTruth>& scans) {
+  Expected<Rosbag1Writer> writer = Rosbag1Writer::Create(folder / "session.bag");
+  if (!writer) return tl::unexpected<Error>(writer.error());
+  return SessionRecorder(folder, scene, std::move(*writer)).Record(scans);
+}
+
+}  // namespace sextant::cli
