@@ -2,8 +2,10 @@
 #include "features/camera/checkerboard_detector.h"
 
 #include <algorithm>
+#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 namespace sextant {
 namespace {
@@ -11,7 +13,8 @@ namespace {
 struct CheckerOptions {
   int columns = 7;
   int rows = 5;
-  bool accurate = true;
+  bool accurate = false;
+  bool subpix = true;
 };
 
 OptionSet<CheckerOptions> Options() {
@@ -19,7 +22,9 @@ OptionSet<CheckerOptions> Options() {
   options.Count("columns", &CheckerOptions::columns, 3, 1000, "inner corners along x")
       .Count("rows", &CheckerOptions::rows, 3, 1000, "inner corners along y")
       .Choice("accurate", &CheckerOptions::accurate, {"false", "true"},
-              "sample sectors on an enlarged image");
+              "sample sectors on an enlarged image")
+      .Choice("subpix", &CheckerOptions::subpix, {"false", "true"},
+              "move each corner to where the grey levels' gradients say it is");
   return options;
 }
 
@@ -54,6 +59,21 @@ void Orient(const cv::Mat& grey, CheckerDetection& found) {
   if (turn) std::reverse(corners.begin(), corners.end());
 }
 
+// In a window that no other corner is in.
+void RefineBySubpix(const cv::Mat& grey, int columns, std::vector<cv::Point2f>& corners) {
+  constexpr int kLargestHalf_px = 11;
+  constexpr double kHalfOfSpacing = 0.4;
+  double spacing = std::numeric_limits<double>::infinity();
+  const auto stride = static_cast<std::size_t>(columns);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (i % stride > 0) spacing = std::min(spacing, cv::norm(corners[i] - corners[i - 1]));
+    if (i >= stride) spacing = std::min(spacing, cv::norm(corners[i] - corners[i - stride]));
+  }
+  const int half = std::clamp(static_cast<int>(kHalfOfSpacing * spacing), 2, kLargestHalf_px);
+  const cv::TermCriteria until(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 30, 0.01);
+  cv::cornerSubPix(grey, corners, cv::Size(half, half), cv::Size(-1, -1), until);
+}
+
 class CheckerboardDetector final : public TagDetector {
  public:
   CheckerboardDetector(std::string name, const CheckerOptions& options)
@@ -70,6 +90,7 @@ class CheckerboardDetector final : public TagDetector {
         !cv::findChessboardCornersSB(grey, size, corners, thorough)) {
       return {};
     }
+    if (options_.subpix) RefineBySubpix(grey, options_.columns, corners);
     CheckerDetection found{.inner_columns = options_.columns, .inner_rows = options_.rows};
     for (const cv::Point2f& corner : corners) found.corners_px.emplace_back(corner.x, corner.y);
     Orient(grey, found);

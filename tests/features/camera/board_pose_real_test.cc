@@ -2,6 +2,7 @@
 // Poses of real boards whose publishers give them.
 #include <gmock/gmock.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -141,15 +142,22 @@ TEST(Fiducials, PoseOfTheFirstPhoto) {
 }
 
 // The publishers' own detections, through a fisheye. Their row of pose 1 is another placement's.
+// The centre they store is off the checkerboard's by half of their translation_error (x: 2 mm),
+// along the short side. A board of 7 x 5 inner corners looks the same turned by 180 degrees: in two
+// images they took it the other way round than we do.
 TEST(AcfrImages, BoardCentreAsPublished) {
   SEXTANT_REAL_DATA(folder, "acfr_vlp16");
   const auto camera = ReadCamera(folder / "camera_info.yaml");
   const auto poses = ReadAcfrPoses(folder / "poses.csv");
   ASSERT_TRUE(camera && poses);
+  const Eigen::Vector2d center(0.0, -0.001);
   Board board{.id = 0, .top_right_m = 0.85, .right_bottom_m = 0.61};
-  board.checker = BoardChecker{.inner_columns = 7, .inner_rows = 5, .square_m = 0.095};
+  board.checker = BoardChecker{
+      .inner_columns = 7, .inner_rows = 5, .square_m = 0.095, .center_in_board_m = center};
   const BoardFinder finder = *BoardFinder::Make({board}, *camera);
-  for (const int id : {2, 5, 26}) {
+  double largest_m = 0.0;
+  for (const auto& [id, is_turned] : std::map<int, bool>{
+           {2, false}, {5, false}, {9, false}, {16, true}, {20, false}, {26, false}, {30, true}}) {
     const auto image = folder / "images" / ("pose" + std::to_string(id) + ".png");
     const auto seen = finder.Find(cv::imread(image.string()));
     ASSERT_TRUE(seen) << seen.error().message;
@@ -158,8 +166,15 @@ TEST(AcfrImages, BoardCentreAsPublished) {
     EXPECT_LT(pose.rms_px, 0.4) << image;
     const auto row = std::ranges::find(*poses, id, &AcfrPose::id);
     ASSERT_NE(row, poses->end());
-    EXPECT_LT((pose.cam_from_board.translation - row->in_cam.centre_m).norm(), 0.003) << image;
+    // Turned about the checkerboard's centre, the board's lies beyond it.
+    const Eigen::Vector2d board_center = is_turned ? 2.0 * center : Eigen::Vector2d(0.0, 0.0);
+    const double off_m =
+        (pose.cam_from_board * Eigen::Vector3d(0.0, board_center.y(), 0.0) - row->in_cam.centre_m)
+            .norm();
+    EXPECT_LT(off_m, 0.0005) << image;
+    largest_m = std::max(largest_m, off_m);
   }
+  RecordProperty("largest_mm", std::to_string(1e3 * largest_m));
 }
 
 }  // namespace

@@ -172,7 +172,7 @@ TEST(DhallPhotos, OriginalDictionaryFindsItsTags) {
 
 TEST(AcfrImages, CheckerboardsAreFound) {
   SEXTANT_REAL_DATA(folder, "acfr_vlp16/images");
-  const TagDetectorPtr detector = *MakeTagDetector("checkerboard(columns=7,rows=5,accurate=false)");
+  const TagDetectorPtr detector = *MakeTagDetector("checkerboard(columns=7,rows=5)");
   for (const int pose : {2, 5, 30}) {
     const auto image = folder / ("pose" + std::to_string(pose) + ".png");
     const Expected<Detections> found = detector->Detect(cv::imread(image.string()));
