@@ -20,18 +20,22 @@ sextant_dependency(Ceres 2.1 REQUIRED)
 sextant_dependency(nanoflann REQUIRED)
 sextant_dependency(yaml-cpp REQUIRED)
 sextant_dependency(nlohmann_json REQUIRED)
-sextant_dependency(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs calib3d aruco)
-sextant_dependency(apriltag 3.2 REQUIRED)
-sextant_dependency(TBB REQUIRED)
+if(SEXTANT_OPENCV)
+  sextant_dependency(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs calib3d aruco)
+  sextant_dependency(apriltag 3.2 REQUIRED)
+  sextant_dependency(TBB REQUIRED)
+endif()
 # liblzf has no CMake package, only a pkg-config file.
 sextant_dependency(PkgConfig REQUIRED)
 pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)
 string(APPEND SEXTANT_FIND_DEPENDENCIES "pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)\n")
-find_package(CLI11 REQUIRED)
-# Draws boards to print; the program only.
-pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
-# The program only: OpenCV maps over a hundred shared objects into a process.
-find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs highgui)
+if(SEXTANT_OPENCV)
+  find_package(CLI11 REQUIRED)
+  # Draws boards to print; the program only.
+  pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
+  # The program only: OpenCV maps over a hundred shared objects into a process.
+  find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs highgui)
+endif()
 
 # Recordings of ROS: optional. lz4 and zstd are named as the linker knows them, as not every
 # distribution has CMake files of theirs.
