@@ -7,8 +7,8 @@
 
 #include "cli/commands.h"
 #include "cli/detect_report.h"
-#include "cli/photo_file.h"
 #include "cli/load.h"
+#include "cli/photo_file.h"
 #include "cli/progress.h"
 #include "features/camera/grey_image.h"
 #include "io/board_file.h"
@@ -83,8 +83,10 @@ Expected<ImageReport> Examine(const Search& search, const cv::Mat& image) {
   }
   Expected<Detections> found = search.detector->Detect(*grey);
   if (!found) return tl::unexpected<Error>(found.error());
+  report.sought_checkers = search.detector->name().starts_with("checkerboard");
   report.seen.strangers = std::move(found->tags);
-  const bool is_empty = report.seen.strangers.empty() && found->checkers.empty();
+  report.checkers = std::move(found->checkers);
+  const bool is_empty = report.seen.strangers.empty() && report.checkers.empty();
   if (is_empty && search.explain) report.other_families = FindOtherFamilies(*grey, "", {});
   return report;
 }
@@ -117,7 +119,7 @@ ImageResult ExamineFile(const Search& search, const DetectOptions& options,
 }
 
 bool FoundSomething(const ImageReport& report) {
-  if (!report.seen.strangers.empty()) return true;
+  if (!report.seen.strangers.empty() || !report.checkers.empty()) return true;
   return std::ranges::any_of(report.seen.boards, [](const SeenBoard& board) {
     return !board.tags.empty() || board.checker;
   });

@@ -35,6 +35,13 @@ ordered_json TagJson(const TagDetection& tag) {
           {"hamming", tag.hamming}};
 }
 
+ordered_json CheckerJson(const CheckerDetection& checker) {
+  return {{"inner_columns", checker.inner_columns},
+          {"inner_rows", checker.inner_rows},
+          {"corners_px", PixelsJson(checker.corners_px)},
+          {"is_turn_known", checker.is_turn_known}};
+}
+
 ordered_json SeenTagJson(const SeenTag& seen) {
   ordered_json tag = TagJson(seen.detection);
   tag["refined"] = seen.refined.has_value();
@@ -112,6 +119,10 @@ std::string FormatDetections(const std::vector<std::string>& paths,
       image["other_tags"] = ordered_json::array();
       for (const TagDetection& tag : report.seen.strangers) {
         image["other_tags"].push_back(TagJson(tag));
+      }
+      image["other_checkers"] = ordered_json::array();
+      for (const CheckerDetection& checker : report.checkers) {
+        image["other_checkers"].push_back(CheckerJson(checker));
       }
       image["other_families"] = ordered_json::array();
       for (const FamilyMatch& match : report.other_families) {

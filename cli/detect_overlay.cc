@@ -48,6 +48,12 @@ void DrawEdge(cv::Mat& canvas, const Camera& camera, const Eigen::Vector3d& a,
   }
 }
 
+void DrawChecker(cv::Mat& canvas, const CheckerDetection& checker) {
+  for (const Eigen::Vector2d& corner : checker.corners_px) {
+    cv::circle(canvas, Fixed(corner), 4 << kShift, kTag, 2, cv::LINE_AA, kShift);
+  }
+}
+
 void DrawBoard(cv::Mat& canvas, const Camera& camera, const SeenBoard& seen) {
   const std::vector<Eigen::Vector3d>& corners = seen.corners.points;
   for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -69,16 +75,13 @@ cv::Mat DrawDetection(const cv::Mat& image, const ImageReport& report,
   for (const TagDetection& tag : report.seen.strangers) {
     DrawTag(canvas, tag.corners_px, std::to_string(tag.id), boards.empty() ? kTag : kStranger);
   }
+  for (const CheckerDetection& checker : report.checkers) DrawChecker(canvas, checker);
   for (const SeenBoard& seen : report.seen.boards) {
     for (const SeenTag& tag : seen.tags) {
       DrawTag(canvas, tag.refined ? tag.refined->corners_px : tag.detection.corners_px,
               std::to_string(tag.detection.id), kTag);
     }
-    if (seen.checker) {
-      for (const Eigen::Vector2d& corner : seen.checker->corners_px) {
-        cv::circle(canvas, Fixed(corner), 4 << kShift, kTag, 2, cv::LINE_AA, kShift);
-      }
-    }
+    if (seen.checker) DrawChecker(canvas, *seen.checker);
     if (camera) DrawBoard(canvas, *camera, seen);
   }
   return canvas;

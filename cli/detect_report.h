@@ -25,7 +25,9 @@ struct ImageReport {
   cv::Size size{};
   SeenBoards seen{};  ///< Its strangers are all tags where no board is given.
   std::vector<ExplainedTag> missing{};
+  std::vector<CheckerDetection> checkers{};   ///< Where no board is given.
   std::vector<FamilyMatch> other_families{};  ///< Where no board is given and no tag was found.
+  bool sought_checkers = false;  ///< Where no board is given: checkerboards instead of tags.
 };
 
 /// An image's report, or why there is none; the error's message names the file.

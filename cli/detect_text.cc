@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <string_view>
 
 #include "cli/detect_report.h"
 
@@ -36,6 +37,21 @@ std::string DescribeSeenTag(const SeenTag& seen) {
   return fmt::format("    {}, 1 sigma {:.3f} px, blur {:.2f} px\n",
                      DescribeTag(seen.detection, seen.refined->corners_px), sigma,
                      seen.refined->blur_px);
+}
+
+constexpr std::string_view kTakenUp = ", taken the way round that has its corner 0 up";
+
+std::string DescribeChecker(const CheckerDetection& checker) {
+  std::string text =
+      fmt::format("  checkerboard of {} x {} inner corners{}:", checker.inner_columns,
+                  checker.inner_rows, checker.is_turn_known ? "" : kTakenUp);
+  const auto columns = static_cast<std::size_t>(checker.inner_columns);
+  for (std::size_t i = 0; i < checker.corners_px.size(); ++i) {
+    const Eigen::Vector2d& corner = checker.corners_px[i];
+    if (i % columns == 0) text += "\n   ";
+    text += fmt::format(" ({:.2f}, {:.2f})", corner.x(), corner.y());
+  }
+  return text + "\n";
 }
 
 std::string DescribePose(const SeenBoard& board) {
@@ -74,7 +90,7 @@ std::string DescribeBoard(const ImageReport& report, const SeenBoard& seen, cons
     text += fmt::format(": checkerboard of {} x {} inner corners {}", board.checker->inner_columns,
                         board.checker->inner_rows, seen.checker ? "found" : "not found");
     if (seen.checker && !seen.checker->is_turn_known) {
-      text += ", taken the way round that has its corner 0 up";
+      text += kTakenUp;
     }
   }
   text += "\n";
@@ -105,7 +121,10 @@ std::string DescribeDetection(const ImageReport& report, const std::vector<Board
   for (const TagDetection& tag : report.seen.strangers) {
     text += fmt::format("    {}\n", DescribeTag(tag, tag.corners_px));
   }
-  if (boards.empty() && report.seen.strangers.empty()) text += "  no tag\n";
+  for (const CheckerDetection& checker : report.checkers) text += DescribeChecker(checker);
+  if (boards.empty() && report.seen.strangers.empty() && report.checkers.empty()) {
+    text += report.sought_checkers ? "  no checkerboard\n" : "  no tag\n";
+  }
   for (const FamilyMatch& match : report.other_families) {
     text += fmt::format("  {} would find: {}\n", match.family, fmt::join(match.ids, ", "));
   }

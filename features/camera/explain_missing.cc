@@ -18,6 +18,8 @@ namespace {
 
 constexpr double kSmallest_px = 16.0;
 constexpr double kLeastMargin = 20.0;
+constexpr double kLeastVisible_grey = 2.0;
+constexpr double kMostWrongShare = 0.1;
 constexpr int kMostSideForTrials_px = 1600;
 constexpr double kMostPixelsToEnlarge = 6e6;
 
@@ -51,6 +53,14 @@ MissingTag FromPose(const cv::Mat& grey, const BoardTag& tag, const Camera& came
   const TagPattern pattern = *MakeTagPattern(tag.family, tag.id);
   const TagReading reading = ReadTag(grey, corners, pattern);
   const int cells = (pattern.edge_cells - 2) * (pattern.edge_cells - 2);
+  if (reading.margin > kLeastVisible_grey && reading.wrong_cells <= kMostWrongShare * cells) {
+    return {MissingCause::kOverlooked,
+            fmt::format("it is where the board's other tags put it, {} of its {} cells are read "
+                        "rightly, by {:.0f} grey levels, but the detector passed it over: its "
+                        "border or margin may be hidden, or the contrast too low; try another "
+                        "--detector, or other options of it",
+                        cells - reading.wrong_cells, cells, reading.margin)};
+  }
   return {MissingCause::kCovered,
           fmt::format("where the board's other tags put it, {} of its {} cells are read wrongly: "
                       "covered, too dark, or another tag was printed",
@@ -140,6 +150,8 @@ std::string_view ToString(MissingCause cause) {
       return "other_family";
     case MissingCause::kCovered:
       return "covered";
+    case MissingCause::kOverlooked:
+      return "overlooked";
     case MissingCause::kNotThere:
       return "not_there";
   }

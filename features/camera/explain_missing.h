@@ -19,6 +19,7 @@ enum class MissingCause {
   kMirrored,      ///< It is found in the image's mirror image.
   kOtherFamily,   ///< Tags of another family are there instead.
   kCovered,       ///< Where the pose puts it, its cells are not to be read.
+  kOverlooked,    ///< Where the pose puts it, it is to be read, yet the detector did not.
   kNotThere,      ///< None of these.
 };
 std::string_view ToString(MissingCause cause);

@@ -85,6 +85,26 @@ TEST(Detect, WithoutABoardListsTheTagsOfAFamily) {
   EXPECT_THAT(other.out, AllOf(HasSubstr("no tag"), HasSubstr("aruco_original would find: 26")));
 }
 
+TEST(Detect, WithoutABoardListsTheCornersOfACheckerboard) {
+  SEXTANT_REAL_DATA(image, "acfr_vlp16/images/pose5.png");
+  const std::string arguments =
+      image.string() + " --quick --json - --detector 'checkerboard(columns=";
+  const ProgramRun run = Detect(arguments + "7,rows=5)'");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const json found = json::parse(run.out).at("images").at(0).at("other_checkers");
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.at(0).at("corners_px").size(), 35U);
+  EXPECT_EQ(found.at(0).at("is_turn_known"), false);
+  const ProgramRun people = Detect(image.string() + " --detector checkerboard");
+  EXPECT_EQ(people.exit_code, 0) << people.err;
+  EXPECT_THAT(people.out,
+              AllOf(HasSubstr("checkerboard of 7 x 5 inner corners"), Not(HasSubstr("no tag"))));
+  ASSERT_TRUE(cv::imwrite(PathOf("none.png"), cv::Mat(60, 80, CV_8U, cv::Scalar(90))));
+  const ProgramRun none = Detect(PathOf("none.png") + " --quick --detector checkerboard");
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.out, HasSubstr("no checkerboard"));
+}
+
 TEST(Detect, BadImagesAreNamedAndTheOthersStillRead) {
   MakePhoto();
   const cv::Mat photo = cv::imread(PathOf("photo.png"), cv::IMREAD_GRAYSCALE);

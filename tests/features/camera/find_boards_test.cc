@@ -214,6 +214,9 @@ TEST(ExplainMissing, NamesTheCause) {
   const BoardPose known{.cam_from_board = pose};
   changed = cv::Mat(photo.image.size(), CV_8U, cv::Scalar(128));
   EXPECT_EQ(ExplainMissing(changed, tag, &photo.camera, &known).cause, MissingCause::kCovered);
+  const MissingTag seen = ExplainMissing(photo.image, tag, &photo.camera, &known);
+  EXPECT_EQ(seen.cause, MissingCause::kOverlooked);
+  EXPECT_THAT(seen.text, HasSubstr("36 of its 36 cells are read rightly"));
   BoardPose far = known;
   far.cam_from_board.translation.z() = 30.0;
   EXPECT_EQ(ExplainMissing(photo.image, tag, &photo.camera, &far).cause, MissingCause::kTooSmall);
