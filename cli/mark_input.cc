@@ -5,8 +5,8 @@
 
 #include <cmath>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
 
+#include "cli/photo_file.h"
 #include "io/camera_file.h"
 #include "io/cloud_file.h"
 #include "io/number_text.h"
@@ -19,20 +19,6 @@ namespace {
 
 constexpr int kAssumedWidth_px = 1280;
 constexpr int kAssumedHeight_px = 720;
-
-Expected<cv::Mat> ReadPhoto(const std::string& path) {
-  cv::Mat photo;
-  if (path.empty()) return photo;
-  try {
-    photo = cv::imread(path, cv::IMREAD_COLOR);
-  } catch (const cv::Exception&) {
-    photo = cv::Mat();
-  }
-  if (photo.empty()) {
-    return MakeError(ErrorCode::kIo, path + ": expected an image that can be read");
-  }
-  return photo;
-}
 
 Expected<Camera> ChooseCamera(const MarkOptions& options, const cv::Mat& photo) {
   if (options.camera_path.empty()) {
@@ -141,9 +127,11 @@ Expected<MarkInput> LoadMarkInput(const MarkOptions& options) {
   const Expected<PointCloud> scan = ReadCloud(options.cloud_path);
   if (!scan) return tl::unexpected<Error>(scan.error());
   MarkInput input;
-  const Expected<cv::Mat> photo = ReadPhoto(options.image_path);
-  if (!photo) return tl::unexpected<Error>(photo.error());
-  input.photo = *photo;
+  if (!options.image_path.empty()) {
+    const Expected<cv::Mat> photo = ReadColourImage(options.image_path);
+    if (!photo) return tl::unexpected<Error>(photo.error());
+    input.photo = *photo;
+  }
   const Expected<Camera> camera = ChooseCamera(options, input.photo);
   if (!camera) return tl::unexpected<Error>(camera.error());
   const Expected<Rigid3d> pose = ChoosePose(options);

@@ -4,11 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "io/text_file.h"
+#include "cli/photo_file.h"
 
 namespace sextant::cli {
 namespace {
@@ -76,21 +75,6 @@ void DrawLegend(const std::string& text, cv::Mat& canvas) {
               1, cv::LINE_AA);
 }
 
-Expected<void> Write(const cv::Mat& canvas, const std::filesystem::path& out) {
-  std::vector<unsigned char> bytes;
-  bool encoded = false;
-  try {
-    encoded = cv::imencode(out.extension().string(), canvas, bytes);
-  } catch (const cv::Exception&) {
-    encoded = false;
-  }
-  if (!encoded) {
-    return MakeError(ErrorCode::kInvalidOption,
-                     out.string() + ": expected an overlay that ends in .png or .jpg");
-  }
-  return WriteFileAtomically(out, std::string(bytes.begin(), bytes.end()));
-}
-
 }  // namespace
 
 Expected<void> DrawOverlay(const CalibrationProblem& problem, const SolveReport& report,
@@ -98,10 +82,9 @@ Expected<void> DrawOverlay(const CalibrationProblem& problem, const SolveReport&
   if (!problem.camera) {
     return MakeError(ErrorCode::kMissingData, "an overlay needs the camera: give --camera");
   }
-  cv::Mat canvas = cv::imread(image.string(), cv::IMREAD_COLOR);
-  if (canvas.empty()) {
-    return MakeError(ErrorCode::kIo, image.string() + ": expected an image that can be read");
-  }
+  const Expected<cv::Mat> read = ReadColourImage(image);
+  if (!read) return tl::unexpected<Error>(read.error());
+  cv::Mat canvas = *read;
   const Camera& camera = *problem.camera;
   const bool size_known = camera.width_px > 0 && camera.height_px > 0;
   if (size_known && (canvas.cols != camera.width_px || canvas.rows != camera.height_px)) {
@@ -121,7 +104,7 @@ Expected<void> DrawOverlay(const CalibrationProblem& problem, const SolveReport&
       fmt::format("{}: o measured  x LiDAR point, RMSE {:.2f} px, residuals x{:.0f}", report.solver,
                   std::sqrt(squares / static_cast<double>(marks.size())), kMagnification),
       canvas);
-  return Write(canvas, out);
+  return WriteImage(canvas, out);
 }
 
 }  // namespace sextant::cli

@@ -30,9 +30,7 @@ bool IsTruncated(std::string_view bytes) {
   return false;
 }
 
-}  // namespace
-
-Expected<cv::Mat> ReadImage(const std::filesystem::path& path) {
+Expected<cv::Mat> ReadAs(const std::filesystem::path& path, int mode) {
   const Expected<std::string> bytes = ReadTextFile(path);
   if (!bytes) return tl::unexpected<Error>(bytes.error());
   if (IsTruncated(*bytes)) {
@@ -42,7 +40,7 @@ Expected<cv::Mat> ReadImage(const std::filesystem::path& path) {
   cv::Mat image;
   try {
     const std::vector<unsigned char> raw(bytes->begin(), bytes->end());
-    if (!raw.empty()) image = cv::imdecode(raw, cv::IMREAD_ANYDEPTH | cv::IMREAD_ANYCOLOR);
+    if (!raw.empty()) image = cv::imdecode(raw, mode);
   } catch (const cv::Exception& error) {
     return MakeError(ErrorCode::kParse,
                      fmt::format("{}: expected an image: {}", path.string(), error.err));
@@ -52,6 +50,16 @@ Expected<cv::Mat> ReadImage(const std::filesystem::path& path) {
                      fmt::format("{}: expected an image, such as PNG or JPEG", path.string()));
   }
   return image;
+}
+
+}  // namespace
+
+Expected<cv::Mat> ReadImage(const std::filesystem::path& path) {
+  return ReadAs(path, cv::IMREAD_ANYDEPTH | cv::IMREAD_ANYCOLOR);
+}
+
+Expected<cv::Mat> ReadColourImage(const std::filesystem::path& path) {
+  return ReadAs(path, cv::IMREAD_COLOR);
 }
 
 Expected<void> WriteImage(const cv::Mat& image, const std::filesystem::path& path) {

@@ -13,6 +13,9 @@ namespace sextant::cli {
 /// or one whose end is missing, which OpenCV would fill with grey).
 Expected<cv::Mat> ReadImage(const std::filesystem::path& path);
 
+/// The same as BGR of 8 bits, whatever it is.
+Expected<cv::Mat> ReadColourImage(const std::filesystem::path& path);
+
 /// Writes by the extension, whole or not at all. Errors: kInvalidOption for an extension that is no
 /// image's; kIo.
 Expected<void> WriteImage(const cv::Mat& image, const std::filesystem::path& path);

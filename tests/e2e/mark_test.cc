@@ -287,7 +287,7 @@ TEST(Mark, RefusesWhatItCannotUse) {
   WriteScan(drawing.scene);
   const std::string scan = "--cloud " + InFolder("scan.pcd") + " --out " + InFolder("p.yaml") +
                            " --render " + InFolder("w.png") + " ";
-  EXPECT_THAT(Mark(scan + "--image " + InFolder("scan.pcd")).err, HasSubstr("can be read"));
+  EXPECT_THAT(Mark(scan + "--image " + InFolder("scan.pcd")).err, HasSubstr("expected an image"));
   EXPECT_EQ(Mark(scan + "--cam-from-lidar a.json --yaw 5").exit_code, 2);
   EXPECT_THAT(Mark(scan + "--cam-from-lidar 0 0 0 1").err, HasSubstr("X Y Z QW QX QY QZ"));
   EXPECT_THAT(Mark(scan + "--cam-from-lidar 0 0 0 1 1 0 0").err, HasSubstr("length 1"));
