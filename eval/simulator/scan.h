@@ -48,7 +48,8 @@ struct SimulatedScan {
 ///
 /// The same scene, model and options give the same bits, whatever the number of threads.
 /// Errors, before any beam is cast: those of ValidateLidarModel; kNonFinite, kInvalidInput and
-/// kUnknownName for objects and prints that cannot be, too many objects (10000), a LiDAR inside one.
+/// kUnknownName for objects and prints that cannot be, too many objects (10000), a LiDAR inside
+/// one.
 Expected<SimulatedScan> SimulateScan(const Scene& scene, const LidarModel& model,
                                      const ScanOptions& options = {});
 

@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kBand_m = 0.08;  // Around the board, where its plane must end.
 constexpr double kLeastFilled = 0.9;
-constexpr double kMostContinued = 0.35;
+constexpr double kMostContinued = 0.3;
 constexpr double kLeastContained = 0.8;
 constexpr double kLeastVisible = 0.5;
-constexpr double kLeastShare = 0.65;
+constexpr double kLeastShare = 0.6;
 constexpr double kMostRms = 2.8;  // Sigmas; a board of the wrong size has more.
 constexpr double kLeastDensity = 0.3;
 constexpr int kFewestSides = 3;

@@ -11,6 +11,7 @@
 namespace sextant {
 namespace {
 
+constexpr double kSpotGrowth = 0.33;   // Of the spot's width: how far out an edge is seen.
 constexpr double kSpotSigma = 0.18;    // Of the spot's width: how the edge seen varies.
 constexpr double kMostGapSteps = 2.5;  // Within an interval: one drop-out.
 
@@ -61,7 +62,7 @@ class EdgeFinder {
                    .inner = false,
                    .ring = ring,
                    .last_return = last.point};
-    if (options_.correct) edge.in_plane += edge.outward * (0.5 * edge.step_m - 0.5 * spot);
+    if (options_.correct) edge.in_plane += edge.outward * (0.5 * edge.step_m - kSpotGrowth * spot);
     edges.push_back(edge);
   }
 
@@ -113,7 +114,8 @@ class EdgeFinder {
           std::clamp(std::abs(WrapAngle(beyond->azimuth_rad - last.azimuth_rad)), 0.5 * step, step);
     }
     const double spot = options_.beam.SpotAt(last.range_m);
-    const double correction = options_.correct ? 0.5 * step - 0.5 * spot / last.range_m : 0.0;
+    const double correction =
+        options_.correct ? 0.5 * step - kSpotGrowth * spot / last.range_m : 0.0;
     const auto edge = MeetTurned(last, sign * correction);
     const auto on = MeetTurned(last, 0.0);
     const auto off = MeetTurned(last, sign * step);
