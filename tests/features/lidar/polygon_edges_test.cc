@@ -114,7 +114,7 @@ TEST(PolygonEdges, ASquareBoardIsNumberedFromTheEdgeThatWasDrawnFirst) {
       }
     }
     std::vector<Quadrilateral>& edges = marks.boards.front().edges;
-    std::ranges::rotate(edges, edges.begin() + 1);
+    std::rotate(edges.begin(), edges.begin() + 1, edges.end());
   }
 }
 
@@ -130,7 +130,7 @@ TEST(PolygonEdges, AnOblongBoardDrawnFromTheWrongEdgeIsRefused) {
                             scene.boards[0])),
             0.01);
   std::vector<Quadrilateral>& edges = marks.boards.front().edges;
-  std::ranges::rotate(edges, edges.begin() + 1);
+  std::rotate(edges.begin(), edges.begin() + 1, edges.end());
   const auto wrong = PatchesFromPolygons(rings, marks, BoardsIn(scene));
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error().code, ErrorCode::kInvalidInput);
@@ -253,7 +253,7 @@ BoardCorners Seen(const BoardCorners& corners, Board& board) {
   const auto height = [](const Eigen::Vector3d& point) { return point.z() / point.norm(); };
   const auto azimuth = [](const Eigen::Vector3d& p) { return std::atan2(p.y(), p.x()); };
   BoardCorners seen = corners;
-  std::ranges::rotate(seen, std::ranges::max_element(seen, {}, height));
+  std::rotate(seen.begin(), std::ranges::max_element(seen, {}, height), seen.end());
   if (azimuth(seen[1]) > azimuth(seen[3])) std::swap(seen[1], seen[3]);
   const bool wide = (seen[1] - seen[0]).norm() > (seen[2] - seen[1]).norm();
   board.top_right_m = wide ? 0.85 : 0.61;
