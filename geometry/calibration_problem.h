@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/board.h"
+#include "geometry/board_view.h"
 #include "geometry/camera.h"
 #include "geometry/rigid3d.h"
 
@@ -54,8 +55,10 @@ struct CalibrationProblem {
   std::optional<Camera> camera;
   std::vector<Pair3d3d> pairs_3d3d;
   std::vector<Pair2d3d> pairs_2d3d;
-  PointSets point_sets;       ///< Their pairing is not known.
-  std::vector<Board> boards;  ///< Known boards, by the id that pairs name; may be empty.
+  PointSets point_sets;  ///< Their pairing is not known.
+  /// Raw observations; their boards are among `boards`, and they need the camera.
+  std::vector<BoardView> board_views;
+  std::vector<Board> boards;  ///< Known boards, by the id that pairs and views name; may be empty.
   std::optional<Rigid3d> initial_cam_from_lidar;
 };
 

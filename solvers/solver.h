@@ -19,6 +19,7 @@ struct DataNeeds {
   int pairs_3d3d = 0;
   int pairs_2d3d = 0;  ///< Also needs the camera.
   int points_per_set = 0;
+  int board_views = 0;  ///< Also needs the camera and the boards.
   bool initial_pose = false;
   bool points_on_plane = false;  ///< Works where all points in the LiDAR frame lie on one plane.
 };

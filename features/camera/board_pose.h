@@ -8,18 +8,11 @@
 
 #include "base/error.h"
 #include "geometry/board.h"
+#include "geometry/board_view.h"
 #include "geometry/camera.h"
 #include "geometry/rigid3d.h"
 
 namespace sextant {
-
-/// Points printed on a board and where a camera saw them, with errors that may go together: the
-/// four corners of a tag, or the inner corners of a checkerboard.
-struct BoardPoints {
-  std::vector<Eigen::Vector2d> in_board_m{};
-  std::vector<Eigen::Vector2d> pixels{};
-  Eigen::MatrixXd covariance_px2{};  ///< 2n x 2n, of (x0, y0, x1, y1, ...).
-};
 
 struct BoardPose {
   Rigid3d cam_from_board{};
