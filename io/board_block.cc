@@ -3,18 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include "geometry/board_check.h"
+#include "io/degrees.h"
 #include "io/number_text.h"
 
 namespace sextant {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr int kMostId = 1'000'000'000;
 constexpr std::size_t kMostTags = 10'000;
 
@@ -37,7 +35,7 @@ BoardTag ReadTag(YamlFields& in, const YamlNode& node) {
   tag.id = in.IntegerAt(node, "id", 0, kMostId);
   tag.edge_m = in.RealAt(node, "edge_m");
   tag.center_in_board_m = in.Point2At(node, "center_in_board_m", Eigen::Vector2d::Zero());
-  tag.rotation_rad = kDegree * in.RealAt(node, "rotation_deg", 0.0);
+  tag.rotation_rad = kRadPerDeg * in.RealAt(node, "rotation_deg", 0.0);
   return tag;
 }
 
@@ -83,16 +81,6 @@ void FailWith(YamlFields& in, const YamlNode& node, const BoardFault& fault) {
   const YamlNode* field = fault.field.empty() ? nullptr : part->Find(fault.field);
   in.Fail(field != nullptr ? field->line : part->line,
           fault.field.empty() ? name : name + ": " + fault.field, fault.message);
-}
-
-// Degrees with which reading ends at the same radians.
-double ExactDegrees(double angle_rad) {
-  const double degrees = angle_rad / kDegree;
-  for (const double candidate : {std::round(degrees), degrees, std::nextafter(degrees, -1e9),
-                                 std::nextafter(degrees, 1e9)}) {
-    if (kDegree * candidate == angle_rad) return candidate;
-  }
-  return degrees;
 }
 
 }  // namespace

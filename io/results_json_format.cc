@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
-#include "io/camera_block.h"
+#include "io/camera_json.h"
 #include "io/pose_json.h"
 #include "io/results_json.h"
 
@@ -29,16 +29,8 @@ Json Poses(const std::vector<Rigid3d>& poses) {
   return list;
 }
 
-Json CameraJson(const CameraEstimate& estimate) {
-  const Camera& camera = estimate.camera;
-  Json json = {{"model", CameraModelName(camera.model)},
-               {"width_px", camera.width_px},
-               {"height_px", camera.height_px},
-               {"fx_px", camera.fx_px},
-               {"fy_px", camera.fy_px},
-               {"cx_px", camera.cx_px},
-               {"cy_px", camera.cy_px},
-               {"distortion", camera.distortion}};
+Json CameraEstimateJson(const CameraEstimate& estimate) {
+  Json json = CameraJson(estimate.camera);
   json["estimated"] = Json::array();
   for (const EstimatedIntrinsic& number : estimate.estimated) {
     json["estimated"].push_back(
@@ -65,7 +57,7 @@ Json Result(const SolverResult& result) {
   }
   json["cam_from_lidar"] = PoseJson(report->cam_from_lidar);
   json["covariance"] = report->covariance ? Rows(*report->covariance) : Json(nullptr);
-  json["camera"] = report->camera ? CameraJson(*report->camera) : Json(nullptr);
+  json["camera"] = report->camera ? CameraEstimateJson(*report->camera) : Json(nullptr);
   json["rmse_m"] = OrNull(report->evaluation.rmse_m);
   json["rmse_px"] = OrNull(report->evaluation.rmse_px);
   json["per_pair_m"] = report->evaluation.per_pair_m;

@@ -9,6 +9,7 @@
 #include "io/acfr_poses.h"
 #include "io/average_log.h"
 #include "io/board_file.h"
+#include "io/calibration_result.h"
 #include "io/camera_file.h"
 #include "io/csv_cloud.h"
 #include "io/marker_files.h"
@@ -21,6 +22,7 @@
 #include "io/read_problem.h"
 #include "io/results_json.h"
 #include "io/transform_list.h"
+#include "support/calibration_result.h"
 #include "support/scenes.h"
 
 namespace sextant {
@@ -114,6 +116,10 @@ std::vector<Reader> Readers() {
        Repeated("1,2,3\n", 2) + "1,0,4\n2,0,4\n2,1,4\n1,1,4\n" + Repeated("1,2,3\n", 2) +
            "4,1,0\n4,2,0\n4,2,1\n4,1,1\n" + Repeated("1,0,0\n", 7),
        RefusalOf(ParseAcfrPoses)},
+      {"CalibrationResult", FormatCalibrationResult(test::FullCalibrationResult()),
+       RefusalOf(ParseCalibrationResult)},
+      {"CalibrationResultJson", FormatCalibrationResultJson(test::FullCalibrationResult()),
+       RefusalOf(ParseCalibrationResult)},
       {"CsvCloud", "x,y,z,ring\n" + Repeated("1.25,2.25,3.25,4\n", 4), RefusalOf(ParseCsvCloud)},
       {"Ply",
        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+namespace sextant {
+
+/// Where a spinning LiDAR samples, and how well: what is needed to foresee a scan.
+struct LidarPattern {
+  std::vector<double> elevations_rad{};  ///< Of the rings, ascending.
+  double azimuth_step_rad = 0.0;         ///< Between samples of a ring.
+  double range_sigma_m = 0.0;            ///< Along the ray.
+  double aperture_m = 0.0;               ///< Diameter of the beam where it leaves the sensor.
+  double divergence_rad = 0.0;           ///< Full angle by which the beam widens.
+};
+
+}  // namespace sextant

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+namespace sextant {
+
+inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+/// Degrees from which kRadPerDeg leads back to the same radians; whole ones where they do.
+inline double ExactDegrees(double angle_rad) {
+  const double degrees = angle_rad / kRadPerDeg;
+  for (const double candidate : {std::round(degrees), degrees, std::nextafter(degrees, -1e9),
+                                 std::nextafter(degrees, 1e9)}) {
+    if (kRadPerDeg * candidate == angle_rad) return candidate;
+  }
+  return degrees;
+}
+
+}  // namespace sextant
