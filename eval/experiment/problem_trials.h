@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "eval/experiment/trials.h"
+
+namespace sextant {
+
+/// Trials of the usual sort: a problem with known truth is made from the id and given to every
+/// solver, whose answers are measured by PoseMetrics() (the kind's first metrics).
+///
+/// A solver sees only the kinds of data that it needs, and the true pose as its initial one where
+/// it needs one and the problem has none. Solvers whose needs the problem of `sample` cannot meet
+/// are left out, so one list of solvers serves conditions with different data. Errors:
+/// kMissingData where none is left; what `make` says of the sample.
+struct ProblemMaker {
+  std::function<Expected<KnownProblem>(const TrialId&)> make;
+  PoseLimits limits;
+};
+Expected<TrialsPtr> MakeProblemTrials(ProblemMaker maker, std::vector<SolverPtr> solvers);
+
+}  // namespace sextant

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace sextant {
+
+/// What a figure could as well have been, at 95 percent confidence.
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// Of a rate: the p that `successes` of `trials` do not reject (Wilson 1927, JASA 22). Never empty,
+/// also for none and all. Requires trials > 0.
+Interval WilsonInterval(std::uint64_t successes, std::uint64_t trials);
+
+/// The q-quantile between the order statistics (Hyndman and Fan's type 7: position q (n - 1)).
+/// Requires values, ascending.
+double QuantileOfSorted(std::span<const double> sorted, double q);
+
+/// The bootstrap's percentile interval of that quantile, as infinitely many resamples give it and
+/// so without drawing any: of n values drawn with replacement, the k-th is at most the j-th of the
+/// sample with the probability that Binomial(n, j/n) is at least k (Efron 1979, section 3; Hutson
+/// and Ernst 2000). Ends where that reaches 2.5 and 97.5 percent.
+Interval QuantileInterval(std::span<const double> sorted, double q);
+
+/// The bootstrap's percentile interval of sum(numerators) / sum(denominators), of 1000 resamples of
+/// the pairs, drawn from the seed. More than 200 pairs are resampled as 200 means of runs of them,
+/// which leaves the variance right to half a percent. Requires as many of both, at least one.
+Interval BootstrapRatio(std::span<const double> numerators, std::span<const double> denominators,
+                        std::uint64_t seed);
+
+/// The regularised incomplete beta function I_x(a, b), the probability that a Beta(a, b) variable
+/// is at most x, to 1e-12. Requires a, b > 0 and x in [0, 1].
+double RegularizedBeta(double a, double b, double x);
+
+}  // namespace sextant

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/experiment/run_trials.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "eval/experiment/row_file.h"
+#include "support/run_program.h"
+
+namespace sextant::test {
+namespace {
+
+Experiment Small(const std::string& more = "") {
+  return *ParseExperiment(
+      "kind: random_scene\ntrials: 250\nsolvers: [kabsch, 'ransac(kabsch)']\n"
+      "parameters: {data: points}\ngrid: {outliers: [0, 0.3]}\n" +
+          more,
+      "small.yaml", BuiltinKinds(), BuiltinSolvers());
+}
+
+std::string RunTo(const std::string& name, const Experiment& experiment, int threads,
+                  Shard shard = {}) {
+  const std::filesystem::path path = TestFolder() / name;
+  const Expected<RunOutcome> outcome =
+      RunTrials(experiment, {.rows_path = path, .threads = threads, .shard = shard});
+  EXPECT_TRUE(outcome) << outcome.error().message;
+  return ReadText(path);
+}
+
+TEST(RunTrials, SameBytesOnAnyNumberOfThreadsAndInTwoRuns) {
+  const std::string one = RunTo("one", Small(), 1);
+  EXPECT_GT(one.size(), 2U * 2 * 250 * 8 * PoseMetrics().size());
+  EXPECT_EQ(RunTo("two", Small(), 2), one);
+  EXPECT_EQ(RunTo("again", Small(), 2), one);
+  EXPECT_EQ(RunTo("five", Small(), 5), one);
+  EXPECT_NE(RunTo("seed", Small("seed: 2"), 2), one);
+}
+
+TEST(RunTrials, GoesOnWhereItWasCutToTheSameBytes) {
+  const std::string whole = RunTo("whole", Small(), 2);
+  for (std::size_t cut = 0; cut <= whole.size(); cut += whole.size() / 37 + 1) {
+    WriteText(TestFolder() / "cut", whole.substr(0, cut));
+    EXPECT_EQ(RunTo("cut", Small(), 2), whole) << "cut at byte " << cut;
+  }
+}
+
+TEST(RunTrials, RunsNoTrialTwice) {
+  RunTo("rows", Small(), 2);
+  const std::filesystem::path path = TestFolder() / "rows";
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 1);
+  const Expected<RunOutcome> outcome = RunTrials(Small(), {.rows_path = path, .threads = 2});
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->kept_trials, 450U);
+  EXPECT_EQ(outcome->run_trials, 50U);
+}
+
+TEST(RunTrials, ADamagedBlockAndWhatFollowsIsRunAgain) {
+  const std::string whole = RunTo("whole", Small(), 2);
+  std::string damaged = whole;
+  damaged[whole.size() / 2] = static_cast<char>(damaged[whole.size() / 2] ^ 0x10);
+  WriteText(TestFolder() / "damaged", damaged);
+  EXPECT_EQ(RunTo("damaged", Small(), 1), whole);
+}
+
+TEST(RunTrials, ShardsMergeToTheSameBytes) {
+  const std::string whole = RunTo("whole", Small(), 2);
+  std::vector<std::filesystem::path> shards;
+  for (const std::uint64_t i : {2U, 0U, 1U}) {
+    const std::string name = "shard" + std::to_string(i);
+    RunTo(name, Small(), 2, {.number = i, .of = 3});
+    shards.push_back(TestFolder() / name);
+  }
+  const Expected<void> merged = MergeRowFiles(shards, TestFolder() / "merged");
+  ASSERT_TRUE(merged) << merged.error().message;
+  EXPECT_EQ(ReadText(TestFolder() / "merged"), whole);
+}
+
+TEST(RunTrials, AMissingShardIsNamed) {
+  RunTo("shard0", Small(), 2, {.number = 0, .of = 3});
+  const Expected<void> merged = MergeRowFiles({TestFolder() / "shard0"}, TestFolder() / "merged");
+  ASSERT_FALSE(merged);
+  EXPECT_THAT(merged.error().message,
+              testing::HasSubstr("4 of 6 blocks are in none of the files, the first is number 1"));
+}
+
+TEST(RunTrials, RowsOfAnotherConfigurationAreNotTouched) {
+  const std::string before = RunTo("rows", Small(), 2);
+  const std::filesystem::path path = TestFolder() / "rows";
+  const Expected<RunOutcome> other = RunTrials(Small("seed: 2"), {.rows_path = path});
+  ASSERT_FALSE(other);
+  EXPECT_THAT(other.error().message, testing::HasSubstr("another configuration"));
+  EXPECT_EQ(ReadText(path), before);
+  EXPECT_TRUE(RunTrials(Small("seed: 2"), {.rows_path = path, .fresh = true}));
+  EXPECT_NE(ReadText(path), before);
+}
+
+TEST(RunTrials, AnotherFileIsNotTouched) {
+  WriteText(TestFolder() / "letter", "Dear reader, this is a file that somebody wants to keep.");
+  const Expected<RunOutcome> outcome = RunTrials(Small(), {.rows_path = TestFolder() / "letter"});
+  ASSERT_FALSE(outcome);
+  EXPECT_THAT(outcome.error().message, testing::HasSubstr("expected the rows of an experiment"));
+  EXPECT_THAT(ReadText(TestFolder() / "letter"), testing::StartsWith("Dear reader"));
+}
+
+TEST(RunTrials, AConditionKeepsItsTrialsWhateverStandsBesideIt) {
+  const auto rotations = [](const Experiment& experiment, std::size_t block) {
+    const std::filesystem::path path = TestFolder() / "rows";
+    EXPECT_TRUE(RunTrials(experiment, {.rows_path = path, .fresh = true}));
+    const RowFileReader reader = *RowFileReader::Open(path);
+    return *reader.ReadColumn(reader.blocks()[block], kRotationDeg);
+  };
+  const std::string head =
+      "kind: random_scene\ntrials: 20\nsolvers: [kabsch]\nparameters: {data: points}\n";
+  const auto parse = [&head](const std::string& conditions) {
+    return *ParseExperiment(head + conditions, "a.yaml", BuiltinKinds(), BuiltinSolvers());
+  };
+  const auto alone = rotations(parse("conditions: [{name: b, pairs: 9}]"), 0);
+  const auto second = rotations(parse("conditions: [{name: a}, {name: b, pairs: 9}]"), 1);
+  EXPECT_EQ(alone, second);
+}
+
+}  // namespace
+}  // namespace sextant::test
