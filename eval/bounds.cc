@@ -2,8 +2,13 @@
 #include "eval/bounds.h"
 
 #include <Eigen/Cholesky>
+#include <cassert>
 #include <cmath>
+#include <utility>
 
+#include "solvers/board_view_check.h"
+#include "solvers/board_view_information.h"
+#include "solvers/invert_information.h"
 #include "solvers/pair_noise.h"
 #include "solvers/subset.h"
 
@@ -60,6 +65,37 @@ Expected<Matrix6d> CramerRaoBound(const CalibrationProblem& problem,
                      "the pairs leave a direction of the pose undetermined");
   }
   return Matrix6d(factor.solve(Matrix6d::Identity()));
+}
+
+Expected<Matrix6d> CramerRaoBoundOfViews(const CalibrationProblem& problem,
+                                         const Rigid3d& true_cam_from_lidar,
+                                         std::span<const Rigid3d> true_cam_from_board) {
+  assert(true_cam_from_board.size() == problem.board_views.size());
+  if (problem.board_views.empty()) {
+    return MakeError(ErrorCode::kMissingData,
+                     "the bound of raw data needs views of boards, and the problem has none");
+  }
+  if (!problem.camera) {
+    return MakeError(ErrorCode::kInvalidInput, "the bound of raw data needs the camera");
+  }
+  if (Expected<void> ok = CheckBoardViews(problem.board_views, problem.boards); !ok) {
+    return tl::unexpected<Error>(std::move(ok.error()));
+  }
+  Matrix6d sum = Matrix6d::Zero();
+  for (std::size_t i = 0; i < problem.board_views.size(); ++i) {
+    const BoardView& view = problem.board_views[i];
+    const Expected<Matrix6d> information =
+        InformationOfView(view, *FindBoard(problem.boards, view.board), *problem.camera,
+                          true_cam_from_lidar, true_cam_from_board[i]);
+    if (!information) return information;
+    sum += *information;
+  }
+  const std::optional<Matrix6d> bound = InvertSymmetric(sum);
+  if (!bound) {
+    return MakeError(ErrorCode::kDegenerate,
+                     "the views leave a direction of the pose undetermined");
+  }
+  return *bound;
 }
 
 RmsError RmsOf(const Matrix6d& covariance) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include "base/error.h"
 #include "geometry/calibration_problem.h"
 
@@ -14,6 +16,15 @@ namespace sextant {
 /// information), kInvalidInput (2D-3D pairs without a camera, or a point that does not project).
 Expected<Matrix6d> CramerRaoBound(const CalibrationProblem& problem,
                                   const Rigid3d& true_cam_from_lidar);
+
+/// The bound of the raw observations of boards, whose poses are unknown too: inverse of the sum
+/// over `problem.board_views` of InformationOfView at the truth (solvers/board_view_information.h).
+/// true_cam_from_board: of each view, in their order.
+/// Errors: kMissingData (no views), kInvalidInput (no camera, a view that CheckBoardView refuses or
+/// that is not seen at the truth), kNonFinite, kDegenerate (singular information).
+Expected<Matrix6d> CramerRaoBoundOfViews(const CalibrationProblem& problem,
+                                         const Rigid3d& true_cam_from_lidar,
+                                         std::span<const Rigid3d> true_cam_from_board);
 
 /// The root mean square errors that go with a covariance.
 struct RmsError {

@@ -9,6 +9,7 @@
 
 #include "base/random.h"
 #include "eval/simulator/corner_noise.h"
+#include "eval/typical_sensors.h"
 
 namespace sextant {
 namespace {
@@ -24,27 +25,6 @@ Eigen::Vector3d NormalVector(Random& random) {
 std::vector<Board> PaperBoards() {
   return {{.id = 0, .top_right_m = 0.468, .right_bottom_m = 0.484},
           {.id = 1, .top_right_m = 0.468, .right_bottom_m = 0.490}};
-}
-
-Camera ZedLikeCamera() {
-  return {.width_px = 1280,
-          .height_px = 720,
-          .fx_px = 700.0,
-          .fy_px = 700.0,
-          .cx_px = 639.5,
-          .cy_px = 359.5};
-}
-
-// The LiDAR's axes (x forward, y left, z up) turned into the camera's (x right, y down, z forward),
-// with a few degrees of mounting error and the paper's offset of some decimetres.
-Rigid3d DrawExtrinsic(Random& random) {
-  Eigen::Matrix3d axes;
-  axes << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-  Rigid3d cam_from_lidar;
-  const Eigen::Vector3d turn = 5.0 * kDegree * NormalVector(random);
-  cam_from_lidar.rotation = (ExpSo3(turn) * Eigen::Quaterniond(axes)).normalized();
-  cam_from_lidar.translation = Eigen::Vector3d(-0.15, -0.25, -0.18) + 0.05 * NormalVector(random);
-  return cam_from_lidar;
 }
 
 // Corners in the camera frame, top, right, bottom, left as the camera sees the board.

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <utility>
 
+#include "solvers/board_view_check.h"
 #include "solvers/subset.h"
 
 namespace sextant {
@@ -117,8 +118,12 @@ Expected<void> CheckProblem(const CalibrationProblem& problem, const SolverSpec&
   check([&] {
     return CheckCount(smaller_set, needs.points_per_set, "points in each frame", spec.name);
   });
+  check([&] {
+    return CheckCount(problem.board_views.size(), needs.board_views, "raw views of boards",
+                      spec.name);
+  });
   check([&]() -> Expected<void> {
-    if (needs.pairs_2d3d == 0) return {};
+    if (needs.pairs_2d3d == 0 && needs.board_views == 0) return {};
     if (!problem.camera) {
       return MakeError(ErrorCode::kMissingData,
                        spec.name +
@@ -142,6 +147,9 @@ Expected<void> CheckProblem(const CalibrationProblem& problem, const SolverSpec&
   if (needs.points_per_set > 0) {
     check([&] { return CheckPoints(sets.in_cam, "camera"); });
     check([&] { return CheckPoints(sets.in_lidar, "LiDAR"); });
+  }
+  if (needs.board_views > 0) {
+    check([&] { return CheckBoardViews(problem.board_views, problem.boards); });
   }
   return ok;
 }

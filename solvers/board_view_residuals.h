@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "geometry/board.h"
+#include "geometry/board_view.h"
+#include "geometry/camera.h"
+#include "geometry/rigid3d.h"
+
+namespace sextant {
+
+/// The residuals of the raw observations of a board, in one place for the joint solver, the bound
+/// and evaluation: measured minus predicted, whitened, so that each has a variance of 1. What the
+/// camera saw depends on cam_from_board alone, what the LiDAR saw on lidar_from_board alone.
+
+/// A straight side in the board's plane: outward.dot(point) = offset_m on it.
+struct BoardSide {
+  Eigen::Vector2d outward = Eigen::Vector2d::UnitX();  ///< Unit, away from the material.
+  double offset_m = 0.0;
+  /// Derivative of the offset by (top_right_m, right_bottom_m): the outer sides move by half of
+  /// what the board grows, the opening stays.
+  Eigen::Vector2d offset_by_size = Eigen::Vector2d::Zero();
+};
+
+/// As numbered in EdgeRay::side. Requires a side that the board has.
+BoardSide SideOf(const Board& board, int side);
+
+struct PrintedTerm {
+  std::vector<Eigen::Vector2d> in_board_m;
+  std::vector<Eigen::Vector2d> pixels;
+  Eigen::MatrixXd whitener;  ///< Lower triangular W with W^T W the inverse covariance.
+};
+
+struct FaceTerm {
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< Unit.
+  double range_m = 0.0;
+  double inverse_sigma = 0.0;
+};
+
+struct EdgeTerm {
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< Unit.
+  BoardSide side;
+  double inverse_sigma = 0.0;
+};
+
+/// A BoardView made ready: what does not change with the poses is computed once.
+struct BoardViewTerms {
+  std::vector<PrintedTerm> printed;
+  std::vector<FaceTerm> face;
+  std::vector<EdgeTerm> edges;
+};
+
+/// Requires a view that CheckBoardView takes.
+BoardViewTerms TermsOf(const BoardView& view, const Board& board);
+
+/// Of all coordinates of a term, with the derivative by (dphi, dt) of cam_from_board.
+struct PrintedResidual {
+  Eigen::VectorXd value;  ///< 2n.
+  Eigen::Matrix<double, Eigen::Dynamic, 6> by_pose;
+  std::vector<Eigen::Vector3d> in_cam;  ///< Where the points are.
+};
+
+/// False where a point does not project.
+bool Differentiate(const PrintedTerm& term, const Camera& camera, const Rigid3d& cam_from_board,
+                   PrintedResidual& out);
+
+/// The pose of a board as rays meet it: axes and origin in the LiDAR frame.
+struct BoardPlane {
+  explicit BoardPlane(const Rigid3d& lidar_from_board)
+      : axes(lidar_from_board.rotation.toRotationMatrix()), origin(lidar_from_board.translation) {}
+
+  Eigen::Matrix3d axes;  ///< Columns x, y and the normal.
+  Eigen::Vector3d origin;
+};
+
+/// Of one ray, with its derivative by (dphi, dt) of lidar_from_board.
+struct RayResidual {
+  double value = 0.0;
+  Eigen::Matrix<double, 1, 6> by_pose;
+};
+
+/// (range - s) / sigma, s the distance along the ray to the board's plane:
+/// s = n.o / n.d, ds = ((m x n).dphi + n.dt) / n.d with m = s d - o in the plane.
+/// False where the ray does not meet the plane in front of the LiDAR.
+bool Differentiate(const FaceTerm& term, const BoardPlane& plane, RayResidual& out);
+
+/// (offset - outward.u) / sigma, u where the ray meets the plane: the signed distance inwards from
+/// the side. False as above.
+bool Differentiate(const EdgeTerm& term, const BoardPlane& plane, RayResidual& out);
+
+/// The values alone, for evaluation: per point printed (the norm of the whitened residual of a
+/// whole BoardPoints, over the root of its 2n), per face return, per edge ray; infinite where there
+/// is none.
+struct BoardViewResiduals {
+  std::vector<double> printed;
+  std::vector<double> face;
+  std::vector<double> edges;
+};
+BoardViewResiduals ResidualsOf(const BoardView& view, const Board& board, const Camera& camera,
+                               const Rigid3d& cam_from_lidar, const Rigid3d& cam_from_board);
+
+}  // namespace sextant
