@@ -155,6 +155,7 @@ Expected<SeenBoards> BoardFinder::Find(const cv::Mat& image) const {
   SeenBoards seen;
   for (std::size_t i = 0; i < boards_.size(); ++i) {
     seen.boards.push_back(Assign(i, *grey, found));
+    AddPoints(seen.boards.back());
     if (camera_) AddPose(seen.boards.back());
   }
   seen.strangers = std::move(found.tags);
@@ -196,14 +197,16 @@ SeenBoard BoardFinder::Assign(std::size_t index, const cv::Mat& grey, Detections
   return seen;
 }
 
-void BoardFinder::AddPose(SeenBoard& seen) const {
+void BoardFinder::AddPoints(SeenBoard& seen) const {
   const Board& board = boards_[seen.index];
-  std::vector<BoardPoints> groups;
-  for (const SeenTag& tag : seen.tags) groups.push_back(PointsOf(board.tags[tag.index], tag));
-  if (seen.checker) groups.push_back(PointsOf(*board.checker, *seen.checker));
-  if (groups.empty()) return;
-  seen.pose = EstimateBoardPose(*camera_, groups);
-  if (*seen.pose) seen.corners = ToCamera(**seen.pose, BoardCorners(board));
+  for (const SeenTag& tag : seen.tags) seen.printed.push_back(PointsOf(board.tags[tag.index], tag));
+  if (seen.checker) seen.printed.push_back(PointsOf(*board.checker, *seen.checker));
+}
+
+void BoardFinder::AddPose(SeenBoard& seen) const {
+  if (seen.printed.empty()) return;
+  seen.pose = EstimateBoardPose(*camera_, seen.printed);
+  if (*seen.pose) seen.corners = ToCamera(**seen.pose, BoardCorners(boards_[seen.index]));
 }
 
 }  // namespace sextant

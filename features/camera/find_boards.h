@@ -32,6 +32,7 @@ struct SeenBoard {
   std::vector<std::size_t> missing_tags{};  ///< Into Board::tags.
   bool is_checker_missing = false;
   std::vector<std::size_t> duplicate_tags{};  ///< Seen more than once, and so not used.
+  std::vector<BoardPoints> printed{};  ///< What the pose rests on: a group a tag or checkerboard.
   std::optional<Expected<BoardPose>> pose{};  ///< None where no camera was given or nothing seen.
   PointsInCam corners{};                      ///< Of BoardCorners, where there is a pose.
 };
@@ -62,6 +63,7 @@ class BoardFinder {
  private:
   BoardFinder() = default;
   SeenBoard Assign(std::size_t index, const cv::Mat& grey, Detections& found) const;
+  void AddPoints(SeenBoard& seen) const;
   void AddPose(SeenBoard& seen) const;
 
   std::vector<Board> boards_;

@@ -103,6 +103,7 @@ class Fitter {
                      .angle_rad = pose.z(),
                      .covariance = Eigen::Matrix3d::Zero(),
                      .sides = {},
+                     .sigmas_m = {},
                      .rms = 0.0,
                      .rms_m = 0.0,
                      .share = 0.0};
@@ -116,6 +117,7 @@ class Fitter {
       const double r = place.distance / place.sigma;
       const bool belongs = std::abs(r) <= kOutlier;
       fit.sides.push_back(belongs ? place.side : -1);
+      fit.sigmas_m.push_back(place.sigma);
       if (!belongs) continue;
       const Eigen::Vector3d j = place.by_pose / place.sigma;
       information += j * j.transpose();

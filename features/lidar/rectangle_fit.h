@@ -19,9 +19,10 @@ struct RectangleFit {
   /// For each edge point the side that it lies on: 0 between the corners 0 and 1, clockwise, 4 to 7
   /// of the opening; -1 where it lies on none.
   std::vector<int> sides;
-  double rms = 0.0;    ///< Of the residuals of those on a side, in sigmas.
-  double rms_m = 0.0;  ///< The same, across the edge.
-  double share = 0.0;  ///< Of the edge points that lie on a side.
+  std::vector<double> sigmas_m;  ///< Of each edge point, across the side it is nearest to.
+  double rms = 0.0;              ///< Of the residuals of those on a side, in sigmas.
+  double rms_m = 0.0;            ///< The same, across the edge.
+  double share = 0.0;            ///< Of the edge points that lie on a side.
 };
 
 /// Robust least squares of the edge points' distances to their sides, over position and angle. The

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "features/lidar/board_finder.h"
+#include "geometry/board.h"
+
+namespace sextant {
+
+/// Returns of the patch from within the outline that was found [m].
+std::vector<Eigen::Vector3d> FaceReturns(const ScanRings& scan, const BoardPatch& patch,
+                                         std::span<const Board> boards);
+
+/// Standard deviation of the returns' ranges about those at which their rays meet the plane. [m]
+double RangeSigma(std::span<const Eigen::Vector3d> face, const LidarPlane& plane);
+
+}  // namespace sextant

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// The seven real pairs of acfr/cam_lidar_calibration, nobody clicking.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "calibrate/assemble.h"
+#include "calibrate/diagnose.h"
+#include "calibrate/observe_files.h"
+#include "io/camera_file.h"
+#include "solvers/registry.h"
+#include "support/real_data.h"
+
+namespace sextant::test {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+Board AcfrBoard() {
+  Board board{.id = 0, .top_right_m = 0.61, .right_bottom_m = 0.85};
+  board.checker = BoardChecker{.inner_columns = 5, .inner_rows = 7, .square_m = 0.095};
+  return board;
+}
+
+// The mean of the published runs: camera poses in the LiDAR frame, R = Rz Ry Rx.
+Rigid3d PublishedCamFromLidar(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  while (std::getline(file, line)) {
+    std::istringstream fields(line);
+    double v[6] = {};
+    char comma = 0;
+    for (double& value : v) fields >> value >> comma;
+    const Eigen::Quaterniond q = FromEulerZyx({.yaw = v[2], .pitch = v[1], .roll = v[0]});
+    sum += q.coeffs().dot(sum) < 0.0 ? -q.coeffs() : q.coeffs();
+    translation += Eigen::Vector3d(v[3], v[4], v[5]);
+    count += 1.0;
+  }
+  const Rigid3d lidar_from_cam{Eigen::Quaterniond(sum).normalized(), translation / count};
+  return lidar_from_cam.Inverse();
+}
+
+std::vector<SessionView> SeeAcfr(const std::filesystem::path& folder) {
+  std::vector<FilePair> pairs;
+  for (const int id : {2, 5, 9, 16, 20, 26, 30}) {
+    pairs.push_back({.name = std::to_string(id),
+                     .image = folder / fmt::format("images/pose{}.png", id),
+                     .cloud = folder / fmt::format("full/pose{}.pcd", id)});
+  }
+  const Expected<Camera> camera = ReadCamera(folder / "camera_info.yaml");
+  EXPECT_TRUE(camera) << camera.error().message;
+  const Expected<Observer> observer = Observer::Make({AcfrBoard()}, *camera);
+  EXPECT_TRUE(observer) << observer.error().message;
+  return ObserveFiles(*observer, pairs, {});
+}
+
+// Of the corners of each view under the answer of the others [m].
+double HeldOutRmse(const CalibrationProblem& problem, const char* spec) {
+  const SolverPtr solver = *BuiltinSolvers().Make(spec);
+  std::set<int> views;
+  for (const BoardView& board : problem.board_views) views.insert(board.view);
+  double squares = 0.0;
+  for (const int view : views) {
+    CalibrationProblem others = problem;
+    const auto is_held_out = [view](const auto& pair) { return pair.id.view == view; };
+    std::erase_if(others.pairs_3d3d, is_held_out);
+    std::erase_if(others.pairs_2d3d, is_held_out);
+    std::erase_if(others.board_views, [view](const BoardView& b) { return b.view == view; });
+    const Expected<SolveReport> report = solver->Solve(others);
+    EXPECT_TRUE(report) << report.error().message;
+    const Evaluation evaluation = Evaluate(problem, report->cam_from_lidar);
+    for (std::size_t i = 0; i < problem.pairs_3d3d.size(); ++i) {
+      if (problem.pairs_3d3d[i].id.view != view) continue;
+      squares += evaluation.per_pair_m[i] * evaluation.per_pair_m[i];
+    }
+  }
+  return std::sqrt(squares / static_cast<double>(problem.pairs_3d3d.size()));
+}
+
+TEST(AcfrPairs, TheBoardOfEveryPairIsMatchedAndThePoseIsThePublishedOne) {
+  SEXTANT_REAL_DATA(folder, "acfr_vlp16");
+  const std::vector<SessionView> views = SeeAcfr(folder);
+  const Camera camera = *ReadCamera(folder / "camera_info.yaml");
+  const std::vector<Board> boards = {AcfrBoard()};
+  const Expected<Assembly> assembly = Assemble(views, boards, camera);
+  ASSERT_TRUE(assembly) << assembly.error().message;
+  for (const BoardRow& row : assembly->rows) {
+    EXPECT_EQ(row.fate, BoardFate::kKept) << views[row.view].name << ": " << row.why;
+  }
+  EXPECT_TRUE(assembly->matching.as_likely.empty());
+  const Rigid3d published = PublishedCamFromLidar(folder / "calibration_quickstart.csv");
+  for (const char* spec : {"gnc(kabsch)", "kabsch"}) {
+    const Expected<SolveReport> report = (*BuiltinSolvers().Make(spec))->Solve(assembly->problem);
+    ASSERT_TRUE(report) << report.error().message;
+    const PoseDistance off = DistanceBetween(report->cam_from_lidar.Inverse(), published.Inverse());
+    EXPECT_LT(off.rotation_rad * kDegPerRad, 1.2) << spec;
+    EXPECT_LT(off.translation_m, 0.06) << spec;
+    EXPECT_LT(HeldOutRmse(assembly->problem, spec), 0.025) << spec;
+    EXPECT_TRUE(Diagnose(views, *assembly, report->cam_from_lidar).empty());
+  }
+}
+
+}  // namespace
+}  // namespace sextant::test

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/match.h"
+
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+#include "geometry/scan_marks.h"
+#include "geometry/so3.h"
+#include "support/fake_observation.h"
+
+namespace sextant::test {
+namespace {
+
+const Rigid3d kCamFromLidar =
+    Rigid3d{ExpSo3({0.05, -0.1, 0.08}), {0.06, -0.1, -0.15}} * AxesCamFromLidar();
+
+std::vector<Board> Squares(int count) {
+  std::vector<Board> boards;
+  for (int i = 0; i < count; ++i) boards.push_back(SquareBoard(i));
+  return boards;
+}
+
+// Boards that hang apart: 1.2 m from the middle of one to that of the next.
+std::vector<Rigid3d> Apart(std::size_t count, Random& random) {
+  std::vector<Rigid3d> poses;
+  for (std::size_t i = 0; i < count; ++i) {
+    poses.push_back(HungByChance(random));
+    poses.back().translation.x() =
+        1.2 * (static_cast<double>(i) - 0.5 * (static_cast<double>(count) - 1.0));
+  }
+  return poses;
+}
+
+struct Faked {
+  std::vector<Observation> views;
+  std::vector<Board> boards;
+};
+
+Faked Fake(int views, int boards, std::uint64_t seed) {
+  Random random(DeriveSeed(1, "match", static_cast<std::uint64_t>(boards), seed));
+  Faked faked{.views = {}, .boards = Squares(boards)};
+  for (int i = 0; i < views; ++i) {
+    const std::vector<Rigid3d> poses = Apart(faked.boards.size(), random);
+    faked.views.push_back(FakeObservation(faked.boards, poses, kCamFromLidar, random));
+  }
+  return faked;
+}
+
+// Patches are listed last board first, so the true patch of board b is the count less b less 1.
+void ExpectTrueMatches(const Faked& faked, const Matching& matching) {
+  for (const MatchedBoard& kept : matching.kept) {
+    EXPECT_EQ(kept.patch, static_cast<int>(faked.boards.size()) - 1 - kept.sighting);
+    const BoardPlacement& placement = faked.views[static_cast<std::size_t>(kept.view)]
+                                          .in_scan[static_cast<std::size_t>(kept.patch)]
+                                          .placements[static_cast<std::size_t>(kept.placement)];
+    EXPECT_EQ(placement.turn, 0);
+    EXPECT_EQ(placement.board, kept.sighting);
+  }
+}
+
+TEST(Match, EveryBoardOfManyViewsWhateverItsPlaceAndTurn) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Faked faked = Fake(4, 2, seed);
+    const Expected<Matching> matching = MatchViews(faked.views);
+    ASSERT_TRUE(matching) << matching.error().message;
+    EXPECT_EQ(matching->kept.size(), 8U) << seed;
+    ExpectTrueMatches(faked, *matching);
+    EXPECT_TRUE(matching->as_likely.empty());
+    const PoseDistance off = DistanceBetween(matching->cam_from_lidar, kCamFromLidar);
+    // Eight boards of 28 mrad each: one sigma of 10 mrad, and 20 mm at 2 m.
+    EXPECT_LT(off.rotation_rad, 0.05);
+    EXPECT_LT(off.translation_m, 0.1);
+  }
+}
+
+TEST(Match, AnImageOfAnotherMomentIsDroppedWithHowFarItIsOff) {
+  Faked faked = Fake(6, 1, 3);
+  Random random(5);
+  // The board was carried on by 20 cm between scan and image.
+  const Rigid3d before = faked.views[2].in_image[0].pose.cam_from_board;
+  Rigid3d after = before;
+  after.translation.x() += 0.2;
+  const Observation moved =
+      FakeObservation(faked.boards, std::vector<Rigid3d>{after}, kCamFromLidar, random);
+  faked.views[2].in_image = moved.in_image;
+  const Expected<Matching> matching = MatchViews(faked.views);
+  ASSERT_TRUE(matching) << matching.error().message;
+  EXPECT_EQ(matching->kept.size(), 5U);
+  ASSERT_EQ(matching->dropped.size(), 1U);
+  EXPECT_EQ(matching->dropped[0].match.view, 2);
+  EXPECT_NEAR(matching->dropped[0].off_m, 0.2, 0.03);
+}
+
+TEST(Match, OneSquareBoardOnceIsAmbiguousAndTheAxesDecide) {
+  const Faked faked = Fake(1, 1, 7);
+  const Expected<Matching> matching = MatchViews(faked.views);
+  ASSERT_TRUE(matching) << matching.error().message;
+  EXPECT_EQ(matching->as_likely.size(), 3U);
+  EXPECT_LT(RotationDistance(matching->cam_from_lidar.rotation, kCamFromLidar.rotation), 0.1);
+  const std::vector<std::string> lines = DescribeAmbiguity(*matching, {});
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_THAT(lines[0], testing::HasSubstr("ambiguous: 4 poses"));
+  EXPECT_THAT(lines[1], testing::HasSubstr("--initial"));
+}
+
+TEST(Match, AnInitialRotationDecidesOtherwise) {
+  const Faked faked = Fake(1, 1, 7);
+  const Rigid3d rolled =
+      Rigid3d{ExpSo3({0.0, 0.0, std::numbers::pi}), Eigen::Vector3d::Zero()} * kCamFromLidar;
+  const MatchSettings settings{.initial = rolled};
+  const Expected<Matching> matching = MatchViews(faked.views, settings);
+  ASSERT_TRUE(matching) << matching.error().message;
+  // Half a turn about the board's normal, which leans against the camera's axis.
+  EXPECT_GT(RotationDistance(matching->cam_from_lidar.rotation, kCamFromLidar.rotation), 3.0);
+  EXPECT_THAT(DescribeAmbiguity(*matching, settings)[1],
+              testing::HasSubstr("the rotation of --initial"));
+}
+
+// Two equal boards in one plane fit each other's place after half a turn.
+TEST(Match, TwoEqualBoardsInOnePlaneAreAmbiguous) {
+  Random random(11);
+  const std::vector<Board> boards = Squares(2);
+  const Eigen::Quaterniond hung = ExpSo3({0.0, 0.0, 0.25 * std::numbers::pi});
+  const std::vector<Rigid3d> poses = {{hung, {-0.5, 0.0, 2.0}}, {hung, {0.5, 0.0, 2.0}}};
+  const std::vector<Observation> views = {FakeObservation(boards, poses, kCamFromLidar, random)};
+  const Expected<Matching> matching = MatchViews(views);
+  ASSERT_TRUE(matching) << matching.error().message;
+  EXPECT_FALSE(matching->as_likely.empty());
+  EXPECT_LT(RotationDistance(matching->cam_from_lidar.rotation, kCamFromLidar.rotation), 0.1);
+}
+
+TEST(Match, ARectangleLeavesHalfATurnOnly) {
+  Random random(13);
+  Board board = SquareBoard(0);
+  board.right_bottom_m = 0.8;
+  const std::vector<Board> boards = {board};
+  const std::vector<Rigid3d> poses = {HungByChance(random)};
+  const std::vector<Observation> views = {FakeObservation(boards, poses, kCamFromLidar, random)};
+  const Expected<Matching> matching = MatchViews(views);
+  ASSERT_TRUE(matching) << matching.error().message;
+  EXPECT_EQ(matching->as_likely.size(), 1U);
+}
+
+TEST(Match, ATagThatMayLeanEitherWayIsSettledByTheOtherViews) {
+  Faked faked = Fake(4, 1, 17);
+  CameraSighting& sighting = faked.views[1].in_image[0];
+  // The image takes the wrong way for the likelier one.
+  const Rigid3d truth = sighting.pose.cam_from_board;
+  Rigid3d wrong = truth;
+  wrong.rotation = truth.rotation * ExpSo3({0.5, 0.2, 0.0});
+  sighting.pose.cam_from_board = wrong;
+  sighting.pose.ambiguous_with = truth;
+  sighting.pose.ambiguity_chi_square = 3.0;
+  sighting.other_corners = sighting.corners.points;
+  sighting.corners.points.clear();
+  for (const Eigen::Vector3d& corner : BoardCorners(faked.boards[0])) {
+    sighting.corners.points.push_back(wrong * corner);
+  }
+  const Expected<Matching> matching = MatchViews(faked.views);
+  ASSERT_TRUE(matching) << matching.error().message;
+  ASSERT_EQ(matching->kept.size(), 4U);
+  for (const MatchedBoard& kept : matching->kept) EXPECT_EQ(kept.other_pose, kept.view == 1);
+}
+
+TEST(Match, TwoViewsThatContradictEachOtherLeaveOneOut) {
+  Faked faked = Fake(2, 1, 19);
+  Random random(21);
+  Rigid3d after = faked.views[1].in_image[0].pose.cam_from_board;
+  after.translation.x() += 0.4;
+  faked.views[1].in_image =
+      FakeObservation(faked.boards, std::vector<Rigid3d>{after}, kCamFromLidar, random).in_image;
+  const Expected<Matching> matching = MatchViews(faked.views);
+  ASSERT_TRUE(matching) << matching.error().message;
+  EXPECT_EQ(matching->kept.size(), 1U);
+  EXPECT_EQ(matching->dropped.size(), 1U);
+  EXPECT_FALSE(matching->as_likely.empty());
+}
+
+TEST(Match, NothingInCommonIsAnError) {
+  Faked faked = Fake(2, 1, 23);
+  faked.views[0].in_image.clear();
+  faked.views[1].in_scan.clear();
+  const Expected<Matching> matching = MatchViews(faked.views);
+  ASSERT_FALSE(matching);
+  EXPECT_EQ(matching.error().code, ErrorCode::kTooFewPairs);
+}
+
+}  // namespace
+}  // namespace sextant::test

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+
+#include "base/random.h"
+#include "eval/simulator/scene.h"
+#include "geometry/point_cloud.h"
+
+namespace sextant::test {
+
+/// The paper's two boards with their tags, hung anew by chance about 2 m before a LiDAR at the
+/// world's origin and a ZED beside it that does not quite look along its x.
+Scene TaggedBoards(Random& random);
+
+/// cam_from_lidar of the scene's only camera.
+Rigid3d TrueCamFromLidar(const Scene& scene);
+
+/// A scan and the image of the scene's camera, with the noise of usual sensors.
+struct SensorData {
+  cv::Mat image{};
+  PointCloud cloud{};
+};
+SensorData Record(const Scene& scene, std::uint64_t seed);
+
+}  // namespace sextant::test
