@@ -106,6 +106,14 @@ struct AccuracyOptions {
   bool markdown = false;
 };
 
+struct FuseOptions {
+  std::vector<std::string> clouds;
+  std::vector<std::string> from;  ///< A file with cam_from_lidar for each cloud but the last.
+  std::string to;                 ///< The same of the last cloud.
+  std::string rts_path;           ///< Instead of both.
+  std::string out = "fused.ply";
+};
+
 struct MarkOptions {
   std::string cloud_path;
   std::string image_path;                   ///< Empty: none.
@@ -152,6 +160,7 @@ int RunDetectors(const DetectorStudyCommandOptions& options);
 int RunConvert(const ConvertOptions& options);
 int RunBag(const BagOptions& options);
 int RunAccuracy(const AccuracyOptions& options);
+int RunFuse(const FuseOptions& options);
 int RunMark(const MarkOptions& options);
 int RunSimulateSession(const SimulateSessionOptions& options);
 int RunSimulatePairs(const SimulatePairsOptions& options);

@@ -4,6 +4,7 @@
 #include "base/version.h"
 #include "cli/commands.h"
 #include "cli/sensor_arguments.h"
+#include "cli/study_arguments.h"
 
 namespace sextant::cli {
 namespace {
@@ -222,6 +223,7 @@ int Main(int argc, char** argv) {
   DetectOptions detect;
   DetectorStudyCommandOptions detectors;
   AccuracyOptions accuracy;
+  FuseOptions fuse;
   MarkOptions mark;
   SimulateSessionOptions session;
   SimulatePairsOptions pairs;
@@ -233,6 +235,7 @@ int Main(int argc, char** argv) {
   AddBoard(app, board);
   AddBag(app, bag);
   AddSimulate(app, session, pairs);
+  AddFuse(app, fuse);
   AddConvert(app, convert);
   AddAverage(app, average);
   AddCatalogue(app, catalogue);
@@ -256,6 +259,7 @@ int Main(int argc, char** argv) {
   if (app.got_subcommand("convert")) return RunConvert(convert);
   if (app.got_subcommand("bag")) return RunBag(bag);
   if (app.got_subcommand("accuracy")) return RunAccuracy(accuracy);
+  if (app.got_subcommand("fuse")) return RunFuse(fuse);
   if (app.got_subcommand("mark")) return RunMark(mark);
   if (app.get_subcommand("simulate")->got_subcommand("pairs")) return RunSimulatePairs(pairs);
   return RunSimulateSession(session);

@@ -7,12 +7,11 @@
 #include <numbers>
 
 #include "cli/photo_file.h"
+#include "cli/pose_file.h"
 #include "io/camera_file.h"
 #include "io/cloud_file.h"
 #include "io/number_text.h"
 #include "io/polygon_file.h"
-#include "io/results_json.h"
-#include "io/transform_list.h"
 
 namespace sextant::cli {
 namespace {
@@ -39,20 +38,6 @@ Expected<Camera> ChooseCamera(const MarkOptions& options, const cv::Mat& photo) 
                                  camera->height_px, options.camera_path));
   }
   return camera;
-}
-
-Expected<Rigid3d> PoseFromFile(const std::string& path) {
-  if (path.ends_with(".json")) {
-    const Expected<ResultFile> results = ReadResults(path);
-    if (!results) return tl::unexpected<Error>(results.error());
-    for (const SolverResult& result : results->results) {
-      if (result.report) return result.report->cam_from_lidar;
-    }
-    return MakeError(ErrorCode::kMissingData, path + ": expected a result with an answer");
-  }
-  const Expected<std::vector<Rigid3d>> poses = ReadTransformList(path);
-  if (!poses) return tl::unexpected<Error>(poses.error());
-  return poses->front();
 }
 
 Expected<Rigid3d> PoseFromNumbers(const std::vector<std::string>& texts) {
@@ -84,7 +69,7 @@ Expected<Rigid3d> ChoosePose(const MarkOptions& options) {
     const Eigen::AngleAxisd turn(-kRadPerDeg * options.yaw_deg, Eigen::Vector3d::UnitZ());
     return AxesCamFromLidar() * Rigid3d{Eigen::Quaterniond(turn), Eigen::Vector3d::Zero()};
   }
-  if (options.cam_from_lidar.size() == 1) return PoseFromFile(options.cam_from_lidar.front());
+  if (options.cam_from_lidar.size() == 1) return ReadPoseFile(options.cam_from_lidar.front());
   return PoseFromNumbers(options.cam_from_lidar);
 }
 

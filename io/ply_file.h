@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -17,5 +19,11 @@ namespace sextant {
 /// more than the file has room for, whatever its header states.
 Expected<PointCloud> ReadPly(const std::filesystem::path& path);
 Expected<PointCloud> ParsePly(std::string_view bytes, const std::string& file);
+
+using PlyColor = std::array<unsigned char, 3>;  ///< Red, green, blue.
+
+/// binary_little_endian: x, y, z and, where the cloud has it, intensity as 4-byte floats; a colour
+/// a point where any are given.
+std::string FormatPly(const PointCloud& cloud, std::span<const PlyColor> colors = {});
 
 }  // namespace sextant

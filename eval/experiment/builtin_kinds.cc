@@ -3,7 +3,14 @@
 
 // One line a kind, in the order of the catalogue; X(Name) is `TrialKind NameKind()` in the kind's
 // own file.
-#define SEXTANT_KINDS(X) X(RandomScene)
+#define SEXTANT_KINDS(X) \
+  X(RandomScene)         \
+  X(Scene)               \
+  X(SceneAverage)        \
+  X(AverageLog)          \
+  X(BoardScan)           \
+  X(BoardImage)          \
+  X(Fusion)
 
 namespace sextant {
 

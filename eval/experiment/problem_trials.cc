@@ -77,7 +77,9 @@ class ProblemTrials final : public Trials {
       if (spec.needs.initial_pose && !view.initial_cam_from_lidar) {
         view.initial_cam_from_lidar = known->cam_from_lidar;
       }
-      MeasurePose(*known, solvers_[k]->Solve(view), maker_.limits, values);
+      const Expected<SolveReport> report = solvers_[k]->Solve(view);
+      MeasurePose(*known, report, maker_.limits, values);
+      if (maker_.measure_more) maker_.measure_more(*known, report, values);
       if (values.Wants(kBoundRotationDeg) || values.Wants(kBoundTranslationMm)) {
         MeasureBound(*known, *kinds, values);
       }

@@ -17,6 +17,9 @@ namespace sextant {
 struct ProblemMaker {
   std::function<Expected<KnownProblem>(const TrialId&)> make;
   PoseLimits limits;
+  /// Fills the kind's own metrics beside PoseMetrics(); may be empty.
+  std::function<void(const KnownProblem&, const Expected<SolveReport>&, MetricValues)>
+      measure_more = {};
 };
 Expected<TrialsPtr> MakeProblemTrials(ProblemMaker maker, std::vector<SolverPtr> solvers);
 

@@ -70,10 +70,14 @@ std::optional<ViewRectangle> LitFace(const ViewFrame& frame, const Rigid3d& worl
 std::optional<ViewRectangle> WallFace(const ViewFrame& frame, const SceneWall& wall) {
   // Tiles are told apart by a twelfth of their brightness, like worn flooring.
   constexpr double kDarkerTile = 11.0 / 12.0;
+  constexpr double kDarkestSpeckle = 0.2;
   const double albedo = wall.surface.albedo;
-  std::optional<ViewRectangle> face = LitFace(frame, wall.world_from_wall, wall.width_m,
-                                              wall.height_m, albedo, kDarkerTile * albedo);
-  if (face) face->tile_m = wall.tile_m;
+  const double darkest = wall.speckled ? kDarkestSpeckle : kDarkerTile;
+  std::optional<ViewRectangle> face =
+      LitFace(frame, wall.world_from_wall, wall.width_m, wall.height_m, albedo, darkest * albedo);
+  if (!face) return std::nullopt;
+  face->tile_m = wall.tile_m;
+  face->speckled = wall.speckled;
   return face;
 }
 

@@ -42,7 +42,8 @@ struct SceneWall {
   double width_m = 0.0;   ///< Along x.
   double height_m = 0.0;  ///< Along y.
   Surface surface{};
-  double tile_m = 0.0;  ///< Side of square tiles, every other a little darker; 0: plain.
+  double tile_m = 0.0;    ///< Side of square tiles, every other a little darker; 0: plain.
+  bool speckled = false;  ///< Tiles of any grey down to a fifth instead: texture for stereo.
 };
 
 struct SceneBox {

@@ -94,7 +94,8 @@ SceneBoard ReadBoard(YamlFields& in, const YamlNode& node) {
 }
 
 SceneWall ReadWall(YamlFields& in, const YamlNode& node) {
-  static const Keys kKeys = {"name", "pose", "width_m", "height_m", "surface", "tile_m"};
+  static const Keys kKeys = {"name",    "pose",   "width_m",  "height_m",
+                             "surface", "tile_m", "speckle_m"};
   SceneWall wall;
   if (!in.IsMap(node, "wall", kKeys)) return wall;
   wall.name = NameAt(in, node);
@@ -103,6 +104,13 @@ SceneWall ReadWall(YamlFields& in, const YamlNode& node) {
   wall.height_m = in.RealAt(node, "height_m");
   wall.surface = SurfaceAt(in, node, "surface", wall.surface);
   wall.tile_m = in.NonNegativeAt(node, "tile_m", wall.tile_m);
+  if (const YamlNode* speckle = node.Find("speckle_m")) {
+    if (node.Find("tile_m") != nullptr) {
+      in.Fail(speckle->line, "speckle_m", "expected either tile_m or speckle_m");
+    }
+    wall.speckled = true;
+    wall.tile_m = in.NonNegativeAt(node, "speckle_m", 0.0);
+  }
   return wall;
 }
 

@@ -2,8 +2,20 @@
 #include "eval/simulator/view_surface.h"
 
 #include <cmath>
+#include <cstdint>
 
 namespace sextant {
+namespace {
+
+// A number in [0, 1) of the cell's own: the finaliser of splitmix64 (Steele et al. 2014).
+double Speckle(int cell) {
+  auto bits = static_cast<std::uint64_t>(cell) + 0x9e3779b97f4a7c15U;
+  bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
+  bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebU;
+  return static_cast<double>((bits ^ (bits >> 31U)) >> 11U) * 0x1p-53;
+}
+
+}  // namespace
 
 std::optional<ViewRectangle> MakeViewRectangle(const Rigid3d& cam_from_rectangle, double width_m,
                                                double height_m) {
@@ -46,7 +58,9 @@ ViewPatch ViewRectangle::PatchAt(const ViewHit& hit) const {
   const int column = static_cast<int>((hit.u_m + half_width_m) / tile_m);
   const int row = static_cast<int>((hit.v_m + half_height_m) / tile_m);
   const int columns = static_cast<int>(2.0 * half_width_m / tile_m) + 1;
-  return {0, row * columns + column, (row + column) % 2 == 0 ? white : black};
+  const int cell = row * columns + column;
+  if (speckled) return {0, cell, black + (white - black) * Speckle(cell)};
+  return {0, cell, (row + column) % 2 == 0 ? white : black};
 }
 
 std::optional<ViewHit> ViewCylinder::Meet(const Eigen::Vector3d& ray) const {

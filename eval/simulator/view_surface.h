@@ -37,7 +37,8 @@ struct ViewRectangle {
   std::optional<BoardHole> hole{};
   std::optional<BoardPrint> print{};  ///< None: plain, or in squares of tile_m where that is > 0.
   double tile_m = 0.0;
-  double white = 0.0;  ///< Radiance.
+  bool speckled = false;  ///< Each square has a radiance of its own, between black and white.
+  double white = 0.0;     ///< Radiance.
   double black = 0.0;
   Eigen::Vector3d center_in_cam = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_in_cam = Eigen::Vector3d::Zero();  ///< Of the side that is seen.

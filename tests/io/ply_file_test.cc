@@ -145,5 +145,21 @@ TEST(PlyFile, ReadsRealScans) {
   for (const Eigen::Vector3d& point : cloud->points) ASSERT_LT(point.norm(), 200.0);
 }
 
+TEST(PlyFile, WhatIsWrittenReadsBack) {
+  PointCloud cloud;
+  cloud.points = {{1.5, -2.25, 3.0}, {0.5, 0.0, -8.0}};
+  cloud.intensity = {7.0F, 9.5F};
+  const std::vector<PlyColor> colors = {{255, 0, 10}, {1, 2, 3}};
+  for (const std::string& bytes : {FormatPly(cloud), FormatPly(cloud, colors)}) {
+    const Expected<PointCloud> read = ParsePly(bytes, "f.ply");
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->points, cloud.points);
+    EXPECT_EQ(read->intensity, cloud.intensity);
+  }
+  cloud.intensity.clear();
+  EXPECT_TRUE(ParsePly(FormatPly(cloud), "f.ply")->intensity.empty());
+  EXPECT_TRUE(ParsePly(FormatPly({}), "f.ply")->points.empty());
+}
+
 }  // namespace
 }  // namespace sextant

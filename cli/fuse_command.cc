@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/load.h"
+#include "cli/pose_file.h"
+#include "eval/cloud_fusion.h"
+#include "io/cloud_file.h"
+#include "io/pcd_file.h"
+#include "io/ply_file.h"
+#include "io/text_file.h"
+#include "io/transform_list.h"
+
+namespace sextant::cli {
+namespace {
+
+// Told apart also by the colour-blind (Okabe and Ito 2008); the last cloud is the grey one.
+constexpr std::array<PlyColor, 6> kColors = {
+    {{230, 159, 0}, {86, 180, 233}, {0, 158, 115}, {240, 228, 66}, {213, 94, 0}, {204, 121, 167}}};
+constexpr PlyColor kLastColor = {150, 150, 150};
+
+Expected<std::vector<Rigid3d>> SensorsFromLidar(const FuseOptions& options) {
+  const std::size_t clouds = options.clouds.size();
+  std::vector<Rigid3d> poses;
+  if (!options.rts_path.empty()) {
+    if (!options.from.empty() || !options.to.empty()) {
+      return MakeError(ErrorCode::kInvalidOption,
+                       "--rts already says where every cloud is: leave out --from and --to");
+    }
+    const Expected<std::vector<Rigid3d>> list = ReadTransformList(options.rts_path);
+    if (!list) return tl::unexpected<Error>(list.error());
+    poses = *list;
+  } else {
+    std::vector<std::string> paths = options.from;
+    if (!options.to.empty()) paths.push_back(options.to);
+    for (const std::string& path : paths) {
+      const Expected<Rigid3d> pose = ReadPoseFile(path);
+      if (!pose) return tl::unexpected<Error>(pose.error());
+      poses.push_back(*pose);
+    }
+  }
+  if (poses.size() == clouds && (options.rts_path.empty() ? !options.to.empty() : true)) {
+    return poses;
+  }
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("expected a transform for each of the {} clouds, in their order: "
+                               "--from for each but the last and --to for that, or --rts with all; "
+                               "got {}",
+                               clouds, poses.size()));
+}
+
+std::string Merged(const FuseOptions& options, const std::vector<PointCloud>& clouds,
+                   const PointCloud& fused) {
+  if (options.out.ends_with(".pcd")) return FormatPcd(fused);
+  std::vector<PlyColor> colors;
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    const PlyColor color = i + 1 == clouds.size() ? kLastColor : kColors[i % kColors.size()];
+    const auto finite =
+        std::ranges::count_if(clouds[i].points, [](const auto& p) { return p.allFinite(); });
+    colors.insert(colors.end(), static_cast<std::size_t>(finite), color);
+  }
+  return FormatPly(fused, colors);
+}
+
+std::string Describe(const FuseOptions& options, const std::vector<PointCloud>& clouds,
+                     const std::vector<Rigid3d>& last_from_cloud) {
+  std::string text;
+  for (std::size_t i = 0; i + 1 < clouds.size(); ++i) {
+    const CloudAgreement agreement = CompareClouds(clouds[i], last_from_cloud[i], clouds.back());
+    text += fmt::format("{}: ", options.clouds[i]);
+    text += agreement.compared == 0
+                ? std::string("sees no surface that the last cloud sees too\n")
+                : fmt::format(
+                      "on surfaces that the last cloud sees too ({:.0f} % of it), {:.1f} mm from "
+                      "them (median; rms {:.1f} mm)\n",
+                      100.0 * agreement.Overlap(), 1e3 * agreement.median_m, 1e3 * agreement.rms_m);
+  }
+  return text;
+}
+
+}  // namespace
+
+int RunFuse(const FuseOptions& options) {
+  if (options.clouds.size() < 2) {
+    return Refuse("fuse", {ErrorCode::kInvalidOption, "expected two clouds or more"});
+  }
+  if (!options.out.ends_with(".pcd") && !options.out.ends_with(".ply")) {
+    return Refuse("fuse",
+                  {ErrorCode::kInvalidOption, options.out + ": expected a name in .ply or .pcd"});
+  }
+  const Expected<std::vector<Rigid3d>> sensors = SensorsFromLidar(options);
+  if (!sensors) return Refuse("fuse", sensors.error());
+  std::vector<PointCloud> clouds;
+  std::vector<Rigid3d> last_from_cloud;
+  for (std::size_t i = 0; i < options.clouds.size(); ++i) {
+    Expected<PointCloud> cloud = ReadCloud(options.clouds[i]);
+    if (!cloud) return Refuse("fuse", cloud.error());
+    clouds.push_back(std::move(*cloud));
+    last_from_cloud.push_back(sensors->back() * (*sensors)[i].Inverse());
+  }
+  last_from_cloud.back() = Rigid3d{};  // Its points stay as they are, to the bit.
+  const PointCloud fused = FuseClouds(clouds, last_from_cloud);
+  if (const Expected<void> ok = WriteFileAtomically(options.out, Merged(options, clouds, fused));
+      !ok) {
+    return Refuse("fuse", ok.error());
+  }
+  fmt::print("{}{}: {} points of {} clouds in the frame of {}\n",
+             Describe(options, clouds, last_from_cloud), options.out, fused.points.size(),
+             clouds.size(), options.clouds.back());
+  return kAnswered;
+}
+
+}  // namespace sextant::cli

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "eval/experiment/scene_sight.h"
+#include "eval/experiment/trials.h"
+#include "solvers/average.h"
+#include "solvers/kabsch.h"
+
+namespace sextant {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+struct Settings : SceneSettings {
+  int scans = 100;
+  double interval_s = 0.1;
+};
+
+enum Measured : int { kTranslationMm, kRotationDeg, kXM, kYM, kZM };
+
+const std::vector<Metric>& Metrics() {
+  static const std::vector<Metric> metrics = {
+      {"translation_mm", "distance of the averaged translation from the truth"},
+      {"rotation_deg", "angle of the averaged rotation against the truth"},
+      {"x_m", "averaged translation"},
+      {"y_m", "averaged translation"},
+      {"z_m", "averaged translation"},
+  };
+  return metrics;
+}
+
+const ParameterSet<Settings>& Parameters() {
+  static const ParameterSet<Settings> set = [] {
+    ParameterSet<Settings> options;
+    AddSceneSettings(options)
+        .Count("scans", &Settings::scans, 1, 10'000, "averaged; a row after 1, 2, 3, 5, 7, 10 ...")
+        .Real("interval_s", &Settings::interval_s, "s", 0.0, 1e6, "from one scan to the next");
+    return options;
+  }();
+  return set;
+}
+
+// 1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100 and so on.
+bool IsReported(int scans) {
+  int digits = scans;
+  while (digits >= 100 && digits % 10 == 0) digits /= 10;
+  for (const int step : {1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70}) {
+    if (digits == step) return true;
+  }
+  return false;
+}
+
+class AverageTrials final : public Trials {
+ public:
+  AverageTrials(SceneSight sight, const Settings& settings)
+      : sight_(std::move(sight)), scans_(settings.scans), interval_s_(settings.interval_s) {}
+
+  const std::vector<std::string>& subjects() const override {
+    static const std::vector<std::string> names = {
+        "true mean", "paper's formula", "original's running average", "kabsch of all pairs"};
+    return names;
+  }
+
+  // The boards hang where they hang and the unit is the same one: what a trial averages is noise.
+  void Run(const TrialId& id, TrialRows& rows) const override {
+    const Scene scene = sight_.HangBoards(id.seed);
+    std::vector<Rigid3d> answers;
+    std::vector<Eigen::Vector3d> in_cam;
+    std::vector<Eigen::Vector3d> in_lidar;
+    for (int scan = 0; scan < scans_; ++scan) {
+      const Expected<CalibrationProblem> seen =
+          sight_.Look(scene, id.seed, scan, interval_s_ * scan);
+      if (!seen) continue;
+      const PointSets points = PointsOf(seen->pairs_3d3d);
+      const Expected<KabschFit> fit = FitKabsch(points.in_cam, points.in_lidar);
+      if (!fit) continue;
+      answers.push_back(fit->b_from_a);
+      in_cam.insert(in_cam.end(), points.in_cam.begin(), points.in_cam.end());
+      in_lidar.insert(in_lidar.end(), points.in_lidar.begin(), points.in_lidar.end());
+      const int count = static_cast<int>(answers.size());
+      if (!IsReported(count)) continue;
+      int subject = 0;
+      for (const RotationAverage kind : {RotationAverage::kChordal, RotationAverage::kQuaternionSum,
+                                         RotationAverage::kOriginalRunning}) {
+        Measure(AveragePoses(answers, kind), rows.Add(subject++, count));
+      }
+      Measure(FitKabsch(in_cam, in_lidar).map([](const KabschFit& all) { return all.b_from_a; }),
+              rows.Add(subject, count));
+    }
+  }
+
+ private:
+  void Measure(const Expected<Rigid3d>& pose, MetricValues values) const {
+    if (!pose) return;
+    const PoseDistance error = DistanceBetween(*pose, sight_.cam_from_lidar());
+    values.Set(kTranslationMm, 1e3 * error.translation_m);
+    values.Set(kRotationDeg, kDegPerRad * error.rotation_rad);
+    values.Set(kXM, pose->translation.x());
+    values.Set(kYM, pose->translation.y());
+    values.Set(kZM, pose->translation.z());
+  }
+
+  SceneSight sight_;
+  int scans_;
+  double interval_s_;
+};
+
+Expected<TrialsPtr> Make(const KindArguments& arguments) {
+  const Expected<Settings> settings = Parameters().Parse(arguments.parameters);
+  if (!settings) return tl::unexpected<Error>(settings.error());
+  Expected<SceneSight> sight = SceneSight::Make(*settings, arguments.folder);
+  if (!sight) return tl::unexpected<Error>(sight.error());
+  return std::make_shared<AverageTrials>(std::move(*sight), *settings);
+}
+
+}  // namespace
+
+TrialKind SceneAverageKind() {
+  return {.name = "scene_average",
+          .summary = "answers of many scans of one session, averaged in four ways",
+          .takes_solvers = false,
+          .parameters = Parameters().Describe(),
+          .metrics = Metrics(),
+          .trials_per_block = 1,
+          .make = Make};
+}
+
+}  // namespace sextant

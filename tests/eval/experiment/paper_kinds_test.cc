@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "eval/experiment/experiment.h"
+#include "support/source_tree.h"
+
+namespace sextant::test {
+namespace {
+
+// Values of one metric in the first trials of the first condition, by subject.
+std::map<std::string, std::vector<double>> Try(const std::string& text, const std::string& metric,
+                                               int trials) {
+  const std::string file = (SourceRoot() / "experiments" / "try.yaml").string();
+  const Expected<Experiment> experiment =
+      ParseExperiment(text, file, BuiltinKinds(), BuiltinSolvers());
+  EXPECT_TRUE(experiment) << experiment.error().message;
+  if (!experiment) return {};
+  const Condition& condition = experiment->conditions[0];
+  TrialRows rows(experiment->metrics.size(), experiment->wanted);
+  for (int i = 0; i < trials; ++i) {
+    const auto trial = static_cast<std::uint64_t>(i);
+    rows.BeginTrial(trial);
+    condition.trials->Run({trial, SeedOf(*experiment, condition, trial)}, rows);
+  }
+  std::size_t column = 0;
+  while (experiment->metrics[column].name != metric) ++column;
+  std::map<std::string, std::vector<double>> values;
+  for (std::size_t r = 0; r < rows.keys().size(); ++r) {
+    values[condition.trials->subjects()[rows.keys()[r].subject]].push_back(
+        rows.values()[r * rows.metrics() + column]);
+  }
+  return values;
+}
+
+std::vector<double> TryOne(const std::string& text, const std::string& metric, int trials,
+                           const std::string& subject) {
+  return Try(text, metric, trials)[subject];
+}
+
+TEST(PaperKinds, SceneWithoutNoiseGivesTheTruth) {
+  const std::string points =
+      "kind: scene\ntrials: 1\nsolvers: [kabsch]\nparameters: {scene: "
+      "scenes/paper_two_boards.yaml, lidar: noise, lidar_sigma_m: 0, tag_sigma_px: 1e-6}\n";
+  for (const double off : TryOne(points, "translation_mm", 3, "kabsch")) EXPECT_LT(off, 1e-3);
+  const std::string pixels =
+      "kind: scene\ntrials: 1\nsolvers: [epnp]\nparameters: {scene: scenes/paper_rot_data.yaml, "
+      "lidar: noise, lidar_sigma_m: 0, camera: marked, mark_sigma_px: 0, translation_m: [0.785, "
+      "-0.52, -0.69], rotation_deg: [2.6, -15, 0]}\n";
+  for (const double x : TryOne(pixels, "estimated_x_m", 3, "epnp")) EXPECT_NEAR(x, 0.785, 1e-6);
+  for (const double kept : TryOne(pixels, "inliers", 1, "epnp")) EXPECT_EQ(kept, 20.0);
+}
+
+// All boards are about 2 m before the camera: what is told 13 % too long is taken for farther.
+TEST(PaperKinds, WrongFocalLengthsMoveTheCameraAlongItsAxis) {
+  const std::string text =
+      "kind: scene\ntrials: 1\nsolvers: [epnp]\nparameters: {scene: scenes/paper_rot_data.yaml, "
+      "lidar: noise, lidar_sigma_m: 0, camera: marked, mark_sigma_px: 0, told_focal_error: 0.13}\n";
+  for (const double z : TryOne(text, "z_mm", 3, "epnp")) {
+    EXPECT_GT(z, 150.0);
+    EXPECT_LT(z, 400.0);
+  }
+}
+
+TEST(PaperKinds, AveragedScansAreNearerThanOne) {
+  const std::string text =
+      "kind: scene_average\ntrials: 1\nparameters: {scene: scenes/paper_two_boards.yaml, lidar: "
+      "noise, scans: 50}\n";
+  const std::vector<double> mean = TryOne(text, "translation_mm", 6, "true mean");
+  constexpr std::size_t kReported = 10;  // After 1, 2, 3, 5, 7, 10, 15, 20, 30 and 50 scans.
+  ASSERT_EQ(mean.size(), 6 * kReported);
+  double first = 0.0;
+  double last = 0.0;
+  for (std::size_t i = 0; i < mean.size(); i += kReported) {
+    first += mean[i] * mean[i];
+    last += mean[i + kReported - 1] * mean[i + kReported - 1];
+  }
+  EXPECT_LT(std::sqrt(last), 0.5 * std::sqrt(first));  // 1/sqrt(50) is 0.14.
+}
+
+TEST(PaperKinds, BoardsInScansAndImagesAreFound) {
+  const std::string scan = "kind: board_scan\ntrials: 1\n";
+  auto corners = Try(scan, "corner_mm", 4);
+  for (const char* extractor : {"lines3d_raw", "plane_lines", "rectangle"}) {
+    for (const double off : corners[extractor]) EXPECT_LT(off, 150.0) << extractor;
+  }
+  for (const double gap : TryOne(scan, "gap_mm", 4, "rectangle")) EXPECT_EQ(gap, 0.0);
+  const std::string image =
+      "kind: board_image\ntrials: 1\nparameters: {camera_model: pinhole, distance_m: 1.5}\n";
+  for (const auto& [print, errors] : Try(image, "corner_mm", 1)) {
+    for (const double off : errors) EXPECT_LT(off, 10.0) << print;
+  }
+}
+
+TEST(PaperKinds, RefusesWhatCannotBe) {
+  const auto message = [](const std::string& parameters) {
+    const std::string file = (SourceRoot() / "experiments" / "try.yaml").string();
+    const Expected<Experiment> experiment =
+        ParseExperiment("kind: scene\ntrials: 1\nsolvers: [kabsch]\nparameters: " + parameters,
+                        file, BuiltinKinds(), BuiltinSolvers());
+    return experiment ? std::string("nothing refused") : experiment.error().message;
+  };
+  EXPECT_THAT(message("{scene: scenes/nowhere.yaml}"), testing::HasSubstr("nowhere.yaml"));
+  const std::string scene = "{scene: scenes/paper_two_boards.yaml, ";
+  EXPECT_THAT(message(scene + "translation_m: [1, 2]}"), testing::HasSubstr("expected 3 numbers"));
+  EXPECT_THAT(message(scene + "extractor: lines}"), testing::HasSubstr("lines3d"));
+  EXPECT_THAT(message(scene + "lidar_model: vlp17}"), testing::HasSubstr("vlp16"));
+  EXPECT_THAT(message(scene + "camera: tag}"), testing::HasSubstr("tags"));
+  EXPECT_THAT(message("{scene: scenes/paper_hollow.yaml, translation_m: [0, 0, -9]}"),
+              testing::Not(testing::HasSubstr("nothing refused")));
+}
+
+}  // namespace
+}  // namespace sextant::test
