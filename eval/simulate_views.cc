@@ -26,17 +26,21 @@ Board TheBoard(const ViewSimulation& simulation) {
   return board;
 }
 
-Rigid3d DrawBoardPose(const ViewSimulation& simulation, Random& random) {
-  const double right = random.Uniform(-25.0, 25.0) * kDegree;
-  const double down = random.Uniform(-6.0, 6.0) * kDegree;
+// cam_from_board: its centre about the LiDAR's horizon, which has the narrower view of the two, its
+// front to the camera.
+Rigid3d DrawBoardPose(const ViewSimulation& simulation, const Rigid3d& cam_from_lidar,
+                      Random& random) {
+  const double left = random.Uniform(-25.0, 25.0) * kDegree;
+  const double up = random.Uniform(-5.0, 5.0) * kDegree;
   const double range = random.Uniform(simulation.nearest_m, simulation.farthest_m);
   const double axis = random.Uniform(0.0, 2.0 * std::numbers::pi);
   const double tilt = random.Uniform(0.0, 45.0) * kDegree;
   const double roll = random.Uniform(30.0, 60.0) * kDegree;
-  const Eigen::Vector3d direction =
-      Eigen::Vector3d(std::tan(right), std::tan(down), 1.0).normalized();
+  const Eigen::Vector3d centre_in_lidar =
+      range * Eigen::Vector3d(1.0, std::tan(left), std::tan(up)).normalized();
   const Eigen::Vector3d tilted = tilt * Eigen::Vector3d(std::cos(axis), std::sin(axis), 0.0);
-  return {(ExpSo3(tilted) * ExpSo3({0.0, 0.0, roll})).normalized(), range * direction};
+  return {(ExpSo3(tilted) * ExpSo3({0.0, 0.0, roll})).normalized(),
+          cam_from_lidar * centre_in_lidar};
 }
 
 /// The sight of one board by the rings of a LiDAR.
@@ -216,7 +220,7 @@ Expected<void> Check(const ViewSimulation& simulation) {
 bool TryView(const ViewSimulation& simulation, int index, Random& random, SimulatedViews& session) {
   CalibrationProblem& problem = session.problem;
   const Board& board = problem.boards.front();
-  const Rigid3d cam_from_board = DrawBoardPose(simulation, random);
+  const Rigid3d cam_from_board = DrawBoardPose(simulation, session.true_cam_from_lidar, random);
   const Rigid3d lidar_from_board = session.true_cam_from_lidar.Inverse() * cam_from_board;
   if (!IsInImage(*problem.camera, board, cam_from_board)) return false;
   BoardView view;

@@ -82,19 +82,22 @@ Expected<BoardViewInformation> InformationOfPoses(const BoardView& view, const B
   return information;
 }
 
-Matrix6d EliminateBoard(const Matrix12d& normal) {
-  // Scaled to a unit diagonal, so that rad and m weigh alike in what counts as singular.
+Matrix6d PseudoInverse(const Matrix6d& information) {
   constexpr double kSmallestEigenvalue = 1e-12;
-  const Matrix6d of_board = normal.bottomRightCorner<6, 6>();
   const Vector6d scale =
-      of_board.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scale.asDiagonal() * of_board *
+      information.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scale.asDiagonal() * information *
                                                       scale.asDiagonal());
   const Vector6d inverse = eigen.eigenvalues().unaryExpr(
       [](double e) { return e > kSmallestEigenvalue ? 1.0 / e : 0.0; });
-  const Matrix6d root = normal.topRightCorner<6, 6>() * scale.asDiagonal() * eigen.eigenvectors();
-  const Matrix6d left =
-      normal.topLeftCorner<6, 6>() - root * inverse.asDiagonal() * root.transpose();
+  const Matrix6d vectors = scale.asDiagonal() * eigen.eigenvectors();
+  return vectors * inverse.asDiagonal() * vectors.transpose();
+}
+
+Matrix6d EliminateBoard(const Matrix12d& normal) {
+  const Matrix6d mixed = normal.topRightCorner<6, 6>();
+  const Matrix6d left = normal.topLeftCorner<6, 6>() -
+                        mixed * PseudoInverse(normal.bottomRightCorner<6, 6>()) * mixed.transpose();
   return 0.5 * (left + left.transpose());
 }
 

@@ -32,6 +32,10 @@ Expected<BoardViewInformation> InformationOfPoses(const BoardView& view, const B
                                                   const Rigid3d& cam_from_lidar,
                                                   const Rigid3d& cam_from_board);
 
+/// Of a symmetric matrix without negative eigenvalues, over (rad, m): directions that are singular
+/// after scaling to a unit diagonal are left out.
+Matrix6d PseudoInverse(const Matrix6d& information);
+
 /// H_xx - H_xb H_bb^+ H_bx: the Fisher information of a view on cam_from_lidar [rad, m], the pose
 /// of its board unknown. Views are independent, so that informations add up. Singular where one of
 /// the sensors leaves a direction of the board open: that is no error.

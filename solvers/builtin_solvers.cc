@@ -18,6 +18,7 @@
   X(Clique)                \
   X(DropWorst)             \
   X(Refine)                \
+  X(Joint)                 \
   X(Average)
 
 namespace sextant {

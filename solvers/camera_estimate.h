@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "geometry/camera.h"
+#include "solvers/estimated_number.h"
 
 namespace sextant {
 
-/// An intrinsic that was estimated along with the pose.
-struct EstimatedIntrinsic {
-  std::string name;  ///< See IntrinsicName.
-  double value = 0.0;
-  std::optional<double> sigma;  ///< None where the data leaves no residual to judge by.
-};
+/// An intrinsic that was estimated along with the pose; named as IntrinsicName does.
+using EstimatedIntrinsic = EstimatedNumber;
 
 /// The camera that goes with a pose, where it was estimated too.
 struct CameraEstimate {

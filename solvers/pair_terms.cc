@@ -34,6 +34,13 @@ Expected<PairKind> KindOfPairs(const Solver& inner, const std::string& outer) {
     return tl::unexpected<Error>(std::move(ok.error()));
   }
   const DataNeeds& needs = inner.spec().needs;
+  if (needs.board_views > 0) {
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        fmt::format("{}: '{}' works on raw views of boards, expected a solver of pairs; put {} "
+                    "inside",
+                    outer, inner.spec().name, outer));
+  }
   if (needs.points_per_set > 0 || (needs.pairs_3d3d == 0 && needs.pairs_2d3d == 0)) {
     return MakeError(
         ErrorCode::kInvalidOption,

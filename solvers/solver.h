@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "geometry/calibration_problem.h"
+#include "solvers/board_view_fit.h"
 #include "solvers/camera_estimate.h"
 #include "solvers/evaluation.h"
 
@@ -65,6 +66,13 @@ struct Estimate {
   std::optional<Matrix6d> covariance;
   /// Where the solver estimates the camera too; the covariance of the pose then accounts for it.
   std::optional<CameraEstimate> camera;
+  /// What else was estimated: a range bias of the LiDAR, sizes of boards.
+  std::vector<EstimatedNumber> extras;
+  /// What the reader of the answer must know, each a sentence: what was asked for and could not be
+  /// told, data that contradicts its stated noise.
+  std::vector<std::string> warnings;
+  /// Where the solver works on raw observations: of each of problem.board_views, in their order.
+  std::vector<BoardViewFit> board_views;
   /// Other poses that explain the data about as well, best first (p3p, ippe).
   std::vector<Rigid3d> alternatives;
   std::vector<Stage> stages;

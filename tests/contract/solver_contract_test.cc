@@ -17,6 +17,7 @@
 namespace sextant {
 namespace {
 
+using test::MakeBoardScene;
 using test::MakeScene;
 using test::Scene;
 using test::SceneOptions;
@@ -39,7 +40,8 @@ class SolverContract : public testing::TestWithParam<std::string> {
     if (!spec().is_global) options.max_rotation_rad = 0.1;
     if (!spec().estimates_rotation) options.max_rotation_rad = 0.0;
     options.planar = spec().needs.points_on_plane;
-    Scene scene = MakeScene(options, random);
+    Scene scene =
+        spec().needs.board_views > 0 ? MakeBoardScene(options, random) : MakeScene(options, random);
     if (!spec().is_global) scene.problem.initial_cam_from_lidar = scene.cam_from_lidar;
     Restrict(scene.problem);
     return scene;
@@ -50,6 +52,16 @@ class SolverContract : public testing::TestWithParam<std::string> {
     if (needs.pairs_3d3d == 0) problem.pairs_3d3d.clear();
     if (needs.pairs_2d3d == 0) problem.pairs_2d3d.clear();
     if (needs.points_per_set == 0) problem.point_sets = {};
+    if (needs.board_views == 0) problem.board_views.clear();
+  }
+
+  // How the LiDAR may be mounted elsewhere: what is measured along its rays moves only with
+  // rotations, and what is searched near a start not far.
+  Rigid3d OtherFromLidar() const {
+    Rigid3d other_from_lidar{Eigen::Quaterniond::Identity(), {0.3, -0.2, 0.1}};
+    if (FindsWholePose(spec())) other_from_lidar.rotation = ExpSo3({0.4, -1.1, 0.7});
+    if (spec().needs.board_views > 0) other_from_lidar.translation.setZero();
+    return other_from_lidar;
   }
 
   static constexpr SceneOptions Noisy() { return {.pairs = 12, .sigma_m = 0.01, .sigma_px = 1.0}; }
@@ -63,10 +75,36 @@ class SolverContract : public testing::TestWithParam<std::string> {
       pair.point_in_lidar = other_from_lidar * pair.point_in_lidar;
     }
     for (Eigen::Vector3d& point : problem.point_sets.in_lidar) point = other_from_lidar * point;
+    for (BoardView& view : problem.board_views) {
+      for (Eigen::Vector3d& point : view.face_in_lidar) point = other_from_lidar * point;
+      for (EdgeRay& ray : view.edges) ray.direction = other_from_lidar.rotation * ray.direction;
+      view.lidar_from_board = other_from_lidar * view.lidar_from_board;
+    }
     if (problem.initial_cam_from_lidar) {
       problem.initial_cam_from_lidar = *problem.initial_cam_from_lidar * other_from_lidar.Inverse();
     }
     return problem;
+  }
+
+  // Turns the camera about its axis and its image with it: all that a pinhole with square pixels
+  // lets one move without another image.
+  static Rigid3d RollCamera(double angle, CalibrationProblem& problem) {
+    const Eigen::Rotation2Dd turn(angle);
+    const Eigen::Vector2d centre(problem.camera->cx_px, problem.camera->cy_px);
+    const Rigid3d other_from_cam{ExpSo3({0.0, 0.0, angle}), Eigen::Vector3d::Zero()};
+    for (BoardView& view : problem.board_views) {
+      for (BoardPoints& points : view.printed) {
+        for (Eigen::Vector2d& pixel : points.pixels) pixel = centre + turn * (pixel - centre);
+        const auto size = points.covariance_px2.rows();
+        Eigen::MatrixXd turns = Eigen::MatrixXd::Zero(size, size);
+        for (Eigen::Index i = 0; i < size; i += 2) {
+          turns.block<2, 2>(i, i) = turn.toRotationMatrix();
+        }
+        points.covariance_px2 = turns * points.covariance_px2 * turns.transpose();
+      }
+      view.cam_from_board = other_from_cam * view.cam_from_board;
+    }
+    return other_from_cam;
   }
 
   SolverPtr solver_;
@@ -114,10 +152,7 @@ TEST_P(SolverContract, RecoversExactData) {
 TEST_P(SolverContract, AnswerMovesWithTheLidarFrame) {
   Random random(2);
   const Scene scene = SceneFor(Noisy(), random);
-  Rigid3d other_from_lidar{Eigen::Quaterniond::Identity(), {0.3, -0.2, 0.1}};
-  if (spec().is_global && spec().estimates_rotation) {
-    other_from_lidar.rotation = ExpSo3({0.4, -1.1, 0.7});
-  }
+  const Rigid3d other_from_lidar = OtherFromLidar();
   const Expected<SolveReport> here = solver_->Solve(scene.problem);
   const Expected<SolveReport> there = solver_->Solve(MoveLidar(scene.problem, other_from_lidar));
   ASSERT_TRUE(here) << here.error().message;
@@ -128,8 +163,9 @@ TEST_P(SolverContract, AnswerMovesWithTheLidarFrame) {
 TEST_P(GlobalPointPairContract, AnswerMovesWithTheCameraFrame) {
   Random random(3);
   const Scene scene = SceneFor(Noisy(), random);
-  const Rigid3d other_from_cam{ExpSo3({0.4, -1.1, 0.7}), {0.3, -0.2, 0.1}};
   CalibrationProblem moved = scene.problem;
+  Rigid3d other_from_cam{ExpSo3({0.4, -1.1, 0.7}), {0.3, -0.2, 0.1}};
+  if (spec().needs.board_views > 0) other_from_cam = RollCamera(1.1, moved);
   for (Pair3d3d& pair : moved.pairs_3d3d) pair.point_in_cam = other_from_cam * pair.point_in_cam;
   const Expected<SolveReport> here = solver_->Solve(scene.problem);
   const Expected<SolveReport> there = solver_->Solve(moved);
@@ -144,6 +180,11 @@ TEST_P(SolverContract, OrderOfThePairsDoesNotMatter) {
   std::reverse(reversed.pairs_3d3d.begin(), reversed.pairs_3d3d.end());
   std::reverse(reversed.pairs_2d3d.begin(), reversed.pairs_2d3d.end());
   std::reverse(reversed.point_sets.in_cam.begin(), reversed.point_sets.in_cam.end());
+  std::reverse(reversed.board_views.begin(), reversed.board_views.end());
+  for (BoardView& view : reversed.board_views) {
+    std::reverse(view.face_in_lidar.begin(), view.face_in_lidar.end());
+    std::reverse(view.edges.begin(), view.edges.end());
+  }
   const Expected<SolveReport> forward = solver_->Solve(scene.problem);
   const Expected<SolveReport> backward = solver_->Solve(reversed);
   ASSERT_TRUE(forward && backward);
@@ -233,6 +274,7 @@ TEST_P(SolverContract, RefusesNumbersThatAreNotFinite) {
     if (!problem.pairs_3d3d.empty()) problem.pairs_3d3d[5].point_in_cam.y() = bad;
     if (!problem.pairs_2d3d.empty()) problem.pairs_2d3d[5].pixel.y() = bad;
     if (!problem.point_sets.in_cam.empty()) problem.point_sets.in_cam[5].y() = bad;
+    if (!problem.board_views.empty()) problem.board_views[1].edges[3].direction.y() = bad;
     const Expected<SolveReport> report = solver_->Solve(problem);
     ASSERT_FALSE(report);
     EXPECT_EQ(report.error().code, ErrorCode::kNonFinite);
@@ -289,6 +331,9 @@ TEST_P(SolverContract, NeverAnswersWithNumbersThatAreNotFinite) {
     for (Pair2d3d& pair : scene.problem.pairs_2d3d) pair.point_in_lidar *= scale;
     for (Eigen::Vector3d& point : scene.problem.point_sets.in_cam) point *= scale;
     for (Eigen::Vector3d& point : scene.problem.point_sets.in_lidar) point *= scale;
+    for (BoardView& view : scene.problem.board_views) {
+      for (Eigen::Vector3d& point : view.face_in_lidar) point *= scale;
+    }
     const Expected<SolveReport> report = solver_->Solve(scene.problem);
     if (report) {
       EXPECT_TRUE(report->cam_from_lidar.IsFinite()) << "scale " << scale;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+
 #include "eval/random_scene.h"
+#include "eval/simulate_views.h"
 
 namespace sextant::test {
 
@@ -10,6 +13,19 @@ using SceneOptions = RandomSceneOptions;
 
 inline Scene MakeScene(const SceneOptions& options, Random& random) {
   return MakeRandomScene(options, random);
+}
+
+/// The same kind of scene of raw board views, four pairs each: exact where no noise is asked for,
+/// else with the noise that SimulateViews states.
+inline Scene MakeBoardScene(const SceneOptions& options, Random& random) {
+  const bool exact = options.sigma_m == 0.0 && options.sigma_px == 0.0;
+  const int views = (options.pairs + kCornersPerBoard - 1) / kCornersPerBoard;
+  SimulatedViews session =
+      SimulateViews({.seed = random.Bits(), .views = views, .exact = exact}).value();
+  const auto pairs = static_cast<std::size_t>(options.pairs);
+  session.problem.pairs_3d3d.resize(pairs);
+  session.problem.pairs_2d3d.resize(pairs);
+  return {std::move(session.problem), session.true_cam_from_lidar};
 }
 
 }  // namespace sextant::test
