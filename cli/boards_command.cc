@@ -18,10 +18,22 @@
 namespace sextant::cli {
 namespace {
 
+Expected<LidarBeam> BeamOf(const BoardsOptions& options) {
+  Expected<LidarBeam> beam = FindLidarBeam(options.lidar);
+  if (!beam) return beam;
+  if (options.aperture_m) beam->aperture_h_m = beam->aperture_v_m = *options.aperture_m;
+  if (options.divergence_rad) {
+    beam->divergence_h_rad = beam->divergence_v_rad = *options.divergence_rad;
+  }
+  if (options.growth) beam->growth = *options.growth;
+  return beam;
+}
+
 Expected<BoardSearchOptions> SearchOptionsOf(const BoardsOptions& options) {
-  BoardSearchOptions search{.correct_edges = !options.raw_edges,
-                            .beam = {options.aperture_m, options.divergence_rad},
-                            .seed = options.seed};
+  const Expected<LidarBeam> beam = BeamOf(options);
+  if (!beam) return tl::unexpected<Error>(beam.error());
+  BoardSearchOptions search{
+      .correct_edges = !options.raw_edges, .beam = *beam, .seed = options.seed};
   if (options.region.empty()) return search;
   LidarRegion region;
   for (int i = 0; i < 3; ++i) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/lidar/extractor_study.h"
 #include "eval/simulate_pairs.h"
 
 namespace sextant::cli {
@@ -78,6 +79,14 @@ struct DetectorStudyCommandOptions {
   bool markdown = false;
 };
 
+struct ExtractorStudyCommandOptions {
+  std::vector<std::string> models;  ///< Empty: all.
+  BoardHolding holding = BoardHolding::kHung;
+  int trials = 0;  ///< 0: the list of extractors only.
+  std::uint64_t seed = 1;
+  bool markdown = false;
+};
+
 struct SimulatePairsOptions {
   PairSimulation simulation;
   std::string out = "session.yaml";
@@ -140,8 +149,10 @@ struct BoardsOptions {
   std::string polygons_path;   ///< Edges marked by hand; empty: boards are searched.
   std::vector<double> region;  ///< Low and high corner in the LiDAR frame [m]; empty: everywhere.
   bool raw_edges = false;
-  double aperture_m = 0.0095;
-  double divergence_rad = 0.003;
+  std::string lidar = "vlp16";       ///< Whose beam.
+  std::optional<double> aperture_m;  ///< Both ways, where the sensor is not among them...
+  std::optional<double> divergence_rad;
+  std::optional<double> growth;
   std::uint64_t seed = 1;
   std::string overlay_path;  ///< Empty: none.
   std::string json_path;
@@ -157,6 +168,7 @@ int RunLidars(const LidarsOptions& options);
 int RunBoard(const BoardOptions& options);
 int RunDetect(const DetectOptions& options);
 int RunDetectors(const DetectorStudyCommandOptions& options);
+int RunExtractors(const ExtractorStudyCommandOptions& options);
 int RunConvert(const ConvertOptions& options);
 int RunBag(const BagOptions& options);
 int RunAccuracy(const AccuracyOptions& options);

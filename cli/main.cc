@@ -222,6 +222,7 @@ int Main(int argc, char** argv) {
   BoardOptions board;
   DetectOptions detect;
   DetectorStudyCommandOptions detectors;
+  ExtractorStudyCommandOptions extractors;
   AccuracyOptions accuracy;
   FuseOptions fuse;
   MarkOptions mark;
@@ -240,6 +241,7 @@ int Main(int argc, char** argv) {
   AddAverage(app, average);
   AddCatalogue(app, catalogue);
   AddDetectors(app, detectors);
+  AddExtractors(app, extractors);
   AddLidars(app, lidars);
   AddAccuracy(app, accuracy);
   try {
@@ -256,6 +258,7 @@ int Main(int argc, char** argv) {
   if (app.got_subcommand("board")) return RunBoard(board);
   if (app.got_subcommand("detect")) return RunDetect(detect);
   if (app.got_subcommand("detectors")) return RunDetectors(detectors);
+  if (app.got_subcommand("extractors")) return RunExtractors(extractors);
   if (app.got_subcommand("convert")) return RunConvert(convert);
   if (app.got_subcommand("bag")) return RunBag(bag);
   if (app.got_subcommand("accuracy")) return RunAccuracy(accuracy);

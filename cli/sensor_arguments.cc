@@ -2,6 +2,7 @@
 #include "cli/sensor_arguments.h"
 
 #include <CLI/CLI.hpp>
+#include <map>
 
 namespace sextant::cli {
 
@@ -47,12 +48,15 @@ void AddBoards(CLI::App& app, BoardsOptions& options) {
       ->expected(6);
   command.add_flag("--raw-edges", options.raw_edges,
                    "Take edges where the last return is, uncorrected for steps and beam width");
-  command.add_option("--beam-aperture", options.aperture_m, "Width of a beam as it leaves [m]")
-      ->capture_default_str();
   command
-      .add_option("--beam-divergence", options.divergence_rad,
-                  "Its full angle [rad]; VLP-16: 0.003")
+      .add_option("--lidar", options.lidar,
+                  "Sensor, for the width of its beam: vlp16, os1_64, ... as sextant lidars lists")
       ->capture_default_str();
+  command.add_option("--beam-aperture", options.aperture_m,
+                     "Of another sensor: width of a beam as it leaves [m]");
+  command.add_option("--beam-divergence", options.divergence_rad, "Its full angle [rad]");
+  command.add_option("--edge-growth", options.growth,
+                     "How far beyond an edge the board is still seen, of the beam's width");
   command.add_option("--seed", options.seed, "Of the search for planes")->capture_default_str();
   command.add_option("--overlay", options.overlay_path,
                      "Draw the scan round the boards with their corners (.png; one scan)");
@@ -155,6 +159,26 @@ void AddDetectors(CLI::App& app, DetectorStudyCommandOptions& options) {
       ->capture_default_str();
   command.add_flag("--markdown", options.markdown, "As a page");
   command.footer("Example:\n  sextant detectors --trials 500");
+}
+
+void AddExtractors(CLI::App& app, ExtractorStudyCommandOptions& options) {
+  static const std::map<std::string, BoardHolding> holdings = {{"hung", BoardHolding::kHung},
+                                                               {"stand", BoardHolding::kOnStand},
+                                                               {"hands", BoardHolding::kInHands}};
+  CLI::App& command = *app.add_subcommand(
+      "extractors", "LiDAR corner extractors, and how well each does with each LiDAR");
+  command.add_option("--trials", options.trials, "Simulated scans of each kind; 0: the list only")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--lidars", options.models, "Only these, as sextant lidars names them")
+      ->delimiter(',');
+  command.add_option("--holding", options.holding, "How the boards are held: hung, stand, hands")
+      ->transform(CLI::CheckedTransformer(holdings, CLI::ignore_case));
+  command.add_option("--seed", options.seed, "The same seed gives the same figures")
+      ->capture_default_str();
+  command.add_flag("--markdown", options.markdown, "As a page");
+  command.footer("Example:
+  sextant extractors --trials 200 --lidars vlp16,os1_64");
 }
 
 }  // namespace sextant::cli

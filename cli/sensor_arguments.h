@@ -16,5 +16,6 @@ void AddMark(CLI::App& app, MarkOptions& options);
 void AddBoard(CLI::App& app, BoardOptions& options);
 void AddBag(CLI::App& app, BagOptions& options);
 void AddDetectors(CLI::App& app, DetectorStudyCommandOptions& options);
+void AddExtractors(CLI::App& app, ExtractorStudyCommandOptions& options);
 
 }  // namespace sextant::cli

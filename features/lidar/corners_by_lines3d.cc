@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "features/lidar/corner_geometry.h"
@@ -13,6 +14,7 @@ namespace sextant {
 namespace {
 
 constexpr double kThreshold_m = 0.01;  // The paper's.
+constexpr double kLeastCosine = 0.2;  // Of a ring to a side's normal: along a side it tells little.
 
 struct Line3d {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -137,12 +139,29 @@ class LineCorners {
   std::vector<Line3d> lines_;
 };
 
+// Normals of the sides in the plane, off the board's material.
+std::vector<Eigen::Vector2d> NormalsOf(const BoardPatch& patch, std::size_t sides) {
+  std::vector<Eigen::Vector2d> normals;
+  for (std::size_t side = 0; side < sides; ++side) {
+    const double quarter = 0.5 * std::numbers::pi * static_cast<double>(side % kCornersPerBoard);
+    const double angle = patch.fit.angle_rad + quarter;
+    const double sign = side < kCornersPerBoard ? 1.0 : -1.0;
+    normals.emplace_back(sign * std::sin(angle), -sign * std::cos(angle));
+  }
+  return normals;
+}
+
 // Each last return is off along its ray by the range noise and along its ring by its place within
-// a step. The mean of the latter, half a step, is a bias and not part of a covariance.
+// a step. That it lies within the board by half a step, less what the beam makes the board grow, is
+// an error that all share: it is not taken off, for the paper does not, so it is stated.
 Eigen::MatrixXd CovarianceOf(LineCorners& corners, const BoardPatch& patch) {
-  const auto rows = static_cast<Eigen::Index>(3 * corners.members().size());
+  const std::size_t sides = corners.members().size();
+  const auto rows = static_cast<Eigen::Index>(3 * sides);
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(rows, rows);
-  for (std::size_t side = 0; side < corners.members().size(); ++side) {
+  Eigen::VectorXd shared = Eigen::VectorXd::Zero(rows);
+  Eigen::VectorXd by_growth = Eigen::VectorXd::Zero(rows);
+  const std::vector<Eigen::Vector2d> normals = NormalsOf(patch, sides);
+  for (std::size_t side = 0; side < sides; ++side) {
     for (std::size_t k = 0; k < corners.members()[side].size(); ++k) {
       const EdgePoint& edge = patch.edges[static_cast<std::size_t>(corners.members()[side][k])];
       const Eigen::Vector3d ray = edge.last_return.normalized();
@@ -150,12 +169,17 @@ Eigen::MatrixXd CovarianceOf(LineCorners& corners, const BoardPatch& patch) {
           patch.plane.x_axis * edge.outward.x() + patch.plane.y_axis * edge.outward.y();
       const double range_sigma = patch.plane.sigma_m / std::abs(patch.plane.normal.dot(ray));
       const Eigen::VectorXd by_range = corners.MovedBy(side, k, ray) * range_sigma;
-      const Eigen::VectorXd by_step = corners.MovedBy(side, k, along) *
-                                      std::hypot(edge.step_m / std::sqrt(12.0), edge.beam_sigma_m);
-      covariance += by_range * by_range.transpose() + by_step * by_step.transpose();
+      const Eigen::VectorXd by_place = corners.MovedBy(side, k, along);
+      const double cosine = std::max(kLeastCosine, normals[side].dot(edge.outward));
+      const double spot = edge.SpotAcross(normals[side]) / cosine;
+      const double variance =
+          edge.step_m * edge.step_m / 12.0 + std::pow(edge.beam.edge_sigma * spot, 2);
+      covariance += by_range * by_range.transpose() + variance * by_place * by_place.transpose();
+      shared += by_place * (edge.beam.growth * spot - 0.5 * edge.step_m);
+      by_growth += by_place * edge.beam.growth_sigma * spot;
     }
   }
-  return covariance;
+  return covariance + shared * shared.transpose() + by_growth * by_growth.transpose();
 }
 
 }  // namespace

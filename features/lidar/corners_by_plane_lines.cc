@@ -19,6 +19,7 @@ struct PlaneLine {
   double offset = 0.0;
   Eigen::Vector2d center = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  double growth_sigma = 0.0;  // Of the offset, alike for all edges of the board.
 
   // By how much the line moves along its normal at a point, by (angle, offset at the centre).
   Eigen::RowVector2d MovedAt(const Eigen::Vector2d& point) const {
@@ -27,14 +28,32 @@ struct PlaneLine {
   }
 };
 
+// Brings the line from where the beam makes the board end to its edge.
+void TakeOffGrowth(const std::vector<EdgePoint>& edges, const std::vector<int>& members,
+                   const std::vector<double>& weights, PlaneLine& line) {
+  double total = 0.0;
+  double outward = 0.0;
+  double growth = 0.0;
+  double sigma = 0.0;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const EdgePoint& edge = edges[static_cast<std::size_t>(members[i])];
+    total += weights[i];
+    outward += weights[i] * line.normal.dot(edge.outward);
+    growth += weights[i] * edge.GrownBy(line.normal);
+    sigma += weights[i] * edge.beam.growth_sigma * edge.SpotAcross(line.normal);
+  }
+  const double sign = outward < 0.0 ? -1.0 : 1.0;
+  line.offset -= sign * growth / total;
+  line.growth_sigma = sign * sigma / total;
+}
+
 // Total least squares with Huber's weights. The noise of a point is along its ring; what the line
 // sees of it is the part along the normal.
 PlaneLine FitLine(const std::vector<EdgePoint>& edges, const std::vector<int>& members) {
   std::vector<double> weights(members.size(), 1.0);
   PlaneLine line;
-  double total = 0.0;
   for (int round = 0; round < kRounds; ++round) {
-    total = 0.0;
+    double total = 0.0;
     line.center.setZero();
     for (std::size_t i = 0; i < members.size(); ++i) {
       line.center += weights[i] * edges[static_cast<std::size_t>(members[i])].in_plane;
@@ -61,14 +80,13 @@ PlaneLine FitLine(const std::vector<EdgePoint>& edges, const std::vector<int>& m
   for (std::size_t i = 0; i < members.size(); ++i) {
     const EdgePoint& edge = edges[static_cast<std::size_t>(members[i])];
     const Eigen::RowVector2d j = line.MovedAt(edge.in_plane);
-    const double along = line.normal.dot(edge.outward);
-    const double variance =
-        along * along * edge.step_m * edge.step_m / 12.0 + edge.beam_sigma_m * edge.beam_sigma_m;
+    const double variance = edge.VarianceAcross(line.normal);
     information += weights[i] * j.transpose() * j;
     noise += weights[i] * weights[i] * variance * j.transpose() * j;
   }
   const Eigen::Matrix2d inverse = information.inverse();
   line.covariance = inverse * noise * inverse;
+  TakeOffGrowth(edges, members, weights, line);
   return line;
 }
 
@@ -85,6 +103,7 @@ Expected<LidarCorners> CornersByPlaneLines(const BoardPatch& patch, const Board&
   const int count = SidesOf(board);
   Eigen::MatrixXd by_plane(3 * count, 3);
   Eigen::MatrixXd by_lines = Eigen::MatrixXd::Zero(3 * count, 2 * count);
+  Eigen::VectorXd by_growth(3 * count);
   Eigen::MatrixXd of_lines = Eigen::MatrixXd::Zero(2 * count, 2 * count);
   Eigen::Matrix<double, 3, 2> axes;
   axes << patch.plane.x_axis, patch.plane.y_axis;
@@ -106,10 +125,13 @@ Expected<LidarCorners> CornersByPlaneLines(const BoardPatch& patch, const Board&
     by_plane.middleRows<3>(3 * i) = MovedByPlane(patch.plane, patch.fit.center, corner);
     by_lines.block<3, 2>(3 * i, 2 * a) = axes * inverse.col(0) * before.MovedAt(corner);
     by_lines.block<3, 2>(3 * i, 2 * b) = axes * inverse.col(1) * after.MovedAt(corner);
+    by_growth.segment<3>(3 * i) =
+        axes * inverse * Eigen::Vector2d(before.growth_sigma, after.growth_sigma);
     of_lines.block<2, 2>(2 * i, 2 * i) = lines[static_cast<std::size_t>(i)].covariance;
   }
   corners.covariance = by_plane * patch.plane.covariance * by_plane.transpose() +
-                       by_lines * of_lines * by_lines.transpose();
+                       by_lines * of_lines * by_lines.transpose() +
+                       by_growth * by_growth.transpose();
   corners.checks = ChecksOf(patch, board, corners.in_lidar);
   return corners;
 }

@@ -7,12 +7,11 @@
 #include <optional>
 
 #include "features/lidar/azimuth.h"
+#include "features/lidar/edge_pairs.h"
 
 namespace sextant {
 namespace {
 
-constexpr double kSpotGrowth = 0.33;   // Of the spot's width: how far out an edge is seen.
-constexpr double kSpotSigma = 0.18;    // Of the spot's width: how the edge seen varies.
 constexpr double kMostGapSteps = 2.5;  // Within an interval: one drop-out.
 
 class EdgeFinder {
@@ -53,16 +52,15 @@ class EdgeFinder {
       const double distance = std::abs(plane_.normal.dot(beyond.point - plane_.origin));
       if (Hides(beyond) || distance < 0.01 + 3.0 * plane_.sigma_m) return;
     }
-    const double spot = options_.beam.SpotAt(last.range_m);
     EdgePoint edge{.in_plane = *on,
                    .outward = (*off - *on).normalized(),
                    .step_m = (*off - *on).norm(),
-                   .beam_sigma_m = kSpotSigma * spot,
                    .across = true,
                    .inner = false,
                    .ring = ring,
                    .last_return = last.point};
-    if (options_.correct) edge.in_plane += edge.outward * (0.5 * edge.step_m - kSpotGrowth * spot);
+    if (options_.correct) edge.in_plane += edge.outward * (0.5 * edge.step_m);
+    SetSpot(plane_, last.point, options_, edge);
     edges.push_back(edge);
   }
 
@@ -113,21 +111,20 @@ class EdgeFinder {
       step =
           std::clamp(std::abs(WrapAngle(beyond->azimuth_rad - last.azimuth_rad)), 0.5 * step, step);
     }
-    const double spot = options_.beam.SpotAt(last.range_m);
-    const double correction =
-        options_.correct ? 0.5 * step - kSpotGrowth * spot / last.range_m : 0.0;
+    const double correction = options_.correct ? 0.5 * step : 0.0;
     const auto edge = MeetTurned(last, sign * correction);
     const auto on = MeetTurned(last, 0.0);
     const auto off = MeetTurned(last, sign * step);
     if (!edge || !on || !off || (*off - *on).norm() < 1e-9) return;
-    edges.push_back({.in_plane = *edge,
-                     .outward = (*off - *on).normalized(),
-                     .step_m = (*off - *on).norm(),
-                     .beam_sigma_m = kSpotSigma * spot,
-                     .across = false,
-                     .inner = inner,
-                     .ring = ring,
-                     .last_return = last.point});
+    EdgePoint found{.in_plane = *edge,
+                    .outward = (*off - *on).normalized(),
+                    .step_m = (*off - *on).norm(),
+                    .across = false,
+                    .inner = inner,
+                    .ring = ring,
+                    .last_return = last.point};
+    SetSpot(plane_, last.point, options_, found);
+    edges.push_back(found);
   }
 
   const ScanRings& scan_;
@@ -138,9 +135,25 @@ class EdgeFinder {
 
 }  // namespace
 
+void SetSpot(const LidarPlane& plane, const Eigen::Vector3d& ray, const EdgeOptions& options,
+             EdgePoint& edge) {
+  edge.beam = options.beam;
+  if (!options.correct) edge.beam.growth = 0.0;
+  const double range = ray.norm();
+  const Eigen::Vector3d left = Eigen::Vector3d(-ray.y(), ray.x(), 0.0).normalized();
+  const Eigen::Vector3d up = ray.cross(left) / range;
+  const auto center = plane.Meet(ray);
+  const auto beside = plane.Meet(ray + options.beam.WidthAt(range) * left);
+  const auto above = plane.Meet(ray + options.beam.HeightAt(range) * up);
+  if (!center || !beside || !above) return;
+  edge.spot_h = *beside - *center;
+  edge.spot_v = *above - *center;
+}
+
 std::vector<EdgePoint> FindEdgePoints(const ScanRings& scan, const LidarPlane& plane,
                                       std::span<const std::size_t> on_plane,
                                       const EdgeOptions& options) {
+  if (!scan.has_rings()) return FindEdgePairs(scan, plane, on_plane, options);
   const EdgeFinder finder(scan, plane, options);
   std::vector<EdgePoint> edges;
   int ring = 0;

@@ -175,6 +175,7 @@ class MarkedPatch {
   // Whether the ring's next return outwards is on the plane too: the area ends there, not the
   // board.
   bool GoesOn(const EdgePoint& end, const LidarPlane& plane) const {
+    if (!scan_.has_rings()) return false;  // Edge points are pairs there, with one ray off it.
     const std::span<const RingPoint> ring = scan_.ring(end.ring);
     const auto last = std::ranges::find(ring, end.last_return, &RingPoint::point);
     const auto at = static_cast<std::size_t>(last - ring.begin());

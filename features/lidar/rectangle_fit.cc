@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,8 +29,9 @@ const std::array<Eigen::Vector2d, 4> kNormals = {Eigen::Vector2d(0, -1), Eigen::
 
 struct SidePlace {
   int side = -1;
-  double distance = 0.0;                              // Signed, beyond the side [m].
-  double sigma = 1.0;                                 // [m].
+  double distance = 0.0;      // Signed, beyond the side [m].
+  double sigma = 1.0;         // [m].
+  double growth_sigma = 0.0;  // Signed as the distance, alike for all edges [m].
   Eigen::Vector3d by_pose = Eigen::Vector3d::Zero();  // Derivative by (center, angle).
 };
 
@@ -66,11 +68,12 @@ class Fitter {
     const Eigen::Vector2d& normal = kNormals[static_cast<std::size_t>(side)];
     SidePlace place;
     place.side = inner ? side + kCornersPerBoard : side;
-    place.distance = normal.dot(q) - normal.cwiseAbs().dot(half);
-    const double along = normal.dot(out);
-    place.sigma = std::sqrt(along * along * edge.step_m * edge.step_m / 12.0 +
-                            edge.beam_sigma_m * edge.beam_sigma_m + 1e-12);
     const Eigen::Vector2d normal_in_plane = turn * normal;
+    const double outward = inner ? -1.0 : 1.0;  // A grown board has a smaller opening.
+    place.distance =
+        normal.dot(q) - normal.cwiseAbs().dot(half) - outward * edge.GrownBy(normal_in_plane);
+    place.sigma = std::sqrt(edge.VarianceAcross(normal_in_plane) + 1e-12);
+    place.growth_sigma = outward * edge.beam.growth_sigma * edge.SpotAcross(normal_in_plane);
     place.by_pose << -normal_in_plane, normal.x() * in_board.y() - normal.y() * in_board.x();
     return place;
   }
@@ -108,6 +111,7 @@ class Fitter {
                      .rms_m = 0.0,
                      .share = 0.0};
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d by_growth = Eigen::Vector3d::Zero();
     double chi2 = 0.0;
     double squares = 0.0;
     int used = 0;
@@ -121,6 +125,7 @@ class Fitter {
       if (!belongs) continue;
       const Eigen::Vector3d j = place.by_pose / place.sigma;
       information += j * j.transpose();
+      by_growth += j * place.growth_sigma / place.sigma;
       chi2 += r * r;
       squares += place.distance * place.distance;
       ++used;
@@ -134,7 +139,9 @@ class Fitter {
     // A prior of four residuals of one sigma keeps few residuals from claiming none at all.
     constexpr double kPrior = 4.0;
     const double variance = (chi2 + kPrior) / (used - 3 + kPrior);
-    fit.covariance = variance * information.inverse();
+    const Eigen::Matrix3d inverse = information.inverse();
+    const Eigen::Vector3d moved = inverse * by_growth;  // Nothing where opposite sides cancel.
+    fit.covariance = variance * inverse + moved * moved.transpose();
     fit.rms = std::sqrt(chi2 / used);
     fit.rms_m = std::sqrt(squares / used);
     fit.share = static_cast<double>(used) / static_cast<double>(edges_.size());

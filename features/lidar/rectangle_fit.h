@@ -26,7 +26,8 @@ struct RectangleFit {
 };
 
 /// Robust least squares of the edge points' distances to their sides, over position and angle. The
-/// residual's sigma is that of one step along the ring, seen across the side, and the beam's width.
+/// residual's sigma is that of one step along the ring, seen across the side, and the beam's width;
+/// how far the beam makes the board grow is taken off and in doubt for all edges alike.
 ///
 /// The board hangs from corner 0: angles within 45 degrees of that are tried, so that a square
 /// board has one answer. None for fewer than four edge points and where a direction is left open

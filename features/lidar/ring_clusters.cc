@@ -14,25 +14,30 @@ constexpr double kSlopeWithinRing = 3.73;    // tan 75 deg.
 constexpr double kSlopeBetweenRings = 1.73;  // tan 60 deg.
 constexpr double kJumpsBetweenRings = 2.0;  // Rings have biases of their own: 8 cm apart were seen.
 constexpr int kPlaces = 5;
-constexpr double kMostGapSteps = 3.5;  // A few drop-outs do not part a surface.
+constexpr double kMostGapSteps = 3.5;     // A few drop-outs do not part a surface.
+constexpr double kMostGapSpacings = 6.0;  // A rosette's loops leave gaps between them.
 
-bool Continues(const RingPoint& a, const RingPoint& b, double step_rad,
+// Between returns of one ring that belong together.
+double MostGap(const ScanRings& scan) {
+  if (scan.has_rings()) return kMostGapSteps * scan.azimuth_step_rad();
+  return kMostGapSpacings * std::sqrt(scan.azimuth_step_rad() * scan.elevation_step_rad());
+}
+
+bool Continues(const RingPoint& a, const RingPoint& b, double most_gap_rad,
                const ClusterOptions& options) {
   const double gap = b.azimuth_rad - a.azimuth_rad;
   const double jump = std::abs(b.range_m - a.range_m);
-  return gap <= kMostGapSteps * step_rad &&
+  return gap <= most_gap_rad &&
          jump <= std::max(options.jump_m, kSlopeWithinRing * gap * a.range_m);
 }
 
 std::vector<RingRun> RunsOf(const ScanRings& scan, int ring, const ClusterOptions& options) {
   std::vector<RingRun> runs;
   const std::span<const RingPoint> points = scan.ring(ring);
+  const double most_gap = MostGap(scan);
   std::size_t first = 0;
   for (std::size_t i = 1; i <= points.size(); ++i) {
-    if (i < points.size() &&
-        Continues(points[i - 1], points[i], scan.azimuth_step_rad(), options)) {
-      continue;
-    }
+    if (i < points.size() && Continues(points[i - 1], points[i], most_gap, options)) continue;
     const double length = (points[i - 1].point - points[first].point).norm();
     if (length <= options.longest_run_m)
       runs.push_back({ring, scan.first(ring) + first, i - first});

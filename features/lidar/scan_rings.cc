@@ -13,6 +13,9 @@ namespace {
 
 constexpr double kNearest_m = 0.01;  // Sensors write zeros for what did not return.
 constexpr int kMostRings = 256;
+constexpr int kFewestRepeating = 4;  // Fewer rings are told by being narrow.
+constexpr double kNarrow_rad = 0.0035;
+constexpr double kNeighbour_cos = 0.99985;  // 1 degree.
 
 double Median(std::vector<double>& values) {
   if (values.empty()) return 0.0;
@@ -40,7 +43,8 @@ std::vector<int> RingsOfElevations(const std::vector<double>& elevations) {
       widest = std::max(widest, elevation - lows.back());
       rings[order[i]] = static_cast<int>(lows.size()) - 1;
     }
-    if (lows.size() < 4 || lows.size() > kMostRings) continue;
+    if (lows.size() < kFewestRepeating && widest < kNarrow_rad) return rings;
+    if (lows.size() < kFewestRepeating || lows.size() > kMostRings) continue;
     std::vector<double> steps;
     for (std::size_t i = 1; i < lows.size(); ++i) steps.push_back(lows[i] - lows[i - 1]);
     const double least = *std::ranges::min_element(steps);
@@ -50,47 +54,82 @@ std::vector<int> RingsOfElevations(const std::vector<double>& elevations) {
   return {};
 }
 
-// Bands as high as the points are apart on average over the solid angle that they cover.
-std::vector<int> BandsOfElevation(const std::vector<double>& elevations,
-                                  const std::vector<double>& azimuths) {
+// Bands of elevation, half as high again as the points are apart on average.
+struct Bands {
+  std::vector<int> of_point;
+  double height_rad = 0.0;
+  double step_rad = 0.0;  // The solid angle of a point by the height.
+};
+
+Bands BandsOf(const std::vector<RingPoint>& points, const std::vector<double>& elevations) {
   const auto [low, high] = std::ranges::minmax(elevations);
-  const auto [left, right] = std::ranges::minmax(azimuths);
-  const double area = std::max((high - low) * (right - left), 1e-12);
-  const double band = std::max(1.5 * std::sqrt(area / static_cast<double>(elevations.size())),
-                               (high - low) / kMostRings + 1e-9);
-  std::vector<int> rings;
-  rings.reserve(elevations.size());
+  const auto [left, right] = std::ranges::minmax(points, {}, &RingPoint::azimuth_rad);
+  const double area = std::max((high - low) * (right.azimuth_rad - left.azimuth_rad), 1e-12);
+  const double area_per_point = area / static_cast<double>(points.size());
+  Bands bands;
+  bands.height_rad = std::max(1.5 * std::sqrt(area_per_point), (high - low) / kMostRings + 1e-9);
+  bands.step_rad = area_per_point / bands.height_rad;
+  bands.of_point.reserve(points.size());
   for (const double elevation : elevations) {
-    rings.push_back(static_cast<int>((elevation - low) / band));
+    bands.of_point.push_back(static_cast<int>((elevation - low) / bands.height_rad));
   }
-  return rings;
+  return bands;
 }
 
-std::vector<int> RecoverRings(const std::vector<RingPoint>& points) {
-  std::vector<double> elevations;
-  elevations.reserve(points.size());
-  for (const RingPoint& point : points) {
-    elevations.push_back(std::asin(point.point.z() / point.range_m));
+// Whether each number stands for an elevation of its own: half of a ring's returns lie within a
+// step to the next ring (in the sine, which is as good). Numbers of lines of a rosette do not, nor
+// those of a turned cloud.
+bool AreRings(const std::vector<int>& ring_of, const std::vector<double>& sines) {
+  const int highest = *std::ranges::max_element(ring_of);
+  std::vector<std::vector<double>> of_ring(static_cast<std::size_t>(highest) + 1);
+  for (std::size_t i = 0; i < ring_of.size(); ++i) {
+    of_ring[static_cast<std::size_t>(ring_of[i])].push_back(sines[i]);
   }
-  std::vector<int> rings = RingsOfElevations(elevations);
-  if (!rings.empty()) return rings;
-  std::vector<double> azimuths;
-  azimuths.reserve(points.size());
-  for (const RingPoint& point : points) azimuths.push_back(point.azimuth_rad);
-  return BandsOfElevation(elevations, azimuths);
+  std::vector<double> middles;
+  std::vector<double> spreads;
+  for (std::vector<double>& ring : of_ring) {
+    if (ring.empty()) continue;
+    middles.push_back(Median(ring));
+    const auto middle = static_cast<std::ptrdiff_t>(ring.size() / 2);
+    const auto quarter = static_cast<std::ptrdiff_t>(ring.size() / 4);
+    std::nth_element(ring.begin(), ring.begin() + quarter, ring.begin() + middle);
+    std::nth_element(ring.begin() + middle, ring.end() - 1 - quarter, ring.end());
+    spreads.push_back(*(ring.end() - 1 - quarter) - ring[static_cast<std::size_t>(quarter)]);
+  }
+  std::ranges::sort(middles);
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < middles.size(); ++i) steps.push_back(middles[i] - middles[i - 1]);
+  return Median(spreads) < std::max(kNarrow_rad, Median(steps));
+}
+
+double Bend(const RingPoint& a, const RingPoint& b, const RingPoint& c) {
+  return std::abs(a.range_m - 2.0 * b.range_m + c.range_m);
+}
+
+bool AreNeighbours(const RingPoint& a, const RingPoint& b) {
+  return a.point.dot(b.point) > kNeighbour_cos * a.range_m * b.range_m;
 }
 
 // A flat surface's second difference of range is noise alone, of sqrt 6 sigma; the median leaves
-// out where objects begin.
-double RangeSigma(const ScanRings& scan) {
+// out where objects begin. `swept`: the returns as the cloud has them, which of a rosette are
+// neighbours where those of a band are not.
+double RangeSigma(const ScanRings& scan, std::span<const RingPoint> swept) {
   constexpr double kSigmaOfMedian = 1.0 / 0.6745;
   std::vector<double> bends;
+  if (!scan.has_rings()) {
+    for (std::size_t i = 2; i < swept.size(); ++i) {
+      if (AreNeighbours(swept[i - 2], swept[i - 1]) && AreNeighbours(swept[i - 1], swept[i])) {
+        bends.push_back(Bend(swept[i - 2], swept[i - 1], swept[i]));
+      }
+    }
+    if (2 * bends.size() > swept.size()) return kSigmaOfMedian * Median(bends) / std::sqrt(6.0);
+    bends.clear();
+  }
   bends.reserve(scan.points().size());
   for (int ring = 0; ring < scan.rings(); ++ring) {
     const std::span<const RingPoint> points = scan.ring(ring);
     for (std::size_t i = 2; i < points.size(); ++i) {
-      bends.push_back(
-          std::abs(points[i - 2].range_m - 2.0 * points[i - 1].range_m + points[i].range_m));
+      bends.push_back(Bend(points[i - 2], points[i - 1], points[i]));
     }
   }
   return kSigmaOfMedian * Median(bends) / std::sqrt(6.0);
@@ -119,14 +158,28 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
     return MakeError(ErrorCode::kMissingData,
                      fmt::format("none of the scan's {} points is a finite return", count));
   }
-  if (ring_of.empty()) ring_of = RecoverRings(kept);
+  std::vector<double> sines;
+  sines.reserve(kept.size());
+  for (const RingPoint& point : kept) sines.push_back(point.point.z() / point.range_m);
+  ScanRings scan;
+  Bands bands;
+  scan.has_rings_ = !ring_of.empty() && AreRings(ring_of, sines);
+  if (!scan.has_rings_) {
+    std::vector<double> elevations = sines;
+    for (double& elevation : elevations) elevation = std::asin(elevation);
+    std::vector<int> repeating;
+    if (ring_of.empty()) repeating = RingsOfElevations(elevations);
+    scan.has_rings_ = !repeating.empty();
+    if (!scan.has_rings_) bands = BandsOf(kept, elevations);
+    ring_of = scan.has_rings_ ? std::move(repeating) : std::move(bands.of_point);
+  }
 
-  // Ring numbers may be sparse or count downwards: order them by their median elevation,
-  // found among sines, which sort alike.
+  // Ring numbers may be sparse or count downwards: order them by their median elevation, found
+  // among sines, which sort alike.
   const int highest = *std::ranges::max_element(ring_of);
   std::vector<std::vector<double>> of_ring(static_cast<std::size_t>(highest) + 1);
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    of_ring[static_cast<std::size_t>(ring_of[i])].push_back(kept[i].point.z() / kept[i].range_m);
+    of_ring[static_cast<std::size_t>(ring_of[i])].push_back(sines[i]);
   }
   std::vector<std::pair<double, int>> by_elevation;
   for (std::size_t ring = 0; ring < of_ring.size(); ++ring) {
@@ -135,7 +188,6 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
   }
   std::ranges::sort(by_elevation);
 
-  ScanRings scan;
   std::vector<std::size_t> place(of_ring.size(), 0);
   scan.starts_.assign(1, 0);
   for (const auto& [elevation, ring] : by_elevation) {
@@ -159,14 +211,18 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
       steps.push_back((it + 1)->azimuth_rad - it->azimuth_rad);
     }
   }
-  scan.azimuth_step_rad_ = Median(steps);
-  scan.range_sigma_m_ = RangeSigma(scan);
+  scan.azimuth_step_rad_ = scan.has_rings_ ? Median(steps) : bands.step_rad;
+  scan.range_sigma_m_ = RangeSigma(scan, kept);
   steps.clear();
   for (std::size_t i = 1; i < by_elevation.size(); ++i) {
     steps.push_back(by_elevation[i].first - by_elevation[i - 1].first);
   }
-  scan.elevation_step_rad_ = Median(steps);
+  scan.elevation_step_rad_ = scan.has_rings_ ? Median(steps) : bands.height_rad;
   return scan;
+}
+
+int ScanRings::RingOf(std::size_t place) const {
+  return static_cast<int>(std::ranges::upper_bound(starts_, place) - starts_.begin()) - 1;
 }
 
 }  // namespace sextant

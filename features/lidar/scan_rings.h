@@ -22,8 +22,8 @@ struct RingPoint {
 class ScanRings {
  public:
   /// Returns that are not finite or nearer than 1 cm are left out. Rings are taken from the cloud;
-  /// where it does not tell them, from elevations that repeat; where none do (a rosette), they are
-  /// bands of elevation as wide as points are apart.
+  /// where it does not tell them, from elevations that repeat. Where none do (a rosette, whatever
+  /// its ring field says), they are bands of elevation somewhat higher than points are apart.
   /// Errors: kMissingData where no return is left; kInvalidInput where a field's length differs
   /// from that of the points.
   static Expected<ScanRings> Build(const PointCloud& cloud);
@@ -37,7 +37,15 @@ class ScanRings {
   /// Place of a ring's first point within points().
   std::size_t first(int ring) const { return starts_[static_cast<std::size_t>(ring)]; }
 
-  /// Median angle between neighbours of a ring, and between neighbouring rings.
+  /// The ring of a place within points().
+  int RingOf(std::size_t place) const;
+
+  /// Whether the sensor sweeps rings; without, rings() are bands, whose points scatter in
+  /// elevation.
+  bool has_rings() const { return has_rings_; }
+
+  /// Median angle between neighbours of a ring, and between neighbouring rings. Of bands: their
+  /// height, and what along them makes a return's share of the solid angle.
   double azimuth_step_rad() const { return azimuth_step_rad_; }
   double elevation_step_rad() const { return elevation_step_rad_; }
 
@@ -47,6 +55,7 @@ class ScanRings {
  private:
   std::vector<RingPoint> points_;
   std::vector<std::size_t> starts_;
+  bool has_rings_ = true;
   double azimuth_step_rad_ = 0.0;
   double elevation_step_rad_ = 0.0;
   double range_sigma_m_ = 0.0;

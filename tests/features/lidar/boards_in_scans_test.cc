@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "eval/lidar/board_scenes.h"
 #include "eval/simulator/lidar_model.h"
 #include "eval/simulator/scan.h"
 #include "features/lidar/corner_extractor.h"
-#include "support/board_scene.h"
 
 namespace sextant::test {
 namespace {
@@ -48,7 +48,7 @@ BoardSearch SearchScan(const Scene& scene, const std::vector<Board>& boards,
   }
   const Expected<ScanRings> rings = ScanRings::Build(scan->cloud);
   BoardSearchOptions options;
-  options.beam = {model.aperture_h_m, model.divergence_h_rad};
+  options.beam = *FindLidarBeam(model.name);
   return *FindBoards(*rings, boards, options);
 }
 
@@ -77,7 +77,7 @@ TEST(BoardsInScans, KnowledgeOfPlaneAndSizePaysAsStated) {
   std::map<std::string, Errors> errors;
   for (int i = 0; i < kScans; ++i) {
     Random random(DeriveSeed(1, "boards_in_scans", 0, static_cast<std::uint64_t>(i)));
-    const Scene scene = TwoBoardsInRoom(1.8, random);
+    const Scene scene = TwoBoardsInRoom({.distance_m = 1.8}, random);
     const std::vector<Board> boards = BoardsIn(scene);
     const BoardSearch search = SearchScan(scene, boards, model, static_cast<std::uint64_t>(i));
     ASSERT_EQ(search.found.size(), 2U) << "scan " << i;
@@ -104,7 +104,7 @@ TEST_P(EveryRingLidar, FindsBothBoards) {
   const LidarModel model = *FindLidarModel(GetParam());
   for (int i = 0; i < 6; ++i) {
     Random random(DeriveSeed(2, GetParam(), 0, static_cast<std::uint64_t>(i)));
-    const Scene scene = TwoBoardsInRoom(1.8, random);
+    const Scene scene = TwoBoardsInRoom({.distance_m = 1.8}, random);
     const std::vector<Board> boards = BoardsIn(scene);
     const BoardSearch search = SearchScan(scene, boards, model, static_cast<std::uint64_t>(i));
     ASSERT_EQ(search.found.size(), 2U) << "scan " << i;
@@ -147,7 +147,7 @@ TEST(BoardsInScans, HollowBoardGivesEightCorners) {
   board.right_bottom_m = 1.0;
   board.hole = BoardHole{.width_m = 0.6, .height_m = 0.6};
   Random random(4);
-  Scene scene = TwoBoardsInRoom(2.0, random);
+  Scene scene = TwoBoardsInRoom({.distance_m = 2.0}, random);
   scene.boards = {Hang(board, {.azimuth_deg = 5.0, .distance_m = 2.2})};
   const BoardSearch search = SearchScan(scene, {board}, model, 1);
   ASSERT_EQ(search.found.size(), 1U);
@@ -171,7 +171,7 @@ TEST(BoardsInScans, TooFewRingsAreSaid) {
   board.top_right_m = 0.484;
   board.right_bottom_m = 0.468;
   Random random(5);
-  Scene scene = TwoBoardsInRoom(2.0, random);
+  Scene scene = TwoBoardsInRoom({.distance_m = 2.0}, random);
   scene.walls.clear();
   scene.boards = {Hang(board, {.distance_m = 5.5})};
   const BoardSearch search = SearchScan(scene, {board}, model, 1);
@@ -183,7 +183,7 @@ TEST(BoardsInScans, TooFewRingsAreSaid) {
 TEST(BoardsInScans, WithoutRingFieldTheSame) {
   const LidarModel model = *FindLidarModel("vlp16");
   Random random(6);
-  const Scene scene = TwoBoardsInRoom(1.8, random);
+  const Scene scene = TwoBoardsInRoom({.distance_m = 1.8}, random);
   const std::vector<Board> boards = BoardsIn(scene);
   Expected<SimulatedScan> scan = SimulateScan(scene, model, {.seed = 1});
   ASSERT_TRUE(scan);

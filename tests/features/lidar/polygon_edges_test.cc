@@ -10,11 +10,11 @@
 #include <ostream>
 #include <string>
 
+#include "eval/lidar/board_scenes.h"
 #include "features/lidar/corner_extractor.h"
 #include "io/acfr_poses.h"
 #include "io/pcd_file.h"
 #include "support/acfr_boards.h"
-#include "support/board_scene.h"
 #include "support/drawn_board.h"
 #include "support/real_data.h"
 
@@ -74,7 +74,7 @@ TEST(PolygonEdges, EveryExtractorMeetsTheTruthAsOnBoardsThatWereFound) {
   std::map<std::string, std::vector<double>> errors;
   for (std::uint64_t i = 0; i < 40; ++i) {
     Random random(DeriveSeed(1, "polygon_edges", 0, i));
-    const Scene scene = NumberedBoards(TwoBoardsInRoom(1.8, random));
+    const Scene scene = NumberedBoards(TwoBoardsInRoom({.distance_m = 1.8}, random));
     const std::vector<Board> boards = BoardsIn(scene);
     const auto patches = PatchesFromPolygons(RingsOf(scene, i), DrawScene(scene), boards);
     ASSERT_TRUE(patches) << i << ": " << patches.error().message;

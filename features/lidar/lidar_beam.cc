@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/lidar/lidar_beam.h"
+
+#include <fmt/format.h>
+
+#include "base/nearest_name.h"
+
+namespace sextant {
+namespace {
+
+constexpr double kRadPerDeg = 0.017453292519943295;
+// Of a receiver that gives the strongest echo, however little of the spot is on the board; the
+// VLP-16 loses the weakest.
+constexpr double kGrowth = 0.31;
+
+struct Entry {
+  const char* name;
+  LidarBeam beam;
+};
+
+LidarBeam Beam(double aperture_h_m, double aperture_v_m, double divergence_h_rad,
+               double divergence_v_rad) {
+  LidarBeam beam;
+  beam.aperture_h_m = aperture_h_m;
+  beam.aperture_v_m = aperture_v_m;
+  beam.divergence_h_rad = divergence_h_rad;
+  beam.divergence_v_rad = divergence_v_rad;
+  beam.growth = kGrowth;
+  return beam;
+}
+
+const std::vector<Entry>& Entries() {
+  static const std::vector<Entry> entries = {
+      {"vlp16", {}},
+      {"hdl32e", Beam(0.0127, 0.0095, 0.003, 0.0015)},
+      {"hdl64e", Beam(0.0127, 0.0095, 0.002, 0.002)},
+      {"os1_64", Beam(0.010, 0.010, 0.13 * kRadPerDeg, 0.13 * kRadPerDeg)},
+      {"os1_128", Beam(0.010, 0.010, 0.18 * kRadPerDeg, 0.18 * kRadPerDeg)},
+      {"pandar40p", Beam(0.0127, 0.0095, 0.003, 0.0015)},
+      {"livox", Beam(0.005, 0.005, 0.03 * kRadPerDeg, 0.28 * kRadPerDeg)},
+  };
+  return entries;
+}
+
+}  // namespace
+
+const std::vector<std::string>& LidarBeamNames() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const Entry& entry : Entries()) list.emplace_back(entry.name);
+    return list;
+  }();
+  return names;
+}
+
+Expected<LidarBeam> FindLidarBeam(std::string_view name) {
+  for (const Entry& entry : Entries()) {
+    if (name == entry.name) return entry.beam;
+  }
+  return MakeError(ErrorCode::kUnknownName, fmt::format("no LiDAR '{}' whose beam is known; {}",
+                                                        name, SuggestName(name, LidarBeamNames())));
+}
+
+}  // namespace sextant
