@@ -42,7 +42,7 @@ BoardView MakeBoardView(const Observation& observation, const MatchedBoard& matc
                  .lidar_from_board = placement.lidar_from_board};
   for (std::size_t i = 0; i < patch.edges.size(); ++i) {
     if (placement.fit.sides[i] < 0) continue;
-    view.edges.push_back({.direction = patch.plane.At(patch.edges[i].in_plane).normalized(),
+    view.edges.push_back({.direction = patch.plane.At(placement.fit.on_edge[i]).normalized(),
                           .side = placement.fit.sides[i],
                           .sigma_m = placement.fit.sigmas_m[i]});
   }

@@ -44,8 +44,8 @@ CameraSighting SightingOf(const Board& board, const SeenBoard& seen) {
 LidarPattern PatternOf(const ScanRings& rings, const LidarBeam& beam) {
   LidarPattern pattern{.azimuth_step_rad = rings.azimuth_step_rad(),
                        .range_sigma_m = rings.range_sigma_m(),
-                       .aperture_m = beam.aperture_m,
-                       .divergence_rad = beam.divergence_rad};
+                       .aperture_m = beam.aperture_h_m,
+                       .divergence_rad = beam.divergence_h_rad};
   for (int i = 0; i < rings.rings(); ++i) {
     std::vector<double> elevations;
     for (const RingPoint& point : rings.ring(i)) {

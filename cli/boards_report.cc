@@ -60,9 +60,10 @@ std::string DescribeFound(const ScanReport& report, const std::vector<Board>& bo
     const Eigen::Vector3d center = patch.plane.At(patch.fit.center);
     text += fmt::format(
         "  {}: {:.2f} m away at ({:.3f}, {:.3f}, {:.3f}) m, {} returns on {} rings, plane sigma "
-        "{:.1f} mm, outline {:.1f} mm rms\n",
+        "{:.1f} mm, outline {:.1f} mm rms, size {:+.1f} % off\n",
         NameOf(board), center.norm(), center.x(), center.y(), center.z(), patch.agreement.points,
-        patch.agreement.rings, kMmPerM * patch.plane.sigma_m, kMmPerM * patch.fit.rms_m);
+        patch.agreement.rings, kMmPerM * patch.plane.sigma_m, kMmPerM * patch.fit.rms_m,
+        100.0 * (patch.fit.size_ratio - 1.0));
     const Expected<LidarCorners>& corners = report.corners[i];
     text += corners ? CornerTable(*corners, board)
                     : fmt::format("    no corners: {}\n", corners.error().message);
@@ -117,6 +118,7 @@ Json BoardJson(const BoardPatch& patch, const Expected<LidarCorners>& corners, c
   json["rings"] = patch.agreement.rings;
   json["plane_sigma_m"] = patch.plane.sigma_m;
   json["outline_rms_m"] = patch.fit.rms_m;
+  json["outline_size_ratio"] = patch.fit.size_ratio;
   if (corners) {
     json["corners"] = CornersJson(*corners);
   } else {

@@ -45,7 +45,7 @@ struct ExtractorStudyRow {
 };
 
 inline constexpr int kRingsDue = 6;      ///< That must cross a board for it to be found.
-inline constexpr int kReturnsDue = 100;  ///< That must lie on it, of a sensor without rings.
+inline constexpr int kReturnsDue = 500;  ///< That must lie on it, of a sensor without rings.
 
 /// A row for each model. The same seed gives the same figures on any number of threads.
 /// Errors: kUnknownName; those of SimulateScan.

@@ -27,15 +27,6 @@ double Beyond(const Eigen::Vector2d& point, double width, double height) {
   return std::max(std::abs(point.x()) - 0.5 * width, std::abs(point.y()) - 0.5 * height);
 }
 
-// Of the outer four.
-int SidesSeen(const RectangleFit& fit) {
-  int sides = 0;
-  for (int side = 0; side < kCornersPerBoard; ++side) {
-    sides += std::ranges::count(fit.sides, side) > 0 ? 1 : 0;
-  }
-  return sides;
-}
-
 }  // namespace
 
 double BeyondBoard(const BoardPatch& patch, const Board& board, const Eigen::Vector2d& in_plane) {
@@ -122,8 +113,9 @@ std::optional<std::string> WhyNot(const BoardPatch& patch, const Board& board) {
     return fmt::format("only {:.0f} % of the returns that a board there would give",
                        100.0 * agreement.density);
   }
-  if (const int sides = SidesSeen(patch.fit); sides < kFewestSides) {
-    return fmt::format("edges were seen on {} of its sides, {} are needed", sides, kFewestSides);
+  if (patch.fit.sides_seen < kFewestSides) {
+    return fmt::format("edges were seen on {} of its sides, {} are needed", patch.fit.sides_seen,
+                       kFewestSides);
   }
   if (patch.fit.share < kLeastShare || patch.fit.rms > kMostRms) {
     return fmt::format(

@@ -31,12 +31,12 @@ constexpr double kSameSize_m = 0.03;  // Boards closer in size are told apart by
 
 double Diagonal(const Board& board) { return std::hypot(board.top_right_m, board.right_bottom_m); }
 
-// Small where the outline agrees, and on the word of many edge points rather than of few; compares
-// boards on one patch and patches for one board.
+// Small where the outline agrees, on all four sides, and on the word of many edge points rather
+// than of few; compares boards on one patch and patches for one board.
 double Disagreement(const BoardPatch& patch) {
   const auto edges = static_cast<double>(patch.edges.size());
   return (patch.fit.rms + 4.0 * (1.0 - patch.fit.share) + 2.0 * (1.0 - patch.agreement.filled) +
-          2.0 * patch.agreement.continued) /
+          2.0 * patch.agreement.continued + 2.0 * (kCornersPerBoard - patch.fit.sides_seen)) /
          std::sqrt(edges);
 }
 

@@ -28,6 +28,17 @@ struct PlaneLine {
   }
 };
 
+double SharedVariance(const std::vector<EdgePoint>& edges, const std::vector<int>& members,
+                      const PlaneLine& line) {
+  SharedStep shared;
+  for (const int member : members) {
+    const EdgePoint& edge = edges[static_cast<std::size_t>(member)];
+    shared.Add(line.normal.dot(edge.in_plane) - line.offset,
+               0.5 * std::abs(line.normal.dot(edge.outward)) * edge.step_m);
+  }
+  return shared.Variance();
+}
+
 // Brings the line from where the beam makes the board end to its edge.
 void TakeOffGrowth(const std::vector<EdgePoint>& edges, const std::vector<int>& members,
                    const std::vector<double>& weights, PlaneLine& line) {
@@ -86,6 +97,7 @@ PlaneLine FitLine(const std::vector<EdgePoint>& edges, const std::vector<int>& m
   }
   const Eigen::Matrix2d inverse = information.inverse();
   line.covariance = inverse * noise * inverse;
+  line.covariance(1, 1) += SharedVariance(edges, members, line);
   TakeOffGrowth(edges, members, weights, line);
   return line;
 }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -48,6 +50,26 @@ struct EdgeOptions {
   bool hollow = false;  ///< Gaps within a ring are edges of the opening.
   bool correct = true;  ///< Off: the last return itself, as the paper takes it, nothing taken off.
   LidarBeam beam{};
+};
+
+/// What the edge points of one side leave open together: rings that cross an edge all at the same
+/// place between two samples tell it no better than one does. `Add` takes the signed distance of
+/// each from the side and half its step across the side; the side may be moved by Variance() more.
+class SharedStep {
+ public:
+  void Add(double distance_m, double half_step_m) {
+    low_ = std::max(low_, distance_m - half_step_m);
+    high_ = std::min(high_, distance_m + half_step_m);
+  }
+  /// Of a side's offset that is uniform over what all its points allow [m^2].
+  double Variance() const {
+    const double open = high_ - low_;
+    return open > 0.0 && std::isfinite(open) ? open * open / 12.0 : 0.0;
+  }
+
+ private:
+  double low_ = -std::numeric_limits<double>::infinity();
+  double high_ = std::numeric_limits<double>::infinity();
 };
 
 /// Sets the spot of an edge point whose last return is `ray`.

@@ -12,6 +12,7 @@ constexpr double kRadPerDeg = 0.017453292519943295;
 // Of a receiver that gives the strongest echo, however little of the spot is on the board; the
 // VLP-16 loses the weakest.
 constexpr double kGrowth = 0.31;
+constexpr double kEdgeSigma = 0.05;
 
 struct Entry {
   const char* name;
@@ -26,6 +27,7 @@ LidarBeam Beam(double aperture_h_m, double aperture_v_m, double divergence_h_rad
   beam.divergence_h_rad = divergence_h_rad;
   beam.divergence_v_rad = divergence_v_rad;
   beam.growth = kGrowth;
+  beam.edge_sigma = kEdgeSigma;
   return beam;
 }
 

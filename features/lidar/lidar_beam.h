@@ -21,7 +21,7 @@ struct LidarBeam {
   double divergence_h_rad = 0.003;  ///< Full angle.
   double divergence_v_rad = 0.0015;
   double growth = 0.16;        ///< A simulated VLP-16; real ones 0.07 to 0.13 (docs/simulator.md).
-  double growth_sigma = 0.06;  ///< Standard deviation of the growth from board to board.
+  double growth_sigma = 0.03;  ///< Standard deviation of the growth from board to board.
   double edge_sigma = 0.12;    ///< And of each edge point.
 
   double WidthAt(double range_m) const { return aperture_h_m + divergence_h_rad * range_m; }

@@ -22,6 +22,7 @@ constexpr int kFirstIterations = 3;
 constexpr int kFinalists = 3;
 constexpr double kAngleSlack_rad = 0.02;
 constexpr int kFewestEdges = 4;
+constexpr std::size_t kMostSides = 8;  // Of a hollow board.
 
 // Outward normals of the sides 0 to 3 in the board's frame: y = -h/2 is the first.
 const std::array<Eigen::Vector2d, 4> kNormals = {Eigen::Vector2d(0, -1), Eigen::Vector2d(1, 0),
@@ -29,10 +30,65 @@ const std::array<Eigen::Vector2d, 4> kNormals = {Eigen::Vector2d(0, -1), Eigen::
 
 struct SidePlace {
   int side = -1;
-  double distance = 0.0;      // Signed, beyond the side [m].
-  double sigma = 1.0;         // [m].
+  double distance = 0.0;                            // Signed, beyond the side [m].
+  Eigen::Vector2d grown = Eigen::Vector2d::Zero();  // How far the beam moves the edge [m].
+  double sigma = 1.0;                               // [m].
+  double half_step = 0.0;                           // Across the side [m].
   double growth_sigma = 0.0;  // Signed as the distance, alike for all edges [m].
   Eigen::Vector3d by_pose = Eigen::Vector3d::Zero();  // Derivative by (center, angle).
+};
+
+// What the edge points that belong to a side add up to.
+struct Sums {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d by_growth = Eigen::Vector3d::Zero();
+  std::array<SharedStep, kMostSides> shared{};
+  std::array<Eigen::Vector3d, kMostSides> by_side{};  // Of an offset of all points of a side.
+  std::array<int, kMostSides> of_side{};
+  double by_size = 0.0;
+  double size_weight = 0.0;
+  double chi2 = 0.0;
+  double squares = 0.0;
+  int used = 0;
+
+  Sums() { by_side.fill(Eigen::Vector3d::Zero()); }
+
+  void Add(const SidePlace& place, const Eigen::Vector2d& half) {
+    const auto side = static_cast<std::size_t>(place.side);
+    const Eigen::Vector3d j = place.by_pose / place.sigma;
+    information += j * j.transpose();
+    by_growth += j * place.growth_sigma / place.sigma;
+    shared[side].Add(place.distance, place.half_step);
+    by_side[side] += j / place.sigma;
+    ++of_side[side];
+    if (place.side < kCornersPerBoard) {
+      const double arm = (place.side % 2 == 0 ? half.y() : half.x()) / place.sigma;
+      by_size += arm * place.distance / place.sigma;
+      size_weight += arm * arm;
+    }
+    chi2 += place.distance * place.distance / (place.sigma * place.sigma);
+    squares += place.distance * place.distance;
+    ++used;
+  }
+
+  // A prior of four residuals of one sigma keeps few residuals from claiming none at all.
+  Eigen::Matrix3d Covariance() const {
+    constexpr double kPrior = 4.0;
+    const Eigen::Matrix3d inverse = information.inverse();
+    const Eigen::Vector3d by_all = inverse * by_growth;  // Nothing where opposite sides cancel.
+    Eigen::Matrix3d covariance =
+        (chi2 + kPrior) / (used - 3 + kPrior) * inverse + by_all * by_all.transpose();
+    for (std::size_t side = 0; side < kMostSides; ++side) {
+      const Eigen::Vector3d by_offset = inverse * by_side[side];
+      covariance += shared[side].Variance() * by_offset * by_offset.transpose();
+    }
+    return covariance;
+  }
+
+  int SidesSeen() const {
+    return static_cast<int>(std::count_if(of_side.begin(), of_side.begin() + kCornersPerBoard,
+                                          [](int count) { return count > 0; }));
+  }
 };
 
 class Fitter {
@@ -73,6 +129,7 @@ class Fitter {
     place.distance =
         normal.dot(q) - normal.cwiseAbs().dot(half) - outward * edge.GrownBy(normal_in_plane);
     place.sigma = std::sqrt(edge.VarianceAcross(normal_in_plane) + 1e-12);
+    place.half_step = 0.5 * std::abs(normal.dot(out)) * edge.step_m;
     place.growth_sigma = outward * edge.beam.growth_sigma * edge.SpotAcross(normal_in_plane);
     place.by_pose << -normal_in_plane, normal.x() * in_board.y() - normal.y() * in_board.x();
     return place;
@@ -107,44 +164,34 @@ class Fitter {
                      .covariance = Eigen::Matrix3d::Zero(),
                      .sides = {},
                      .sigmas_m = {},
+                     .on_edge = {},
                      .rms = 0.0,
                      .rms_m = 0.0,
-                     .share = 0.0};
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d by_growth = Eigen::Vector3d::Zero();
-    double chi2 = 0.0;
-    double squares = 0.0;
-    int used = 0;
+                     .share = 0.0,
+                     .sides_seen = 0,
+                     .size_ratio = 1.0};
+    Sums sums;
     const Eigen::Matrix2d turn = Eigen::Rotation2Dd(pose.z()).toRotationMatrix();
     for (const EdgePoint& edge : edges_) {
       const SidePlace place = Place(edge, pose, turn);
-      const double r = place.distance / place.sigma;
-      const bool belongs = std::abs(r) <= kOutlier;
+      const bool belongs = std::abs(place.distance) <= kOutlier * place.sigma;
       fit.sides.push_back(belongs ? place.side : -1);
       fit.sigmas_m.push_back(place.sigma);
-      if (!belongs) continue;
-      const Eigen::Vector3d j = place.by_pose / place.sigma;
-      information += j * j.transpose();
-      by_growth += j * place.growth_sigma / place.sigma;
-      chi2 += r * r;
-      squares += place.distance * place.distance;
-      ++used;
+      fit.on_edge.push_back(edge.in_plane - place.grown);
+      if (belongs) sums.Add(place, half_);
     }
-    if (used < kFewestEdges) return std::nullopt;
+    if (sums.used < kFewestEdges) return std::nullopt;
     // Angles in units of the board's half diagonal, so that both kinds of unknowns compare.
     Eigen::Vector3d scale(1.0, 1.0, 1.0 / half_.norm());
-    const Eigen::Matrix3d scaled = scale.asDiagonal() * information * scale.asDiagonal();
+    const Eigen::Matrix3d scaled = scale.asDiagonal() * sums.information * scale.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scaled, Eigen::EigenvaluesOnly);
     if (eigen.eigenvalues()(0) < 1e-4 * eigen.eigenvalues()(2)) return std::nullopt;
-    // A prior of four residuals of one sigma keeps few residuals from claiming none at all.
-    constexpr double kPrior = 4.0;
-    const double variance = (chi2 + kPrior) / (used - 3 + kPrior);
-    const Eigen::Matrix3d inverse = information.inverse();
-    const Eigen::Vector3d moved = inverse * by_growth;  // Nothing where opposite sides cancel.
-    fit.covariance = variance * inverse + moved * moved.transpose();
-    fit.rms = std::sqrt(chi2 / used);
-    fit.rms_m = std::sqrt(squares / used);
-    fit.share = static_cast<double>(used) / static_cast<double>(edges_.size());
+    fit.covariance = sums.Covariance();
+    fit.rms = std::sqrt(sums.chi2 / sums.used);
+    fit.rms_m = std::sqrt(sums.squares / sums.used);
+    fit.share = static_cast<double>(sums.used) / static_cast<double>(edges_.size());
+    fit.sides_seen = sums.SidesSeen();
+    fit.size_ratio = 1.0 + sums.by_size / std::max(sums.size_weight, 1e-12);
     return fit;
   }
 

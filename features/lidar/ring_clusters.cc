@@ -66,7 +66,8 @@ bool Touch(const ScanRings& scan, const RingRun& a, const RingRun& b,
   const RingPoint& b1 = scan.points()[b.first + b.count - 1];
   // Azimuths relative to the middle of a, so that the seam does not matter.
   const double middle = 0.5 * (a0.azimuth_rad + a1.azimuth_rad);
-  const double half = 0.5 * (a1.azimuth_rad - a0.azimuth_rad) + 1.5 * scan.azimuth_step_rad();
+  const double beside = scan.has_rings() ? 1.5 * scan.azimuth_step_rad() : 0.5 * MostGap(scan);
+  const double half = 0.5 * (a1.azimuth_rad - a0.azimuth_rad) + beside;
   const double from = WrapAngle(b0.azimuth_rad - middle);
   const double to = from + (b1.azimuth_rad - b0.azimuth_rad);
   if (to < -half || from > half) return false;

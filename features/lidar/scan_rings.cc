@@ -54,7 +54,8 @@ std::vector<int> RingsOfElevations(const std::vector<double>& elevations) {
   return {};
 }
 
-// Bands of elevation, half as high again as the points are apart on average.
+// Bands of elevation, three times as high as the points are apart on average: the loops of a
+// rosette leave gaps.
 struct Bands {
   std::vector<int> of_point;
   double height_rad = 0.0;
@@ -67,7 +68,7 @@ Bands BandsOf(const std::vector<RingPoint>& points, const std::vector<double>& e
   const double area = std::max((high - low) * (right.azimuth_rad - left.azimuth_rad), 1e-12);
   const double area_per_point = area / static_cast<double>(points.size());
   Bands bands;
-  bands.height_rad = std::max(1.5 * std::sqrt(area_per_point), (high - low) / kMostRings + 1e-9);
+  bands.height_rad = std::max(3.0 * std::sqrt(area_per_point), (high - low) / kMostRings + 1e-9);
   bands.step_rad = area_per_point / bands.height_rad;
   bands.of_point.reserve(points.size());
   for (const double elevation : elevations) {

@@ -23,7 +23,7 @@ class ScanRings {
  public:
   /// Returns that are not finite or nearer than 1 cm are left out. Rings are taken from the cloud;
   /// where it does not tell them, from elevations that repeat. Where none do (a rosette, whatever
-  /// its ring field says), they are bands of elevation somewhat higher than points are apart.
+  /// its ring field says), they are bands of elevation, a few times as high as points are apart.
   /// Errors: kMissingData where no return is left; kInvalidInput where a field's length differs
   /// from that of the points.
   static Expected<ScanRings> Build(const PointCloud& cloud);

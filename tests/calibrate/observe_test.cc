@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "calibrate/matched_board.h"
+#include "eval/lidar/board_scenes.h"
 #include "eval/simulator/camera_model.h"
-#include "support/board_scene.h"
 #include "support/calibration_scene.h"
 
 namespace sextant::test {

@@ -5,16 +5,16 @@
 
 #include <numbers>
 
+#include "eval/lidar/board_scenes.h"
 #include "eval/simulator/lidar_model.h"
 #include "eval/simulator/render.h"
 #include "eval/simulator/scan.h"
 #include "geometry/so3.h"
-#include "support/board_scene.h"
 
 namespace sextant::test {
 
 Scene TaggedBoards(Random& random) {
-  Scene scene = TwoBoardsInRoom(2.0, random);
+  Scene scene = TwoBoardsInRoom({.distance_m = 2.0}, random);
   for (SceneBoard& placed : scene.boards) {
     placed.board.tags = {{.family = "aruco_original",
                           .id = placed.board.id == 0 ? 26 : 582,

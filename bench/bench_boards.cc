@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two boards in a full turn of a LiDAR, from the cloud as it was read to their corners by the known
+// size. One thread. The corners are checked against the truth before anything is timed.
+#include <benchmark/benchmark.h>
+
+#include "base/random.h"
+#include "eval/lidar/board_scenes.h"
+#include "eval/simulator/scan.h"
+#include "features/lidar/corner_extractor.h"
+
+namespace sextant {
+namespace {
+
+constexpr double kMostError_m = 0.02;
+
+Expected<std::vector<LidarCorners>> Extract(const PointCloud& cloud,
+                                            const std::vector<Board>& boards,
+                                            const BoardSearchOptions& options) {
+  const Expected<ScanRings> rings = ScanRings::Build(cloud);
+  if (!rings) return tl::unexpected<Error>(rings.error());
+  const Expected<BoardSearch> search = FindBoards(*rings, boards, options);
+  if (!search) return tl::unexpected<Error>(search.error());
+  std::vector<LidarCorners> corners;
+  for (const BoardPatch& patch : search->found) {
+    Expected<LidarCorners> of =
+        ExtractCorners("rectangle", patch, boards[static_cast<std::size_t>(patch.board)]);
+    if (!of) return tl::unexpected<Error>(of.error());
+    corners.push_back(std::move(*of));
+  }
+  return corners;
+}
+
+void TwoBoards(benchmark::State& state, const char* lidar) {
+  const LidarModel model = *FindLidarModel(lidar);
+  Random random(1);
+  const Scene scene = TwoBoardsInRoom(FieldOf(model, 1.8), random);
+  const std::vector<Board> boards = BoardsIn(scene);
+  const Expected<SimulatedScan> scan = SimulateScan(scene, model, {.seed = 1});
+  if (!scan) return state.SkipWithError(scan.error().message.c_str());
+  BoardSearchOptions options;
+  options.beam = *FindLidarBeam(lidar);
+  const Expected<std::vector<LidarCorners>> checked = Extract(scan->cloud, boards, options);
+  if (!checked || checked->size() != 2) return state.SkipWithError("not both boards were found");
+  for (const LidarCorners& corners : *checked) {
+    const SceneBoard& board = scene.boards[static_cast<std::size_t>(corners.board)];
+    for (int i = 0; i < kCornersPerBoard; ++i) {
+      const Eigen::Vector3d& corner = corners.in_lidar[static_cast<std::size_t>(i)];
+      if ((corner - TrueCorner(board, i)).norm() > kMostError_m) {
+        return state.SkipWithError("a corner is off");
+      }
+    }
+  }
+  for (auto _ : state) benchmark::DoNotOptimize(Extract(scan->cloud, boards, options));
+  state.counters["points"] = static_cast<double>(scan->cloud.points.size());
+}
+
+BENCHMARK_CAPTURE(TwoBoards, vlp16, "vlp16")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(TwoBoards, hdl64e, "hdl64e")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(TwoBoards, os1_64, "os1_64")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(TwoBoards, os1_128, "os1_128")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(TwoBoards, livox, "livox")->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace sextant
+
+BENCHMARK_MAIN();

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scans as they come: damaged, turned, in any order, with boards that are hidden or cut.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "eval/lidar/board_scenes.h"
+#include "eval/simulator/lidar_model.h"
+#include "eval/simulator/scan.h"
+#include "features/lidar/corner_extractor.h"
+
+namespace sextant::test {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// One board straight ahead, so that the edge of the field of view can be put through it.
+struct Seen {
+  Scene scene;
+  std::vector<Board> boards;
+  PointCloud cloud;
+};
+
+Seen OneBoard(const std::vector<SceneCylinder>& obstacles = {}) {
+  Random random(1);
+  Seen seen;
+  seen.scene = TwoBoardsInRoom({}, random);
+  seen.scene.boards = {Hang(seen.scene.boards[0].board, {.turn_deg = 40.0, .yaw_deg = 10.0})};
+  seen.scene.cylinders = obstacles;
+  seen.boards = BoardsIn(seen.scene);
+  Expected<SimulatedScan> scan = SimulateScan(seen.scene, *FindLidarModel("os1_64"), {.seed = 1});
+  EXPECT_TRUE(scan);
+  seen.cloud = std::move(scan->cloud);
+  return seen;
+}
+
+BoardSearch Search(const PointCloud& cloud, const std::vector<Board>& boards) {
+  const Expected<ScanRings> rings = ScanRings::Build(cloud);
+  EXPECT_TRUE(rings);
+  return *FindBoards(*rings, boards, {});
+}
+
+double WorstCorner(const Seen& seen, const BoardSearch& search) {
+  if (search.found.empty()) return std::numeric_limits<double>::infinity();
+  const Expected<LidarCorners> corners =
+      ExtractCorners("rectangle", search.found[0], seen.boards[0]);
+  double worst = 0.0;
+  for (int i = 0; i < kCornersPerBoard; ++i) {
+    const Eigen::Vector3d truth = TrueCorner(seen.scene.boards[0], i);
+    worst = std::max(worst, (corners->in_lidar[static_cast<std::size_t>(i)] - truth).norm());
+  }
+  return worst;
+}
+
+void Keep(PointCloud& cloud, const std::vector<std::size_t>& places) {
+  PointCloud kept;
+  for (const std::size_t i : places) {
+    kept.points.push_back(cloud.points[i]);
+    if (!cloud.ring.empty()) kept.ring.push_back(cloud.ring[i]);
+  }
+  cloud = std::move(kept);
+}
+
+TEST(BadScans, OrderOfThePointsDoesNotMatter) {
+  const Seen seen = OneBoard();
+  const BoardSearch swept = Search(seen.cloud, seen.boards);
+  for (const bool with_rings : {true, false}) {
+    PointCloud shuffled = seen.cloud;
+    Random random(2);
+    std::vector<std::size_t> places(shuffled.points.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      places[i] = i;
+      std::swap(places[i], places[random.Below(i + 1)]);
+    }
+    Keep(shuffled, places);
+    if (!with_rings) shuffled.ring.clear();
+    const BoardSearch found = Search(shuffled, seen.boards);
+    ASSERT_EQ(found.found.size(), 1U);
+    EXPECT_LT(std::abs(WorstCorner(seen, found) - WorstCorner(seen, swept)), 1e-9);
+  }
+}
+
+TEST(BadScans, ReturnsThatAreNoneAreLeftOut) {
+  Seen seen = OneBoard();
+  const double whole = WorstCorner(seen, Search(seen.cloud, seen.boards));
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& bad :
+       {Eigen::Vector3d(kNaN, 1.0, 1.0), Eigen::Vector3d(0.0, 0.0, 0.0),
+        Eigen::Vector3d(infinity, 0.0, 0.0), Eigen::Vector3d(1e200, 1e200, 0.0)}) {
+    for (int i = 0; i < 50; ++i) {
+      seen.cloud.points.push_back(bad);
+      seen.cloud.ring.push_back(static_cast<std::uint16_t>(i));
+    }
+  }
+  EXPECT_EQ(WorstCorner(seen, Search(seen.cloud, seen.boards)), whole);
+}
+
+TEST(BadScans, OneRingHoldsNoBoard) {
+  Seen seen = OneBoard();
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < seen.cloud.points.size(); ++i) {
+    if (seen.cloud.ring[i] == 30) places.push_back(i);
+  }
+  Keep(seen.cloud, places);
+  for (const bool with_rings : {true, false}) {
+    if (!with_rings) seen.cloud.ring.clear();
+    EXPECT_EQ(ScanRings::Build(seen.cloud)->rings(), 1);
+    EXPECT_TRUE(Search(seen.cloud, seen.boards).found.empty());
+  }
+}
+
+TEST(BadScans, FewPointsHoldNoBoard) {
+  const Seen seen = OneBoard();
+  for (const std::size_t count : {1U, 2U, 7U, 40U}) {
+    PointCloud few;
+    few.points.assign(seen.cloud.points.begin(),
+                      seen.cloud.points.begin() + static_cast<std::ptrdiff_t>(count));
+    EXPECT_TRUE(Search(few, seen.boards).found.empty()) << count;
+    few.points.assign(count, Eigen::Vector3d(2.0, 0.0, 0.0));
+    EXPECT_TRUE(Search(few, seen.boards).found.empty()) << count;
+  }
+}
+
+// A pole 0.6 m before the board hides a stripe of it and with it some of its edges.
+TEST(BadScans, BoardBehindAPoleIsFound) {
+  const Seen seen = OneBoard(
+      {{.name = "pole", .base_in_world = {1.2, 0.08, -1.0}, .radius_m = 0.02, .height_m = 2.5}});
+  EXPECT_LT(WorstCorner(seen, Search(seen.cloud, seen.boards)), 0.015);
+}
+
+// Behind a person little of it is left.
+TEST(BadScans, BoardBehindAPersonIsNot) {
+  const Seen seen = OneBoard(
+      {{.name = "person", .base_in_world = {1.2, 0.0, -1.0}, .radius_m = 0.25, .height_m = 1.75}});
+  EXPECT_TRUE(Search(seen.cloud, seen.boards).found.empty());
+}
+
+// The driver gives a sector only, whose edge cuts the board: what is beyond it is unknown, and what
+// was got lies where it should; a board that is cut in half is refused.
+TEST(BadScans, BoardCutByTheFieldOfViewIsPlacedByTheRest) {
+  for (const double cut_m : {-0.25, -0.2, 0.0}) {
+    Seen seen = OneBoard();
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < seen.cloud.points.size(); ++i) {
+      const Eigen::Vector3d& p = seen.cloud.points[i];
+      if (p.y() > cut_m / 1.8 * p.x()) places.push_back(i);
+    }
+    Keep(seen.cloud, places);
+    const BoardSearch search = Search(seen.cloud, seen.boards);
+    if (cut_m == 0.0) {
+      EXPECT_TRUE(search.found.empty());
+      ASSERT_FALSE(search.rejected.empty());
+    } else if (!search.found.empty()) {
+      EXPECT_LT(WorstCorner(seen, search), 0.03) << cut_m;
+    }
+  }
+}
+
+// A mirror on the wall shows the board again behind it, of the right size.
+TEST(BadScans, TheReflectionOfABoardIsNotTakenForIt) {
+  Seen seen = OneBoard();
+  const double mirror_x = 5.0;
+  const Eigen::Vector3d center = seen.scene.boards[0].world_from_board.translation;
+  const std::size_t count = seen.cloud.points.size();
+  // Rays that meet the mirror below the board and come back from it.
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d p = seen.cloud.points[i];
+    if ((p - center).norm() > 0.4) continue;
+    const Eigen::Vector3d ghost(2.0 * mirror_x - p.x(), p.y() + 2.0, p.z());
+    seen.cloud.points.push_back(ghost);
+    seen.cloud.ring.push_back(seen.cloud.ring[i]);
+  }
+  EXPECT_LT(WorstCorner(seen, Search(seen.cloud, seen.boards)), 0.015);
+}
+
+// Six lines of a rosette, numbered, are not six rings.
+TEST(BadScans, NumbersThatAreNoRingsAreNotTakenForThem) {
+  Seen seen = OneBoard();
+  Expected<SimulatedScan> scan = SimulateScan(seen.scene, *FindLidarModel("livox"), {.seed = 1});
+  ASSERT_TRUE(scan);
+  for (std::size_t i = 0; i < scan->cloud.points.size(); ++i) {
+    scan->cloud.ring.push_back(static_cast<std::uint16_t>(i % 6));
+  }
+  const Expected<ScanRings> rings = ScanRings::Build(scan->cloud);
+  ASSERT_TRUE(rings);
+  EXPECT_FALSE(rings->has_rings());
+  EXPECT_LT(WorstCorner(seen, Search(scan->cloud, seen.boards)), 0.03);
+}
+
+}  // namespace
+}  // namespace sextant::test
