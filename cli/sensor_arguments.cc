@@ -177,8 +177,7 @@ void AddExtractors(CLI::App& app, ExtractorStudyCommandOptions& options) {
   command.add_option("--seed", options.seed, "The same seed gives the same figures")
       ->capture_default_str();
   command.add_flag("--markdown", options.markdown, "As a page");
-  command.footer("Example:
-  sextant extractors --trials 200 --lidars vlp16,os1_64");
+  command.footer("Example:\n  sextant extractors --trials 200 --lidars vlp16,os1_64");
 }
 
 }  // namespace sextant::cli

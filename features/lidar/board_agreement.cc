@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kBand_m = 0.08;  // Around the board, where its plane must end.
 constexpr double kLeastFilled = 0.9;
-constexpr double kMostContinued = 0.3;
+constexpr double kMostContinued = 0.12;  // Hands and stands: up to 0.08; furniture: 0.16 and more.
 constexpr double kLeastContained = 0.8;
 constexpr double kLeastVisible = 0.5;
 constexpr double kLeastShare = 0.6;

@@ -18,6 +18,7 @@ constexpr double kHeldBy = 1.6;       // A hand or a stand may lengthen a run be
 constexpr int kPlanesPerCluster = 3;  // A person who holds a board is flat in places too.
 constexpr int kFewestInCluster = 10;
 constexpr double kAround_m = 0.05;
+constexpr double kNearlyAll = 0.97;  // Of a patch; the rest may be what holds the board.
 constexpr double kLeastJump_m = 0.06;
 constexpr double kJumpSigmas = 4.5;  // Two returns differ by sqrt 2 sigma; three of these.
 constexpr double kLeastThreshold_m = 0.03;
@@ -84,11 +85,7 @@ class Finder {
     std::vector<Eigen::Vector3d> points;
     points.reserve(places.size());
     for (const std::size_t place : places) points.push_back(scan_.points()[place].point);
-    const PlaneSearch search{
-        .threshold_m = std::max(kLeastThreshold_m, kPlaneSigmas * scan_.range_sigma_m()),
-        .iterations = 60,
-        .smallest_share = 0.25};
-    const std::optional<FoundPlane> found = FindPlane(points, search, random_);
+    const std::optional<FoundPlane> found = FindPlane(points, PlaneSearchOf(), random_);
     if (!found) return false;
     std::vector<std::size_t> on_plane;
     std::vector<std::size_t> rest;
@@ -138,21 +135,23 @@ class Finder {
     std::string why;
     std::vector<BoardPatch> accepted;
     for (std::size_t b = 0; b < boards_.size(); ++b) {
-      BoardPatch patch{.board = static_cast<int>(b), .plane = plane, .on_plane = on_plane};
-      patch.edges = FindEdgePoints(scan_, plane, on_plane, EdgeOptionsOf(boards_[b]));
-      const std::optional<RectangleFit> fit = FitRectangle(patch.edges, boards_[b]);
-      if (!fit) {
+      std::optional<BoardPatch> patch = Place(b, plane, on_plane);
+      if (!patch) {
         why = fmt::format("its edges are not those of a board of {:.3f} x {:.3f} m",
                           boards_[b].top_right_m, boards_[b].right_bottom_m);
         continue;
       }
-      patch.fit = *fit;
-      patch.agreement = AgreementOf(scan_, patch, boards_[b]);
-      const std::optional<std::string> reason = WhyNot(patch, boards_[b]);
+      std::optional<std::string> reason = WhyNot(*patch, boards_[b]);
+      if (reason && patch->agreement.contained < kNearlyAll) {
+        if (std::optional<BoardPatch> bare = WithoutHands(*patch); bare) {
+          patch = std::move(bare);
+          reason = WhyNot(*patch, boards_[b]);
+        }
+      }
       if (reason) {
         why = *reason;
       } else {
-        accepted.push_back(std::move(patch));
+        accepted.push_back(std::move(*patch));
       }
     }
     const bool any = !accepted.empty();
@@ -163,6 +162,43 @@ class Finder {
       proposals_.push_back(std::move(accepted));
     }
     return any;
+  }
+
+  std::optional<BoardPatch> Place(std::size_t board, const LidarPlane& plane,
+                                  const std::vector<std::size_t>& on_plane) const {
+    BoardPatch patch{.board = static_cast<int>(board), .plane = plane, .on_plane = on_plane};
+    patch.edges = FindEdgePoints(scan_, plane, on_plane, EdgeOptionsOf(boards_[board]));
+    const std::optional<RectangleFit> fit = FitRectangle(patch.edges, boards_[board]);
+    if (!fit) return std::nullopt;
+    patch.fit = *fit;
+    patch.agreement = AgreementOf(scan_, patch, boards_[board]);
+    return patch;
+  }
+
+  // Hands, arms and a stand that come near the board's plane pass for parts of it: the patch anew
+  // from what lies on or close around the board where it was placed with them.
+  std::optional<BoardPatch> WithoutHands(const BoardPatch& patch) {
+    const auto board = static_cast<std::size_t>(patch.board);
+    std::vector<std::size_t> near;
+    std::vector<Eigen::Vector3d> points;
+    for (const std::size_t place : patch.on_plane) {
+      const Eigen::Vector3d& point = scan_.points()[place].point;
+      const std::optional<Eigen::Vector2d> there = patch.plane.Meet(point);
+      if (!there || BeyondBoard(patch, boards_[board], *there) > kAround_m) continue;
+      near.push_back(place);
+      points.push_back(point);
+    }
+    const std::optional<FoundPlane> found = FindPlane(points, PlaneSearchOf(), random_);
+    if (!found) return std::nullopt;
+    std::vector<std::size_t> on_plane;
+    for (const int i : found->inliers) on_plane.push_back(near[static_cast<std::size_t>(i)]);
+    return Place(board, found->plane, on_plane);
+  }
+
+  PlaneSearch PlaneSearchOf() const {
+    return {.threshold_m = std::max(kLeastThreshold_m, kPlaneSigmas * scan_.range_sigma_m()),
+            .iterations = 60,
+            .smallest_share = 0.25};
   }
 
   EdgeOptions EdgeOptionsOf(const Board& board) const {
@@ -195,7 +231,7 @@ class Finder {
     owner_.assign(boards_.size(), kNobody);
     for (std::size_t p = 0; p < proposals_.size(); ++p) {
       std::vector<bool> asked(boards_.size(), false);
-      if (Place(p, asked)) continue;
+      if (Give(p, asked)) continue;
       const BoardPatch& patch = proposals_[p].front();
       search_.rejected.push_back({patch.plane.At(patch.fit.center), patch.agreement.rings,
                                   patch.agreement.points,
@@ -226,12 +262,12 @@ class Finder {
     proposals_ = std::move(kept);
   }
 
-  bool Place(std::size_t proposal, std::vector<bool>& asked) {
+  bool Give(std::size_t proposal, std::vector<bool>& asked) {
     for (const BoardPatch& patch : proposals_[proposal]) {
       const auto board = static_cast<std::size_t>(patch.board);
       if (asked[board]) continue;
       asked[board] = true;
-      if (owner_[board] == kNobody || Place(owner_[board], asked)) {
+      if (owner_[board] == kNobody || Give(owner_[board], asked)) {
         owner_[board] = proposal;
         return true;
       }

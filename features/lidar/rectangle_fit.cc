@@ -20,6 +20,9 @@ constexpr int kIterations = 12;
 constexpr int kStarts = 10;
 constexpr int kFirstIterations = 3;
 constexpr int kFinalists = 3;
+constexpr double kFirstReach = 1e9;  // Sigmas beyond which an edge point has no say: at first none,
+constexpr double kReach = 8.0;       // in the end those of a hand or a stand.
+constexpr double kReachesFurther = 1.15;  // Than a board does.
 constexpr double kAngleSlack_rad = 0.02;
 constexpr int kFewestEdges = 4;
 constexpr std::size_t kMostSides = 8;  // Of a hollow board.
@@ -96,17 +99,30 @@ class Fitter {
   Fitter(std::span<const EdgePoint> edges, const Board& board)
       : edges_(edges), board_(board), half_(0.5 * board.top_right_m, 0.5 * board.right_bottom_m) {}
 
-  Eigen::Vector3d Start(double angle) const {
-    const Eigen::Rotation2Dd turn(angle);
+  // Poses to start from: the middle of the edge points, and where they reach further than the
+  // board, what is not the board may be at either end of them.
+  void AddStarts(double angle, std::vector<Eigen::Vector3d>& starts) const {
+    const Eigen::Matrix2d turn = Eigen::Rotation2Dd(angle).toRotationMatrix();
     Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::max());
     Eigen::Vector2d high = -low;
     for (const EdgePoint& edge : edges_) {
-      const Eigen::Vector2d q = turn.inverse() * edge.in_plane;
+      const Eigen::Vector2d q = turn.transpose() * edge.in_plane;
       low = low.cwiseMin(q);
       high = high.cwiseMax(q);
     }
-    const Eigen::Vector2d center = turn * (0.5 * (low + high));
-    return {center.x(), center.y(), angle};
+    const auto places = [&](Eigen::Index axis) {
+      std::vector<double> middles = {0.5 * (low(axis) + high(axis))};
+      if (high(axis) - low(axis) > kReachesFurther * 2.0 * half_(axis)) {
+        middles.insert(middles.end(), {low(axis) + half_(axis), high(axis) - half_(axis)});
+      }
+      return middles;
+    };
+    for (const double x : places(0)) {
+      for (const double y : places(1)) {
+        const Eigen::Vector2d center = turn * Eigen::Vector2d(x, y);
+        starts.emplace_back(center.x(), center.y(), angle);
+      }
+    }
   }
 
   // `turn` is the rotation by the pose's angle.
@@ -135,8 +151,8 @@ class Fitter {
     return place;
   }
 
-  // Sum of Huber's loss over the edges, and the step that reduces it.
-  double Step(const Eigen::Vector3d& pose, Eigen::Vector3d& step) const {
+  // Sum of Huber's loss over the edges, cut off at `reach`, and the step that reduces it.
+  double Step(const Eigen::Vector3d& pose, double reach, Eigen::Vector3d& step) const {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
     double cost = 0.0;
@@ -144,9 +160,10 @@ class Fitter {
     for (const EdgePoint& edge : edges_) {
       const SidePlace place = Place(edge, pose, turn);
       const double r = place.distance / place.sigma;
-      const double size = std::abs(r);
+      const double size = std::min(std::abs(r), reach);
       const double weight = size <= kHuber ? 1.0 : kHuber / size;
       cost += size <= kHuber ? r * r : kHuber * (2.0 * size - kHuber);
+      if (size == reach) continue;
       const Eigen::Vector3d j = place.by_pose / place.sigma;
       normal += weight * j * j.transpose();
       gradient += weight * j * r;
@@ -242,14 +259,14 @@ struct Candidate {
   double cost = 0.0;
 };
 
-void Improve(const Fitter& fitter, int iterations, Candidate& candidate) {
+void Improve(const Fitter& fitter, int iterations, double reach, Candidate& candidate) {
   Eigen::Vector3d step;
   for (int i = 0; i < iterations; ++i) {
-    fitter.Step(candidate.pose, step);
+    fitter.Step(candidate.pose, reach, step);
     candidate.pose += step;
     if (step.norm() < 1e-7) break;
   }
-  candidate.cost = fitter.Step(candidate.pose, step);
+  candidate.cost = fitter.Step(candidate.pose, kReach, step);
 }
 
 }  // namespace
@@ -259,17 +276,25 @@ std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const
   const Fitter fitter(edges, board);
   const double hanging =
       std::numbers::pi / 2.0 - std::atan2(board.right_bottom_m, board.top_right_m);
-  std::array<Candidate, kStarts> candidates;
+  std::vector<Eigen::Vector3d> starts;
   for (int i = 0; i < kStarts; ++i) {
     const double share = (i + 0.5) / kStarts - 0.5;
-    Candidate& candidate = candidates[static_cast<std::size_t>(i)];
-    candidate.pose = fitter.Start(hanging + share * std::numbers::pi / 2.0);
-    Improve(fitter, kFirstIterations, candidate);
+    fitter.AddStarts(hanging + share * std::numbers::pi / 2.0, starts);
+  }
+  std::vector<Candidate> candidates;
+  for (const Eigen::Vector3d& start : starts) {
+    candidates.push_back({start, 0.0});
+    Improve(fitter, 0, kReach, candidates.back());
+  }
+  std::ranges::sort(candidates, {}, &Candidate::cost);
+  candidates.resize(kStarts);
+  for (Candidate& candidate : candidates) {
+    Improve(fitter, kFirstIterations, kFirstReach, candidate);
   }
   std::ranges::sort(candidates, {}, &Candidate::cost);
   const Candidate* best = nullptr;
   for (Candidate& candidate : std::span(candidates).first(kFinalists)) {
-    Improve(fitter, kIterations, candidate);
+    Improve(fitter, kIterations, kReach, candidate);
     const double off = std::abs(candidate.pose.z() - hanging);
     if (off > std::numbers::pi / 4.0 + kAngleSlack_rad) continue;
     if (best == nullptr || candidate.cost < best->cost) best = &candidate;
