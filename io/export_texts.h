@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "geometry/camera.h"
+#include "geometry/rigid3d.h"
+
+namespace sextant {
+
+/// A transform with the names of its frames: the pose of the child in the parent.
+struct NamedTransform {
+  std::string parent;
+  std::string child;
+  Rigid3d parent_from_child;
+  std::string camera_frame;  ///< The one of the two that is the camera's.
+};
+
+/// The texts behind ExportTransform; what each promises is there. Frame names are checked before.
+std::string Ros1LaunchText(const NamedTransform& transform);
+std::string Ros2LaunchText(const NamedTransform& transform);
+std::string Ros2YamlText(const NamedTransform& transform);
+std::string TfYamlText(const NamedTransform& transform);
+std::string UrdfText(const NamedTransform& transform);
+
+std::string KittiText(const Rigid3d& cam_from_lidar, const Camera& camera);
+/// `camera` may be null.
+std::string OpenCvText(const Rigid3d& cam_from_lidar, const Camera* camera);
+std::string MatrixText(const Rigid3d& cam_from_lidar, const std::string& camera_frame,
+                       const std::string& lidar_frame);
+
+}  // namespace sextant
