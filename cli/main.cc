@@ -3,6 +3,7 @@
 
 #include "base/version.h"
 #include "cli/commands.h"
+#include "cli/result_options.h"
 #include "cli/sensor_arguments.h"
 #include "cli/study_arguments.h"
 
@@ -226,12 +227,16 @@ int Main(int argc, char** argv) {
   AccuracyOptions accuracy;
   FuseOptions fuse;
   MarkOptions mark;
+  ExportCommandOptions exported;
+  ProjectOptions project;
   SimulateSessionOptions session;
   SimulatePairsOptions pairs;
   AddSolve(app, solve);
   AddCompare(app, compare);
   AddDetect(app, detect);
   AddBoards(app, boards);
+  AddProject(app, project);
+  AddExport(app, exported);
   AddMark(app, mark);
   AddBoard(app, board);
   AddBag(app, bag);
@@ -263,6 +268,8 @@ int Main(int argc, char** argv) {
   if (app.got_subcommand("bag")) return RunBag(bag);
   if (app.got_subcommand("accuracy")) return RunAccuracy(accuracy);
   if (app.got_subcommand("fuse")) return RunFuse(fuse);
+  if (app.got_subcommand("project")) return RunProject(project);
+  if (app.got_subcommand("export")) return RunExport(exported);
   if (app.got_subcommand("mark")) return RunMark(mark);
   if (app.get_subcommand("simulate")->got_subcommand("pairs")) return RunSimulatePairs(pairs);
   return RunSimulateSession(session);

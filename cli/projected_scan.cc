@@ -15,13 +15,15 @@ std::vector<ProjectedReturn> ProjectScan(const PointCloud& scan, const Camera& c
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     const Eigen::Vector3d& point = scan.points[i];
     if (!point.allFinite() || point.norm() < 0.01) continue;
-    const std::optional<Eigen::Vector2d> pixel = Project(camera, cam_from_lidar * point);
+    const Eigen::Vector3d in_cam = cam_from_lidar * point;
+    const std::optional<Eigen::Vector2d> pixel = Project(camera, in_cam);
     if (!pixel || (pixel->array() < -size.array()).any() ||
         (pixel->array() > 2.0 * size.array()).any()) {
       continue;
     }
     const int ring = scan.ring.empty() ? -1 : static_cast<int>(scan.ring[i]);
-    returns.push_back({.pixel = *pixel, .range_m = point.norm(), .ring = ring});
+    returns.push_back(
+        {.pixel = *pixel, .range_m = point.norm(), .distance_m = in_cam.norm(), .ring = ring});
   }
   std::ranges::stable_sort(returns, std::greater<>{}, &ProjectedReturn::range_m);
   return returns;

@@ -12,8 +12,9 @@ namespace sextant::cli {
 /// A return where the scan, projected, shows it.
 struct ProjectedReturn {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  double range_m = 0.0;
-  int ring = -1;  ///< -1 where the scan does not tell it.
+  double range_m = 0.0;     ///< From the LiDAR.
+  double distance_m = 0.0;  ///< From the camera.
+  int ring = -1;            ///< -1 where the scan does not tell it.
 };
 
 /// The returns in front of the camera and within one picture's size of it, the farthest first, so

@@ -179,7 +179,7 @@ TEST(ExportTransform, KittiProjectsAsItsDevkitDoes) {
   const Eigen::Vector3d in_cam = tr * kInLidar.homogeneous();
   EXPECT_LT((in_cam - InCam()).norm(), 1e-12);
   const Eigen::Vector2d pixel = (p2 * in_cam.homogeneous()).hnormalized();
-  const Camera& camera = *test::FullCalibrationResult().camera;
+  const Camera camera = *test::FullCalibrationResult().camera;
   EXPECT_NEAR(pixel.x(), camera.fx_px * InCam().x() / InCam().z() + camera.cx_px, 1e-9);
   EXPECT_NEAR(pixel.y(), camera.fy_px * InCam().y() / InCam().z() + camera.cy_px, 1e-9);
   EXPECT_THAT(text, HasSubstr("point_in_cam = Tr_velo_to_cam * point_in_lidar"));

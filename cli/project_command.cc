@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <opencv2/core/mat.hpp>
+
+#include "cli/commands.h"
+#include "cli/load.h"
+#include "cli/photo_file.h"
+#include "cli/result_options.h"
+#include "cli/scan_on_image.h"
+#include "features/camera/find_boards.h"
+#include "features/lidar/corner_extractor.h"
+#include "io/board_file.h"
+#include "io/calibration_result.h"
+#include "io/camera_file.h"
+#include "io/cloud_file.h"
+
+namespace sextant::cli {
+namespace {
+
+const cv::Scalar kByImage(0, 160, 255);
+const cv::Scalar kByScan(255, 255, 255);
+
+// What both sensors show of one board, corners in the camera frame; empty where it is not found.
+struct BoardInBoth {
+  std::vector<Eigen::Vector3d> by_image;
+  std::vector<Eigen::Vector3d> by_scan;
+};
+
+struct Inputs {
+  CalibrationResult result;
+  Camera camera;
+  PointCloud cloud;
+  cv::Mat image;
+};
+
+Expected<Inputs> ReadInputs(const ProjectOptions& options) {
+  Inputs inputs;
+  Expected<CalibrationResult> result = ReadCalibrationResult(options.result_path);
+  if (!result) return tl::unexpected<Error>(result.error());
+  if (!options.camera_path.empty()) {
+    const Expected<Camera> camera = ReadCamera(options.camera_path);
+    if (!camera) return tl::unexpected<Error>(camera.error());
+    result->camera = *camera;
+  }
+  if (!result->camera) {
+    return MakeError(ErrorCode::kMissingData,
+                     fmt::format("{} has no camera; expected its key 'camera', or --camera",
+                                 options.result_path));
+  }
+  inputs.camera = *result->camera;
+  if (!options.boards_path.empty()) {
+    Expected<std::vector<Board>> boards = ReadBoards(options.boards_path);
+    if (!boards) return tl::unexpected<Error>(boards.error());
+    result->boards = std::move(*boards);
+  }
+  inputs.result = std::move(*result);
+  const Expected<PointCloud> cloud = ReadCloud(options.cloud_path);
+  if (!cloud) return tl::unexpected<Error>(cloud.error());
+  inputs.cloud = *cloud;
+  const Expected<cv::Mat> image = ReadColourImage(options.image_path);
+  if (!image) return tl::unexpected<Error>(image.error());
+  inputs.image = *image;
+  return inputs;
+}
+
+// A camera whose file does not tell its size is taken to fit the image.
+Expected<void> FitCamera(const std::string& image_path, Inputs& inputs) {
+  Camera& camera = inputs.camera;
+  if (camera.width_px == 0) camera.width_px = inputs.image.cols;
+  if (camera.height_px == 0) camera.height_px = inputs.image.rows;
+  if (camera.width_px == inputs.image.cols && camera.height_px == inputs.image.rows) return {};
+  return MakeError(
+      ErrorCode::kInvalidInput,
+      fmt::format("{} is {} x {} pixels, the camera {} x {}: expected the same", image_path,
+                  inputs.image.cols, inputs.image.rows, camera.width_px, camera.height_px));
+}
+
+void FindInImage(const Inputs& inputs, std::vector<BoardInBoth>& boards) {
+  const Expected<BoardFinder> finder = BoardFinder::Make(inputs.result.boards, inputs.camera);
+  if (!finder) return;
+  const Expected<SeenBoards> seen = finder->Find(inputs.image);
+  if (!seen) return;
+  for (const SeenBoard& board : seen->boards) boards[board.index].by_image = board.corners.points;
+}
+
+void FindInScan(const Inputs& inputs, std::vector<BoardInBoth>& boards) {
+  const Expected<ScanRings> rings = ScanRings::Build(inputs.cloud);
+  if (!rings) return;
+  const Expected<BoardSearch> search = FindBoards(*rings, inputs.result.boards, {});
+  if (!search) return;
+  for (const BoardPatch& patch : search->found) {
+    const auto index = static_cast<std::size_t>(patch.board);
+    const Expected<LidarCorners> corners =
+        ExtractCorners("rectangle", patch, inputs.result.boards[index]);
+    if (!corners) continue;
+    for (const Eigen::Vector3d& corner : corners->in_lidar) {
+      boards[index].by_scan.push_back(inputs.result.cam_from_lidar * corner);
+    }
+  }
+}
+
+Eigen::Vector3d CentreOf(const std::vector<Eigen::Vector3d>& corners) {
+  return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+}
+
+std::string Describe(const BoardInBoth& board, const Board& known, const Camera& camera) {
+  const std::string name =
+      known.name.empty() ? fmt::format("board {}", known.id) : fmt::format("board {}", known.name);
+  if (board.by_image.empty() && board.by_scan.empty()) return name + ": in neither sensor\n";
+  if (board.by_image.empty()) return name + ": outlined by the scan only (white)\n";
+  if (board.by_scan.empty()) return name + ": outlined by the image only (orange)\n";
+  const Eigen::Vector3d by_image = CentreOf(board.by_image);
+  const Eigen::Vector3d by_scan = CentreOf(board.by_scan);
+  std::string text = fmt::format("{}: its centre by image (orange) and scan (white) {:.1f} mm",
+                                 name, (by_image - by_scan).norm() * 1e3);
+  const auto a = Project(camera, by_image);
+  const auto b = Project(camera, by_scan);
+  if (a && b) text += fmt::format(", {:.1f} px", (*a - *b).norm());
+  return text + " apart\n";
+}
+
+}  // namespace
+
+int RunProject(const ProjectOptions& options) {
+  Expected<Inputs> inputs = ReadInputs(options);
+  if (!inputs) return Refuse("project", inputs.error());
+  if (const Expected<void> ok = FitCamera(options.image_path, *inputs); !ok) {
+    return Refuse("project", ok.error());
+  }
+  std::vector<BoardInBoth> boards(inputs->result.boards.size());
+  FindInImage(*inputs, boards);
+  FindInScan(*inputs, boards);
+  cv::Mat canvas = inputs->image.clone();
+  const ScanOnImage drawn =
+      DrawScanOnImage(inputs->cloud, inputs->camera, inputs->result.cam_from_lidar,
+                      {.point_px = options.point_px, .all_returns = options.all_returns}, canvas);
+  std::string text =
+      fmt::format("{} on {}: {} of {} returns in view, {} of them hidden by something nearer{}\n",
+                  options.cloud_path, options.image_path, drawn.in_view, drawn.returns,
+                  drawn.hidden, options.all_returns ? " and drawn all the same" : "");
+  for (std::size_t i = 0; i < boards.size(); ++i) {
+    DrawOutline(boards[i].by_image, inputs->camera, kByImage, canvas);
+    DrawOutline(boards[i].by_scan, inputs->camera, kByScan, canvas);
+    text += Describe(boards[i], inputs->result.boards[i], inputs->camera);
+  }
+  if (const Expected<void> ok = WriteImage(canvas, options.out_path); !ok) {
+    return Refuse("project", ok.error());
+  }
+  fmt::print("{}{}: written\n", text, options.out_path);
+  if (drawn.in_view > 0) return kAnswered;
+  return Refuse("project",
+                {ErrorCode::kInvalidInput,
+                 fmt::format("no return of {} falls on {}; is the result of these sensors, and is "
+                             "cam_from_lidar not its inverse?",
+                             options.cloud_path, options.image_path)},
+                kNoAnswer);
+}
+
+}  // namespace sextant::cli
