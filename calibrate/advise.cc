@@ -123,13 +123,8 @@ int RingsOn(const BoardView& view) {
   return static_cast<int>(elevations.size());
 }
 
-}  // namespace
-
-Expected<Advice> Advise(const CalibrationResult& result, const SensorPair& sensors) {
-  if (const Expected<void> ok = Check(result, sensors); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
-  Advice advice;
+// What the kept views tell together; what is known after each goes into the advice.
+Matrix6d SumOfViews(const CalibrationResult& result, const SensorPair& sensors, Advice& advice) {
   Matrix6d known = Matrix6d::Zero();
   for (const ResultView& view : result.views) {
     if (!view.kept) continue;
@@ -137,11 +132,15 @@ Expected<Advice> Advise(const CalibrationResult& result, const SensorPair& senso
     if (!information) continue;
     known += *information;
     ++advice.views;
+    advice.covariance = CovarianceOf(known);
+    if (advice.covariance) advice.after.push_back({view.view, *advice.covariance});
   }
-  advice.covariance = CovarianceOf(known);
-  advice.warnings = DegenerateSets(BoardPosesOf(result));
+  return known;
+}
 
-  const std::vector<Candidate> grid = GridOf(result.boards, sensors.camera);
+std::optional<std::size_t> BestOf(const std::vector<Candidate>& grid,
+                                  const CalibrationResult& result, const SensorPair& sensors,
+                                  const Matrix6d& known, int& considered) {
   std::vector<std::optional<double>> gains(grid.size());
   tbb::parallel_for(std::size_t{0}, grid.size(), [&](std::size_t i) {
     const auto information =
@@ -151,27 +150,40 @@ Expected<Advice> Advise(const CalibrationResult& result, const SensorPair& senso
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if (!gains[i]) continue;
-    ++advice.considered;
+    ++considered;
     if (!best || *gains[i] > *gains[*best]) best = i;
   }
+  return best;
+}
+
+}  // namespace
+
+Expected<Advice> Advise(const CalibrationResult& result, const SensorPair& sensors) {
+  if (const Expected<void> ok = Check(result, sensors); !ok) {
+    return tl::unexpected<Error>(ok.error());
+  }
+  Advice advice;
+  const Matrix6d known = SumOfViews(result, sensors, advice);
+  advice.warnings = DegenerateSets(BoardPosesOf(result));
+  const std::vector<Candidate> grid = GridOf(result.boards, sensors.camera);
+  const std::optional<std::size_t> best = BestOf(grid, result, sensors, known, advice.considered);
   if (!best) {
     return MakeError(ErrorCode::kDegenerate,
                      "nowhere from 1.2 to 5 m would both sensors see a board, with four rings on "
                      "it: do their fields of view meet, and is it large enough?");
   }
-  const Board& board = result.boards[grid[*best].board];
-  BoardProposal& proposal = advice.proposal;
-  proposal.board = grid[*best].board;
-  proposal.cam_from_board = grid[*best].cam_from_board;
-  const BoardView view = *ForeseeView(sensors, board, proposal.cam_from_board);
-  proposal.rings = RingsOn(view);
+  const Candidate& chosen = grid[*best];
+  const Board& board = result.boards[chosen.board];
   const std::optional<Matrix6d> covariance =
-      CovarianceOf(known + *InformationAt(sensors, board, proposal.cam_from_board));
+      CovarianceOf(known + *InformationAt(sensors, board, chosen.cam_from_board));
   if (!covariance) {
     return MakeError(ErrorCode::kDegenerate, "no single view of the grid determines the pose");
   }
-  proposal.covariance = *covariance;
-  proposal.sentence = DescribePlacement(board, proposal.cam_from_board);
+  advice.proposal = {.board = chosen.board,
+                     .cam_from_board = chosen.cam_from_board,
+                     .rings = RingsOn(*ForeseeView(sensors, board, chosen.cam_from_board)),
+                     .covariance = *covariance,
+                     .sentence = DescribePlacement(board, chosen.cam_from_board)};
   return advice;
 }
 

@@ -20,9 +20,16 @@ struct BoardProposal {
   std::string sentence{};  ///< Distance, side, height and tilt, for whoever holds it.
 };
 
+/// What was known after one of the views that there are.
+struct KnownAfter {
+  int view = 0;  ///< ResultView::view.
+  Matrix6d covariance{};
+};
+
 struct Advice {
   std::optional<Matrix6d> covariance{};  ///< Foreseen from the views there are; none: too little.
   int views = 0;                         ///< That it rests on.
+  std::vector<KnownAfter> after{};       ///< Of each of them from which on the pose is determined.
   BoardProposal proposal{};
   int considered = 0;                   ///< Poses of the grid that both sensors would see.
   std::vector<std::string> warnings{};  ///< Of sets of views that leave something open.

@@ -229,12 +229,14 @@ int Main(int argc, char** argv) {
   MarkOptions mark;
   ExportCommandOptions exported;
   ProjectOptions project;
+  AdviseCommandOptions advise;
   SimulateSessionOptions session;
   SimulatePairsOptions pairs;
   AddSolve(app, solve);
   AddCompare(app, compare);
   AddDetect(app, detect);
   AddBoards(app, boards);
+  AddAdvise(app, advise);
   AddProject(app, project);
   AddExport(app, exported);
   AddMark(app, mark);
@@ -268,6 +270,7 @@ int Main(int argc, char** argv) {
   if (app.got_subcommand("bag")) return RunBag(bag);
   if (app.got_subcommand("accuracy")) return RunAccuracy(accuracy);
   if (app.got_subcommand("fuse")) return RunFuse(fuse);
+  if (app.got_subcommand("advise")) return RunAdvise(advise);
   if (app.got_subcommand("project")) return RunProject(project);
   if (app.got_subcommand("export")) return RunExport(exported);
   if (app.got_subcommand("mark")) return RunMark(mark);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <opencv2/core/mat.hpp>
 
+#include "calibrate/observe.h"
+#include "calibrate/photo_file.h"
 #include "cli/commands.h"
 #include "cli/load.h"
-#include "cli/photo_file.h"
 #include "cli/result_options.h"
 #include "cli/scan_on_image.h"
-#include "features/camera/find_boards.h"
-#include "features/lidar/corner_extractor.h"
 #include "io/board_file.h"
 #include "io/calibration_result.h"
 #include "io/camera_file.h"
@@ -76,32 +76,50 @@ Expected<void> FitCamera(const std::string& image_path, Inputs& inputs) {
                   inputs.image.cols, inputs.image.rows, camera.width_px, camera.height_px));
 }
 
-void FindInImage(const Inputs& inputs, std::vector<BoardInBoth>& boards) {
-  const Expected<BoardFinder> finder = BoardFinder::Make(inputs.result.boards, inputs.camera);
-  if (!finder) return;
-  const Expected<SeenBoards> seen = finder->Find(inputs.image);
-  if (!seen) return;
-  for (const SeenBoard& board : seen->boards) boards[board.index].by_image = board.corners.points;
-}
-
-void FindInScan(const Inputs& inputs, std::vector<BoardInBoth>& boards) {
-  const Expected<ScanRings> rings = ScanRings::Build(inputs.cloud);
-  if (!rings) return;
-  const Expected<BoardSearch> search = FindBoards(*rings, inputs.result.boards, {});
-  if (!search) return;
-  for (const BoardPatch& patch : search->found) {
-    const auto index = static_cast<std::size_t>(patch.board);
-    const Expected<LidarCorners> corners =
-        ExtractCorners("rectangle", patch, inputs.result.boards[index]);
-    if (!corners) continue;
-    for (const Eigen::Vector3d& corner : corners->in_lidar) {
-      boards[index].by_scan.push_back(inputs.result.cam_from_lidar * corner);
-    }
-  }
+// The likeliest way in which that board may lie on a patch; null where it cannot. Ways differ in
+// which corner is which, not in where the outline is.
+const BoardPlacement* PlacementOf(const LidarSighting& sighting, int board) {
+  const auto found =
+      std::find_if(sighting.placements.begin(), sighting.placements.end(),
+                   [board](const BoardPlacement& placement) { return placement.board == board; });
+  return found == sighting.placements.end() ? nullptr : &*found;
 }
 
 Eigen::Vector3d CentreOf(const std::vector<Eigen::Vector3d>& corners) {
   return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+}
+
+// Two patches may both be a board by their size: the one nearer to where the image has it.
+void TakeScan(const std::vector<Eigen::Vector3d>& corners, BoardInBoth& board) {
+  if (!board.by_scan.empty() && !board.by_image.empty()) {
+    const Eigen::Vector3d by_image = CentreOf(board.by_image);
+    if ((CentreOf(corners) - by_image).norm() > (CentreOf(board.by_scan) - by_image).norm()) return;
+  }
+  board.by_scan = corners;
+}
+
+Expected<std::vector<BoardInBoth>> FindInBoth(const Inputs& inputs) {
+  std::vector<BoardInBoth> boards(inputs.result.boards.size());
+  if (boards.empty()) return boards;
+  const Expected<Observer> observer = Observer::Make(inputs.result.boards, inputs.camera);
+  if (!observer) return tl::unexpected<Error>(observer.error());
+  const Expected<Observation> seen = observer->Observe(inputs.image, inputs.cloud);
+  if (!seen) return tl::unexpected<Error>(seen.error());
+  for (const CameraSighting& sighting : seen->in_image) {
+    boards[static_cast<std::size_t>(sighting.board)].by_image = sighting.corners.points;
+  }
+  for (const LidarSighting& sighting : seen->in_scan) {
+    for (std::size_t i = 0; i < boards.size(); ++i) {
+      const BoardPlacement* placement = PlacementOf(sighting, static_cast<int>(i));
+      if (placement == nullptr) continue;
+      std::vector<Eigen::Vector3d> corners;
+      for (const Eigen::Vector3d& corner : placement->corners.in_lidar) {
+        corners.push_back(inputs.result.cam_from_lidar * corner);
+      }
+      TakeScan(corners, boards[i]);
+    }
+  }
+  return boards;
 }
 
 std::string Describe(const BoardInBoth& board, const Board& known, const Camera& camera) {
@@ -128,9 +146,8 @@ int RunProject(const ProjectOptions& options) {
   if (const Expected<void> ok = FitCamera(options.image_path, *inputs); !ok) {
     return Refuse("project", ok.error());
   }
-  std::vector<BoardInBoth> boards(inputs->result.boards.size());
-  FindInImage(*inputs, boards);
-  FindInScan(*inputs, boards);
+  const Expected<std::vector<BoardInBoth>> boards = FindInBoth(*inputs);
+  if (!boards) return Refuse("project", boards.error());
   cv::Mat canvas = inputs->image.clone();
   const ScanOnImage drawn =
       DrawScanOnImage(inputs->cloud, inputs->camera, inputs->result.cam_from_lidar,
@@ -139,10 +156,10 @@ int RunProject(const ProjectOptions& options) {
       fmt::format("{} on {}: {} of {} returns in view, {} of them hidden by something nearer{}\n",
                   options.cloud_path, options.image_path, drawn.in_view, drawn.returns,
                   drawn.hidden, options.all_returns ? " and drawn all the same" : "");
-  for (std::size_t i = 0; i < boards.size(); ++i) {
-    DrawOutline(boards[i].by_image, inputs->camera, kByImage, canvas);
-    DrawOutline(boards[i].by_scan, inputs->camera, kByScan, canvas);
-    text += Describe(boards[i], inputs->result.boards[i], inputs->camera);
+  for (std::size_t i = 0; i < boards->size(); ++i) {
+    DrawOutline((*boards)[i].by_image, inputs->camera, kByImage, canvas);
+    DrawOutline((*boards)[i].by_scan, inputs->camera, kByScan, canvas);
+    text += Describe((*boards)[i], inputs->result.boards[i], inputs->camera);
   }
   if (const Expected<void> ok = WriteImage(canvas, options.out_path); !ok) {
     return Refuse("project", ok.error());

@@ -71,4 +71,27 @@ void AddProject(CLI::App& app, ProjectOptions& options) {
       "projected.png");
 }
 
+void AddAdvise(CLI::App& app, AdviseCommandOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("advise", "What the views told so far, and where to hold a board next");
+  command
+      .add_option("RESULT", options.result_path,
+                  "result.yaml of sextant calibrate, its JSON, or a folder with result.yaml in it")
+      ->required();
+  command.add_option("--picture", options.picture_path,
+                     "Draw the place from above and as the camera would see it (.png)");
+  command.add_option("--count", options.count, "How many places, each after those before it")
+      ->check(CLI::Range(1, 20))
+      ->capture_default_str();
+  command.add_option("--lidar", options.lidar,
+                     "A LiDAR of sextant lidars; default: the result's own rings, else vlp16");
+  command.add_option("--pixel-sigma", options.pixel_sigma_px, "Of a printed corner [px]")
+      ->check(CLI::Range(0.001, 100.0))
+      ->capture_default_str();
+  command.footer(
+      "The place is the one of a grid, seen by both sensors, that makes the foreseen covariance "
+      "smallest\n(D-optimal).\n"
+      "Example:\n  sextant advise result.yaml --picture next.png");
+}
+
 }  // namespace sextant::cli

@@ -30,10 +30,20 @@ struct ProjectOptions {
   bool all_returns = false;  ///< Also those that something nearer hides from the camera.
 };
 
+struct AdviseCommandOptions {
+  std::string result_path;
+  std::string picture_path;  ///< Empty: none.
+  std::string lidar;         ///< A model of the simulator; empty: the result's, else vlp16.
+  double pixel_sigma_px = 0.3;
+  int count = 1;
+};
+
 void AddExport(CLI::App& app, ExportCommandOptions& options);
 void AddProject(CLI::App& app, ProjectOptions& options);
+void AddAdvise(CLI::App& app, AdviseCommandOptions& options);
 
 int RunExport(const ExportCommandOptions& options);
 int RunProject(const ProjectOptions& options);
+int RunAdvise(const AdviseCommandOptions& options);
 
 }  // namespace sextant::cli

@@ -66,7 +66,9 @@ void SetColourRange(const std::vector<ProjectedReturn>& returns, ScanOnImage& dr
 }
 
 double ShareOf(double range_m, const ScanOnImage& drawn) {
-  return (range_m - drawn.nearest_m) / std::max(1e-3, drawn.farthest_m - drawn.nearest_m);
+  // By ratio: a metre at two metres tells more than one at twenty.
+  return std::log(range_m / drawn.nearest_m) /
+         std::log(std::max(1.001, drawn.farthest_m / drawn.nearest_m));
 }
 
 // A bar of the colours in the lower left corner, with the ranges of its ends.
@@ -80,8 +82,11 @@ void DrawScale(const ScanOnImage& drawn, cv::Mat& canvas) {
              cv::Scalar(c[0], c[1], c[2]));
   }
   const cv::Scalar white(255, 255, 255);
-  DrawLabel(fmt::format("{:.1f} m", drawn.nearest_m), corner - cv::Point(0, cvRound(0.4 * unit)),
+  DrawLabel(fmt::format("{:.1f}", drawn.nearest_m), corner - cv::Point(0, cvRound(0.4 * unit)),
             0.9 * unit, white, canvas);
+  DrawLabel(fmt::format("{:.1f}", std::sqrt(drawn.nearest_m * drawn.farthest_m)),
+            corner + cv::Point(width / 2 - cvRound(0.8 * unit), -cvRound(0.4 * unit)), 0.9 * unit,
+            white, canvas);
   DrawLabel(fmt::format("{:.1f} m", drawn.farthest_m),
             corner + cv::Point(width - cvRound(2.4 * unit), -cvRound(0.4 * unit)), 0.9 * unit,
             white, canvas);

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <numbers>
+
+#include "calibrate/advise.h"
+#include "calibrate/information.h"
+#include "calibrate/photo_file.h"
+#include "cli/advice_picture.h"
+#include "cli/commands.h"
+#include "cli/load.h"
+#include "cli/result_options.h"
+#include "eval/bounds.h"
+#include "eval/simulator/lidar_model.h"
+#include "io/degrees.h"
+
+namespace sextant::cli {
+namespace {
+
+Expected<LidarPattern> PatternNamed(const std::string& name) {
+  const Expected<LidarModel> model = FindLidarModel(name);
+  if (!model) return tl::unexpected<Error>(model.error());
+  LidarPattern pattern{
+      .azimuth_step_rad = 2.0 * std::numbers::pi * model->column_period_s / model->turn_period_s,
+      .range_sigma_m = model->range_sigma_m,
+      .aperture_m = model->aperture_h_m,
+      .divergence_rad = model->divergence_h_rad};
+  for (const LidarRing& ring : model->rings) pattern.elevations_rad.push_back(ring.elevation_rad);
+  if (!pattern.elevations_rad.empty()) return pattern;
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("--lidar: {} has no rings, and boards are foreseen by rings", name));
+}
+
+Expected<SensorPair> SensorsOf(const AdviseCommandOptions& options,
+                               const CalibrationResult& result) {
+  if (!result.camera) {
+    return MakeError(
+        ErrorCode::kMissingData,
+        fmt::format("{} has no camera; expected its key 'camera'", options.result_path));
+  }
+  SensorPair sensors{.camera = *result.camera,
+                     .lidar = {},
+                     .cam_from_lidar = result.cam_from_lidar,
+                     .pixel_sigma_px = options.pixel_sigma_px};
+  if (options.lidar.empty() && result.lidar) {
+    sensors.lidar = *result.lidar;
+    return sensors;
+  }
+  const Expected<LidarPattern> pattern =
+      PatternNamed(options.lidar.empty() ? "vlp16" : options.lidar);
+  if (!pattern) return tl::unexpected<Error>(pattern.error());
+  sensors.lidar = *pattern;
+  return sensors;
+}
+
+std::string KnownText(const Matrix6d& covariance) {
+  const RmsError rms = RmsOf(covariance);
+  return fmt::format("{:.2g} mm and {:.2g} deg; weakest {}", rms.translation_m * 1e3,
+                     rms.rotation_rad / kRadPerDeg, DescribeWeakest(WeakestOf(covariance)));
+}
+
+std::string NameOf(const CalibrationResult& result, int view) {
+  for (const ResultView& one : result.views) {
+    if (one.view == view && !one.name.empty()) return one.name;
+  }
+  return fmt::format("view {}", view);
+}
+
+// What the first advice says of the views there are.
+std::string ViewsText(const CalibrationResult& result, const Advice& advice) {
+  std::string text =
+      fmt::format("What {} views tell of cam_from_lidar, 1 sigma foreseen:\n", advice.views);
+  for (const KnownAfter& after : advice.after) {
+    text +=
+        fmt::format("  after {:<12} {}\n", NameOf(result, after.view), KnownText(after.covariance));
+  }
+  if (advice.after.empty()) text += "  the pose is not determined yet\n";
+  for (const std::string& warning : advice.warnings) text += "  note: " + warning + "\n";
+  return text;
+}
+
+// The proposal as a view of the result, so that the next one comes after it.
+ResultView AsView(const CalibrationResult& result, const Advice& advice) {
+  ResultView view;
+  view.view = -1;
+  Matrix6d before = Matrix6d::Zero();
+  if (advice.covariance) before = advice.covariance->inverse();
+  view.information = advice.proposal.covariance.inverse() - before;
+  view.boards.push_back({.board = result.boards[advice.proposal.board].id,
+                         .cam_from_board = advice.proposal.cam_from_board});
+  return view;
+}
+
+}  // namespace
+
+int RunAdvise(const AdviseCommandOptions& options) {
+  std::filesystem::path path = options.result_path;
+  if (std::filesystem::is_directory(path)) path /= "result.yaml";
+  const Expected<CalibrationResult> result = ReadCalibrationResult(path);
+  if (!result) {
+    return Refuse("advise",
+                  {result.error().code, fmt::format("{}; of a session, run sextant calibrate first",
+                                                    result.error().message)});
+  }
+  const Expected<SensorPair> sensors = SensorsOf(options, *result);
+  if (!sensors) return Refuse("advise", sensors.error());
+  CalibrationResult growing = *result;
+  std::vector<BoardProposal> proposals;
+  for (int i = 0; i < options.count; ++i) {
+    const Expected<Advice> advice = Advise(growing, *sensors);
+    if (!advice) return Refuse("advise", advice.error(), kNoAnswer);
+    if (i == 0) fmt::print("{}", ViewsText(*result, *advice));
+    fmt::print("{}\n  {} rings would cross it; known afterwards to {}\n", advice->proposal.sentence,
+               advice->proposal.rings, KnownText(advice->proposal.covariance));
+    proposals.push_back(advice->proposal);
+    growing.views.push_back(AsView(growing, *advice));
+  }
+  if (options.picture_path.empty()) return kAnswered;
+  const Expected<void> written =
+      WriteImage(DrawAdvice(*result, *sensors, proposals), options.picture_path);
+  if (!written) return Refuse("advise", written.error());
+  fmt::print("{}: the place from above and in the camera's image\n", options.picture_path);
+  return kAnswered;
+}
+
+}  // namespace sextant::cli
