@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <string>
 
 #include "base/random.h"
 #include "calibrate/outlier_views.h"
@@ -253,6 +253,9 @@ void AddTrust(const Trust& trust, CalibrationResult& result) {
     view.rmse_px = judged->rmse_px;
     view.held_out_m = judged->held_out_m;
     view.held_out_px = judged->held_out_px;
+    if (!judged->outlier) continue;
+    const std::string name = view.name.empty() ? "view " + std::to_string(view.view) : view.name;
+    result.warnings.push_back(OutlierText(name, *judged, trust.figures));
   }
 }
 

@@ -51,7 +51,8 @@ struct Trust {
 Expected<Trust> JudgeTrust(const CalibrationProblem& problem, const Solver& solver,
                            const SolveReport& answer, const TrustOptions& options = {});
 
-/// Writes the figures into the result and into those of its views that are judged.
+/// Writes the figures into the result and into those of its views that are judged, and a warning
+/// for each that does not belong.
 void AddTrust(const Trust& trust, CalibrationResult& result);
 
 }  // namespace sextant

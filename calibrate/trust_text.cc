@@ -86,4 +86,13 @@ std::string TrustVerdict(const TrustFigures& figures, int views) {
   return text;
 }
 
+std::string OutlierText(const std::string& name, const ViewTrust& view,
+                        const TrustFigures& figures) {
+  return fmt::format(
+      "{} disagrees with the other views: under their answer its corners are off by {}, those of "
+      "all views by {}; was the board still, and is its scan of the same moment?",
+      name, ErrorText(view.held_out_m, view.held_out_px),
+      ErrorText(figures.held_out_rmse_m, figures.held_out_rmse_px));
+}
+
 }  // namespace sextant

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "calibrate/trust.h"
 #include "io/calibration_result.h"
 
 namespace sextant {
@@ -11,5 +12,9 @@ namespace sextant {
 /// A ratio is taken for agreement within what so few views can tell: 1 + 2 / sqrt(2 (n - 1)), two
 /// standard errors of a standard deviation.
 std::string TrustVerdict(const TrustFigures& figures, int views);
+
+/// That the view of that name does not belong to the others, with by how much.
+std::string OutlierText(const std::string& name, const ViewTrust& view,
+                        const TrustFigures& figures);
 
 }  // namespace sextant

@@ -81,7 +81,7 @@ class TopView {
     const cv::Point lidar = At(sensors.cam_from_lidar.translation);
     cv::circle(canvas_, lidar, 8, kReturn, 2, cv::LINE_AA);
     Write(canvas_, "camera", origin_ + cv::Point(-70, 22), kInk);
-    Write(canvas_, "LiDAR", origin_ + cv::Point(16, 22), kReturn);
+    Write(canvas_, "LiDAR", lidar + cv::Point(16, 20), kReturn);
   }
 
   void DrawBoard(const PlacedBoard& placed, const cv::Scalar& colour, const std::string& label) {

@@ -174,6 +174,19 @@ TEST(Trust, GoesIntoTheResult) {
   EXPECT_EQ(result.trust->verdict, trust.figures.verdict);
 }
 
+TEST(Trust, OutliersAreNamedAmongTheWarnings) {
+  CalibrationProblem problem = SomeViews(8, 7);
+  for (Pair3d3d& pair : problem.pairs_3d3d) {
+    if (pair.id.view == 3) pair.point_in_lidar += Eigen::Vector3d(0.3, 0.0, 0.1);
+  }
+  CalibrationResult result;
+  result.views.push_back({.view = 2, .name = "good"});
+  result.views.push_back({.view = 3, .name = "pose7"});
+  AddTrust(TrustOf(problem), result);
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_THAT(result.warnings[0], HasSubstr("pose7 disagrees with the other views: under their"));
+}
+
 TEST(OutlyingViews, NeedsAMajorityAndAClearDistance) {
   EXPECT_THAT(OutlyingViews(std::vector<double>{1.0, 1.1, 9.0}), ElementsAre(false, false, false));
   EXPECT_THAT(OutlyingViews(std::vector<double>{1.0, 1.1, 0.9, 9.0}),
