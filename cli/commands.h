@@ -115,6 +115,19 @@ struct AccuracyOptions {
   bool markdown = false;
 };
 
+struct ExperimentOptions {
+  std::string experiment_path;
+  std::string out;                     ///< Folder; empty: results/NAME.
+  std::vector<std::string> row_files;  ///< Of shards, to be merged.
+  int threads = 0;                     ///< 0: all.
+  std::uint64_t trials = 0;            ///< 0: as the file says.
+  std::optional<std::uint64_t> seed;
+  std::string shard;  ///< "2/8"; empty: all.
+  bool quick = false;
+  bool fresh = false;
+  bool no_csv = false;
+};
+
 struct FuseOptions {
   std::vector<std::string> clouds;
   std::vector<std::string> from;  ///< A file with cam_from_lidar for each cloud but the last.
@@ -172,6 +185,9 @@ int RunExtractors(const ExtractorStudyCommandOptions& options);
 int RunConvert(const ConvertOptions& options);
 int RunBag(const BagOptions& options);
 int RunAccuracy(const AccuracyOptions& options);
+int RunExperiment(const ExperimentOptions& options);
+int RunMerge(const ExperimentOptions& options);
+int RunKinds();
 int RunFuse(const FuseOptions& options);
 int RunMark(const MarkOptions& options);
 int RunSimulateSession(const SimulateSessionOptions& options);

@@ -23,8 +23,7 @@ Progress::~Progress() {
   if (visible_) fmt::print(stderr, "\r\033[K");
 }
 
-void Progress::Step() {
-  const long done = ++done_;
+void Progress::Set(long done) {
   if (!visible_) return;
   const std::unique_lock lock(drawing_, std::try_to_lock);
   if (!lock || std::chrono::steady_clock::now() - drawn_ < kBetweenDrawings) return;

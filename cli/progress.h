@@ -17,7 +17,9 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   /// One step is done. Thread-safe.
-  void Step();
+  void Step() { Set(++done_); }
+  /// So many steps are done. Thread-safe.
+  void Set(long done);
 
  private:
   void Draw(long done);

@@ -61,6 +61,7 @@ void MeasureError(const Rigid3d& cam_from_lidar, const Rigid3d& truth, const Pos
   const bool success = rotation_deg <= limits.success_deg && translation_mm <= limits.success_mm;
   values.Set(kFine, rotation_deg <= limits.gross_deg ? 1.0 : 0.0);
   values.Set(kSuccess, success ? 1.0 : 0.0);
+  values.Set(kWrong, success ? 0.0 : 1.0);
   values.Set(kRotationDeg, rotation_deg);
   values.Set(kTranslationMm, translation_mm);
   values.Set(kXMm, by_axis_mm.x());
@@ -75,6 +76,7 @@ const std::vector<Metric>& PoseMetrics() {
       {"answered", "1 where the solver gave a pose, 0 where it gave an error"},
       {"fine", "1 where the pose is noise away from the truth: by at most gross_deg; else 0"},
       {"success", "1 where the pose is within success_deg and success_mm of the truth; else 0"},
+      {"wrong", "1 where there is a pose and it is no success; else 0"},
       {"rotation_deg", "geodesic angle between the rotation and the true one"},
       {"translation_mm", "distance between the translation and the true one"},
       {"x_mm", "error of the translation along x of the camera"},
@@ -96,6 +98,7 @@ const std::vector<Metric>& PoseMetrics() {
       {"estimated_yaw_deg", "of cam_from_lidar, R = Rz(yaw) Ry(pitch) Rx(roll)"},
       {"estimated_pitch_deg", "of cam_from_lidar"},
       {"estimated_roll_deg", "of cam_from_lidar"},
+      {"time_us", "wall time of the solver; measured by timed_trials, and no part of the rows"},
   };
   return metrics;
 }
@@ -105,12 +108,14 @@ void MeasurePose(const KnownProblem& known, const Expected<SolveReport>& report,
   values.Set(kAnswered, report ? 1.0 : 0.0);
   values.Set(kFine, 0.0);
   values.Set(kSuccess, 0.0);
+  values.Set(kWrong, 0.0);
   if (!report) return;
   const Rigid3d& pose = report->cam_from_lidar;
   MeasureError(pose, known.cam_from_lidar, limits, values);
   MeasureResiduals(report->evaluation, values);
   MeasureHeldOut(known.held_out, pose, values);
   MeasureEstimate(pose, values);
+  values.Set(kTimeUs, report->wall_time_us);
   values.Set(kInliers, static_cast<double>(report->inliers.size()));
   if (values.Wants(kNees) && report->covariance) {
     values.Set(kNees, Nees(pose, *report->covariance, known.cam_from_lidar));

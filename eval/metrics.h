@@ -48,6 +48,7 @@ enum PoseMetric : int {
   kAnswered,
   kFine,
   kSuccess,
+  kWrong,
   kRotationDeg,
   kTranslationMm,
   kXMm,
@@ -69,6 +70,7 @@ enum PoseMetric : int {
   kEstimatedYawDeg,
   kEstimatedPitchDeg,
   kEstimatedRollDeg,
+  kTimeUs,  ///< Wall time: no part of an experiment's rows (eval/experiment/timing.h).
   kPoseMetricCount,
 };
 const std::vector<Metric>& PoseMetrics();

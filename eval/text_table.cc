@@ -47,6 +47,28 @@ std::string TextTable::Markdown() const {
   return text;
 }
 
+std::string TextTable::Latex() const {
+  std::string columns;
+  for (std::size_t i = 0; i < rows_.front().size(); ++i) columns += IsFlushLeft(i) ? 'l' : 'r';
+  std::string text = fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n", columns);
+  for (const auto& row : rows_) {
+    std::string line;
+    for (const std::string& cell : row) line += (line.empty() ? "" : " & ") + LatexText(cell);
+    text += line + " \\\\\n";
+    if (&row == &rows_.front()) text += "\\midrule\n";
+  }
+  return text + "\\bottomrule\n\\end{tabular}\n";
+}
+
+std::string LatexText(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (std::string_view("_%&#$").find(c) != std::string_view::npos) escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
 std::string Fixed(double value, int decimals) {
   std::string text = fmt::format("{:.{}f}", value, decimals);
   if (text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);

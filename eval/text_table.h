@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace sextant {
@@ -26,6 +27,9 @@ class TextTable {
   /// For a page: GitHub's Markdown.
   std::string Markdown() const;
 
+  /// A tabular with the rules of the package booktabs.
+  std::string Latex() const;
+
  private:
   std::vector<std::size_t> Widths() const;
   bool IsFlushLeft(std::size_t column) const { return column == 0 || columns_ == Columns::kWords; }
@@ -33,6 +37,10 @@ class TextTable {
   std::vector<std::vector<std::string>> rows_;
   Columns columns_;
 };
+
+/// The text with the signs escaped that LaTeX takes for its own; these texts have no backslashes,
+/// braces, tildes or carets.
+std::string LatexText(std::string_view text);
 
 /// The number with so many decimals, and no minus before zeros.
 std::string Fixed(double value, int decimals);

@@ -8,26 +8,24 @@
 
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 #include "io/number_text.h"
 
 namespace sextant {
 namespace {
 
-// Closes on every way out; Close() where its result matters.
+// Closes on every way out.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
-  ~Descriptor() { Close(); }
+  ~Descriptor() {
+    if (fd_ >= 0) close(fd_);
+  }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
 
   int get() const { return fd_; }
-  bool Close() {
-    const int fd = fd_;
-    fd_ = -1;
-    return fd < 0 || close(fd) == 0;
-  }
 
  private:
   int fd_;
@@ -51,14 +49,6 @@ bool WriteAll(int fd, std::string_view text) {
     text.remove_prefix(static_cast<std::size_t>(written));
   }
   return true;
-}
-
-Expected<void> WriteDirectly(const std::filesystem::path& path, std::string_view text) {
-  Descriptor file(open(path.c_str(), O_WRONLY | O_CLOEXEC));
-  if (file.get() < 0 || !WriteAll(file.get(), text) || !file.Close()) {
-    return SystemError("write", path);
-  }
-  return {};
 }
 
 }  // namespace
@@ -88,28 +78,64 @@ Expected<std::string> ReadTextFile(const std::filesystem::path& path) {
   return text;
 }
 
-Expected<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view text) {
+AtomicFileWriter::~AtomicFileWriter() {
+  if (fd_ >= 0) close(fd_);
+  if (!temporary_.empty()) unlink(temporary_.c_str());
+}
+
+AtomicFileWriter::AtomicFileWriter(AtomicFileWriter&& other) noexcept
+    : path_(std::move(other.path_)),
+      target_(std::move(other.target_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      mode_(other.mode_),
+      fd_(std::exchange(other.fd_, -1)) {}
+
+Expected<AtomicFileWriter> AtomicFileWriter::Open(const std::filesystem::path& path) {
+  AtomicFileWriter writer(path);
   struct stat status {};
   const bool exists = stat(path.c_str(), &status) == 0;
   if (exists && S_ISDIR(status.st_mode)) return IoError("write", path, "it is a folder");
   // Renaming over a device would replace it.
-  if (exists && !S_ISREG(status.st_mode)) return WriteDirectly(path, text);
-
+  if (exists && !S_ISREG(status.st_mode)) {
+    writer.fd_ = open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (writer.fd_ < 0) return SystemError("write", path);
+    return writer;
+  }
   std::error_code ignored;
-  const std::filesystem::path target = exists ? std::filesystem::canonical(path, ignored) : path;
+  writer.target_ = exists ? std::filesystem::canonical(path, ignored) : path;
+  if (exists) writer.mode_ = status.st_mode & 07777U;
   const std::filesystem::path temporary =
-      target.parent_path() /
-      fmt::format(".{}.{}.tmp", target.filename().string().substr(0, 200), getpid());
-  Descriptor file(open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
-  if (file.get() < 0) return SystemError("write", path);
-  const bool ok = (!exists || fchmod(file.get(), status.st_mode & 07777U) == 0) &&
-                  WriteAll(file.get(), text) && fsync(file.get()) == 0 && file.Close() &&
-                  rename(temporary.c_str(), target.c_str()) == 0;
-  if (ok) return {};
-  const int reason = errno;
-  unlink(temporary.c_str());
-  errno = reason;
-  return SystemError("write", path);
+      writer.target_.parent_path() /
+      fmt::format(".{}.{}.tmp", writer.target_.filename().string().substr(0, 200), getpid());
+  writer.fd_ = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (writer.fd_ < 0) return SystemError("write", path);
+  writer.temporary_ = temporary;
+  return writer;
+}
+
+Expected<void> AtomicFileWriter::Append(std::string_view text) {
+  if (!WriteAll(fd_, text)) return SystemError("write", path_);
+  return {};
+}
+
+Expected<void> AtomicFileWriter::Commit() {
+  const auto close_once = [this] { return close(std::exchange(fd_, -1)) == 0; };
+  if (temporary_.empty()) {
+    if (!close_once()) return SystemError("write", path_);
+    return {};
+  }
+  const bool ok = (!mode_ || fchmod(fd_, *mode_) == 0) && fsync(fd_) == 0 && close_once() &&
+                  rename(temporary_.c_str(), target_.c_str()) == 0;
+  if (!ok) return SystemError("write", path_);
+  temporary_.clear();
+  return {};
+}
+
+Expected<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view text) {
+  Expected<AtomicFileWriter> writer = AtomicFileWriter::Open(path);
+  if (!writer) return tl::unexpected<Error>(std::move(writer.error()));
+  if (Expected<void> ok = writer->Append(text); !ok) return ok;
+  return writer->Commit();
 }
 
 }  // namespace sextant

@@ -18,6 +18,7 @@ namespace sextant {
 /// What is tried `trials` times: the kind under one set of parameters.
 struct Condition {
   std::string name{};
+  std::string base{};  ///< Its name in the list of conditions, without the grid; may be empty.
   /// Its place on the axes of the grid, in their order; empty without a grid.
   std::vector<std::string> place{};
   OptionValues parameters{};  ///< All that the file sets, the condition's own last.
@@ -28,7 +29,8 @@ struct Condition {
 struct TableSpec {
   std::string title;
   std::vector<Statistic> columns;
-  std::string across;  ///< Axis whose places are the columns (of one statistic); empty: none.
+  bool intervals = true;  ///< Each figure with its 95 percent interval.
+  std::string across;     ///< Axis whose places are the columns (of one statistic); empty: none.
 };
 
 /// A plot of the report: a line a subject.

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/nearest_name.h"
+#include "eval/experiment/timing.h"
 #include "io/number_text.h"
 
 namespace sextant {
@@ -112,13 +113,19 @@ void ExperimentParser::FindKind(const YamlNode& root) {
 void ExperimentParser::ParseMetrics(const YamlNode& root, Experiment& experiment) {
   const YamlNode* node = fields_.ok() ? root.Find("metrics") : nullptr;
   if (node == nullptr) {
-    for (std::size_t i = 0; i < experiment.metrics.size(); ++i) experiment.wanted.set(i);
+    for (std::size_t i = 0; i < experiment.metrics.size(); ++i) {
+      experiment.wanted[i] = experiment.metrics[i].name != kTimeMetric;
+    }
     return;
   }
   if (!fields_.IsSequence(*node, "metrics")) return;
   std::vector<std::string> known;
   for (const Metric& metric : experiment.metrics) known.push_back(metric.name);
   for (const YamlNode& item : node->items) {
+    if (item.text == kTimeMetric) {
+      fields_.Fail(item.line, "metrics", "time differs from run to run: write timed_trials");
+      return;
+    }
     const auto found = std::find(known.begin(), known.end(), item.text);
     if (found == known.end()) {
       fields_.Fail(item.line, "metrics",
@@ -140,6 +147,22 @@ void ExperimentParser::ParseMetrics(const YamlNode& root, Experiment& experiment
   for (const PlotSpec& plot : experiment.plots) want(plot.y);
 }
 
+// Every solver by itself, and the combinators around the closed form of each kind of pairs.
+std::vector<std::string> ExperimentParser::SpecsOf(const std::string& text) const {
+  if (text != "all") return {text};
+  std::vector<std::string> specs;
+  for (const SolverEntry& entry : registry_.entries()) {
+    if (!entry.wraps_solver) {
+      specs.push_back(entry.name);
+    } else {
+      for (const char* inner : {"kabsch", "epnp"}) {
+        specs.push_back(fmt::format("{}({})", entry.name, inner));
+      }
+    }
+  }
+  return specs;
+}
+
 std::vector<SolverPtr> ExperimentParser::ParseSolvers(const YamlNode& node) {
   std::vector<SolverPtr> solvers;
   if (!fields_.IsSequence(node, "solvers")) return solvers;
@@ -150,16 +173,23 @@ std::vector<SolverPtr> ExperimentParser::ParseSolvers(const YamlNode& node) {
   }
   std::set<std::string> names;
   for (const YamlNode& item : node.items) {
-    const Expected<SolverPtr> solver = registry_.Make(item.text);
-    if (!solver) {
-      fields_.Fail(item.line, "solvers", solver.error().message);
-      return {};
+    const bool all = item.text == "all";
+    for (const std::string& spec : SpecsOf(item.text)) {
+      const Expected<SolverPtr> solver = registry_.Make(spec);
+      // Some combinators cannot be put around some solvers.
+      if (!solver && all) continue;
+      if (!solver) {
+        fields_.Fail(item.line, "solvers", solver.error().message);
+        return {};
+      }
+      // Baselines and local searches are there where they are named.
+      if (all && !FindsWholePose((*solver)->spec())) continue;
+      if (!names.insert((*solver)->spec().name).second) {
+        fields_.Fail(item.line, "solvers", Quoted(spec) + " stands here a second time");
+        return {};
+      }
+      solvers.push_back(*solver);
     }
-    if (!names.insert((*solver)->spec().name).second) {
-      fields_.Fail(item.line, "solvers", Quoted(item.text) + " stands here a second time");
-      return {};
-    }
-    solvers.push_back(*solver);
   }
   return solvers;
 }
@@ -201,6 +231,7 @@ std::vector<ExperimentParser::Draft> ExperimentParser::ParseConditions(const Yam
     Draft draft{.condition = {.parameters = base}, .solvers = solvers, .line = node.line};
     const OptionValues own = ParseParameters(node, {"name", "solvers"});
     draft.condition.name = fields_.TextAt(node, "name");
+    draft.condition.base = draft.condition.name;
     draft.condition.parameters.insert(draft.condition.parameters.end(), own.begin(), own.end());
     if (const YamlNode* special = fields_.ok() ? node.Find("solvers") : nullptr) {
       draft.solvers = ParseSolvers(*special);

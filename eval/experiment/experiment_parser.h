@@ -30,6 +30,7 @@ class ExperimentParser {
   void ParseCounts(const YamlNode& root, Experiment& experiment);
   void FindKind(const YamlNode& root);
   void ParseMetrics(const YamlNode& root, Experiment& experiment);
+  std::vector<std::string> SpecsOf(const std::string& text) const;
   std::vector<SolverPtr> ParseSolvers(const YamlNode& node);
   OptionValues ParseParameters(const YamlNode& node, const std::vector<std::string>& besides);
   std::string ParseValue(const YamlNode& node, std::string_view name);

@@ -101,7 +101,11 @@ Expected<TrialsPtr> MakeProblemTrials(ProblemMaker maker, std::vector<SolverPtr>
   if (!problem.initial_cam_from_lidar) problem.initial_cam_from_lidar = sample->cam_from_lidar;
   std::string reasons;
   std::erase_if(solvers, [&](const SolverPtr& solver) {
-    const Expected<void> met = CheckProblem(problem, solver->spec());
+    Expected<void> met = CheckProblem(problem, solver->spec());
+    // Whether points lie on a plane shows when it is fitted.
+    if (met && solver->spec().needs.points_on_plane) {
+      met = solver->Solve(problem).map([](const SolveReport&) {});
+    }
     if (!met) reasons += fmt::format("; {}", met.error().message);
     return !met;
   });

@@ -22,6 +22,7 @@ struct Settings {
   double extent_m = 1.0;
   double max_rotation_deg = 180.0;
   double outliers = 0.0;
+  bool known_inliers = false;
   double focal_error = 0.0;
   double scale_error = 0.0;
   PoseLimits limits;
@@ -48,6 +49,8 @@ const OptionSet<Settings>& Parameters() {
                 "the true rotation is by at most this")
           .Real("outliers", &Settings::outliers, "1", 0.0, 0.99,
                 "share of the pairs that join different points")
+          .Choice("known_inliers", &Settings::known_inliers, {"false", "true"},
+                  "solvers get the pairs that join the same points only: what noise alone allows")
           .Real("focal_error", &Settings::focal_error, "1", -0.5, 0.5,
                 "focal lengths told to the solver are too long by this share")
           .Real("scale_error", &Settings::scale_error, "1", -0.5, 0.5,
@@ -120,7 +123,7 @@ KnownProblem MakeKnown(const Settings& settings, const TrialId& id) {
   known.inliers.pairs_2d3d.resize(static_cast<std::size_t>(inliers));
   if (inliers < settings.pairs) MismatchPairs(options, inliers, random, scene);
   known.held_out = HeldOut(options, known.cam_from_lidar, *scene.problem.camera, random);
-  known.problem = std::move(scene.problem);
+  known.problem = settings.known_inliers ? known.inliers : std::move(scene.problem);
   Distort(settings, known.problem);
   Restrict(settings.data, known.problem);
   return known;

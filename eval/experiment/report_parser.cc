@@ -33,12 +33,13 @@ std::string ExperimentParser::ParseAxis(const YamlNode& map, std::string_view ke
 void ExperimentParser::ParseTables(const YamlNode& root, Experiment& experiment) {
   const YamlNode* list = fields_.ok() ? root.Find("tables") : nullptr;
   if (list == nullptr || !fields_.IsSequence(*list, "tables")) return;
-  const std::vector<std::string> keys = {"title", "columns", "labels", "across"};
+  const std::vector<std::string> keys = {"title", "columns", "labels", "across", "intervals"};
   for (const YamlNode& node : list->items) {
     TableSpec table;
     if (!fields_.IsMap(node, "tables", keys)) return;
     table.title = OptionalText(node, "title", "");
     if (node.Find("across") != nullptr) table.across = ParseAxis(node, "across", experiment, false);
+    if (node.Find("intervals") != nullptr) table.intervals = Flag(node, "intervals");
     const YamlNode& columns = fields_.Require(node, "columns");
     if (!fields_.IsSequence(columns, "columns")) return;
     for (const YamlNode& item : columns.items) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/nearest_name.h"
+#include "eval/experiment/timing.h"
 #include "solvers/options.h"
 #include "solvers/spec.h"
 
@@ -13,6 +14,10 @@ namespace sextant {
 namespace {
 
 Expected<int> FindMetric(const std::string& name, const std::vector<Metric>& metrics) {
+  if (name == kTimeMetric) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     "time differs from run to run and is no part of the rows: write timed_trials");
+  }
   const auto found = std::find_if(metrics.begin(), metrics.end(),
                                   [&name](const Metric& metric) { return metric.name == name; });
   if (found != metrics.end()) return static_cast<int>(found - metrics.begin());

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "eval/experiment/report.h"
+#include "eval/experiment/run_trials.h"
+
+namespace sextant {
+namespace {
+
+std::map<std::string, Statistic> StatisticsOf(const Experiment& experiment) {
+  std::map<std::string, Statistic> statistics;
+  for (const TableSpec& table : experiment.tables) {
+    for (const Statistic& column : table.columns) statistics.emplace(column.text, column);
+  }
+  for (const PlotSpec& plot : experiment.plots) statistics.emplace(plot.y.text, plot.y);
+  return statistics;
+}
+
+}  // namespace
+
+Expected<ReportData> ReportData::Compute(const Experiment& experiment,
+                                         const RowFileReader& reader) {
+  if (reader.configuration() != ConfigurationOf(experiment)) {
+    return MakeError(ErrorCode::kInvalidInput,
+                     "the rows are of another configuration than the experiment file's");
+  }
+  const std::map<std::string, Statistic> statistics = StatisticsOf(experiment);
+  ReportData data;
+  for (std::size_t c = 0; c < experiment.conditions.size(); ++c) {
+    const Expected<ConditionRows> rows = ConditionRows::Open(experiment, reader, c);
+    if (!rows) return tl::unexpected<Error>(rows.error());
+    std::map<std::string, std::vector<Figure>> figures;
+    for (const auto& [text, statistic] : statistics) {
+      Expected<std::vector<Figure>> of_cells = ComputeFigures(statistic, *rows, experiment.seed);
+      if (!of_cells) return tl::unexpected<Error>(of_cells.error());
+      figures.emplace(text, std::move(*of_cells));
+    }
+    data.cells_.push_back(rows->cells());
+    data.figures_.push_back(std::move(figures));
+  }
+  return data;
+}
+
+std::string PlaceWithout(const Experiment& experiment, const Condition& condition,
+                         const std::string& axis) {
+  std::string place = condition.base;
+  for (std::size_t i = 0; i < experiment.axes.size(); ++i) {
+    if (experiment.axes[i] == axis) continue;
+    place +=
+        fmt::format("{}{} = {}", place.empty() ? "" : ", ", experiment.axes[i], condition.place[i]);
+  }
+  return place;
+}
+
+std::string SubjectText(const Condition& condition, const CellKey& cell) {
+  const std::string& subject = condition.trials->subjects()[static_cast<std::size_t>(cell.subject)];
+  return cell.index == 0 ? subject : fmt::format("{} #{}", subject, cell.index);
+}
+
+}  // namespace sextant

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// The accuracy of every registered solver on seeded scenes, against what it was
+// (golden/accuracy.json). scripts/update-golden rewrites that file through this test.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "eval/experiment/golden.h"
+#include "eval/experiment/run_trials.h"
+#include "io/text_file.h"
+#include "support/run_program.h"
+#include "support/source_tree.h"
+
+namespace sextant::test {
+namespace {
+
+std::filesystem::path GoldenFolder() { return SourceRoot() / "tests" / "regression" / "golden"; }
+
+// The figures of the experiment as the solvers are now.
+std::vector<GoldenFigure> RunGolden() {
+  const Expected<Experiment> experiment =
+      ReadExperiment(GoldenFolder() / "accuracy.yaml", BuiltinKinds(), BuiltinSolvers());
+  if (!experiment) {
+    ADD_FAILURE() << experiment.error().message;
+    return {};
+  }
+  const std::filesystem::path rows = TestFolder() / "rows";
+  EXPECT_TRUE(RunTrials(*experiment, {.rows_path = rows}));
+  const Expected<RowFileReader> reader = RowFileReader::Open(rows);
+  const Expected<ReportData> data = ReportData::Compute(*experiment, *reader);
+  EXPECT_TRUE(data);
+  return CollectFigures(*experiment, *data);
+}
+
+TEST(AccuracyRegression, NoSolverIsWorseThanItWas) {
+  const std::vector<GoldenFigure> now = RunGolden();
+  const std::filesystem::path path = GoldenFolder() / "accuracy.json";
+  if (std::getenv("SEXTANT_UPDATE_GOLDEN") != nullptr) {
+    ASSERT_TRUE(WriteFileAtomically(path, FormatGolden(now)));
+  }
+  const Expected<std::string> text = ReadTextFile(path);
+  ASSERT_TRUE(text) << text.error().message;
+  const Expected<std::vector<GoldenFigure>> golden = ParseGolden(*text, path.string());
+  ASSERT_TRUE(golden) << golden.error().message;
+  for (const std::string& line : CompareWithGolden(*golden, now)) ADD_FAILURE() << line;
+}
+
+// Solvers that these scenes have no data for, and why.
+bool IsExcused(const std::string& solver) {
+  return solver == "mean_offset" ||  // A baseline, wrong by design.
+         solver == "joint";  // Works on raw views of boards; held to its bound in its tests.
+}
+
+TEST(AccuracyRegression, HoldsEveryRegisteredSolver) {
+  const Expected<std::string> text = ReadTextFile(GoldenFolder() / "accuracy.json");
+  ASSERT_TRUE(text);
+  const std::vector<GoldenFigure> golden = *ParseGolden(*text, "accuracy.json");
+  for (const SolverEntry& entry : BuiltinSolvers().entries()) {
+    const bool held = std::any_of(golden.begin(), golden.end(), [&entry](const GoldenFigure& f) {
+      return f.subject == entry.name || f.subject.starts_with(entry.name + "(");
+    });
+    EXPECT_TRUE(held || IsExcused(entry.name))
+        << entry.name << " is not in the golden figures; run scripts/update-golden";
+  }
+}
+
+// The comparison sees what it looks for.
+TEST(AccuracyRegression, NamesWhatGotWorseWhereAndByHowMuch) {
+  const std::vector<GoldenFigure> golden = {
+      {"20 pixels", "epnp", "median(rotation_deg)", 0.10, 0.09, 0.11},
+      {"20 pixels", "epnp", "rate(fine)", 0.99, 0.97, 1.0},
+      {"20 pixels", "p3p", "median(rotation_deg)", 0.20, 0.18, 0.22}};
+  EXPECT_THAT(CompareWithGolden(golden, golden), testing::IsEmpty());
+  std::vector<GoldenFigure> now = golden;
+  now[0].value = 0.15;
+  now[1].value = 0.95;
+  now[2].subject = "p4p";
+  EXPECT_THAT(
+      CompareWithGolden(golden, now),
+      testing::ElementsAre(
+          "epnp, 20 pixels: median(rotation_deg) is 0.15, was 0.1 [0.09, 0.11]: 50.0 percent worse",
+          "epnp, 20 pixels: rate(fine) is 0.95, was 0.99 [0.97, 1]: 4.0 percent worse",
+          "p4p, 20 pixels: median(rotation_deg) is new; run scripts/update-golden",
+          "p3p, 20 pixels: median(rotation_deg) is gone: the solver no longer answers there"));
+  now = golden;
+  now[0].value = 0.05;
+  EXPECT_THAT(CompareWithGolden(golden, now), testing::IsEmpty()) << "better is not worse";
+}
+
+TEST(AccuracyRegression, GoldenFiguresSurviveTheirFile) {
+  const std::vector<GoldenFigure> golden = {{"a \"b\"", "x(y)", "rate(fine)", 0.5, 0.25, 0.75}};
+  const auto read = ParseGolden(FormatGolden(golden), "golden");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->front().condition, "a \"b\"");
+  EXPECT_EQ(read->front().high, 0.75);
+  EXPECT_FALSE(ParseGolden("[[1]]", "golden"));
+}
+
+}  // namespace
+}  // namespace sextant::test
