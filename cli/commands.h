@@ -107,17 +107,10 @@ struct SimulateSessionOptions {
   std::optional<double> pixel_sigma_px;  ///< None: as the level has it.
 };
 
-struct AccuracyOptions {
-  std::string solvers;  ///< Empty: every one that finds a whole pose; the robust ones for outliers.
-  int trials = 0;       ///< 0: 2000 a condition, or 100 scenes a cell of the study of outliers.
-  std::uint64_t seed = 1;
-  bool outliers = false;
-  bool markdown = false;
-};
-
 struct ExperimentOptions {
   std::string experiment_path;
   std::string out;                     ///< Folder; empty: results/NAME.
+  std::string solvers;                 ///< Empty: the file's.
   std::vector<std::string> row_files;  ///< Of shards, to be merged.
   int threads = 0;                     ///< 0: all.
   std::uint64_t trials = 0;            ///< 0: as the file says.
@@ -184,7 +177,6 @@ int RunDetectors(const DetectorStudyCommandOptions& options);
 int RunExtractors(const ExtractorStudyCommandOptions& options);
 int RunConvert(const ConvertOptions& options);
 int RunBag(const BagOptions& options);
-int RunAccuracy(const AccuracyOptions& options);
 int RunExperiment(const ExperimentOptions& options);
 int RunMerge(const ExperimentOptions& options);
 int RunKinds();

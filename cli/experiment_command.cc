@@ -21,7 +21,7 @@ namespace {
 
 Expected<Experiment> LoadExperiment(const ExperimentOptions& options) {
   Expected<Experiment> experiment =
-      ReadExperiment(options.experiment_path, BuiltinKinds(), AllSolvers());
+      ReadExperiment(options.experiment_path, BuiltinKinds(), AllSolvers(), options.solvers);
   if (!experiment) return experiment;
   if (options.quick) experiment->trials = experiment->quick_trials;
   if (options.trials > 0) experiment->trials = options.trials;

@@ -187,68 +187,6 @@ void AddSimulate(CLI::App& app, SimulateSessionOptions& session, SimulatePairsOp
   AddSimulatePairs(command, pairs);
 }
 
-void AddAccuracy(CLI::App& app, AccuracyOptions& options) {
-  CLI::App& command =
-      *app.add_subcommand("accuracy", "Every solver against the Cramer-Rao bound, by simulation");
-  command.add_option("--solvers", options.solvers, "Solvers, separated by commas; default: all");
-  command
-      .add_option("--trials", options.trials,
-                  "Random scenes a condition; default: 2000, or 100 with --outliers")
-      ->check(CLI::Range(1, 100'000'000));
-  command.add_option("--seed", options.seed, "The same seed gives the same figures")
-      ->capture_default_str();
-  command.add_flag("--outliers", options.outliers,
-                   "Instead: how often each finds the pose among 0 to 70 percent of outliers");
-  command.add_flag("--markdown", options.markdown, "As a page");
-  command.footer(
-      "Examples:\n"
-      "  sextant accuracy --solvers 'epnp,refine(epnp)' --trials 500\n"
-      "  sextant accuracy --outliers --solvers 'ransac(p3p),gnc(epnp)'");
-}
-
-void AddRun(CLI::App& app, ExperimentOptions& options) {
-  CLI::App& command = *app.add_subcommand(
-      "run", "An experiment: solvers, conditions and trials of a file, to tables and plots");
-  command.add_option("EXPERIMENT", options.experiment_path, "Experiment file (YAML)")->required();
-  command.add_option("--out", options.out,
-                     "Folder to write; a run that was stopped goes on where it was.\n"
-                     "Default: results/NAME");
-  command.add_option("--threads", options.threads, "Default: as many as the machine has")
-      ->check(CLI::Range(1, 1024));
-  command.add_option("--trials", options.trials, "Instead of the file's")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
-  command.add_option("--seed", options.seed, "Instead of the file's");
-  command.add_flag("--quick", options.quick, "The file's quick_trials instead of its trials");
-  command.add_flag("--fresh", options.fresh, "Throw away rows that are there");
-  command.add_flag("--no-csv", options.no_csv, "Without rows.csv, which is large for many trials");
-  command.add_option("--shard", options.shard,
-                     "I/N: the I-th of N parts only, for as many machines; join them by merge");
-  command.footer(
-      "Writes rows.sxtrows (all that was measured), rows.csv, summary.json, report.md, tables.tex\n"
-      "and the plots. The same file and seed give the same bytes on any number of threads.\n"
-      "Examples:\n"
-      "  sextant run experiments/accuracy.yaml --quick\n"
-      "  sextant run experiments/accuracy.yaml --shard 2/8 --out /tmp/accuracy");
-}
-
-void AddMerge(CLI::App& app, ExperimentOptions& options) {
-  CLI::App& command = *app.add_subcommand("merge", "The shards of an experiment, to one report");
-  command.add_option("EXPERIMENT", options.experiment_path, "Experiment file (YAML)")->required();
-  command.add_option("ROWS", options.row_files, "The row files of all shards")->required();
-  command.add_option("--out", options.out, "Folder to write. Default: results/NAME");
-  command.add_option("--trials", options.trials, "As the shards were run with");
-  command.add_option("--seed", options.seed, "As the shards were run with");
-  command.add_flag("--quick", options.quick, "As the shards were run with");
-  command.add_flag("--no-csv", options.no_csv, "Without rows.csv");
-  command.footer(
-      "The same bytes as one run on one machine.\n"
-      "Example:\n  sextant merge experiments/accuracy.yaml results/accuracy/shard_*.sxtrows");
-}
-
-void AddKinds(CLI::App& app) {
-  app.add_subcommand("kinds", "The kinds of experiments, their parameters and metrics (Markdown)");
-}
-
 int Main(int argc, char** argv) {
   CLI::App app(kIntroduction, "sextant");
   app.set_version_flag("--version", std::string(Version()));
@@ -267,7 +205,6 @@ int Main(int argc, char** argv) {
   DetectOptions detect;
   DetectorStudyCommandOptions detectors;
   ExtractorStudyCommandOptions extractors;
-  AccuracyOptions accuracy;
   FuseOptions fuse;
   MarkOptions mark;
   ExportCommandOptions exported;
@@ -295,7 +232,6 @@ int Main(int argc, char** argv) {
   AddDetectors(app, detectors);
   AddExtractors(app, extractors);
   AddLidars(app, lidars);
-  AddAccuracy(app, accuracy);
   AddRun(app, run);
   AddMerge(app, merge);
   AddKinds(app);
@@ -316,7 +252,6 @@ int Main(int argc, char** argv) {
   if (app.got_subcommand("extractors")) return RunExtractors(extractors);
   if (app.got_subcommand("convert")) return RunConvert(convert);
   if (app.got_subcommand("bag")) return RunBag(bag);
-  if (app.got_subcommand("accuracy")) return RunAccuracy(accuracy);
   if (app.got_subcommand("run")) return RunExperiment(run);
   if (app.got_subcommand("merge")) return RunMerge(merge);
   if (app.got_subcommand("kinds")) return RunKinds();

@@ -28,4 +28,52 @@ void AddFuse(CLI::App& app, FuseOptions& options) {
       "  sextant fuse cam1.pcd cam2.pcd --rts conf/rts.txt");
 }
 
+void AddRun(CLI::App& app, ExperimentOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "run", "An experiment: solvers, conditions and trials of a file, to tables and plots");
+  command.add_option("EXPERIMENT", options.experiment_path, "Experiment file (YAML)")->required();
+  command.add_option("--out", options.out,
+                     "Folder to write; a run that was stopped goes on where it was.\n"
+                     "Default: results/NAME");
+  command.add_option(
+      "--solvers", options.solvers,
+      "Instead of the file's, separated by commas; conditions that they have no data\n"
+      "for are left out");
+  command.add_option("--threads", options.threads, "Default: as many as the machine has")
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--trials", options.trials, "Instead of the file's")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
+  command.add_option("--seed", options.seed, "Instead of the file's");
+  command.add_flag("--quick", options.quick, "The file's quick_trials instead of its trials");
+  command.add_flag("--fresh", options.fresh, "Throw away rows that are there");
+  command.add_flag("--no-csv", options.no_csv, "Without rows.csv, which is large for many trials");
+  command.add_option("--shard", options.shard,
+                     "I/N: the I-th of N parts only, for as many machines; join them by merge");
+  command.footer(
+      "Writes rows.sxtrows (all that was measured), rows.csv, summary.json, report.md, tables.tex\n"
+      "and the plots. The same file and seed give the same bytes on any number of threads.\n"
+      "Examples:\n"
+      "  sextant run experiments/leaderboard.yaml --quick\n"
+      "  sextant run experiments/leaderboard.yaml --solvers 'kabsch,my_solver' --out mine\n"
+      "  sextant run experiments/accuracy.yaml --shard 2/8 --out /tmp/accuracy");
+}
+
+void AddMerge(CLI::App& app, ExperimentOptions& options) {
+  CLI::App& command = *app.add_subcommand("merge", "The shards of an experiment, to one report");
+  command.add_option("EXPERIMENT", options.experiment_path, "Experiment file (YAML)")->required();
+  command.add_option("ROWS", options.row_files, "The row files of all shards")->required();
+  command.add_option("--out", options.out, "Folder to write. Default: results/NAME");
+  command.add_option("--trials", options.trials, "As the shards were run with");
+  command.add_option("--seed", options.seed, "As the shards were run with");
+  command.add_flag("--quick", options.quick, "As the shards were run with");
+  command.add_flag("--no-csv", options.no_csv, "Without rows.csv");
+  command.footer(
+      "The same bytes as one run on one machine.\n"
+      "Example:\n  sextant merge experiments/accuracy.yaml results/accuracy/shard_*.sxtrows");
+}
+
+void AddKinds(CLI::App& app) {
+  app.add_subcommand("kinds", "The kinds of experiments, their parameters and metrics (Markdown)");
+}
+
 }  // namespace sextant::cli

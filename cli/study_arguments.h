@@ -9,7 +9,10 @@ class App;
 
 namespace sextant::cli {
 
-/// Subcommands that merge what was calibrated and that reproduce the paper.
+/// Subcommands of experiments, and that merge what was calibrated.
+void AddRun(CLI::App& app, ExperimentOptions& options);
+void AddMerge(CLI::App& app, ExperimentOptions& options);
+void AddKinds(CLI::App& app);
 void AddFuse(CLI::App& app, FuseOptions& options);
 
 }  // namespace sextant::cli

@@ -39,7 +39,8 @@ struct KnownProblem {
   CalibrationProblem problem;  ///< What solvers see.
   Rigid3d cam_from_lidar;      ///< The truth.
   CalibrationProblem inliers;  ///< With true correspondences and noise only: the bound is of these.
-  CalibrationProblem held_out;  ///< Other pairs, to judge an answer by; may be empty.
+  std::vector<Rigid3d> cam_from_board;  ///< The truth of each of its board views.
+  CalibrationProblem held_out;          ///< Other pairs, to judge an answer by; may be empty.
 };
 
 /// How far an answer is from the truth; one name, unit and definition for every experiment. The

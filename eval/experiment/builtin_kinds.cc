@@ -5,6 +5,7 @@
 // own file.
 #define SEXTANT_KINDS(X) \
   X(RandomScene)         \
+  X(BoardViews)          \
   X(Scene)               \
   X(SceneAverage)        \
   X(AverageLog)          \

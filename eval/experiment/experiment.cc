@@ -9,17 +9,20 @@ namespace sextant {
 
 Expected<Experiment> ParseExperiment(std::string_view text, const std::string& file,
                                      const std::vector<TrialKind>& kinds,
-                                     const SolverRegistry& registry) {
+                                     const SolverRegistry& registry, const std::string& solvers) {
+  const Expected<std::vector<SpecNode>> specs =
+      solvers.empty() ? std::vector<SpecNode>() : ParseSpecList(solvers);
+  if (!specs) return tl::unexpected<Error>(specs.error());
   const Expected<YamlNode> root = ParseYaml(std::string(text), file);
   if (!root) return tl::unexpected<Error>(root.error());
-  return ExperimentParser(file, kinds, registry).Parse(*root);
+  return ExperimentParser(file, kinds, registry, *specs).Parse(*root);
 }
 
 Expected<Experiment> ReadExperiment(const std::filesystem::path& path,
                                     const std::vector<TrialKind>& kinds,
-                                    const SolverRegistry& registry) {
+                                    const SolverRegistry& registry, const std::string& solvers) {
   return ReadWith(path, [&](std::string_view text, const std::string& file) {
-    return ParseExperiment(text, file, kinds, registry);
+    return ParseExperiment(text, file, kinds, registry, solvers);
   });
 }
 

@@ -68,12 +68,17 @@ struct Experiment {
 /// Reads and checks all that can be known before the first trial: keys, kind, parameters, solvers,
 /// metrics, statistics. Formats: docs/experiments.md. Errors name file, line and key (kParse,
 /// kUnknownName with the nearest known, kInvalidOption); kIo.
+///
+/// `solvers` (specs, separated by commas) take the place of all that the file names; conditions
+/// that they have no data for are then left out.
 Expected<Experiment> ReadExperiment(const std::filesystem::path& path,
                                     const std::vector<TrialKind>& kinds,
-                                    const SolverRegistry& registry);
+                                    const SolverRegistry& registry,
+                                    const std::string& solvers = "");
 Expected<Experiment> ParseExperiment(std::string_view text, const std::string& file,
                                      const std::vector<TrialKind>& kinds,
-                                     const SolverRegistry& registry);
+                                     const SolverRegistry& registry,
+                                     const std::string& solvers = "");
 
 /// The seed of a trial: by the experiment's seed and name, the condition's name and the trial.
 std::uint64_t SeedOf(const Experiment& experiment, const Condition& condition, std::uint64_t trial);

@@ -147,53 +147,6 @@ void ExperimentParser::ParseMetrics(const YamlNode& root, Experiment& experiment
   for (const PlotSpec& plot : experiment.plots) want(plot.y);
 }
 
-// Every solver by itself, and the combinators around the closed form of each kind of pairs.
-std::vector<std::string> ExperimentParser::SpecsOf(const std::string& text) const {
-  if (text != "all") return {text};
-  std::vector<std::string> specs;
-  for (const SolverEntry& entry : registry_.entries()) {
-    if (!entry.wraps_solver) {
-      specs.push_back(entry.name);
-    } else {
-      for (const char* inner : {"kabsch", "epnp"}) {
-        specs.push_back(fmt::format("{}({})", entry.name, inner));
-      }
-    }
-  }
-  return specs;
-}
-
-std::vector<SolverPtr> ExperimentParser::ParseSolvers(const YamlNode& node) {
-  std::vector<SolverPtr> solvers;
-  if (!fields_.IsSequence(node, "solvers")) return solvers;
-  if (!kind_->takes_solvers) {
-    fields_.Fail(node.line, "solvers",
-                 fmt::format("the kind {} takes no solvers; leave them out", kind_->name));
-    return solvers;
-  }
-  std::set<std::string> names;
-  for (const YamlNode& item : node.items) {
-    const bool all = item.text == "all";
-    for (const std::string& spec : SpecsOf(item.text)) {
-      const Expected<SolverPtr> solver = registry_.Make(spec);
-      // Some combinators cannot be put around some solvers.
-      if (!solver && all) continue;
-      if (!solver) {
-        fields_.Fail(item.line, "solvers", solver.error().message);
-        return {};
-      }
-      // Baselines and local searches are there where they are named.
-      if (all && !FindsWholePose((*solver)->spec())) continue;
-      if (!names.insert((*solver)->spec().name).second) {
-        fields_.Fail(item.line, "solvers", Quoted(spec) + " stands here a second time");
-        return {};
-      }
-      solvers.push_back(*solver);
-    }
-  }
-  return solvers;
-}
-
 std::string ExperimentParser::ParseValue(const YamlNode& node, std::string_view name) {
   if (node.kind == YamlNode::Kind::kText) return node.text;
   if (!fields_.IsSequence(node, name)) return {};
@@ -295,6 +248,7 @@ void ExperimentParser::MakeTrials(std::vector<Draft> drafts, Experiment& experim
         kind_->make({.parameters = condition.parameters,
                      .solvers = draft.solvers,
                      .folder = std::filesystem::path(fields_.file()).parent_path()});
+    if (!trials && !instead_.empty() && trials.error().code == ErrorCode::kMissingData) continue;
     if (!trials) {
       fields_.Fail(
           {trials.error().code,
@@ -305,6 +259,9 @@ void ExperimentParser::MakeTrials(std::vector<Draft> drafts, Experiment& experim
     }
     condition.trials = std::move(*trials);
     experiment.conditions.push_back(std::move(condition));
+  }
+  if (fields_.ok() && experiment.conditions.empty()) {
+    fields_.Fail(0, "solvers", "no condition has the data that they need");
   }
 }
 

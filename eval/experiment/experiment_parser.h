@@ -14,8 +14,10 @@ namespace sextant {
 class ExperimentParser {
  public:
   ExperimentParser(std::string file, const std::vector<TrialKind>& kinds,
-                   const SolverRegistry& registry)
-      : fields_(std::move(file)), kinds_(kinds), registry_(registry) {}
+                   const SolverRegistry& registry, const std::vector<SpecNode>& instead)
+      : fields_(std::move(file)), kinds_(kinds), registry_(registry) {
+    for (const SpecNode& spec : instead) instead_.push_back(FormatSpec(spec));
+  }
 
   Expected<Experiment> Parse(const YamlNode& root);
 
@@ -31,6 +33,7 @@ class ExperimentParser {
   void FindKind(const YamlNode& root);
   void ParseMetrics(const YamlNode& root, Experiment& experiment);
   std::vector<std::string> SpecsOf(const std::string& text) const;
+  void AddSolvers(const std::string& text, int line, std::vector<SolverPtr>& solvers);
   std::vector<SolverPtr> ParseSolvers(const YamlNode& node);
   OptionValues ParseParameters(const YamlNode& node, const std::vector<std::string>& besides);
   std::string ParseValue(const YamlNode& node, std::string_view name);
@@ -49,6 +52,7 @@ class ExperimentParser {
   YamlFields fields_;
   const std::vector<TrialKind>& kinds_;
   const SolverRegistry& registry_;
+  std::vector<std::string> instead_;  ///< Solvers that replace the file's; empty: none do.
   const TrialKind* kind_ = nullptr;
 };
 

@@ -69,6 +69,13 @@ Expected<std::vector<Piece>> SortPieces(const std::vector<RowFileReader>& reader
 Expected<void> MergeRowFiles(const std::vector<std::filesystem::path>& shards,
                              const std::filesystem::path& merged) {
   if (shards.empty()) return MakeError(ErrorCode::kMissingData, "no row files to merge");
+  for (const std::filesystem::path& shard : shards) {
+    std::error_code ignored;
+    if (!std::filesystem::equivalent(shard, merged, ignored)) continue;
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("'{}' is itself one of the files to merge; name another folder",
+                                 merged.string()));
+  }
   const Expected<std::vector<RowFileReader>> readers = OpenAll(shards);
   if (!readers) return tl::unexpected<Error>(readers.error());
   const Expected<std::vector<Piece>> pieces = SortPieces(*readers);

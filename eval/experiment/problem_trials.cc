@@ -43,8 +43,10 @@ CalibrationProblem ViewOf(const CalibrationProblem& problem, const DataKinds& ki
 void MeasureBound(const KnownProblem& known, DataKinds kinds, MetricValues& values) {
   // Unpaired points can at best be paired rightly.
   kinds.points = kinds.points || kinds.sets;
+  const CalibrationProblem seen = ViewOf(known.inliers, kinds);
   const Expected<Matrix6d> bound =
-      CramerRaoBound(ViewOf(known.inliers, kinds), known.cam_from_lidar);
+      kinds.views ? CramerRaoBoundOfViews(seen, known.cam_from_lidar, known.cam_from_board)
+                  : CramerRaoBound(seen, known.cam_from_lidar);
   if (!bound) return;
   const RmsError rms = RmsOf(*bound);
   values.Set(kBoundRotationDeg, rms.rotation_rad * 180.0 / std::numbers::pi);

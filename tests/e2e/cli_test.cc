@@ -36,8 +36,8 @@ std::string SimulatedSession(const std::string& options = "") {
 TEST(Cli, HelpTeachesEveryCommand) {
   const ProgramRun top = RunSextant("--help");
   EXPECT_EQ(top.exit_code, 0);
-  for (const char* command : {"solve", "compare", "average", "solvers", "convert", "accuracy",
-                              "simulate", "mark", "bag"}) {
+  for (const char* command : {"solve", "compare", "average", "solvers", "convert", "run", "merge",
+                              "kinds", "simulate", "mark", "bag"}) {
     EXPECT_THAT(top.out, HasSubstr(command));
     const ProgramRun help = RunSextant(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0);
@@ -151,23 +151,6 @@ TEST(Cli, OverlayMarksThePairsOnTheImage) {
   EXPECT_EQ(small.exit_code, 2);
   EXPECT_THAT(small.err, HasSubstr("10 x 10"));
   EXPECT_EQ(RunSextant("solve " + session + " --overlay /nowhere.png " + out).exit_code, 2);
-}
-
-TEST(Cli, AccuracyStandsBesideTheBound) {
-  const ProgramRun run = RunSextant("accuracy --trials 20 --solvers kabsch");
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, AllOf(HasSubstr("8 points"), HasSubstr("/ bound"), HasSubstr("kabsch")));
-  EXPECT_EQ(run.out, RunSextant("accuracy --trials 20 --solvers kabsch").out);
-  EXPECT_EQ(RunSextant("accuracy --trials 0").exit_code, 2);
-}
-
-TEST(Cli, AccuracyCountsSuccessesAmongOutliers) {
-  const ProgramRun run =
-      RunSextant("accuracy --outliers --trials 2 --solvers 'ransac(p3p)' --markdown");
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, AllOf(HasSubstr("## 100 pairs"), HasSubstr("70 %"),
-                             HasSubstr("refine(epnp), inliers known")));
-  EXPECT_EQ(RunSextant("accuracy --outliers --solvers nonsense").exit_code, 2);
 }
 
 TEST(Cli, DrawsTheResiduals) {

@@ -72,7 +72,8 @@ TEST(Run, SameBytesOnOneAndTwoThreads) {
   ASSERT_EQ(Sextant(RunArguments(experiment, "two", "--threads 2")).exit_code, 0);
   for (const char* name :
        {"rows.sxtrows", "rows.csv", "summary.json", "report.md", "tables.tex", "growth.svg"}) {
-    EXPECT_EQ(ReadText(TestFolder() / "one" / name), ReadText(TestFolder() / "two" / name)) << name;
+    EXPECT_TRUE(ReadText(TestFolder() / "one" / name) == ReadText(TestFolder() / "two" / name))
+        << name;
   }
 }
 
@@ -85,7 +86,7 @@ TEST(Run, KilledAtAnyMomentItGoesOn) {
   }
   const ProgramRun last = Sextant(RunArguments(experiment, "killed", "--no-csv"));
   ASSERT_EQ(last.exit_code, 0) << last.err;
-  EXPECT_EQ(Rows("killed"), Rows("whole"));
+  EXPECT_TRUE(Rows("killed") == Rows("whole"));
 }
 
 // A limit of the file's size stands for a full disk.
@@ -101,7 +102,7 @@ TEST(Run, AFullDiskLosesNothing) {
   EXPECT_LE(kept.size(), 64U * 1024);
   const ProgramRun again = Sextant(RunArguments(experiment, "full", "--no-csv"));
   EXPECT_THAT(again.err, HasSubstr("of 4000 trials were already in"));
-  EXPECT_EQ(Rows("full"), Rows("whole"));
+  EXPECT_TRUE(Rows("full") == Rows("whole"));
 }
 
 TEST(Run, FoldersThatCannotBeWrittenAreNamed) {
@@ -149,7 +150,7 @@ TEST(Merge, OfShardsIsTheWhole) {
       Sextant("merge " + Quoted(experiment) + " " + (TestFolder() / "parts").string() +
               "/shard_*.sxtrows --out " + Quoted(TestFolder() / "merged"));
   ASSERT_EQ(merge.exit_code, 0) << merge.err;
-  EXPECT_EQ(Rows("merged"), Rows("whole"));
+  EXPECT_TRUE(Rows("merged") == Rows("whole"));
   EXPECT_EQ(ReadText(TestFolder() / "merged" / "summary.json"),
             ReadText(TestFolder() / "whole" / "summary.json"));
 }

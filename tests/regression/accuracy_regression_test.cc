@@ -58,7 +58,8 @@ TEST(AccuracyRegression, HoldsEveryRegisteredSolver) {
   const Expected<std::string> text = ReadTextFile(GoldenFolder() / "accuracy.json");
   ASSERT_TRUE(text);
   const std::vector<GoldenFigure> golden = *ParseGolden(*text, "accuracy.json");
-  for (const SolverEntry& entry : BuiltinSolvers().entries()) {
+  const SolverRegistry registry = BuiltinSolvers();
+  for (const SolverEntry& entry : registry.entries()) {
     const bool held = std::any_of(golden.begin(), golden.end(), [&entry](const GoldenFigure& f) {
       return f.subject == entry.name || f.subject.starts_with(entry.name + "(");
     });

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "eval/experiment/experiment.h"
+#include "solvers/opencv/opencv_solvers.h"
 #include "support/bad_text.h"
 #include "support/source_tree.h"
 
@@ -69,6 +70,30 @@ TEST(ExperimentFile, SolversThatTheDataDoesNotSuitAreLeftOut) {
   ASSERT_TRUE(experiment) << experiment.error().message;
   EXPECT_THAT(experiment->conditions[0].trials->subjects(), testing::ElementsAre("kabsch"));
   EXPECT_THAT(experiment->conditions[1].trials->subjects(), testing::ElementsAre("epnp"));
+}
+
+TEST(ExperimentFile, AllStandsForEverySolverThatFits) {
+  const Expected<Experiment> experiment =
+      Parse("{kind: random_scene, trials: 1, solvers: [all, icp], parameters: {data: points}}");
+  ASSERT_TRUE(experiment) << experiment.error().message;
+  const std::vector<std::string>& subjects = experiment->conditions[0].trials->subjects();
+  EXPECT_THAT(subjects, testing::IsSupersetOf({"kabsch", "ransac(kabsch)", "gnc(kabsch)", "icp"}));
+  EXPECT_THAT(subjects, testing::Not(testing::Contains("epnp")));
+  EXPECT_THAT(subjects, testing::Not(testing::Contains("mean_offset")));
+}
+
+TEST(ExperimentFile, SolversOfTheCommandLineTakeThePlaceOfTheFiles) {
+  const std::string text =
+      "{kind: random_scene, trials: 1, solvers: [kabsch], conditions: [{name: a, data: points}, "
+      "{name: b, data: pixels, solvers: [p3p]}]}";
+  const Expected<Experiment> experiment = ParseExperiment(
+      text, "try.yaml", BuiltinKinds(), BuiltinSolvers(), "epnp,ransac(p3p,seed=2)");
+  ASSERT_TRUE(experiment) << experiment.error().message;
+  ASSERT_EQ(experiment->conditions.size(), 1U) << "points are no data for them";
+  EXPECT_THAT(experiment->conditions[0].trials->subjects(),
+              testing::ElementsAre("epnp", "ransac(p3p,seed=2)"));
+  EXPECT_FALSE(ParseExperiment(text, "try.yaml", BuiltinKinds(), BuiltinSolvers(), "epnq"));
+  EXPECT_FALSE(ParseExperiment(text, "try.yaml", BuiltinKinds(), BuiltinSolvers(), "epnp("));
 }
 
 std::string With(const std::string& line) {
@@ -141,11 +166,12 @@ TEST(TrialKinds, AreDocumented) {
 
 // Every experiment of the repository can be run.
 TEST(Experiments, OfTheRepositoryAreWhole) {
+  SolverRegistry registry = BuiltinSolvers();
+  AddOpenCvSolvers(registry);
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(SourceRoot() / "experiments")) {
     if (entry.path().extension() != ".yaml") continue;
-    const Expected<Experiment> experiment =
-        ReadExperiment(entry.path(), BuiltinKinds(), BuiltinSolvers());
+    const Expected<Experiment> experiment = ReadExperiment(entry.path(), BuiltinKinds(), registry);
     EXPECT_TRUE(experiment) << experiment.error().message;
     ++count;
   }
