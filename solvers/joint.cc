@@ -66,7 +66,6 @@ class JointSolver final : public Solver {
     while (true) {
       Expected<JointAnswer> answer = SearchJointly(views, *unknowns, state, options_);
       if (!answer) return tl::unexpected<Error>(std::move(answer.error()));
-      state = answer->minimum.state;
       estimate.iterations += answer->iterations;
       const Eigen::MatrixXd information = SharedInformation(answer->minimum.system);
       if (LeaveOutUntold(problem, information, *unknowns, views, state, estimate.warnings)) {
@@ -139,7 +138,7 @@ class JointSolver final : public Solver {
                   : Eigen::MatrixXd::Zero(unknowns.Count(), unknowns.Count());
   }
 
-  // Whether there was one.
+  // Whether there was one. `state` is where the search starts, again after this.
   static bool LeaveOutUntold(const CalibrationProblem& problem, Eigen::MatrixXd information,
                              JointUnknowns& unknowns, std::vector<JointView>& views,
                              JointState& state, std::vector<std::string>& warnings) {

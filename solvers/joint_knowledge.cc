@@ -33,6 +33,9 @@ double LeverOf(const std::vector<JointView>& views, const JointState& state, int
   return lever;
 }
 
+// Pairs of intrinsics that are freed together have one.
+int KindOf(int intrinsic) { return intrinsic < kFirstDistortion ? intrinsic / 2 : intrinsic; }
+
 bool IsSize(const JointUnknowns& unknowns, int unknown) {
   return unknown >= unknowns.Size() && unknown < unknowns.Intrinsic();
 }
@@ -90,7 +93,11 @@ void LeaveOut(int unknown, const CalibrationProblem& problem, JointUnknowns& unk
     }
     state.size.setZero(unknowns.SizeCount());
   } else {
-    unknowns.intrinsics.erase(unknowns.intrinsics.begin() + (unknown - unknowns.Intrinsic()));
+    // Both focal lengths, or both coordinates of the centre: one without the other would lean on
+    // it.
+    const auto at = static_cast<std::size_t>(unknown - unknowns.Intrinsic());
+    const int kind = KindOf(unknowns.intrinsics[at]);
+    std::erase_if(unknowns.intrinsics, [kind](int other) { return KindOf(other) == kind; });
     state.camera = *problem.camera;
   }
 }

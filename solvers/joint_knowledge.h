@@ -27,7 +27,8 @@ Eigen::VectorXd UsefulSigmas(const std::vector<JointView>& views, const JointUnk
 std::optional<JointUntold> FindUntold(const Eigen::MatrixXd& information,
                                       const Eigen::VectorXd& useful);
 
-/// The unknowns without that one (without both sides of that board), and a state without it.
+/// The unknowns without that one (and its fellow: both sides of that board, both focal lengths,
+/// both coordinates of the centre), and a state without it.
 void LeaveOut(int unknown, const CalibrationProblem& problem, JointUnknowns& unknowns,
               std::vector<JointView>& views, JointState& state);
 

@@ -46,8 +46,14 @@ JointStep Solve(const JointSystem& system, double damping) {
     Matrix6d damped = view.bb;
     damped.diagonal() *= 1.0 + damping;
     const Eigen::LLT<Matrix6d> factor(damped);
-    by_shared[i] = factor.solve(view.bs);
-    step.boards[i] = factor.solve(view.b);
+    if (factor.info() == Eigen::Success) {
+      by_shared[i] = factor.solve(view.bs);
+      step.boards[i] = factor.solve(view.b);
+    } else {
+      // Left out, or not determined: the board stays where it is.
+      by_shared[i].setZero(6, view.bs.cols());
+      step.boards[i].setZero();
+    }
     shared.noalias() -= view.bs.transpose() * by_shared[i];
     gradient.noalias() -= view.bs.transpose() * step.boards[i];
   }

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <ceres/ceres.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/random.h"
+#include "eval/bounds.h"
+#include "eval/simulate_views.h"
+#include "solvers/board_view_residuals.h"
+#include "solvers/registry.h"
+#include "solvers/rotation_manifold.h"
+
+namespace sextant {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+SimulatedViews Views(const ViewSimulation& simulation) { return SimulateViews(simulation).value(); }
+
+Expected<SolveReport> Solve(const CalibrationProblem& problem, const char* spec) {
+  return (*BuiltinSolvers().Make(spec))->Solve(problem);
+}
+
+/// Error in units of the bound of the raw data; the square has a mean of 6.
+double ErrorInSigmas(const SimulatedViews& session, const Rigid3d& cam_from_lidar) {
+  const Matrix6d bound = *CramerRaoBoundOfViews(session.problem, session.true_cam_from_lidar,
+                                                session.true_cam_from_board);
+  const Vector6d error = PoseDifference(cam_from_lidar, session.true_cam_from_lidar);
+  return std::sqrt(error.dot(bound.ldlt().solve(error)));
+}
+
+// The root of the 1 - 1e-6 quantile of chi-square with 6 degrees of freedom, 38.3.
+constexpr double kFarOff = 6.2;
+
+/// All whitened residuals of one view under two poses, for a solver that knows nothing of ours.
+struct ViewCost {
+  const BoardView& view;
+  const CalibrationProblem& problem;
+
+  bool operator()(const double* q, const double* t, const double* board_q, const double* board_t,
+                  double* out) const {
+    const Rigid3d cam_from_lidar{Eigen::Quaterniond(q), Eigen::Map<const Eigen::Vector3d>(t)};
+    const Rigid3d cam_from_board{Eigen::Quaterniond(board_q),
+                                 Eigen::Map<const Eigen::Vector3d>(board_t)};
+    const BoardViewTerms terms = TermsOf(view, problem.boards.front());
+    PrintedResidual printed;
+    if (!Differentiate(terms.printed.front(), *problem.camera, cam_from_board, printed))
+      return false;
+    for (const double value : printed.value) *out++ = value;
+    const BoardPlane plane(cam_from_lidar.Inverse() * cam_from_board);
+    RayResidual ray;
+    for (const FaceTerm& term : terms.face) {
+      if (!Differentiate(term, plane, ray)) return false;
+      *out++ = ray.value;
+    }
+    for (const EdgeTerm& term : terms.edges) {
+      if (!Differentiate(term, plane, ray)) return false;
+      *out++ = ray.value;
+    }
+    return true;
+  }
+};
+
+struct CeresAnswer {
+  Rigid3d cam_from_lidar;
+  Matrix6d covariance;
+};
+
+CeresAnswer SolveWithCeres(const SimulatedViews& session) {
+  CeresAnswer answer{session.true_cam_from_lidar, {}};
+  std::vector<Rigid3d> boards = session.true_cam_from_board;
+  ceres::Problem problem;
+  double* q = answer.cam_from_lidar.rotation.coeffs().data();
+  double* t = answer.cam_from_lidar.translation.data();
+  for (std::size_t i = 0; i < boards.size(); ++i) {
+    const BoardView& view = session.problem.board_views[i];
+    using Cost =
+        ceres::NumericDiffCostFunction<ViewCost, ceres::CENTRAL, ceres::DYNAMIC, 4, 3, 4, 3>;
+    const auto residuals = static_cast<int>(8 + view.face_in_lidar.size() + view.edges.size());
+    double* board_q = boards[i].rotation.coeffs().data();
+    problem.AddResidualBlock(
+        new Cost(new ViewCost{view, session.problem}, ceres::TAKE_OWNERSHIP, residuals), nullptr, q,
+        t, board_q, boards[i].translation.data());
+    problem.SetManifold(board_q, new RotationManifold);
+  }
+  problem.SetManifold(q, new RotationManifold);
+  ceres::Solver::Options options;
+  options.max_num_iterations = 100;
+  options.function_tolerance = 1e-16;
+  options.parameter_tolerance = 1e-12;
+  options.gradient_tolerance = 1e-12;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  ceres::Covariance covariance({});
+  const std::vector<const double*> blocks = {q, t};
+  EXPECT_TRUE(covariance.Compute(blocks, &problem));
+  Eigen::Matrix<double, 6, 6, Eigen::RowMajor> matrix;
+  covariance.GetCovarianceMatrixInTangentSpace(blocks, matrix.data());
+  answer.covariance = matrix;
+  return answer;
+}
+
+TEST(Joint, FindsTheMinimumAndCovarianceThatCeresFinds) {
+  const SimulatedViews session = Views({.seed = 11, .views = 3});
+  const CeresAnswer expected = SolveWithCeres(session);
+  const auto report =
+      Solve(session.problem, "joint(kabsch,pixel_loss=none,face_loss=none,edge_loss=none,cut=0)");
+  ASSERT_TRUE(report) << report.error().message;
+  const Vector6d difference = PoseDifference(report->cam_from_lidar, expected.cam_from_lidar);
+  EXPECT_LT(difference.norm(), 1e-7);
+  EXPECT_LT((*report->covariance - expected.covariance).norm(), 1e-4 * expected.covariance.norm());
+}
+
+TEST(Joint, SaysWhatItRestsOn) {
+  const SimulatedViews session = Views({.seed = 12, .views = 5});
+  const auto report = Solve(session.problem, "joint(kabsch)");
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_THAT(report->warnings, IsEmpty());
+  EXPECT_EQ(report->inliers.size(), 20U);
+  ASSERT_EQ(report->board_views.size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const BoardViewFit& fit = report->board_views[i];
+    EXPECT_TRUE(fit.used);
+    EXPECT_EQ(fit.view, static_cast<int>(i));
+    EXPECT_EQ(fit.printed.used, 1);
+    EXPECT_EQ(fit.face.of, static_cast<int>(session.problem.board_views[i].face_in_lidar.size()));
+    EXPECT_GT(fit.face.used, fit.face.of - 5);
+    EXPECT_NEAR(fit.rms, 1.0, 0.25);
+    const PoseDistance off = DistanceBetween(fit.cam_from_board, session.true_cam_from_board[i]);
+    EXPECT_LT(off.translation_m, 0.02);
+  }
+}
+
+// A third of the edges given to a side that is not theirs, a fifth of the face from something that
+// stands before or behind the board.
+TEST(Joint, BearsMislabelledEdgesAndReturnsOfSomethingElse) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SimulatedViews session = Views({.seed = seed, .views = 6});
+    Random random(seed);
+    for (BoardView& view : session.problem.board_views) {
+      for (EdgeRay& ray : view.edges) {
+        if (random.Uniform() < 0.33)
+          ray.side = (ray.side + 1 + static_cast<int>(random.Below(3))) % 4;
+      }
+      for (Eigen::Vector3d& point : view.face_in_lidar) {
+        if (random.Uniform() < 0.2) point *= random.Uniform(0.7, 1.5);
+      }
+    }
+    const auto report = Solve(session.problem, "joint(kabsch)");
+    ASSERT_TRUE(report) << "seed " << seed << ": " << report.error().message;
+    EXPECT_LT(ErrorInSigmas(session, report->cam_from_lidar), 1.5 * kFarOff) << "seed " << seed;
+  }
+}
+
+// The board moved between image and scan in one of the views.
+TEST(Joint, LeavesOutAViewThatContradictsTheOthersAndNamesIt) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SimulatedViews session = Views({.seed = seed, .views = 6});
+    const Rigid3d moved{ExpSo3({0.0, 0.0, 0.1}), {0.1, -0.05, 0.08}};
+    BoardView& view = session.problem.board_views[3];
+    for (Eigen::Vector3d& point : view.face_in_lidar) point = moved * point;
+    for (EdgeRay& ray : view.edges) {
+      // Where the ray met the board, moved along.
+      const BoardPlane plane(session.true_cam_from_lidar.Inverse() *
+                             session.true_cam_from_board[3]);
+      const double distance =
+          plane.axes.col(2).dot(plane.origin) / plane.axes.col(2).dot(ray.direction);
+      ray.direction = (moved * (distance * ray.direction)).normalized();
+    }
+    view.lidar_from_board = moved * view.lidar_from_board;
+    const auto report = Solve(session.problem, "joint(kabsch)");
+    ASSERT_TRUE(report) << "seed " << seed << ": " << report.error().message;
+    EXPECT_FALSE(report->board_views[3].used) << "seed " << seed;
+    EXPECT_THAT(report->warnings, Contains(HasSubstr("board 0 of view 3 was left out")));
+    for (const int i : report->inliers) {
+      EXPECT_NE(session.problem.pairs_3d3d[static_cast<std::size_t>(i)].id.view, 3);
+    }
+    EXPECT_LT(ErrorInSigmas(session, report->cam_from_lidar), 1.5 * kFarOff) << "seed " << seed;
+  }
+}
+
+TEST(Joint, TakesAViewOfOneSensorForWhatItIs) {
+  SimulatedViews session = Views({.seed = 13, .views = 4});
+  session.problem.board_views[1].printed.clear();
+  const auto report = Solve(session.problem, "joint(kabsch)");
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_FALSE(report->board_views[1].used);
+  EXPECT_THAT(report->warnings, Contains(HasSubstr("only one of the sensors")));
+}
+
+TEST(Joint, SaysThatTheNoiseIsLargerThanStated) {
+  SimulatedViews session = Views({.seed = 14, .views = 6});
+  for (BoardView& view : session.problem.board_views) view.range_sigma_m *= 0.4;
+  const auto report = Solve(session.problem, "joint(kabsch)");
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_THAT(report->warnings, Contains(HasSubstr("noise of the ranges on the boards is 2.5")));
+}
+
+// Named estimate within five of its own sigmas.
+void ExpectTold(const std::vector<EstimatedNumber>& numbers, const std::string& name,
+                double truth) {
+  for (const EstimatedNumber& number : numbers) {
+    if (number.name != name) continue;
+    ASSERT_TRUE(number.sigma);
+    EXPECT_NEAR(number.value, truth, 5.0 * *number.sigma) << name;
+    return;
+  }
+  ADD_FAILURE() << name << " was not estimated";
+}
+
+TEST(Joint, EstimatesTheRangeBias) {
+  SimulatedViews session = Views({.seed = 15, .views = 12});
+  for (BoardView& view : session.problem.board_views) {
+    for (Eigen::Vector3d& point : view.face_in_lidar) point += 0.04 * point.normalized();
+  }
+  const auto plain = Solve(session.problem, "joint(kabsch)");
+  const auto report = Solve(session.problem, "joint(kabsch,range_bias=true)");
+  ASSERT_TRUE(plain && report);
+  ExpectTold(report->extras, "range_bias_m", 0.04);
+  EXPECT_LT(*report->extras.front().sigma, 0.02);
+  EXPECT_LT((report->cam_from_lidar.translation - session.true_cam_from_lidar.translation).norm(),
+            0.02);
+  EXPECT_THAT(report->warnings, IsEmpty());
+}
+
+TEST(Joint, EstimatesTheSizeOfTheBoard) {
+  SimulatedViews session = Views({.seed = 16, .views = 12});
+  const auto exact = Solve(session.problem, "joint(kabsch)");
+  session.problem.boards[0].top_right_m = 0.49;  // 0.5 in truth.
+  session.problem.boards[0].right_bottom_m = 0.52;
+  const auto sides = Solve(session.problem, "joint(kabsch,board_size=sides)");
+  ASSERT_TRUE(exact && sides) << sides.error().message;
+  ExpectTold(sides->extras, "board_0_top_right_m", 0.5);
+  ExpectTold(sides->extras, "board_0_right_bottom_m", 0.5);
+  session.problem.boards[0].top_right_m = 0.51;
+  session.problem.boards[0].right_bottom_m = 0.51;
+  const auto scale = Solve(session.problem, "joint(kabsch,board_size=scale)");
+  ASSERT_TRUE(scale) << scale.error().message;
+  ExpectTold(scale->extras, "board_scale", 0.5 / 0.51);
+  EXPECT_LT(*scale->extras.front().sigma, 0.002);
+}
+
+TEST(Joint, EstimatesIntrinsics) {
+  SimulatedViews session = Views({.seed = 17, .views = 30});
+  session.problem.camera->fx_px = 690.0;  // 700 in truth.
+  session.problem.camera->fy_px = 708.0;
+  const auto report = Solve(session.problem, "joint(kabsch,intrinsics=focal+center)");
+  ASSERT_TRUE(report) << report.error().message;
+  ASSERT_TRUE(report->camera);
+  ExpectTold(report->camera->estimated, "fx_px", 700.0);
+  ExpectTold(report->camera->estimated, "fy_px", 700.0);
+  ExpectTold(report->camera->estimated, "cx_px", 639.5);
+}
+
+TEST(Joint, TakesAsGivenWhatTheViewsDoNotTell) {
+  // Where its sides are hardly known, the range alone says how far the board is.
+  SimulatedViews session = Views({.seed = 18, .views = 1});
+  for (EdgeRay& ray : session.problem.board_views[0].edges) ray.sigma_m = 0.2;
+  const auto plain = Solve(session.problem, "joint(kabsch)");
+  const auto report = Solve(session.problem, "joint(kabsch,range_bias=true,intrinsics=focal)");
+  ASSERT_TRUE(plain && report) << report.error().message;
+  EXPECT_THAT(report->warnings, Contains(HasSubstr("range_bias_m was taken as given")));
+  EXPECT_THAT(report->warnings, Contains(HasSubstr("fx_px was taken as given")));
+  EXPECT_THAT(report->extras, IsEmpty());
+  EXPECT_LT(PoseDifference(report->cam_from_lidar, plain->cam_from_lidar).norm(), 1e-8);
+}
+
+TEST(Joint, OtherCombinatorsSayWhereItBelongs) {
+  const auto solver = BuiltinSolvers().Make("ransac(joint(kabsch))");
+  ASSERT_FALSE(solver);
+  EXPECT_THAT(solver.error().message, HasSubstr("joint"));
+}
+
+}  // namespace
+}  // namespace sextant
