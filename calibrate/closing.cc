@@ -43,6 +43,14 @@ std::string AxisText(const Eigen::Vector3d& axis) {
   return fmt::format("({:.2f}, {:.2f}, {:.2f})", axis.x(), axis.y(), axis.z());
 }
 
+std::string Doubt(const Matching& matching) {
+  if (matching.as_likely.empty()) return {};
+  return fmt::format(
+      "It is one of {} poses that explain the views equally well, and was taken for "
+      "the way the sensors are assumed to be mounted. ",
+      matching.as_likely.size() + 1);
+}
+
 std::string Certainty(const SolveReport& report) {
   if (!report.covariance) {
     return "How sure it is cannot be told: no residual is left to judge by.";
@@ -70,14 +78,16 @@ std::string Advice(const Assembly& assembly, int views) {
   };
   if (views < kEnoughViews) {
     add(limits, fmt::format("{} view{}", views, views == 1 ? "" : "s"));
-    add(advice, fmt::format("{} more views with the board elsewhere", kEnoughViews - views));
+    add(advice, fmt::format("{} more view{} with the board elsewhere", kEnoughViews - views,
+                            kEnoughViews - views == 1 ? "" : "s"));
   }
-  if (spread.normals_rad < kTooParallel_rad) {
+  const bool has_spread = assembly.problem.board_views.size() > 1;
+  if (has_spread && spread.normals_rad < kTooParallel_rad) {
     add(limits, fmt::format("all boards within {:.0f} deg of parallel",
                             std::ceil(kDegPerRad * spread.normals_rad)));
     add(advice, "lean and turn the board by 30 deg and more, both ways");
   }
-  if (spread.farthest_m < kTooLevel * spread.nearest_m) {
+  if (has_spread && spread.farthest_m < kTooLevel * spread.nearest_m) {
     add(limits, fmt::format("all boards between {:.1f} and {:.1f} m away", spread.nearest_m,
                             spread.farthest_m));
     add(advice, "hold it both nearer and farther");
@@ -100,9 +110,10 @@ std::string ClosingParagraph(const Assembly& assembly, const SolveReport& report
   return fmt::format(
       "cam_from_lidar maps a point of the LiDAR frame (x forward, y left, z up) into the camera "
       "frame (x right, y down, z forward): point_in_cam = cam_from_lidar * point_in_lidar. It "
-      "rests on {} board{} in {} of {} view{}. {} {}",
+      "rests on {} board{} in {} of {} view{}. {}{} {}",
       boards, boards == 1 ? "" : "s", views.size(), all.size(), all.size() == 1 ? "" : "s",
-      Certainty(report), Advice(assembly, static_cast<int>(views.size())));
+      Doubt(assembly.matching), Certainty(report),
+      Advice(assembly, static_cast<int>(views.size())));
 }
 
 }  // namespace sextant

@@ -27,7 +27,7 @@ constexpr double kOtherSize = 0.05;    // Of a side.
 constexpr double kPoorPrint_px = 1.0;  // A good lens model leaves a third of it.
 constexpr double kPoorPrint = 3.0;     // Over the stated noise.
 constexpr double kSamePlace_m = 0.05;
-constexpr double kSameTurn_rad = 3.0 * std::numbers::pi / 180.0;
+constexpr double kSameTurn_rad = 5.0 * std::numbers::pi / 180.0;
 
 double MedianOf(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

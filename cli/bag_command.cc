@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "cli/bag_streams.h"
+#include "cli/bag_extract.h"
 #include "cli/commands.h"
 #include "cli/load.h"
 #include "eval/text_table.h"

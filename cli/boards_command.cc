@@ -10,6 +10,7 @@
 #include "cli/load.h"
 #include "cli/progress.h"
 #include "cli/scan_picture.h"
+#include "cli/search_options.h"
 #include "features/lidar/polygon_edges.h"
 #include "io/board_file.h"
 #include "io/cloud_file.h"
@@ -17,38 +18,6 @@
 
 namespace sextant::cli {
 namespace {
-
-Expected<LidarBeam> BeamOf(const BoardsOptions& options) {
-  Expected<LidarBeam> beam = FindLidarBeam(options.lidar);
-  if (!beam) return beam;
-  if (options.aperture_m) beam->aperture_h_m = beam->aperture_v_m = *options.aperture_m;
-  if (options.divergence_rad) {
-    beam->divergence_h_rad = beam->divergence_v_rad = *options.divergence_rad;
-  }
-  if (options.growth) beam->growth = *options.growth;
-  return beam;
-}
-
-Expected<BoardSearchOptions> SearchOptionsOf(const BoardsOptions& options) {
-  const Expected<LidarBeam> beam = BeamOf(options);
-  if (!beam) return tl::unexpected<Error>(beam.error());
-  BoardSearchOptions search{
-      .correct_edges = !options.raw_edges, .beam = *beam, .seed = options.seed};
-  if (options.region.empty()) return search;
-  LidarRegion region;
-  for (int i = 0; i < 3; ++i) {
-    region.low(i) = options.region[static_cast<std::size_t>(i)];
-    region.high(i) = options.region[static_cast<std::size_t>(i + 3)];
-    if (region.low(i) < region.high(i)) continue;
-    return MakeError(
-        ErrorCode::kInvalidOption,
-        fmt::format("--region: expected the lower before the upper corner, x y z x y z "
-                    "in metres; along {} it ends at {} and begins at {}",
-                    "xyz"[i], region.high(i), region.low(i)));
-  }
-  search.region = region;
-  return search;
-}
 
 ScanReport Examine(const std::string& path, const std::vector<Board>& boards,
                    const std::string& extractor, const BoardSearchOptions& options,
@@ -98,7 +67,7 @@ bool IsWhole(const ScanReport& report, std::size_t boards) {
 int RunBoards(const BoardsOptions& options) {
   const Expected<std::vector<Board>> boards = ReadBoards(options.boards_path);
   if (!boards) return Refuse("boards", boards.error());
-  const Expected<BoardSearchOptions> search = SearchOptionsOf(options);
+  const Expected<BoardSearchOptions> search = SearchOptionsFrom(options.search);
   if (!search) return Refuse("boards", search.error());
   std::optional<ScanMarks> marks;
   if (!options.polygons_path.empty()) {

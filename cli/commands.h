@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/search_options.h"
 #include "eval/lidar/extractor_study.h"
 #include "eval/simulate_pairs.h"
 
@@ -152,14 +153,8 @@ struct BoardsOptions {
   std::vector<std::string> scans;
   std::string boards_path;
   std::string extractor = "rectangle";
-  std::string polygons_path;   ///< Edges marked by hand; empty: boards are searched.
-  std::vector<double> region;  ///< Low and high corner in the LiDAR frame [m]; empty: everywhere.
-  bool raw_edges = false;
-  std::string lidar = "vlp16";       ///< Whose beam.
-  std::optional<double> aperture_m;  ///< Both ways, where the sensor is not among them...
-  std::optional<double> divergence_rad;
-  std::optional<double> growth;
-  std::uint64_t seed = 1;
+  std::string polygons_path;  ///< Edges marked by hand; empty: boards are searched.
+  SearchArguments search;
   std::string overlay_path;  ///< Empty: none.
   std::string json_path;
 };

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "calibrate/photo_file.h"
 #include "cli/commands.h"
 #include "cli/detect_report.h"
 #include "cli/load.h"
-#include "cli/photo_file.h"
 #include "cli/progress.h"
 #include "features/camera/grey_image.h"
 #include "io/board_file.h"

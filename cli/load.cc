@@ -42,6 +42,7 @@ Expected<LoadedInput> Load(const InputOptions& options) {
   if (!read) return tl::unexpected<Error>(read.error());
   LoadedInput input;
   input.file = *read;
+  input.notes = read->notes;
   CalibrationProblem& problem = input.file.problem;
   if (Expected<void> ok = AddNamedFiles(options, problem); !ok) {
     return tl::unexpected<Error>(std::move(ok.error()));

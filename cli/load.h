@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "cli/commands.h"
 #include "eval/judge.h"
 #include "io/problem_yaml.h"
@@ -11,7 +14,8 @@ namespace sextant::cli {
 /// The input of `solve` and `compare`, ready for the solvers.
 struct LoadedInput {
   ProblemFile file;
-  Judgement judgement;  ///< Of the pairs as the file gives them.
+  Judgement judgement;             ///< Of the pairs as the file gives them.
+  std::vector<std::string> notes;  ///< What was put right while reading.
   ResultInput summary;
 };
 

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "base/version.h"
+#include "cli/calibrate_options.h"
 #include "cli/commands.h"
 #include "cli/result_options.h"
 #include "cli/sensor_arguments.h"
@@ -20,6 +21,8 @@ constexpr const char* kIntroduction =
 
 constexpr const char* kFirstSteps =
     "First steps:\n"
+    "  sextant calibrate --image photo.png --cloud scan.pcd --board boards.yaml --camera "
+    "camera.yaml\n"
     "  sextant simulate scene.yaml --out session    scans and images whose truth is known\n"
     "  sextant detect photo.png --board boards.yaml --camera camera.yaml    boards in a photo\n"
     "  sextant boards scan.pcd --board boards.yaml  boards in a scan\n"
@@ -196,6 +199,7 @@ int Main(int argc, char** argv) {
   SolveOptions solve;
   CompareOptions compare;
   BoardsOptions boards;
+  CalibrateOptions calibrate;
   AverageOptions average;
   CatalogueOptions catalogue;
   LidarsOptions lidars;
@@ -214,6 +218,7 @@ int Main(int argc, char** argv) {
   ExperimentOptions merge;
   SimulateSessionOptions session;
   SimulatePairsOptions pairs;
+  AddCalibrate(app, calibrate);
   AddSolve(app, solve);
   AddCompare(app, compare);
   AddDetect(app, detect);
@@ -240,6 +245,7 @@ int Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kAnswered : kWrongUse;
   }
+  if (app.got_subcommand("calibrate")) return RunCalibrate(calibrate);
   if (app.got_subcommand("solve")) return RunSolve(solve);
   if (app.got_subcommand("compare")) return RunCompare(compare);
   if (app.got_subcommand("boards")) return RunBoards(boards);

@@ -6,11 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "cli/photo_file.h"
-#include "cli/pose_file.h"
+#include "calibrate/photo_file.h"
+#include "cli/pose_argument.h"
 #include "io/camera_file.h"
 #include "io/cloud_file.h"
-#include "io/number_text.h"
 #include "io/polygon_file.h"
 
 namespace sextant::cli {
@@ -40,37 +39,13 @@ Expected<Camera> ChooseCamera(const MarkOptions& options, const cv::Mat& photo) 
   return camera;
 }
 
-Expected<Rigid3d> PoseFromNumbers(const std::vector<std::string>& texts) {
-  constexpr std::size_t kNumbers = 7;
-  double values[kNumbers] = {};
-  if (texts.size() != kNumbers) {
-    return MakeError(ErrorCode::kInvalidOption,
-                     fmt::format("--cam-from-lidar: expected a file, or X Y Z QW QX QY QZ; got {} "
-                                 "values",
-                                 texts.size()));
-  }
-  for (std::size_t i = 0; i < kNumbers; ++i) {
-    const Expected<double> value = ParseFinite(texts[i], {.file = "--cam-from-lidar"});
-    if (!value) return tl::unexpected<Error>(value.error());
-    values[i] = *value;
-  }
-  const Eigen::Quaterniond rotation(values[3], values[4], values[5], values[6]);
-  if (std::abs(rotation.norm() - 1.0) > 0.01) {
-    return MakeError(ErrorCode::kInvalidOption,
-                     fmt::format("--cam-from-lidar: expected a quaternion of length 1, got {:.3f}",
-                                 rotation.norm()));
-  }
-  return Rigid3d{rotation.normalized(), {values[0], values[1], values[2]}};
-}
-
 Expected<Rigid3d> ChoosePose(const MarkOptions& options) {
   if (options.cam_from_lidar.empty()) {
     constexpr double kRadPerDeg = std::numbers::pi / 180.0;
     const Eigen::AngleAxisd turn(-kRadPerDeg * options.yaw_deg, Eigen::Vector3d::UnitZ());
     return AxesCamFromLidar() * Rigid3d{Eigen::Quaterniond(turn), Eigen::Vector3d::Zero()};
   }
-  if (options.cam_from_lidar.size() == 1) return ReadPoseFile(options.cam_from_lidar.front());
-  return PoseFromNumbers(options.cam_from_lidar);
+  return PoseFromArgument("--cam-from-lidar", options.cam_from_lidar);
 }
 
 bool SameProjection(const ScanMarks& a, const ScanMarks& b) {

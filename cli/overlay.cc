@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "cli/photo_file.h"
+#include "calibrate/photo_file.h"
 
 namespace sextant::cli {
 namespace {

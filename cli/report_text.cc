@@ -100,8 +100,7 @@ bool Any(const std::vector<ComparisonRow>& rows, bool (*has)(const ComparisonRow
 
 }  // namespace
 
-std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& spec,
-                           const SolveReport& report) {
+std::string DescribeAnswer(const SolveReport& report) {
   const Evaluation& evaluation = report.evaluation;
   std::string text = report.solver + "\n" + DescribePose(report.cam_from_lidar);
   if (evaluation.rmse_m) {
@@ -126,6 +125,13 @@ std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& 
         t.x(), t.y(), t.z(), euler.yaw * kDegPerRad, euler.pitch * kDegPerRad,
         euler.roll * kDegPerRad);
   }
+  return text;
+}
+
+std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& spec,
+                           const SolveReport& report) {
+  const Evaluation& evaluation = report.evaluation;
+  std::string text = DescribeAnswer(report);
   // The inliers are of one kind only; see Estimate.
   const bool of_points = spec.needs.pairs_3d3d > 0;
   const std::vector<int>* point_inliers = of_points ? &report.inliers : nullptr;

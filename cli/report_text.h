@@ -9,7 +9,10 @@
 
 namespace sextant::cli {
 
-/// Everything that `sextant solve` says of one answer.
+/// An answer with its uncertainty and how well it fits in all.
+std::string DescribeAnswer(const SolveReport& report);
+
+/// Everything that `sextant solve` says of one answer: the same, and every residual.
 std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& spec,
                            const SolveReport& report);
 

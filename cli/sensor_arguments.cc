@@ -28,6 +28,23 @@ void AddDetect(CLI::App& app, DetectOptions& options) {
       "  sextant detect *.png --detector 'aruco(dictionary=6x6_250)' --json -");
 }
 
+void AddSearch(CLI::App& command, SearchArguments& search) {
+  command.add_option("--region", search.region, "Search only in x y z x y z [m], LiDAR frame")
+      ->expected(6);
+  command.add_flag("--raw-edges", search.raw_edges,
+                   "Take edges where the last return is, uncorrected for steps and beam width");
+  command
+      .add_option("--lidar", search.lidar,
+                  "Sensor, for the width of its beam: vlp16, os1_64, ... as sextant lidars lists")
+      ->capture_default_str();
+  command.add_option("--beam-aperture", search.aperture_m,
+                     "Of another sensor: width of a beam as it leaves [m]");
+  command.add_option("--beam-divergence", search.divergence_rad, "Its full angle [rad]");
+  command.add_option("--edge-growth", search.growth,
+                     "How far beyond an edge the board is still seen, of the beam's width");
+  command.add_option("--seed", search.seed, "Of the search for planes")->capture_default_str();
+}
+
 void AddBoards(CLI::App& app, BoardsOptions& options) {
   CLI::App& command = *app.add_subcommand("boards", "Boards in LiDAR scans, and their corners");
   command
@@ -44,20 +61,7 @@ void AddBoards(CLI::App& app, BoardsOptions& options) {
       ->capture_default_str();
   command.add_option("--polygons", options.polygons_path,
                      "Take the edges marked with sextant mark instead of searching");
-  command.add_option("--region", options.region, "Search only in x y z x y z [m], LiDAR frame")
-      ->expected(6);
-  command.add_flag("--raw-edges", options.raw_edges,
-                   "Take edges where the last return is, uncorrected for steps and beam width");
-  command
-      .add_option("--lidar", options.lidar,
-                  "Sensor, for the width of its beam: vlp16, os1_64, ... as sextant lidars lists")
-      ->capture_default_str();
-  command.add_option("--beam-aperture", options.aperture_m,
-                     "Of another sensor: width of a beam as it leaves [m]");
-  command.add_option("--beam-divergence", options.divergence_rad, "Its full angle [rad]");
-  command.add_option("--edge-growth", options.growth,
-                     "How far beyond an edge the board is still seen, of the beam's width");
-  command.add_option("--seed", options.seed, "Of the search for planes")->capture_default_str();
+  AddSearch(command, options.search);
   command.add_option("--overlay", options.overlay_path,
                      "Draw the scan round the boards with their corners (.png; one scan)");
   command.add_option("--json", options.json_path,

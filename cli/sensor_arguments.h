@@ -11,6 +11,8 @@ class App;
 namespace sextant::cli {
 
 void AddDetect(CLI::App& app, DetectOptions& options);
+/// Options of every command that searches scans for boards.
+void AddSearch(CLI::App& command, SearchArguments& search);
 void AddBoards(CLI::App& app, BoardsOptions& options);
 void AddMark(CLI::App& app, MarkOptions& options);
 void AddBoard(CLI::App& app, BoardOptions& options);

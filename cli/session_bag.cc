@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "cli/photo_file.h"
+#include "calibrate/photo_file.h"
 #include "io/bag/rosbag1_writer.h"
 #include "io/camera_file.h"
 #include "io/pcd_file.h"

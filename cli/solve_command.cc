@@ -31,6 +31,7 @@ Expected<std::vector<SolverPtr>> MakeSolvers(const SolverRegistry& registry,
 
 std::string FindingsText(const LoadedInput& input, bool reordered) {
   std::string text;
+  for (const std::string& line : input.notes) text += "  " + line + "\n";
   for (const std::string& line : Describe(input.judgement)) text += "  " + line + "\n";
   if (text.empty()) return text;
   if (reordered && input.judgement.order) {

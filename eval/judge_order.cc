@@ -10,12 +10,11 @@
 
 #include "solvers/corner_order.h"
 #include "solvers/kabsch.h"
+#include "solvers/object_match.h"
 
 namespace sextant {
 namespace {
 
-constexpr int kMaxStarts = 512;  // Enough for eight boards; more views share the same answer.
-constexpr int kMaxRounds = 20;
 constexpr double kFarBetter = 0.5;  // Of the RMSE as given.
 constexpr double kMinMisfit = 0.1;  // Of the mean edge: noise alone does not swap corners.
 constexpr double kMaxMisfit = 0.2;  // Of the mean edge: beyond, no order is the right one.
@@ -77,35 +76,39 @@ class OrderSearch {
     return FitPoints(in_cam, in_lidar);
   }
 
-  // Every pose worth starting from: one order for all boards, then board against board.
-  std::vector<Rigid3d> Starts() const {
-    std::vector<Rigid3d> starts;
-    for (const CornerOrder& order : EveryOrder()) {
-      Assignment assignment = AsGiven();
-      for (const BoardPairs& group : groups_) Assign(group, group, order, assignment);
-      AddStart(FitAll(assignment), starts);
-    }
+  // Every distinct pose that explains all views, as the assignment that it makes. Tried first: one
+  // order for all boards.
+  std::vector<Assignment> Explanations() const {
+    std::vector<MatchView> match_views;
+    std::vector<std::vector<Pairing>> meanings;
     for (const auto& [view, members] : views_) {
+      match_views.emplace_back();
+      meanings.emplace_back();
       for (const BoardPairs* in_cam : members) {
         for (const BoardPairs* in_lidar : members) {
-          for (const CornerOrder& order : EveryOrder()) {
-            if (static_cast<int>(starts.size()) >= kMaxStarts) return starts;
-            AddStart(FitBoard(*in_cam, *in_lidar, order), starts);
-          }
+          AddPairings(members, *in_cam, *in_lidar, match_views.back(), meanings.back());
         }
       }
     }
-    return starts;
-  }
-
-  Assignment Converge(const Rigid3d& start) const {
-    Assignment assignment = AssignUnder(start);
-    for (int round = 0; round < kMaxRounds; ++round) {
-      Assignment next = AssignUnder(FitAll(assignment).cam_from_lidar);
-      if (next == assignment) break;
-      assignment = std::move(next);
+    MatchOptions options;
+    for (const CornerOrder& order : EveryOrder()) {
+      Assignment assignment = AsGiven();
+      for (const BoardPairs& group : groups_) Assign(group, group, order, assignment);
+      const Fit fit = FitAll(assignment);
+      if (std::isfinite(fit.rmse_m)) options.starts.push_back(fit.cam_from_lidar);
     }
-    return assignment;
+    const auto found = MatchObjects(match_views, options);
+    std::vector<Assignment> assignments;
+    if (!found) return assignments;
+    for (const MatchExplanation& explanation : *found) {
+      Assignment assignment = AsGiven();
+      for (const TakenPairing& taken : explanation.taken) {
+        const Pairing& pairing = meanings[taken.view][taken.pairing];
+        Assign(*pairing.in_cam, *pairing.in_lidar, pairing.order, assignment);
+      }
+      assignments.push_back(std::move(assignment));
+    }
+    return assignments;
   }
 
   bool SwapsBoards(const Assignment& assignment) const {
@@ -123,20 +126,29 @@ class OrderSearch {
     return {fit->b_from_a, std::sqrt(fit->sum_squares / static_cast<double>(in_cam.size()))};
   }
 
-  Fit FitBoard(const BoardPairs& in_cam, const BoardPairs& in_lidar,
-               const CornerOrder& order) const {
-    std::array<Eigen::Vector3d, kCornersPerBoard> cam;
-    std::array<Eigen::Vector3d, kCornersPerBoard> lidar;
-    for (int i = 0; i < kCornersPerBoard; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      cam[k] = pairs_[in_cam.pair(i)].point_in_cam;
-      lidar[k] = pairs_[in_lidar.pair(order.IndexInA(i, kCornersPerBoard))].point_in_lidar;
-    }
-    return FitPoints(cam, lidar);
-  }
+  struct Pairing {
+    const BoardPairs* in_cam = nullptr;
+    const BoardPairs* in_lidar = nullptr;
+    CornerOrder order;
+  };
 
-  static void AddStart(const Fit& fit, std::vector<Rigid3d>& starts) {
-    if (std::isfinite(fit.rmse_m)) starts.push_back(fit.cam_from_lidar);
+  // One board's camera corners with another's LiDAR corners, in every order.
+  void AddPairings(const std::vector<const BoardPairs*>& members, const BoardPairs& in_cam,
+                   const BoardPairs& in_lidar, MatchView& view,
+                   std::vector<Pairing>& meanings) const {
+    const auto place = [&](const BoardPairs& board) {
+      return static_cast<int>(std::find(members.begin(), members.end(), &board) - members.begin());
+    };
+    for (const CornerOrder& order : EveryOrder()) {
+      ObjectPairing pairing{.in_b = place(in_cam), .in_a = place(in_lidar)};
+      for (int i = 0; i < kCornersPerBoard; ++i) {
+        pairing.points_in_b.push_back(pairs_[in_cam.pair(i)].point_in_cam);
+        pairing.points_in_a.push_back(
+            pairs_[in_lidar.pair(order.IndexInA(i, kCornersPerBoard))].point_in_lidar);
+      }
+      view.pairings.push_back(std::move(pairing));
+      meanings.push_back({&in_cam, &in_lidar, order});
+    }
   }
 
   static void Assign(const BoardPairs& in_cam, const BoardPairs& in_lidar, const CornerOrder& order,
@@ -145,57 +157,6 @@ class OrderSearch {
       assignment[in_cam.pair(i)] =
           static_cast<int>(in_lidar.pair(order.IndexInA(i, kCornersPerBoard)));
     }
-  }
-
-  struct Match {
-    double squares = 0.0;
-    const BoardPairs* in_cam = nullptr;
-    const BoardPairs* in_lidar = nullptr;
-    CornerOrder order;
-  };
-
-  Match BestMatch(const Rigid3d& pose, const BoardPairs& in_cam, const BoardPairs& in_lidar) const {
-    CornerGroup corners;
-    for (int i = 0; i < kCornersPerBoard; ++i) {
-      corners.in_b.push_back(pairs_[in_cam.pair(i)].point_in_cam);
-      corners.in_a.push_back(pairs_[in_lidar.pair(i)].point_in_lidar);
-    }
-    Match match{0.0, &in_cam, &in_lidar, BestCornerOrder(corners, pose)};
-    for (int i = 0; i < kCornersPerBoard; ++i) {
-      const auto k = static_cast<std::size_t>(match.order.IndexInA(i, kCornersPerBoard));
-      match.squares +=
-          (corners.in_b[static_cast<std::size_t>(i)] - pose * corners.in_a[k]).squaredNorm();
-    }
-    return match;
-  }
-
-  // Boards are far apart against a sensible pose's error, so nearest first settles them.
-  Assignment AssignUnder(const Rigid3d& pose) const {
-    Assignment assignment = AsGiven();
-    for (const auto& [view, members] : views_) {
-      std::vector<Match> matches;
-      for (const BoardPairs* in_cam : members) {
-        for (const BoardPairs* in_lidar : members) {
-          matches.push_back(BestMatch(pose, *in_cam, *in_lidar));
-        }
-      }
-      std::stable_sort(matches.begin(), matches.end(),
-                       [](const Match& a, const Match& b) { return a.squares < b.squares; });
-      std::vector<const BoardPairs*> taken_in_cam;
-      std::vector<const BoardPairs*> taken_in_lidar;
-      const auto contains = [](const auto& taken, const BoardPairs* group) {
-        return std::find(taken.begin(), taken.end(), group) != taken.end();
-      };
-      for (const Match& match : matches) {
-        if (contains(taken_in_cam, match.in_cam) || contains(taken_in_lidar, match.in_lidar)) {
-          continue;
-        }
-        taken_in_cam.push_back(match.in_cam);
-        taken_in_lidar.push_back(match.in_lidar);
-        Assign(*match.in_cam, *match.in_lidar, match.order, assignment);
-      }
-    }
-    return assignment;
   }
 
   std::span<const Pair3d3d> pairs_;
@@ -234,10 +195,9 @@ std::optional<OrderFinding> FindBetterOrder(std::span<const Pair3d3d> pairs) {
 
   Assignment best;
   double best_rmse = std::min(kFarBetter * as_given, kMaxMisfit * search.MeanEdge());
-  for (const Rigid3d& start : search.Starts()) {
-    Assignment assignment = search.Converge(start);
+  for (Assignment& assignment : search.Explanations()) {
     const double rmse = search.FitAll(assignment).rmse_m;
-    // A later start must be better by more than rounding, so that equals do not flip.
+    // A later one must be better by more than rounding, so that equals do not flip.
     if (rmse < best_rmse * (1.0 - 1e-9)) {
       best_rmse = rmse;
       best = std::move(assignment);

@@ -92,6 +92,24 @@ Expected<std::vector<AcfrPose>> ParseAcfrPoses(std::string_view text, const std:
   return poses;
 }
 
+Expected<std::vector<int>> RelabelledAcfrPoses(std::span<const AcfrPose> poses) {
+  std::vector<CornerGroup> groups;
+  for (const AcfrPose& pose : poses) {
+    groups.push_back({{pose.in_cam.corners_m.begin(), pose.in_cam.corners_m.end()},
+                      {pose.in_lidar.corners_m.begin(), pose.in_lidar.corners_m.end()}});
+  }
+  const Expected<CornerOrderFit> fit = ResolveCornerOrders(groups);
+  if (!fit) return tl::unexpected<Error>(fit.error());
+  const auto usual = std::ranges::max_element(fit->orders, {}, [&](const CornerOrder& order) {
+    return std::ranges::count(fit->orders, order);
+  });
+  std::vector<int> relabelled;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (fit->orders[i] != *usual) relabelled.push_back(poses[i].id);
+  }
+  return relabelled;
+}
+
 Expected<CalibrationProblem> ProblemFromAcfrPoses(std::span<const AcfrPose> poses,
                                                   AcfrPoints points) {
   std::vector<CornerGroup> groups;

@@ -39,6 +39,12 @@ Expected<std::vector<AcfrPose>> ParseAcfrPoses(std::string_view text, const std:
 
 enum class AcfrPoints { kCorners, kCornersAndCentres };
 
+/// The numbers (AcfrPose::id) of poses whose corners the file lists in another order, camera
+/// against LiDAR, than it does in most poses: their labels were given otherwise, and whoever takes
+/// the file's order pairs wrong corners. In the order of the list. Errors: those of
+/// ResolveCornerOrders.
+Expected<std::vector<int>> RelabelledAcfrPoses(std::span<const AcfrPose> poses);
+
 /// Number of the board's centre among its "corners".
 inline constexpr int kAcfrCentre = 4;
 

@@ -53,6 +53,16 @@ tl::unexpected<Error> UnknownFormat(const std::string& file) {
                   ToString(Place{.file = file})));
 }
 
+// Whoever takes the file's order of corners should know in which poses it is another.
+std::vector<std::string> RelabellingNotes(const std::vector<AcfrPose>& poses) {
+  const Expected<std::vector<int>> relabelled = RelabelledAcfrPoses(poses);
+  if (!relabelled || relabelled->empty()) return {};
+  return {
+      fmt::format("order: poses {} are relabelled: the file lists their corners in another "
+                  "order than those of the other {}; the order that fits was taken for each",
+                  fmt::join(*relabelled, ", "), poses.size() - relabelled->size())};
+}
+
 }  // namespace
 
 std::string_view ToString(ProblemFormat format) {
@@ -102,8 +112,10 @@ Expected<DetectedProblem> ParseProblem(std::string_view text, const std::string&
       break;
     case ProblemFormat::kAcfrPoses:
       ok = ParseAcfrPoses(text, file)
-               .and_then(
-                   [](const std::vector<AcfrPose>& poses) { return ProblemFromAcfrPoses(poses); })
+               .and_then([&](const std::vector<AcfrPose>& poses) {
+                 detected.notes = RelabellingNotes(poses);
+                 return ProblemFromAcfrPoses(poses);
+               })
                .map(keep_problem);
       break;
   }

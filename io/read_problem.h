@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/problem_yaml.h"
 
@@ -17,6 +18,7 @@ std::string_view ToString(ProblemFormat format);
 
 struct DetectedProblem : ProblemFile {
   ProblemFormat format = ProblemFormat::kYaml;
+  std::vector<std::string> notes{};  ///< What was put right while reading, a line each.
 };
 
 /// Reads a problem in whichever format the file is, told by its first line: a count alone is

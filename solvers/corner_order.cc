@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
-#include <optional>
+#include <utility>
 
 #include "solvers/kabsch.h"
+#include "solvers/object_match.h"
 
 namespace sextant {
 namespace {
@@ -21,22 +21,19 @@ CornerOrder OrderAt(int index, int corners) {
   return {.first = index % corners, .reversed = index >= corners};
 }
 
-double SumSquares(const CornerGroup& group, const CornerOrder& order, const Rigid3d& b_from_a) {
+// The group in every order; `in_a` of pairing i is in OrderAt(i).
+MatchView ViewOf(const CornerGroup& group) {
   const int n = CornersOf(group);
-  double sum = 0.0;
-  for (int k = 0; k < n; ++k) {
-    const auto in_a = static_cast<std::size_t>(order.IndexInA(k, n));
-    sum += (group.in_b[static_cast<std::size_t>(k)] - b_from_a * group.in_a[in_a]).squaredNorm();
+  MatchView view;
+  for (int i = 0; i < 2 * n; ++i) {
+    ObjectPairing pairing{.points_in_b = group.in_b};
+    for (int k = 0; k < n; ++k) {
+      const auto in_a = static_cast<std::size_t>(OrderAt(i, n).IndexInA(k, n));
+      pairing.points_in_a.push_back(group.in_a[in_a]);
+    }
+    view.pairings.push_back(std::move(pairing));
   }
-  return sum;
-}
-
-void AppendOrdered(const CornerGroup& group, const CornerOrder& order, Points& in_b, Points& in_a) {
-  const int n = CornersOf(group);
-  for (int k = 0; k < n; ++k) {
-    in_b.push_back(group.in_b[static_cast<std::size_t>(k)]);
-    in_a.push_back(group.in_a[static_cast<std::size_t>(order.IndexInA(k, n))]);
-  }
+  return view;
 }
 
 Eigen::Vector3d Centroid(const Points& points) {
@@ -45,62 +42,19 @@ Eigen::Vector3d Centroid(const Points& points) {
   return sum / static_cast<double>(points.size());
 }
 
-std::vector<Rigid3d> Starts(std::span<const CornerGroup> groups) {
-  std::vector<Rigid3d> starts;
+// No order changes the centroids.
+std::vector<Rigid3d> FitOfCentroids(std::span<const CornerGroup> groups) {
   Points in_b;
   Points in_a;
   for (const CornerGroup& group : groups) {
     in_b.push_back(Centroid(group.in_b));
     in_a.push_back(Centroid(group.in_a));
   }
-  if (const Expected<KabschFit> fit = FitKabsch(in_b, in_a)) starts.push_back(fit->b_from_a);
-  const int corners = CornersOf(groups[0]);
-  for (int i = 0; i < 2 * corners; ++i) {
-    in_b.clear();
-    in_a.clear();
-    AppendOrdered(groups[0], OrderAt(i, corners), in_b, in_a);
-    if (const Expected<KabschFit> fit = FitKabsch(in_b, in_a)) starts.push_back(fit->b_from_a);
-  }
-  return starts;
-}
-
-std::optional<CornerOrderFit> Descend(std::span<const CornerGroup> groups, const Rigid3d& start) {
-  CornerOrderFit fit;
-  fit.b_from_a = start;
-  constexpr int kMaxIterations = 100;
-  for (fit.iterations = 1; fit.iterations <= kMaxIterations; ++fit.iterations) {
-    std::vector<CornerOrder> orders;
-    Points in_b;
-    Points in_a;
-    for (const CornerGroup& group : groups) {
-      orders.push_back(BestCornerOrder(group, fit.b_from_a));
-      AppendOrdered(group, orders.back(), in_b, in_a);
-    }
-    if (orders == fit.orders) break;
-    const Expected<KabschFit> kabsch = FitKabsch(in_b, in_a);
-    if (!kabsch) return std::nullopt;
-    fit.orders = std::move(orders);
-    fit.b_from_a = kabsch->b_from_a;
-    fit.rmse_m = std::sqrt(kabsch->sum_squares / static_cast<double>(in_b.size()));
-  }
-  return fit;
+  const Expected<KabschFit> fit = FitKabsch(in_b, in_a);
+  return fit ? std::vector<Rigid3d>{fit->b_from_a} : std::vector<Rigid3d>();
 }
 
 }  // namespace
-
-CornerOrder BestCornerOrder(const CornerGroup& group, const Rigid3d& b_from_a) {
-  CornerOrder best;
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 2 * CornersOf(group); ++i) {
-    const CornerOrder order = OrderAt(i, CornersOf(group));
-    const double sum = SumSquares(group, order, b_from_a);
-    if (sum < least) {
-      least = sum;
-      best = order;
-    }
-  }
-  return best;
-}
 
 Expected<CornerOrderFit> ResolveCornerOrders(std::span<const CornerGroup> groups) {
   if (groups.empty()) {
@@ -114,19 +68,26 @@ Expected<CornerOrderFit> ResolveCornerOrders(std::span<const CornerGroup> groups
                                  "least 3",
                                  i + 1, groups.size(), group.in_b.size(), group.in_a.size()));
   }
-  std::optional<CornerOrderFit> best;
-  // Equal to a micrometre is equal: the earliest start, nearest to the lists, then stays.
-  constexpr double kNoticeableMetres = 1e-6;
-  for (const Rigid3d& start : Starts(groups)) {
-    std::optional<CornerOrderFit> fit = Descend(groups, start);
-    if (fit && (!best || fit->rmse_m < best->rmse_m - kNoticeableMetres)) best = std::move(fit);
-  }
-  if (!best) {
+  std::vector<MatchView> views;
+  for (const CornerGroup& group : groups) views.push_back(ViewOf(group));
+  const Expected<std::vector<MatchExplanation>> found =
+      MatchObjects(views, {.starts = FitOfCentroids(groups)});
+  if (!found) {
     return MakeError(ErrorCode::kDegenerate,
                      "no order of the corners gives a pose: the corners of a sensor coincide or "
                      "lie on one line");
   }
-  return *best;
+  const MatchExplanation& best = found->front();
+  CornerOrderFit fit;
+  fit.b_from_a = best.b_from_a;
+  double points = 0.0;
+  for (const TakenPairing& taken : best.taken) {
+    const int corners = CornersOf(groups[taken.view]);
+    fit.orders.push_back(OrderAt(static_cast<int>(taken.pairing), corners));
+    points += corners;
+  }
+  fit.rmse_m = std::sqrt(best.cost / points);
+  return fit;
 }
 
 }  // namespace sextant

@@ -29,25 +29,20 @@ struct CornerOrder {
   friend bool operator==(const CornerOrder&, const CornerOrder&) = default;
 };
 
-/// The order with the least sum of squared distances under a known pose; the first of equals.
-CornerOrder BestCornerOrder(const CornerGroup& group, const Rigid3d& b_from_a);
-
 struct CornerOrderFit {
   std::vector<CornerOrder> orders;  ///< One for each group.
   Rigid3d b_from_a;
   double rmse_m = 0.0;  ///< Over all corners.
-  int iterations = 0;
 };
 
 /// The pose and the orders of all groups together that minimise the sum of squared distances.
 ///
 /// The corners of one board fit under any of its orders, as a board has symmetries; that one pose
-/// must serve all groups is what tells them apart. Alternates the best orders for a pose and the
-/// best pose for the orders (each step lowers the finite sum, so it ends) from several starts: the
-/// fit of the groups' centroids, which no order changes, and every order of the first group.
-/// With one group, or groups that share a symmetry, the orders are not determined: those nearest
-/// to the order as listed are returned.
-/// Errors: kTooFewPairs (no group); kInvalidInput (uneven or short groups); kDegenerate.
+/// must serve all groups is what tells them apart (solvers/object_match.h, each group a view that
+/// may be taken in any order). Starts: the fit of the groups' centroids, which no order changes,
+/// and every order of the groups. With one group, or groups that share a symmetry, the orders are
+/// not determined: those nearest to the order as listed are returned. Errors: kTooFewPairs (no
+/// group); kInvalidInput (uneven or short groups); kDegenerate.
 Expected<CornerOrderFit> ResolveCornerOrders(std::span<const CornerGroup> groups);
 
 }  // namespace sextant

@@ -13,6 +13,7 @@ namespace sextant {
 namespace {
 
 constexpr std::size_t kFinalists = 24;
+constexpr double kDropped = 2.0;  // Of the cap.
 constexpr int kMaxRounds = 30;
 constexpr double kSameAngle_rad = 0.1;
 constexpr double kSameShift = 1.0 / 3.0;  // Of an object's size.
@@ -57,7 +58,7 @@ void PairView(const MatchView& view, std::size_t index, const Rigid3d& pose, dou
                      });
     if (!is_free) continue;
     explanation.taken.push_back(candidate);
-    explanation.cost += std::min(candidate.cost, cap);
+    explanation.cost += candidate.fits ? candidate.cost : kDropped * cap;
   }
 }
 

@@ -27,8 +27,9 @@ struct MatchView {
 };
 
 struct MatchOptions {
-  /// An object whose pairing costs more counts as much as this and no more: it was moved, or is
-  /// none. Infinite: every object has a partner.
+  /// A pairing that costs more is none: the object was moved, or is something else. It then counts
+  /// as twice the cap, so that a pose which two objects fit poorly is not given up for one that a
+  /// single object fits well. Infinite: every object has a partner.
   double cap = std::numeric_limits<double>::infinity();
   std::vector<Rigid3d> starts{};  ///< b_from_a, tried before those of single pairings.
   std::size_t most_starts = 512;  ///< Of all; of many views, some are taken evenly.
@@ -46,7 +47,7 @@ struct TakenPairing {
 struct MatchExplanation {
   Rigid3d b_from_a{};
   std::vector<TakenPairing> taken{};  ///< By view; each object at most once.
-  double cost = 0.0;                  ///< Of all that is taken, each at most the cap.
+  double cost = 0.0;  ///< Of all that is taken; twice the cap where it does not fit.
 };
 
 /// Which object is which and how it lies, solved over all views at once: one pose must serve all.

@@ -19,21 +19,15 @@ struct RectangleFit {
   /// For each edge point the side that it lies on: 0 between the corners 0 and 1, clockwise, 4 to 7
   /// of the opening; -1 where it lies on none.
   std::vector<int> sides;
-<<<<<<< HEAD
   std::vector<double> sigmas_m;          ///< Of each edge point, across the side it is nearest to.
   std::vector<Eigen::Vector2d> on_edge;  ///< Each without what the beam adds to the board [m].
   double rms = 0.0;                      ///< Of the residuals of those on a side, in sigmas.
   double rms_m = 0.0;                    ///< The same, across the edge.
   double share = 0.0;                    ///< Of the edge points that lie on a side.
-=======
-  double rms = 0.0;    ///< Of the residuals of those on a side, in sigmas.
-  double rms_m = 0.0;  ///< The same, across the edge.
-  double share = 0.0;  ///< Of the edge points that lie on a side.
-  int sides_seen = 0;  ///< Of the outer four, those with edge points on them.
+  int sides_seen = 0;                    ///< Of the outer four, those with edge points on them.
   /// Size of the outline by that of the board. Farther from 1 than the fit is precise: ranges are
   /// too long (above) or too short, or the board is another.
   double size_ratio = 1.0;
->>>>>>> 49aca16 (Boards on stands and in hands, cut, hidden and mirrored; errors that all edges of a board share are in the covariance; a patch that shows four sides goes before one that shows three)
 };
 
 /// Robust least squares of the edge points' distances to their sides, over position and angle. The

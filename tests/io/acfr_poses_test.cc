@@ -6,7 +6,6 @@
 
 #include <set>
 
-#include "solvers/corner_order.h"
 #include "solvers/kabsch.h"
 #include "support/bad_text.h"
 #include "support/real_data.h"
@@ -63,20 +62,9 @@ TEST(AcfrPoses, FindsTheSixRelabelledPoses) {
   SEXTANT_REAL_DATA(path, "acfr_vlp16/poses.csv");
   const auto poses = ReadAcfrPoses(path);
   ASSERT_TRUE(poses);
-  std::vector<CornerGroup> groups;
-  for (const AcfrPose& pose : *poses) {
-    groups.push_back({{pose.in_cam.corners_m.begin(), pose.in_cam.corners_m.end()},
-                      {pose.in_lidar.corners_m.begin(), pose.in_lidar.corners_m.end()}});
-  }
-  const Expected<CornerOrderFit> fit = ResolveCornerOrders(groups);
-  ASSERT_TRUE(fit);
-  const CornerOrder usual = fit->orders[0];
-  EXPECT_TRUE(usual.reversed);
-  std::vector<int> relabelled;
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (fit->orders[i] != usual) relabelled.push_back((*poses)[i].id);
-  }
-  EXPECT_THAT(relabelled, testing::ElementsAre(7, 16, 17, 30, 31, 32));
+  const auto relabelled = RelabelledAcfrPoses(*poses);
+  ASSERT_TRUE(relabelled) << relabelled.error().message;
+  EXPECT_THAT(*relabelled, testing::ElementsAre(7, 16, 17, 30, 31, 32));
 }
 
 TEST(AcfrPoses, NumbersTheCornersClockwiseFromTheTop) {

@@ -156,7 +156,7 @@ TEST_P(ManySessions, AThirdOfTheViewsWrong) {
   const auto found = MatchObjects(session.views, {.cap = kCap});
   ASSERT_TRUE(found) << found.error().message;
   ExpectTruth(session, found->front(), 3);
-  EXPECT_NEAR(found->front().cost, 3 * kCap + 6 * 12 - 6, 60.0);
+  EXPECT_NEAR(found->front().cost, 6 * kCap + 6 * 12 - 6, 60.0);
 }
 
 TEST(ObjectMatch, OneSquareBoardHasFourExplanations) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/bag_streams.h"
+#include "cli/bag_extract.h"
 
 #include <fmt/format.h>
 
@@ -8,17 +8,13 @@
 #include <optional>
 #include <set>
 
-#include "cli/image_png.h"
+#include "calibrate/bag/bag_image.h"
 #include "io/camera_info.h"
 #include "io/pcd_file.h"
 #include "io/text_file.h"
 
 namespace sextant::cli {
 namespace {
-
-bool IsImage(MessageKind kind) {
-  return kind == MessageKind::kImage || kind == MessageKind::kEncodedImage;
-}
 
 // What a message becomes on the disk; none for a camera that is the one before.
 struct Extracted {
@@ -120,36 +116,6 @@ std::string PairsText(const BagStreams& all, Extractor& files) {
 }
 
 }  // namespace
-
-Expected<BagStreams> ReadStreams(const Bag& bag, std::int64_t tolerance_ns) {
-  BagStreams all;
-  std::vector<std::size_t> topics;
-  std::map<std::size_t, std::size_t> stream_of;
-  for (std::size_t i = 0; i < bag.topics().size(); ++i) {
-    const MessageKind kind = bag.topics()[i].kind;
-    if (kind != MessageKind::kPointCloud && !IsImage(kind)) continue;
-    topics.push_back(i);
-    stream_of[i] = all.streams.size();
-    all.streams.push_back({.topic = i, .stamps_ns = {}});
-  }
-  const Expected<void> read = bag.Read(topics, [&](const BagMessage& message) -> Expected<void> {
-    const Expected<MessageHeader> header = DecodeHeader(message);
-    if (!header) return tl::unexpected<Error>(header.error());
-    all.streams[stream_of[message.topic_index]].stamps_ns.push_back(header->stamp_ns);
-    return {};
-  });
-  if (!read) return tl::unexpected<Error>(read.error());
-  for (std::size_t scans = 0; scans < all.streams.size(); ++scans) {
-    if (bag.topics()[all.streams[scans].topic].kind != MessageKind::kPointCloud) continue;
-    for (std::size_t images = 0; images < all.streams.size(); ++images) {
-      if (!IsImage(bag.topics()[all.streams[images].topic].kind)) continue;
-      all.pairings.push_back(
-          {scans, images,
-           PairByStamp(all.streams[scans].stamps_ns, all.streams[images].stamps_ns, tolerance_ns)});
-    }
-  }
-  return all;
-}
 
 std::string MessageName(std::size_t number, std::int64_t stamp_ns) {
   return fmt::format("{:06}_{}", number, stamp_ns);

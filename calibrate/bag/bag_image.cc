@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/image_png.h"
+#include "calibrate/bag/bag_image.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 
 #include "io/number_text.h"
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
 constexpr int kAsItIs = -1;
@@ -65,7 +65,7 @@ void SwapBytes(cv::Mat& image) {
 
 }  // namespace
 
-Expected<std::string> EncodePng(const ImageMessage& image) {
+Expected<cv::Mat> ToMat(const ImageMessage& image) {
   const Encoding* found = nullptr;
   for (const Encoding& encoding : kEncodings) {
     if (encoding.name == image.encoding) found = &encoding;
@@ -89,12 +89,34 @@ Expected<std::string> EncodePng(const ImageMessage& image) {
       SwapBytes(pixels);
     }
     if (found->to_bgr != kAsItIs) cv::cvtColor(pixels, pixels, found->to_bgr);
+    return pixels;
+  } catch (const cv::Exception& error) {
+    return Refuse(fmt::format("OpenCV cannot convert it: {}", Printable(error.err, 100)));
+  }
+}
+
+Expected<cv::Mat> ToMat(const EncodedImageMessage& image) {
+  try {
+    const std::vector<unsigned char> raw(image.data.begin(), image.data.end());
+    cv::Mat pixels;
+    if (!raw.empty()) pixels = cv::imdecode(raw, cv::IMREAD_ANYDEPTH | cv::IMREAD_ANYCOLOR);
+    if (!pixels.empty()) return pixels;
+    return Refuse("expected a PNG or JPEG");
+  } catch (const cv::Exception& error) {
+    return Refuse(fmt::format("expected an image: {}", Printable(error.err, 100)));
+  }
+}
+
+Expected<std::string> EncodePng(const ImageMessage& image) {
+  const Expected<cv::Mat> pixels = ToMat(image);
+  if (!pixels) return tl::unexpected<Error>(pixels.error());
+  try {
     std::vector<unsigned char> png;
-    cv::imencode(".png", pixels, png);
+    cv::imencode(".png", *pixels, png);
     return std::string(png.begin(), png.end());
   } catch (const cv::Exception& error) {
     return Refuse(fmt::format("OpenCV cannot encode it: {}", Printable(error.err, 100)));
   }
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/bag/observe_bag.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "calibrate/bag/bag_image.h"
+#include "calibrate/bag/bag_streams.h"
+#include "calibrate/motion.h"
+#include "io/bag/messages.h"
+
+namespace sextant {
+namespace {
+
+double Seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
+// The pairing of the topics that are asked for, or the only one.
+Expected<const BagPairing*> ChoosePairing(const Bag& bag, const BagStreams& all,
+                                          const BagSource& source) {
+  std::vector<const BagPairing*> fitting;
+  std::string known;
+  for (const BagPairing& pairing : all.pairings) {
+    const std::string& images = bag.topics()[all.streams[pairing.images].topic].name;
+    const std::string& clouds = bag.topics()[all.streams[pairing.scans].topic].name;
+    known += fmt::format("{}{} with {}", known.empty() ? "" : "; ", images, clouds);
+    const bool fits = (source.image_topic.empty() || source.image_topic == images) &&
+                      (source.cloud_topic.empty() || source.cloud_topic == clouds);
+    if (fits) fitting.push_back(&pairing);
+  }
+  if (all.pairings.empty()) {
+    return MakeError(ErrorCode::kMissingData,
+                     "the recording has no topic of images (Image, CompressedImage) beside one of "
+                     "scans (PointCloud2)");
+  }
+  if (fitting.size() == 1) return fitting.front();
+  return MakeError(ErrorCode::kMissingData,
+                   fmt::format("{} topics fit: name one of images with --image-topic and one of "
+                               "scans with --cloud-topic; there are: {}",
+                               fitting.empty() ? "no" : "several", known));
+}
+
+// By how much the nearest image and scan are apart. Requires stamps of both.
+std::int64_t NearestGap(std::vector<std::int64_t> images, std::vector<std::int64_t> scans) {
+  std::ranges::sort(images);
+  std::int64_t least = std::abs(images.front() - scans.front());
+  for (const std::int64_t scan : scans) {
+    const auto after = std::ranges::lower_bound(images, scan);
+    if (after != images.end()) least = std::min(least, *after - scan);
+    if (after != images.begin()) least = std::min(least, scan - *(after - 1));
+  }
+  return least;
+}
+
+tl::unexpected<Error> NeverMeet(const BagStream& images, const BagStream& scans,
+                                double tolerance_s) {
+  if (images.stamps_ns.empty() || scans.stamps_ns.empty()) {
+    return MakeError(ErrorCode::kMissingData,
+                     fmt::format("the recording holds {} images and {} scans of these topics",
+                                 images.stamps_ns.size(), scans.stamps_ns.size()));
+  }
+  return MakeError(
+      ErrorCode::kMissingData,
+      fmt::format("the time stamps never meet: no image is within {} s of a scan, the nearest are "
+                  "{:.3f} s apart. Are both sensors' clocks the same? A wider --tolerance pairs "
+                  "them, which is right only if the board hangs still",
+                  tolerance_s, Seconds(NearestGap(images.stamps_ns, scans.stamps_ns))));
+}
+
+// The CameraInfo topic in the images' own namespace, or the only one.
+std::optional<std::size_t> InfoTopic(const Bag& bag, const std::string& images) {
+  const std::string home = images.substr(0, images.rfind('/') + 1);
+  std::vector<std::size_t> infos;
+  for (std::size_t i = 0; i < bag.topics().size(); ++i) {
+    if (bag.topics()[i].kind != MessageKind::kCameraInfo) continue;
+    if (bag.topics()[i].name.starts_with(home)) return i;
+    infos.push_back(i);
+  }
+  if (infos.size() != 1) return std::nullopt;
+  return infos.front();
+}
+
+Expected<std::optional<Camera>> CameraIn(const Bag& bag, const std::string& images) {
+  const std::optional<std::size_t> topic = InfoTopic(bag, images);
+  if (!topic) return std::optional<Camera>();
+  std::optional<Camera> camera;
+  const Expected<void> read =
+      bag.Read({*topic}, [&camera](const BagMessage& message) -> Expected<void> {
+        if (camera) return {};
+        const Expected<CameraInfoMessage> info = DecodeCameraInfo(message);
+        if (!info) return tl::unexpected<Error>(info.error());
+        camera = info->camera;
+        return {};
+      });
+  if (!read) return tl::unexpected<Error>(read.error());
+  return camera;
+}
+
+// A message that outlives its visit.
+struct KeptMessage {
+  BagMessage message{};
+  std::string data{};
+
+  BagMessage Get() const {
+    BagMessage copy = message;
+    copy.data = data;
+    return copy;
+  }
+};
+
+struct KeptMoment {
+  std::size_t view = 0;
+  std::optional<KeptMessage> image{};
+  std::optional<KeptMessage> cloud{};
+};
+
+Expected<cv::Mat> DecodeAny(const BagMessage& message) {
+  if (message.topic->kind == MessageKind::kEncodedImage) {
+    const Expected<EncodedImageMessage> image = DecodeEncodedImage(message);
+    if (!image) return tl::unexpected<Error>(image.error());
+    return ToMat(*image);
+  }
+  const Expected<ImageMessage> image = DecodeImage(message);
+  if (!image) return tl::unexpected<Error>(image.error());
+  return ToMat(*image);
+}
+
+Expected<Observation> Examine(const Observer& observer, const KeptMoment& moment) {
+  const Expected<cv::Mat> image = DecodeAny(moment.image->Get());
+  if (!image) return tl::unexpected<Error>(image.error());
+  const Expected<CloudMessage> cloud = DecodePointCloud(moment.cloud->Get());
+  if (!cloud) return tl::unexpected<Error>(cloud.error());
+  return observer.Observe(*image, cloud->cloud);
+}
+
+// Gathers messages until a batch of moments is whole, then examines these on all cores.
+class Batches {
+ public:
+  Batches(const BagPlan& plan, const Observer& observer, const std::function<void()>& step)
+      : plan_(plan), observer_(observer), step_(step), views_(plan.moments.size()) {
+    for (std::size_t i = 0; i < plan.moments.size(); ++i) {
+      view_of_image_[plan.moments[i].image] = i;
+      view_of_cloud_[plan.moments[i].cloud] = i;
+      const BagMoment& moment = plan.moments[i];
+      views_[i].cloud_time_s = Seconds(moment.stamp_ns);
+      views_[i].image_time_s = Seconds(moment.stamp_ns + moment.difference_ns);
+      views_[i].name = fmt::format(
+          "{:.3f} s", Seconds(plan.moments[i].stamp_ns - plan.moments.front().stamp_ns));
+    }
+  }
+
+  void Take(const BagMessage& message) {
+    const bool is_image = message.topic_index == plan_.image_topic;
+    const std::size_t number = is_image ? images_++ : clouds_++;
+    const auto& views = is_image ? view_of_image_ : view_of_cloud_;
+    const auto found = views.find(number);
+    if (found == views.end()) return;
+    KeptMoment& moment = waiting_[found->second];
+    moment.view = found->second;
+    (is_image ? moment.image : moment.cloud) = {message, std::string(message.data)};
+    if (!moment.image || !moment.cloud) return;
+    whole_.push_back(std::move(moment));
+    waiting_.erase(found->second);
+    if (whole_.size() == kBatch) Work();
+  }
+
+  std::vector<SessionView> Finish() {
+    Work();
+    return std::move(views_);
+  }
+
+ private:
+  static constexpr std::size_t kBatch = 64;
+
+  void Work() {
+    tbb::parallel_for(std::size_t{0}, whole_.size(), [this](std::size_t i) {
+      views_[whole_[i].view].seen = Examine(observer_, whole_[i]);
+      if (step_) step_();
+    });
+    whole_.clear();
+  }
+
+  const BagPlan& plan_;
+  const Observer& observer_;
+  const std::function<void()>& step_;
+  std::vector<SessionView> views_;
+  std::map<std::size_t, std::size_t> view_of_image_;
+  std::map<std::size_t, std::size_t> view_of_cloud_;
+  std::map<std::size_t, KeptMoment> waiting_;
+  std::vector<KeptMoment> whole_;
+  std::size_t images_ = 0;  // Numbers of the next messages.
+  std::size_t clouds_ = 0;
+};
+
+}  // namespace
+
+Expected<BagPlan> PlanBag(const Bag& bag, const BagSource& source) {
+  const auto tolerance_ns = static_cast<std::int64_t>(1e9 * source.tolerance_s);
+  const Expected<BagStreams> all = ReadStreams(bag, tolerance_ns);
+  if (!all) return tl::unexpected<Error>(all.error());
+  const Expected<const BagPairing*> pairing = ChoosePairing(bag, *all, source);
+  if (!pairing) return tl::unexpected<Error>(pairing.error());
+  const BagStream& images = all->streams[(*pairing)->images];
+  const BagStream& scans = all->streams[(*pairing)->scans];
+  const std::vector<StampPair>& pairs = (*pairing)->pairs.pairs;
+  if (pairs.empty()) return NeverMeet(images, scans, source.tolerance_s);
+  BagPlan plan{.image_topic = images.topic, .cloud_topic = scans.topic};
+  const std::size_t count = std::min(pairs.size(), source.most_views);
+  for (std::size_t k = 0; k < count; ++k) {
+    const StampPair& pair = pairs[k * pairs.size() / count];
+    plan.moments.push_back({.image = pair.second,
+                            .cloud = pair.first,
+                            .stamp_ns = scans.stamps_ns[pair.first],
+                            .difference_ns = pair.difference_ns});
+  }
+  const Expected<std::optional<Camera>> camera = CameraIn(bag, bag.topics()[plan.image_topic].name);
+  if (!camera) return tl::unexpected<Error>(camera.error());
+  plan.camera = *camera;
+  return plan;
+}
+
+Expected<std::vector<SessionView>> ObserveBag(const Bag& bag, const BagPlan& plan,
+                                              const Observer& observer,
+                                              const std::function<void()>& step) {
+  Batches batches(plan, observer, step);
+  const Expected<void> read = bag.Read({plan.image_topic, plan.cloud_topic},
+                                       [&batches](const BagMessage& message) -> Expected<void> {
+                                         batches.Take(message);
+                                         return {};
+                                       });
+  if (!read) return tl::unexpected<Error>(read.error());
+  std::vector<SessionView> views = batches.Finish();
+  std::vector<double> times_s;
+  for (const BagMoment& moment : plan.moments) times_s.push_back(Seconds(moment.stamp_ns));
+  LeaveOutMotion(views, times_s, observer.camera());
+  return views;
+}
+
+}  // namespace sextant

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "calibrate/diagnose.h"
+#include "calibrate/make_result.h"
+#include "calibrate/observe_files.h"
+#include "calibrate/probe_size.h"
+#include "calibrate/session.h"
+#include "cli/calibrate_options.h"
+#include "cli/calibrate_source.h"
+#include "cli/calibrate_text.h"
+#include "cli/catalogue.h"
+#include "cli/commands.h"
+#include "cli/load.h"
+#include "cli/pose_argument.h"
+#include "cli/progress.h"
+#include "cli/report_text.h"
+#include "cli/search_options.h"
+#include "eval/compare.h"
+#include "eval/judge.h"
+#include "io/board_file.h"
+#include "io/calibration_result.h"
+#include "io/camera_file.h"
+#include "io/cloud_file.h"
+#include "io/text_file.h"
+
+namespace sextant::cli {
+namespace {
+
+constexpr std::size_t kLineWidth = 100;
+
+// Everything that is settled before an image is opened.
+struct Job {
+  Session session;
+  std::vector<Board> boards;
+  std::optional<Camera> camera;
+  std::vector<SolverPtr> solvers;
+  MatchSettings match;
+  ObserveOptions observe;
+  double tolerance_s = 0.05;
+};
+
+Expected<std::vector<std::filesystem::path>> Files(const std::vector<std::string>& names) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : names) {
+    const auto some = ExpandPattern(name);
+    if (!some) return tl::unexpected<Error>(some.error());
+    files.insert(files.end(), some->begin(), some->end());
+  }
+  return files;
+}
+
+Expected<Session> SessionOf(const CalibrateOptions& options) {
+  const bool has_files = !options.images.empty() || !options.clouds.empty();
+  if (has_files != options.session.empty()) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     "expected a SESSION (file, folder or recording), or --image and --cloud");
+  }
+  if (!has_files) return ReadSession(options.session, options.camera_name);
+  if (options.images.empty() || options.clouds.empty()) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("{} is missing: expected --image and --cloud together",
+                                 options.images.empty() ? "--image" : "--cloud"));
+  }
+  const auto images = Files(options.images);
+  if (!images) return tl::unexpected<Error>(images.error());
+  const auto clouds = Files(options.clouds);
+  if (!clouds) return tl::unexpected<Error>(clouds.error());
+  return Session{.files = PairFiles(*images, *clouds)};
+}
+
+Expected<std::vector<SolverPtr>> SolversOf(const std::string& list) {
+  const SolverRegistry registry = AllSolvers();
+  const bool has_joint = std::ranges::any_of(
+      registry.entries(), [](const SolverEntry& entry) { return entry.name == "joint"; });
+  const std::string usual = has_joint ? "joint(gnc(kabsch))" : "gnc(kabsch)";
+  const Expected<std::vector<SpecNode>> specs = ParseSpecList(list.empty() ? usual : list);
+  if (!specs) return tl::unexpected<Error>(specs.error());
+  std::vector<SolverPtr> solvers;
+  for (const SpecNode& spec : *specs) {
+    Expected<SolverPtr> solver = registry.Make(spec);
+    if (!solver) return tl::unexpected<Error>(solver.error());
+    solvers.push_back(std::move(*solver));
+  }
+  return solvers;
+}
+
+Expected<void> ReadBoardsAndCamera(const CalibrateOptions& options, Job& job) {
+  const std::filesystem::path boards_path =
+      options.boards_path.empty() ? job.session.boards : std::filesystem::path(options.boards_path);
+  const std::filesystem::path camera_path =
+      options.camera_path.empty() ? job.session.camera : std::filesystem::path(options.camera_path);
+  if (boards_path.empty() || (camera_path.empty() && job.session.bag.empty())) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("{} is missing: the session does not name the {}",
+                                 boards_path.empty() ? "--board" : "--camera",
+                                 boards_path.empty() ? "boards" : "camera"));
+  }
+  const Expected<std::vector<Board>> boards = ReadBoards(boards_path);
+  if (!boards) return tl::unexpected<Error>(boards.error());
+  job.boards = *boards;
+  if (camera_path.empty()) return {};
+  const Expected<Camera> camera = ReadCamera(camera_path);
+  if (!camera) return tl::unexpected<Error>(camera.error());
+  job.camera = *camera;
+  return {};
+}
+
+Expected<Job> MakeJob(const CalibrateOptions& options) {
+  Job job;
+  Expected<Session> session = SessionOf(options);
+  if (!session) return tl::unexpected<Error>(session.error());
+  job.session = std::move(*session);
+  if (!options.image_topic.empty()) job.session.image_topic = options.image_topic;
+  if (!options.cloud_topic.empty()) job.session.cloud_topic = options.cloud_topic;
+  job.tolerance_s = options.tolerance_s;
+  if (Expected<void> ok = ReadBoardsAndCamera(options, job); !ok) {
+    return tl::unexpected<Error>(ok.error());
+  }
+  Expected<std::vector<SolverPtr>> solvers = SolversOf(options.solvers);
+  if (!solvers) return tl::unexpected<Error>(solvers.error());
+  job.solvers = std::move(*solvers);
+  job.match.initial = job.session.initial_cam_from_lidar;
+  if (!options.initial.empty()) {
+    const Expected<Rigid3d> initial = PoseFromArgument("--initial", options.initial);
+    if (!initial) return tl::unexpected<Error>(initial.error());
+    job.match.initial = *initial;
+  }
+  const Expected<BoardSearchOptions> search = SearchOptionsFrom(options.search);
+  if (!search) return tl::unexpected<Error>(search.error());
+  job.observe = {.detector = options.detector, .extractor = options.extractor, .search = *search};
+  return job;
+}
+
+Expected<RecordedViews> Look(const Job& job) {
+  if (!job.session.bag.empty()) {
+    return LookAtRecording(job.session, {.boards = job.boards,
+                                         .camera = job.camera,
+                                         .observe = job.observe,
+                                         .tolerance_s = job.tolerance_s});
+  }
+  const Expected<Observer> observer = Observer::Make(job.boards, *job.camera, job.observe);
+  if (!observer) return tl::unexpected<Error>(observer.error());
+  const std::vector<FilePair>& pairs = job.session.files.pairs;
+  if (pairs.empty()) {
+    return MakeError(ErrorCode::kMissingData,
+                     fmt::format("no image belongs to a scan: {} files have no partner; they are "
+                                 "paired by what their names have of their own",
+                                 job.session.files.without_partner.size()));
+  }
+  Progress progress("views", static_cast<long>(pairs.size()));
+  return RecordedViews{.camera = *job.camera,
+                       .views = ObserveFiles(*observer, pairs, [&progress] { progress.Step(); })};
+}
+
+std::vector<std::string> FindingsOf(const Job& job, const std::vector<SessionView>& views,
+                                    const Assembly& assembly, const SolveReport* report) {
+  std::vector<std::string> lines = DescribeAmbiguity(assembly.matching, job.match);
+  for (const std::filesystem::path& file : job.session.files.without_partner) {
+    lines.push_back(fmt::format("without a partner: {}", file.string()));
+  }
+  const Rigid3d& pose =
+      report != nullptr ? report->cam_from_lidar : assembly.matching.cam_from_lidar;
+  for (const std::string& line : Diagnose(views, assembly, pose)) lines.push_back(line);
+  for (const std::string& line : Describe(JudgePairs(assembly.problem))) lines.push_back(line);
+  return lines;
+}
+
+std::string FindingsText(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += "  " + line + "\n";
+  return text.empty() ? text : "\nWhat the data says of itself:\n" + text;
+}
+
+// Everything that shapes the answer besides the measurements; its hash tells runs apart.
+std::vector<std::string> ConfigurationOf(const CalibrateOptions& options, const Job& job) {
+  std::vector<std::string> lines = {
+      fmt::format("solver: {}", job.solvers.front()->spec().name),
+      fmt::format("extractor: {}", options.extractor),
+      fmt::format("detector: {}", options.detector.empty() ? "usual" : options.detector)};
+  for (const std::string& line : ConfigurationOf(options.search)) lines.push_back(line);
+  if (job.match.initial) {
+    const Eigen::Quaterniond& q = job.match.initial->rotation;
+    lines.push_back(
+        fmt::format("initial_quaternion_wxyz: {} {} {} {}", q.w(), q.x(), q.y(), q.z()));
+  }
+  if (!job.session.bag.empty()) lines.push_back(fmt::format("tolerance_s: {}", job.tolerance_s));
+  for (const Board& board : job.boards) {
+    lines.push_back(
+        fmt::format("board {}: {} x {} m", board.id, board.top_right_m, board.right_bottom_m));
+  }
+  return lines;
+}
+
+// What is on the screen and in the files.
+int DeliverResult(const CalibrateOptions& options, const CalibrationResult& result,
+                  const std::string& text) {
+  if (!options.out_path.empty()) {
+    if (Expected<void> ok = WriteFileAtomically(options.out_path, FormatCalibrationResult(result));
+        !ok) {
+      return Refuse("calibrate", ok.error());
+    }
+  }
+  const std::string where = options.out_path.empty()
+                                ? std::string()
+                                : fmt::format("\nThe result is in {}.\n", options.out_path);
+  return Deliver("calibrate", options.json_path, text + where, FormatCalibrationResultJson(result),
+                 kAnswered);
+}
+
+std::string ErrorAgainstTruth(const Job& job, const SolveReport& report) {
+  if (!job.session.true_cam_from_lidar) return {};
+  const PoseDistance error =
+      DistanceBetween(report.cam_from_lidar, *job.session.true_cam_from_lidar);
+  std::string text =
+      fmt::format("  error against the truth    {:.4f} deg, {:.2f} mm",
+                  error.rotation_rad * 180.0 / std::numbers::pi, 1e3 * error.translation_m);
+  if (report.covariance) {
+    const Vector6d variance = report.covariance->diagonal();
+    text += fmt::format(" (1 sigma over all axes {:.4f} deg, {:.2f} mm)",
+                        std::sqrt(variance.head<3>().sum()) * 180.0 / std::numbers::pi,
+                        1e3 * std::sqrt(variance.tail<3>().sum()));
+  }
+  return text + "\n";
+}
+
+// What the first scans that show no board show instead.
+std::string OtherSizes(const Job& job, const std::vector<SessionView>& views) {
+  constexpr int kMostScans = 3;
+  int looked = 0;
+  for (const SessionView& view : views) {
+    if (!view.seen || !view.seen->in_scan.empty() || view.cloud_path.empty()) continue;
+    if (++looked > kMostScans) break;
+    const Expected<PointCloud> cloud = ReadCloud(view.cloud_path);
+    if (!cloud) continue;
+    const std::vector<std::string> lines = ProbeSizes(*cloud, job.boards, job.observe.search);
+    if (!lines.empty()) return fmt::format("  {}\n", fmt::join(lines, "\n  "));
+  }
+  return {};
+}
+
+}  // namespace
+
+int RunCalibrate(const CalibrateOptions& options) {
+  const Expected<Job> job = MakeJob(options);
+  if (!job) return Refuse("calibrate", job.error());
+  const Expected<RecordedViews> seen = Look(*job);
+  if (!seen) return Refuse("calibrate", seen.error());
+  const std::vector<SessionView>& views = seen->views;
+  const Expected<Assembly> assembly = Assemble(views, job->boards, seen->camera, job->match);
+  if (!assembly) {
+    Refuse("calibrate", assembly.error());
+    fmt::print(stderr, "{}", OtherSizes(*job, views));
+    return kNoAnswer;
+  }
+  const std::vector<ComparisonRow> rows =
+      Compare(assembly->problem, job->solvers, job->session.true_cam_from_lidar);
+  const SolveReport* report = rows.front().report ? &*rows.front().report : nullptr;
+  std::string text = DescribeViews(views, *assembly, report) + "\n";
+  const std::vector<std::string> findings = FindingsOf(*job, views, *assembly, report);
+  if (report == nullptr) {
+    fmt::print("{}{}", text, FindingsText(findings));
+    return Refuse("calibrate", rows.front().report.error(), kNoAnswer);
+  }
+  const CalibrationResult result = MakeResult(views, *assembly, *report,
+                                              {.seed = options.search.seed,
+                                               .configuration = ConfigurationOf(options, *job),
+                                               .warnings = findings});
+  text += DescribeAnswer(*report);
+  text += ErrorAgainstTruth(*job, *report);
+  if (rows.size() > 1) text += "\n" + DescribeComparison(rows);
+  text += FindingsText(findings);
+  text += "\n" + Wrapped(result.closing, kLineWidth);
+  return DeliverResult(options, result, text);
+}
+
+}  // namespace sextant::cli

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/calibrate_text.h"
+
+#include <fmt/format.h>
+
+#include "calibrate/view_residuals.h"
+#include "eval/text_table.h"
+#include "io/number_text.h"
+
+namespace sextant::cli {
+
+std::string DescribeViews(const std::vector<SessionView>& views, const Assembly& assembly,
+                          const SolveReport* report) {
+  constexpr std::size_t kLongestWhy = 150;
+  std::map<std::pair<int, int>, BoardResidual> residuals;
+  if (report != nullptr) residuals = ResidualsByBoard(assembly.problem, report->evaluation);
+  TextTable table({"view", "board", "", "range [m]", "off [mm]", "[px]", "why"},
+                  TextTable::Columns::kWords);
+  for (const BoardRow& row : assembly.rows) {
+    std::vector<std::string> cells = {
+        Printable(views[row.view].name, 30), "-", std::string(ToString(row.fate)), "-", "-", "-",
+        Printable(row.why, kLongestWhy)};
+    if (row.board >= 0) {
+      const int id = assembly.problem.boards[static_cast<std::size_t>(row.board)].id;
+      cells[1] = std::to_string(id);
+      const auto found = residuals.find({static_cast<int>(row.view), id});
+      if (found != residuals.end()) {
+        cells[3] = Fixed(found->second.range_m, 2);
+        cells[4] = Fixed(1e3 * found->second.rmse_m, 1);
+        if (found->second.rmse_px) cells[5] = Fixed(*found->second.rmse_px, 2);
+      }
+    }
+    table.AddRow(std::move(cells));
+  }
+  return table.Plain();
+}
+
+std::string Wrapped(const std::string& text, std::size_t width) {
+  std::string wrapped;
+  std::size_t column = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t end = std::min(text.find(' ', i), text.size());
+    const std::size_t length = end - i;
+    if (column > 0 && column + 1 + length > width) {
+      wrapped += '\n';
+      column = 0;
+    } else if (column > 0) {
+      wrapped += ' ';
+      ++column;
+    }
+    wrapped += text.substr(i, length);
+    column += length;
+    i = end + 1;
+  }
+  return wrapped + "\n";
+}
+
+}  // namespace sextant::cli

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calibrate/assemble.h"
+#include "solvers/solver.h"
+
+namespace sextant::cli {
+
+/// What became of each board of each view, a row each; with residuals where there is an answer.
+std::string DescribeViews(const std::vector<SessionView>& views, const Assembly& assembly,
+                          const SolveReport* report);
+
+/// The text in lines of at most `width` characters, broken at blanks.
+std::string Wrapped(const std::string& text, std::size_t width);
+
+}  // namespace sextant::cli

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/bag/observe_bag.h"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <memory>
+
+#include "eval/simulator/camera_model.h"
+#include "io/bag/rosbag1_writer.h"
+#include "support/board_scene.h"
+#include "support/calibration_scene.h"
+#include "support/scratch_folder.h"
+
+namespace sextant::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::int64_t kStart_ns = 1'000'000'000;
+
+struct Frame {
+  std::size_t data = 0;  // Into Recorded::data.
+  std::int64_t cloud_ns = 0;
+  std::int64_t image_ns = 0;
+};
+
+class Recording : public testing::Test {
+ protected:
+  // The scene with its boards moved sideways by so much, for each.
+  void Record(const std::vector<double>& moved_m) {
+    Random random(DeriveSeed(1, "observe_bag", 0, 0));
+    const Scene scene = TaggedBoards(random);
+    boards_ = BoardsIn(scene);
+    for (std::size_t i = 0; i < moved_m.size(); ++i) {
+      Scene now = scene;
+      for (SceneBoard& board : now.boards) board.world_from_board.translation.y() += moved_m[i];
+      data_.push_back(test::Record(now, i));
+    }
+  }
+
+  std::unique_ptr<Bag> Write(const std::vector<Frame>& frames, bool second_camera = false) const {
+    const std::filesystem::path path = folder_.path() / "session.bag";
+    Expected<Rosbag1Writer> writer = Rosbag1Writer::Create(path);
+    EXPECT_TRUE(writer);
+    for (const Frame& frame : frames) {
+      const SensorData& data = data_[frame.data];
+      const CloudMessage cloud{.header = {.stamp_ns = frame.cloud_ns, .frame = "lidar"},
+                               .cloud = data.cloud};
+      EXPECT_TRUE(writer->Write("/lidar/points", frame.cloud_ns, cloud));
+      ImageMessage image{.header = {.stamp_ns = frame.image_ns, .frame = "cam"},
+                         .width_px = data.image.cols,
+                         .height_px = data.image.rows,
+                         .encoding = "mono8",
+                         .row_bytes = data.image.step[0]};
+      image.data.assign(reinterpret_cast<const char*>(data.image.data),
+                        data.image.step[0] * static_cast<std::size_t>(data.image.rows));
+      EXPECT_TRUE(writer->Write("/cam/image_raw", frame.image_ns, image));
+      if (second_camera) {
+        EXPECT_TRUE(writer->Write("/other/image_raw", frame.image_ns, image));
+      }
+      const CameraInfoMessage info{.header = image.header, .camera = *FindCameraModel("zed_left")};
+      EXPECT_TRUE(writer->Write("/cam/camera_info", frame.image_ns, info));
+    }
+    EXPECT_TRUE(writer->Close());
+    Expected<std::unique_ptr<Bag>> bag = OpenBag(path);
+    EXPECT_TRUE(bag) << bag.error().message;
+    return std::move(*bag);
+  }
+
+  ScratchFolder folder_;
+  std::vector<Board> boards_;
+  std::vector<SensorData> data_;
+};
+
+std::vector<Frame> TenthsOfASecond(const std::vector<std::size_t>& data) {
+  std::vector<Frame> frames;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const std::int64_t stamp = kStart_ns + 100'000'000 * static_cast<std::int64_t>(i);
+    frames.push_back({.data = data[i], .cloud_ns = stamp, .image_ns = stamp + 10'000'000});
+  }
+  return frames;
+}
+
+TEST_F(Recording, StillBoardsAreKeptAndMovingOnesLeftOut) {
+  Record({0.0, 0.07, 0.14, 0.2});
+  const auto bag = Write(TenthsOfASecond({0, 0, 1, 2, 3, 3}));
+  const Expected<BagPlan> plan = PlanBag(*bag, {});
+  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_EQ(plan->moments.size(), 6U);
+  EXPECT_EQ(plan->moments[2].difference_ns, 10'000'000);
+  ASSERT_TRUE(plan->camera);
+  EXPECT_EQ(plan->camera->width_px, 1280);
+  const Expected<Observer> observer = Observer::Make(boards_, *plan->camera);
+  ASSERT_TRUE(observer) << observer.error().message;
+  std::atomic<int> steps = 0;
+  const auto views = ObserveBag(*bag, *plan, *observer, [&steps] { ++steps; });
+  ASSERT_TRUE(views) << views.error().message;
+  ASSERT_EQ(views->size(), 6U);
+  EXPECT_EQ((*views)[3].name, "0.300 s");
+  EXPECT_EQ(steps, 6);
+  const Expected<Assembly> assembly = Assemble(*views, boards_, *plan->camera);
+  ASSERT_TRUE(assembly) << assembly.error().message;
+  for (const BoardRow& row : assembly->rows) {
+    const bool moves = row.view == 2 || row.view == 3;
+    EXPECT_EQ(row.fate, moves ? BoardFate::kLeftOut : BoardFate::kKept) << row.view << row.why;
+    EXPECT_THAT(row.why, HasSubstr(moves ? "it moves" : ""));
+  }
+}
+
+TEST_F(Recording, StampsThatNeverMeetAreSaidWithHowFarApartTheyAre) {
+  Record({0.0});
+  std::vector<Frame> frames = TenthsOfASecond({0, 0, 0});
+  for (Frame& frame : frames) frame.image_ns += 3'200'000'000;
+  const auto bag = Write(frames);
+  const Expected<BagPlan> plan = PlanBag(*bag, {});
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().code, ErrorCode::kMissingData);
+  EXPECT_THAT(plan.error().message, HasSubstr("the time stamps never meet"));
+  // From the last scan at 0.2 s to the first image at 3.21 s.
+  EXPECT_THAT(plan.error().message, HasSubstr("the nearest are 3.010 s apart"));
+}
+
+TEST_F(Recording, OfSeveralTopicsOneMustBeNamed) {
+  Record({0.0});
+  const auto bag = Write(TenthsOfASecond({0}), true);
+  const Expected<BagPlan> several = PlanBag(*bag, {});
+  ASSERT_FALSE(several);
+  EXPECT_THAT(several.error().message, HasSubstr("--image-topic"));
+  EXPECT_THAT(several.error().message, HasSubstr("/other/image_raw with /lidar/points"));
+  const Expected<BagPlan> named = PlanBag(*bag, {.image_topic = "/cam/image_raw"});
+  EXPECT_TRUE(named) << named.error().message;
+  EXPECT_FALSE(PlanBag(*bag, {.image_topic = "/none"}));
+}
+
+TEST_F(Recording, OfManyPairsSomeAreTakenEvenly) {
+  Record({0.0});
+  const auto bag = Write(TenthsOfASecond(std::vector<std::size_t>(9, 0)));
+  const Expected<BagPlan> plan = PlanBag(*bag, {.most_views = 3});
+  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_EQ(plan->moments.size(), 3U);
+  EXPECT_EQ(plan->moments[0].cloud, 0U);
+  EXPECT_EQ(plan->moments[1].cloud, 3U);
+  EXPECT_EQ(plan->moments[2].cloud, 6U);
+}
+
+}  // namespace
+}  // namespace sextant::test

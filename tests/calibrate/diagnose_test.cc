@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/diagnose.h"
+
+#include <gmock/gmock.h>
+
+#include "geometry/scan_marks.h"
+#include "support/fake_observation.h"
+
+namespace sextant::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const Rigid3d kCamFromLidar =
+    Rigid3d{ExpSo3({0.05, -0.1, 0.08}), {0.06, -0.1, -0.15}} * AxesCamFromLidar();
+
+struct Faked {
+  std::vector<SessionView> views;
+  std::vector<Board> boards = {SquareBoard(0)};
+  Camera camera = AssumedCamera(1280, 720);
+};
+
+// What the camera sees is moved from where the board is by `disturb`.
+template <class Disturb>
+Faked Fake(int views, Disturb disturb) {
+  Random random(DeriveSeed(1, "diagnose", 0, 0));
+  Faked faked;
+  for (int i = 0; i < views; ++i) {
+    const std::vector<Rigid3d> poses = {HungByChance(random)};
+    SessionView view{.name = std::to_string(i)};
+    view.seen = FakeObservation(faked.boards, poses, kCamFromLidar, random);
+    CameraSighting& sighting = view.seen->in_image[0];
+    disturb(sighting.pose.cam_from_board.translation);
+    sighting.corners.points.clear();
+    for (const Eigen::Vector3d& corner : BoardCorners(faked.boards[0])) {
+      sighting.corners.points.push_back(sighting.pose.cam_from_board * corner);
+    }
+    faked.views.push_back(std::move(view));
+  }
+  return faked;
+}
+
+std::vector<std::string> DiagnoseIt(const Faked& faked) {
+  const Expected<Assembly> assembly = Assemble(faked.views, faked.boards, faked.camera);
+  EXPECT_TRUE(assembly) << assembly.error().message;
+  return Diagnose(faked.views, *assembly, assembly->matching.cam_from_lidar);
+}
+
+TEST(Diagnose, GoodDataIsNotBlamed) {
+  EXPECT_THAT(DiagnoseIt(Fake(8, [](Eigen::Vector3d&) {})), IsEmpty());
+}
+
+TEST(Diagnose, APrintThatIsSmallerThanTheFileSays) {
+  const Faked faked = Fake(8, [](Eigen::Vector3d& place) { place *= 1.06; });
+  const std::vector<std::string> lines = DiagnoseIt(faked);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_THAT(lines[0], HasSubstr("board file"));
+  EXPECT_THAT(lines[0], HasSubstr("the print is smaller"));
+}
+
+TEST(Diagnose, AFocalLengthThatIsTooShort) {
+  const Faked faked = Fake(8, [](Eigen::Vector3d& place) { place.z() *= 0.92; });
+  const std::vector<std::string> lines = DiagnoseIt(faked);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_THAT(lines[0], HasSubstr("intrinsics"));
+  EXPECT_THAT(lines[0], HasSubstr("too short"));
+}
+
+TEST(Diagnose, TheShareOfBothIsRight) {
+  const Faked faked = Fake(12, [](Eigen::Vector3d& place) { place *= 1.05; });
+  const Expected<Assembly> assembly = Assemble(faked.views, faked.boards, faked.camera);
+  ASSERT_TRUE(assembly);
+  const auto fits = FitScales(assembly->problem, assembly->matching.cam_from_lidar);
+  ASSERT_TRUE(fits);
+  EXPECT_NEAR(fits->print.excess, 0.05, 5.0 * fits->print.sigma);
+  // Corners of 7 mm an axis between the sensors, 12 boards spread over 1.6 m.
+  EXPECT_LT(fits->print.sigma, 0.01);
+}
+
+TEST(Diagnose, ABoardOfAnotherSizeInTheScans) {
+  Faked faked = Fake(4, [](Eigen::Vector3d&) {});
+  for (SessionView& view : faked.views) {
+    view.seen->in_scan[0].measured_sides_m = {0.55, 0.5, 0.56, 0.5};
+  }
+  const std::vector<std::string> lines = DiagnoseIt(faked);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_THAT(lines[0], HasSubstr("is 0.555 m in the scans, 0.500 m in the board file"));
+}
+
+TEST(Diagnose, PrintsThatTheLensDoesNotFit) {
+  Faked faked = Fake(4, [](Eigen::Vector3d&) {});
+  for (SessionView& view : faked.views) {
+    BoardPose& pose = view.seen->in_image[0].pose;
+    pose.rms_px = 2.5;
+    pose.residuals = 70;
+    pose.chi_square = 64.0 * 400.0;
+  }
+  const std::vector<std::string> lines = DiagnoseIt(faked);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_THAT(lines[0], HasSubstr("only to 2.5 px, 20 times their noise"));
+}
+
+TEST(Diagnose, OneViewAndViewsThatRepeatEachOther) {
+  EXPECT_THAT(DiagnoseIt(Fake(1, [](Eigen::Vector3d&) {})),
+              testing::ElementsAre(HasSubstr("one view only")));
+  Random random(3);
+  Faked same;
+  const std::vector<Rigid3d> poses = {HungByChance(random)};
+  for (int i = 0; i < 3; ++i) {
+    SessionView view{.name = "same"};
+    view.seen = FakeObservation(same.boards, poses, kCamFromLidar, random);
+    same.views.push_back(std::move(view));
+  }
+  EXPECT_THAT(DiagnoseIt(same), testing::Contains(HasSubstr("all 3 views are the same")));
+}
+
+}  // namespace
+}  // namespace sextant::test

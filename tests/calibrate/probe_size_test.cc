@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/probe_size.h"
+
+#include <gmock/gmock.h>
+
+#include "eval/simulator/lidar_model.h"
+#include "eval/simulator/scan.h"
+#include "support/board_scene.h"
+
+namespace sextant::test {
+namespace {
+
+TEST(ProbeSizes, ABoardOfAnotherSizeIsMeasured) {
+  Random random(1);
+  const Scene scene = TwoBoardsInRoom(1.8, random);
+  const Expected<SimulatedScan> scan = SimulateScan(scene, *FindLidarModel("vlp16"), {.seed = 1});
+  ASSERT_TRUE(scan) << scan.error().message;
+  Board wrong;
+  wrong.top_right_m = 0.7;
+  wrong.right_bottom_m = 0.7;
+  ASSERT_TRUE(
+      FindBoards(*ScanRings::Build(scan->cloud), std::vector<Board>{wrong}, {})->found.empty());
+  const std::vector<std::string> lines = ProbeSizes(scan->cloud, std::vector<Board>{wrong}, {});
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_THAT(lines[0], testing::HasSubstr("no board 0 of 0.700 x 0.700 m"));
+  // 48.4 or 49.0 by 46.8 cm, to a step of the search (7 percent).
+  EXPECT_THAT(lines[0], testing::ContainsRegex("one of about 0\\.(4[5-9]|5[0-2]) x "
+                                               "0\\.(4[5-9]|50) m"));
+}
+
+TEST(ProbeSizes, NothingWhereThereIsNoBoard) {
+  Random random(2);
+  Scene scene = TwoBoardsInRoom(1.8, random);
+  scene.boards.clear();
+  const Expected<SimulatedScan> scan = SimulateScan(scene, *FindLidarModel("vlp16"), {.seed = 1});
+  ASSERT_TRUE(scan) << scan.error().message;
+  Board board;
+  board.top_right_m = 0.5;
+  board.right_bottom_m = 0.5;
+  EXPECT_TRUE(ProbeSizes(scan->cloud, std::vector<Board>{board}, {}).empty());
+}
+
+}  // namespace
+}  // namespace sextant::test

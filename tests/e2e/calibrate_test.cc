@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/real_data.h"
+#include "support/run_program.h"
+
+namespace sextant {
+namespace {
+
+namespace fs = std::filesystem;
+
+using nlohmann::json;
+using test::ProgramRun;
+using test::ReadText;
+using test::TestFolder;
+using test::WriteText;
+using testing::HasSubstr;
+using testing::Not;
+
+ProgramRun RunSextant(const std::string& arguments) {
+  return test::RunProgram(SEXTANT_BINARY, arguments);
+}
+
+// Two boards that swing slowly and far, so that each of a session's scans has them elsewhere.
+constexpr const char* kScene = R"(sextant_scene: 1
+name: calibrate
+lidar: {model: vlp16, pose: {position_m: [0, 0, 1]}}
+cameras:
+  - name: cam
+    intrinsics: {model: pinhole, width_px: 960, height_px: 600, fx_px: 560, fy_px: 560, cx_px: 479.5, cy_px: 299.5}
+    pose: {position_m: [0.05, 0.1, 0.92], yaw_deg: 2, pitch_deg: 1, roll_deg: -1}
+boards:
+  - board:
+      id: 0
+      top_right_m: 0.468
+      right_bottom_m: 0.484
+      tags: [{family: aruco_original, id: 26, edge_m: 0.205}]
+    pose: {position_m: [1.9, 0.5, 1], yaw_deg: 15, pitch_deg: 5, roll_deg: 45}
+    swing: {axis_in_world: [0, 1, 0], amplitude_deg: 20, period_s: 400}
+  - board:
+      id: 1
+      top_right_m: 0.468
+      right_bottom_m: 0.49
+      tags: [{family: aruco_original, id: 582, edge_m: 0.205}]
+    pose: {position_m: [2.3, -0.55, 1.05], yaw_deg: -20, pitch_deg: -5, roll_deg: 42}
+    swing: {axis_in_world: [0, 1, 0.3], amplitude_deg: 20, period_s: 300, phase_deg: 100}
+walls:
+  - {name: back, width_m: 8, height_m: 4, pose: {position_m: [4.5, 0, 1.5]}}
+)";
+
+fs::path Simulated(const std::string& options) {
+  const fs::path folder = TestFolder() / "session";
+  WriteText(TestFolder() / "scene.yaml", kScene);
+  const ProgramRun run = RunSextant("simulate " + (TestFolder() / "scene.yaml").string() +
+                                    " --interval 60 --out " + folder.string() + " " + options);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  return folder;
+}
+
+std::string Out() { return " --out " + (TestFolder() / "result.yaml").string(); }
+
+TEST(Calibrate, ASimulatedSessionAsItStands) {
+  const fs::path session = Simulated("--scans 4");
+  const fs::path out = TestFolder() / "result.json";
+  const ProgramRun run =
+      RunSextant("calibrate " + session.string() + Out() + " --json " + out.string());
+  ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+  EXPECT_THAT(run.out, HasSubstr("error against the truth"));
+  EXPECT_THAT(run.out, HasSubstr("cam_from_lidar maps a point of the LiDAR frame"));
+  EXPECT_THAT(run.out, HasSubstr("It rests on 8 boards in 4\nof 4 views"));
+  EXPECT_THAT(run.out, Not(HasSubstr("ambiguous")));
+  const json result = json::parse(ReadText(out));
+  EXPECT_EQ(result["views"].size(), 4U);
+  EXPECT_THAT(ReadText(TestFolder() / "result.yaml"), HasSubstr("cam_from_lidar"));
+  // Again: the same bytes.
+  const fs::path again = TestFolder() / "again.json";
+  RunSextant("calibrate " + session.string() + Out() + " --json " + again.string());
+  EXPECT_EQ(ReadText(out), ReadText(again));
+
+  // Others beside it.
+  const ProgramRun compared =
+      RunSextant("calibrate " + session.string() + Out() + " --solver 'gnc(kabsch),kabsch,epnp'");
+  EXPECT_EQ(compared.exit_code, 0) << compared.err;
+  EXPECT_THAT(compared.out, HasSubstr("to first [mm]"));
+
+  // The third image with the first's scan.
+  fs::copy_file(session / "scan_000.pcd", session / "scan_002.pcd",
+                fs::copy_options::overwrite_existing);
+  const ProgramRun mixed = RunSextant("calibrate " + session.string() + Out());
+  EXPECT_EQ(mixed.exit_code, 0) << mixed.err;
+  EXPECT_THAT(mixed.out, HasSubstr("image and scan of different moments"));
+}
+
+TEST(Calibrate, OnePairByItsFilesSaysWhatItCannotKnow) {
+  const fs::path session = Simulated("--scans 1");
+  const std::string files = " --image " + (session / "cam_000.png").string() + " --cloud " +
+                            (session / "scan_000.pcd").string() + " --camera " +
+                            (session / "cam_info.yaml").string();
+  const ProgramRun run =
+      RunSextant("calibrate" + files + " --board " + (session / "boards.yaml").string() + Out());
+  ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+  EXPECT_THAT(run.out, HasSubstr("one view only"));
+
+  // A board file whose tags are a tenth too large.
+  std::string boards = ReadText(session / "boards.yaml");
+  for (std::size_t at = boards.find("0.205"); at != std::string::npos;
+       at = boards.find("0.205", at + 1)) {
+    boards.replace(at, 5, "0.226");
+  }
+  WriteText(TestFolder() / "wrong.yaml", boards);
+  const ProgramRun wrong = RunSextant("calibrate" + files + " --board " +
+                                      (TestFolder() / "wrong.yaml").string() + Out());
+  EXPECT_EQ(wrong.exit_code, 0) << wrong.err;
+  EXPECT_THAT(wrong.out, HasSubstr("board file: distances in the images are"));
+}
+
+TEST(Calibrate, NothingInCommonIsAnAnswerOfItsOwn) {
+  const fs::path session = Simulated("--scans 1");
+  std::string boards = ReadText(session / "boards.yaml");
+  for (const char* id : {"id: 26", "id: 582"}) {
+    const std::size_t at = boards.find(id);
+    ASSERT_NE(at, std::string::npos);
+    boards.replace(at, std::string(id).size(), std::string(id).replace(4, 1, "7"));
+  }
+  WriteText(session / "boards.yaml", boards);
+  const ProgramRun run = RunSextant("calibrate " + session.string() + Out());
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("no board was seen by both sensors"));
+  EXPECT_THAT(run.err, HasSubstr("was not found"));
+}
+
+TEST(Calibrate, WrongUseIsSaid) {
+  const ProgramRun nothing = RunSextant("calibrate");
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_THAT(nothing.err, HasSubstr("--image"));
+  const ProgramRun half = RunSextant("calibrate --image a.png");
+  EXPECT_EQ(half.exit_code, 2);
+  EXPECT_THAT(half.err, HasSubstr("--cloud is missing"));
+  const ProgramRun unknown = RunSextant("calibrate --image a.png --cloud a.pcd");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("--board is missing"));
+}
+
+}  // namespace
+}  // namespace sextant
