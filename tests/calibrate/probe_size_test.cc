@@ -3,9 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include "eval/lidar/board_scenes.h"
 #include "eval/simulator/lidar_model.h"
 #include "eval/simulator/scan.h"
-#include "support/board_scene.h"
 
 namespace sextant::test {
 namespace {

@@ -6,9 +6,9 @@
 #include <atomic>
 #include <memory>
 
+#include "eval/lidar/board_scenes.h"
 #include "eval/simulator/camera_model.h"
 #include "io/bag/rosbag1_writer.h"
-#include "support/board_scene.h"
 #include "support/calibration_scene.h"
 #include "support/scratch_folder.h"
 
