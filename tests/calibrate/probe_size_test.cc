@@ -12,7 +12,7 @@ namespace {
 
 TEST(ProbeSizes, ABoardOfAnotherSizeIsMeasured) {
   Random random(1);
-  const Scene scene = TwoBoardsInRoom(1.8, random);
+  const Scene scene = TwoBoardsInRoom({.distance_m = 1.8}, random);
   const Expected<SimulatedScan> scan = SimulateScan(scene, *FindLidarModel("vlp16"), {.seed = 1});
   ASSERT_TRUE(scan) << scan.error().message;
   Board wrong;
@@ -30,7 +30,7 @@ TEST(ProbeSizes, ABoardOfAnotherSizeIsMeasured) {
 
 TEST(ProbeSizes, NothingWhereThereIsNoBoard) {
   Random random(2);
-  Scene scene = TwoBoardsInRoom(1.8, random);
+  Scene scene = TwoBoardsInRoom({.distance_m = 1.8}, random);
   scene.boards.clear();
   const Expected<SimulatedScan> scan = SimulateScan(scene, *FindLidarModel("vlp16"), {.seed = 1});
   ASSERT_TRUE(scan) << scan.error().message;
