@@ -48,13 +48,26 @@ std::string DescribeUncertainty(const SolveReport& report) {
       sigma[4] * kMmPerM, sigma[5] * kMmPerM);
 }
 
-std::string DescribeCamera(const CameraEstimate& camera) {
-  std::string text = "  camera, estimated too\n";
-  for (const EstimatedIntrinsic& number : camera.estimated) {
+std::string DescribeNumbers(const char* title, const std::vector<EstimatedNumber>& numbers) {
+  std::string text = fmt::format("  {}\n", title);
+  for (const EstimatedNumber& number : numbers) {
     const std::string sigma = number.sigma ? fmt::format("{:.2g}", *number.sigma) : "not known";
     text += fmt::format("    {:<24} {:.6g}, 1 sigma {}\n", number.name, number.value, sigma);
   }
   return text;
+}
+
+std::string DescribeBoardViews(const std::vector<BoardViewFit>& fits) {
+  TextTable table({"  board views", "board", "used", "printed", "face", "edges", "rms [sigma]"});
+  const auto of = [](const ObservationCount& count) {
+    return fmt::format("{}/{}", count.used, count.of);
+  };
+  for (const BoardViewFit& fit : fits) {
+    table.AddRow({fmt::format("  {}", fit.view), std::to_string(fit.board), fit.used ? "yes" : "no",
+                  of(fit.printed), of(fit.face), of(fit.edges),
+                  fit.used ? Fixed(fit.rms, 2) : "-"});
+  }
+  return table.Plain();
 }
 
 // `inliers` is null where the solver does not say which pairs of this kind it used.
@@ -112,7 +125,11 @@ std::string DescribeAnswer(const SolveReport& report) {
                         *evaluation.rmse_px, evaluation.per_pair_px.size());
   }
   text += DescribeUncertainty(report);
-  if (report.camera) text += DescribeCamera(*report.camera);
+  if (report.camera) text += DescribeNumbers("camera, estimated too", report.camera->estimated);
+  if (!report.extras.empty()) text += DescribeNumbers("estimated too", report.extras);
+  for (const std::string& warning : report.warnings) {
+    text += fmt::format("  note: {}\n", warning);
+  }
   text += fmt::format("  {}, {} iterations, {:.1f} us\n", ToString(report.termination),
                       report.iterations, report.wall_time_us);
   for (const Rigid3d& other : report.alternatives) {
@@ -132,6 +149,7 @@ std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& 
                            const SolveReport& report) {
   const Evaluation& evaluation = report.evaluation;
   std::string text = DescribeAnswer(report);
+  if (!report.board_views.empty()) text += DescribeBoardViews(report.board_views);
   // The inliers are of one kind only; see Estimate.
   const bool of_points = spec.needs.pairs_3d3d > 0;
   const std::vector<int>* point_inliers = of_points ? &report.inliers : nullptr;

@@ -29,14 +29,35 @@ Json Poses(const std::vector<Rigid3d>& poses) {
   return list;
 }
 
-Json CameraEstimateJson(const CameraEstimate& estimate) {
-  Json json = CameraJson(estimate.camera);
-  json["estimated"] = Json::array();
-  for (const EstimatedIntrinsic& number : estimate.estimated) {
-    json["estimated"].push_back(
+Json Numbers(const std::vector<EstimatedNumber>& numbers) {
+  Json list = Json::array();
+  for (const EstimatedNumber& number : numbers) {
+    list.push_back(
         {{"name", number.name}, {"value", number.value}, {"sigma", OrNull(number.sigma)}});
   }
+  return list;
+}
+
+Json CameraEstimateJson(const CameraEstimate& estimate) {
+  Json json = CameraJson(estimate.camera);
+  json["estimated"] = Numbers(estimate.estimated);
   return json;
+}
+
+Json BoardViews(const std::vector<BoardViewFit>& fits) {
+  const auto count = [](const ObservationCount& of) { return Json::array({of.used, of.of}); };
+  Json list = Json::array();
+  for (const BoardViewFit& fit : fits) {
+    list.push_back({{"view", fit.view},
+                    {"board", fit.board},
+                    {"used", fit.used},
+                    {"cam_from_board", PoseJson(fit.cam_from_board)},
+                    {"printed", count(fit.printed)},
+                    {"face", count(fit.face)},
+                    {"edges", count(fit.edges)},
+                    {"rms", fit.rms}});
+  }
+  return list;
 }
 
 // Every key stands in every result, so that a tool need not ask whether it is there.
@@ -49,8 +70,9 @@ Json Result(const SolverResult& result) {
   json["error_code"] = report ? Json(nullptr) : Json(ToString(result.report.error().code));
   if (report == nullptr) {
     for (const char* key :
-         {"cam_from_lidar", "covariance", "camera", "rmse_m", "rmse_px", "per_pair_m",
-          "per_pair_px", "inliers", "alternatives", "iterations", "termination", "wall_time_us"}) {
+         {"cam_from_lidar", "covariance", "camera", "extras", "warnings", "board_views", "rmse_m",
+          "rmse_px", "per_pair_m", "per_pair_px", "inliers", "alternatives", "iterations",
+          "termination", "wall_time_us"}) {
       json[key] = nullptr;
     }
     return json;
@@ -58,6 +80,9 @@ Json Result(const SolverResult& result) {
   json["cam_from_lidar"] = PoseJson(report->cam_from_lidar);
   json["covariance"] = report->covariance ? Rows(*report->covariance) : Json(nullptr);
   json["camera"] = report->camera ? CameraEstimateJson(*report->camera) : Json(nullptr);
+  json["extras"] = Numbers(report->extras);
+  json["warnings"] = report->warnings;
+  json["board_views"] = BoardViews(report->board_views);
   json["rmse_m"] = OrNull(report->evaluation.rmse_m);
   json["rmse_px"] = OrNull(report->evaluation.rmse_px);
   json["per_pair_m"] = report->evaluation.per_pair_m;

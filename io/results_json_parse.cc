@@ -76,6 +76,15 @@ std::vector<double> GetResiduals(const Json& map, const char* key) {
   return residuals;
 }
 
+std::vector<EstimatedNumber> ParseNumbers(const Json& list) {
+  std::vector<EstimatedNumber> numbers;
+  for (const Json& number : list) {
+    numbers.push_back({Get<std::string>(number, "name"), Get<double>(number, "value"),
+                       GetOptional(number, "sigma")});
+  }
+  return numbers;
+}
+
 CameraEstimate ParseCameraEstimate(const Json& json) {
   CameraEstimate estimate;
   Camera& camera = estimate.camera;
@@ -90,11 +99,30 @@ CameraEstimate ParseCameraEstimate(const Json& json) {
   camera.cx_px = Get<double>(json, "cx_px");
   camera.cy_px = Get<double>(json, "cy_px");
   camera.distortion = Get<std::array<double, 8>>(json, "distortion");
-  for (const Json& number : json.at("estimated")) {
-    estimate.estimated.push_back({Get<std::string>(number, "name"), Get<double>(number, "value"),
-                                  GetOptional(number, "sigma")});
-  }
+  estimate.estimated = ParseNumbers(json.at("estimated"));
   return estimate;
+}
+
+ObservationCount ParseCount(const Json& map, const char* key) {
+  const auto counts = Get<std::array<int, 2>>(map, key);
+  return {counts[0], counts[1]};
+}
+
+std::vector<BoardViewFit> ParseBoardViews(const Json& list) {
+  std::vector<BoardViewFit> fits;
+  for (const Json& json : list) {
+    BoardViewFit fit;
+    fit.view = Get<int>(json, "view");
+    fit.board = Get<int>(json, "board");
+    fit.used = Get<bool>(json, "used");
+    fit.cam_from_board = ParsePose(json.at("cam_from_board"));
+    fit.printed = ParseCount(json, "printed");
+    fit.face = ParseCount(json, "face");
+    fit.edges = ParseCount(json, "edges");
+    fit.rms = Get<double>(json, "rms");
+    fits.push_back(fit);
+  }
+  return fits;
 }
 
 template <class Enum>
@@ -111,9 +139,16 @@ SolveReport ParseReport(const Json& json) {
   report.solver = Get<std::string>(json, "solver");
   report.cam_from_lidar = ParsePose(json.at("cam_from_lidar"));
   report.covariance = GetCovariance(json);
-  // Files written before this key was there have none.
+  // Files written before these keys were there have none.
   if (json.contains("camera") && !json.at("camera").is_null()) {
     report.camera = ParseCameraEstimate(json.at("camera"));
+  }
+  if (json.contains("extras")) report.extras = ParseNumbers(json.at("extras"));
+  if (json.contains("warnings")) {
+    report.warnings = Get<std::vector<std::string>>(json, "warnings");
+  }
+  if (json.contains("board_views")) {
+    report.board_views = ParseBoardViews(json.at("board_views"));
   }
   report.evaluation.rmse_m = GetOptional(json, "rmse_m");
   report.evaluation.rmse_px = GetOptional(json, "rmse_px");

@@ -26,6 +26,15 @@ SolveReport Report() {
   report.camera =
       CameraEstimate{.camera = {.model = CameraModel::kEquidistant, .fx_px = 700.5, .fy_px = 701.0},
                      .estimated = {{"fx_px", 700.5, 1.5}, {"fy_px", 701.0, std::nullopt}}};
+  report.extras = {{"range_bias_m", 0.02, 0.001}};
+  report.warnings = {"board_scale was taken as given"};
+  report.board_views = {{.view = 3,
+                         .board = 1,
+                         .used = true,
+                         .printed = {1, 2},
+                         .face = {300, 310},
+                         .edges = {20, 21},
+                         .rms = 1.125}};
   report.alternatives = {Rigid3d{}};
   report.wall_time_us = 1.25;
   report.evaluation.rmse_m = 0.04;
@@ -49,9 +58,10 @@ TEST(ResultsJson, KeysAreTheContract) {
   EXPECT_EQ(json["input"]["path"], "points.txt");
   const auto& good = json["results"][0];
   const auto& bad = json["results"][1];
-  for (const char* key : {"solver", "ok", "error", "error_code", "cam_from_lidar", "covariance",
-                          "camera", "rmse_m", "rmse_px", "per_pair_m", "per_pair_px", "inliers",
-                          "alternatives", "iterations", "termination", "wall_time_us"}) {
+  for (const char* key :
+       {"solver", "ok", "error", "error_code", "cam_from_lidar", "covariance", "camera", "extras",
+        "warnings", "board_views", "rmse_m", "rmse_px", "per_pair_m", "per_pair_px", "inliers",
+        "alternatives", "iterations", "termination", "wall_time_us"}) {
     EXPECT_TRUE(good.contains(key)) << key;
     EXPECT_TRUE(bad.contains(key)) << key;
   }
