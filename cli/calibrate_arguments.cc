@@ -53,6 +53,12 @@ void AddCalibrate(CLI::App& app, CalibrateOptions& options) {
                   "X Y Z QW QX QY QZ; else a camera that looks along the LiDAR's x")
       ->expected(1, 7);
   AddSensors(command, options);
+  command
+      .add_option("--bootstrap", options.bootstrap,
+                  "How often the views are drawn anew to hold the answer against; 0: not, and no\n"
+                  "cross-validation either")
+      ->check(CLI::Range(0, 100'000))
+      ->capture_default_str();
   command.add_option("--out", options.out_path, "Result file (YAML)")->capture_default_str();
   command.add_option("--json", options.json_path, "The same as JSON; - for standard output");
   command.footer(

@@ -7,10 +7,12 @@
 #include <optional>
 
 #include "calibrate/diagnose.h"
+#include "calibrate/information.h"
 #include "calibrate/make_result.h"
 #include "calibrate/observe_files.h"
 #include "calibrate/probe_size.h"
 #include "calibrate/session.h"
+#include "calibrate/trust.h"
 #include "cli/calibrate_options.h"
 #include "cli/calibrate_source.h"
 #include "cli/calibrate_text.h"
@@ -229,6 +231,17 @@ std::string ErrorAgainstTruth(const Job& job, const SolveReport& report) {
   return text + "\n";
 }
 
+// What each view tells of the answer, and what the views say of it when held against each other.
+void HoldAgainstItself(const CalibrateOptions& options, const Assembly& assembly,
+                       const Solver& solver, const SolveReport& report, CalibrationResult& result) {
+  AddInformation(assembly.problem, result);
+  if (options.bootstrap == 0) return;
+  const Expected<Trust> trust =
+      JudgeTrust(assembly.problem, solver, report,
+                 {.bootstrap_samples = options.bootstrap, .seed = options.search.seed});
+  if (trust) AddTrust(*trust, result);
+}
+
 // What the first scans that show no board show instead.
 std::string OtherSizes(const Job& job, const std::vector<SessionView>& views) {
   constexpr int kMostScans = 3;
@@ -267,15 +280,17 @@ int RunCalibrate(const CalibrateOptions& options) {
     fmt::print("{}{}", text, FindingsText(findings));
     return Refuse("calibrate", rows.front().report.error(), kNoAnswer);
   }
-  const CalibrationResult result = MakeResult(views, *assembly, *report,
-                                              {.seed = options.search.seed,
-                                               .configuration = ConfigurationOf(options, *job),
-                                               .warnings = findings});
+  CalibrationResult result = MakeResult(views, *assembly, *report,
+                                        {.seed = options.search.seed,
+                                         .configuration = ConfigurationOf(options, *job),
+                                         .warnings = findings});
+  HoldAgainstItself(options, *assembly, *job->solvers.front(), *report, result);
   text += DescribeAnswer(*report);
   text += ErrorAgainstTruth(*job, *report);
   if (rows.size() > 1) text += "\n" + DescribeComparison(rows);
-  text += FindingsText(findings);
+  text += FindingsText(result.warnings);
   text += "\n" + Wrapped(result.closing, kLineWidth);
+  if (result.trust) text += "\n" + Wrapped(result.trust->verdict, kLineWidth);
   return DeliverResult(options, result, text);
 }
 

@@ -27,6 +27,7 @@ struct CalibrateOptions {
   std::string detector;
   std::string extractor = "rectangle";
   SearchArguments search;
+  int bootstrap = 100;  ///< Draws of the views; 0: none, and no cross-validation either.
   std::string out_path = "result.yaml";  ///< Empty: none.
   std::string json_path;
 };
