@@ -12,6 +12,8 @@ namespace {
 constexpr int kMostRounds = 10;
 // Losses need not follow the noise closer than this.
 constexpr double kSameNoise = 0.02;
+// Nor their minimum, where it is only the way to that of what is within the cut [rad, m].
+constexpr double kNearEnough = 1e-4;
 
 bool Any(const std::vector<bool>& chosen) {
   return std::find(chosen.begin(), chosen.end(), true) != chosen.end();
@@ -70,6 +72,8 @@ class JointSearch {
   }
 
   Expected<void> FollowLosses() {
+    const double tolerance = options_.cut > 0.0 ? std::max(options_.step_tolerance, kNearEnough)
+                                                : options_.step_tolerance;
     JointNoise noise;
     for (int round = 0; round < kMostRounds; ++round) {
       const std::vector<BoardViewResiduals> residuals = Residuals();
@@ -79,7 +83,7 @@ class JointSearch {
       if (round > 0 && seen == answer_.selection && IsSame(now, noise)) break;
       noise = now;
       answer_.selection = std::move(seen);
-      if (Expected<void> ok = Minimise(LossesOf(options_, noise)); !ok) return ok;
+      if (Expected<void> ok = Minimise(LossesOf(options_, noise), tolerance); !ok) return ok;
     }
     return {};
   }
@@ -91,12 +95,12 @@ class JointSearch {
       LeaveOutOneSided(within);
       if (round > 0 && within == answer_.selection) break;
       answer_.selection = std::move(within);
-      if (Expected<void> ok = Minimise({}); !ok) return ok;
+      if (Expected<void> ok = Minimise({}, options_.step_tolerance); !ok) return ok;
     }
     return {};
   }
 
-  Expected<void> Minimise(const JointLosses& losses) {
+  Expected<void> Minimise(const JointLosses& losses, double step_tolerance) {
     if (!AnyView(answer_.selection)) {
       return MakeError(ErrorCode::kDegenerate,
                        "no view has a board that both sensors see at these poses; give views with "
@@ -104,7 +108,7 @@ class JointSearch {
     }
     answer_.minimum =
         MinimiseJointly(Selected(views_, answer_.selection), unknowns_, losses,
-                        answer_.minimum.state, options_.max_iterations, options_.step_tolerance);
+                        answer_.minimum.state, options_.max_iterations, step_tolerance);
     answer_.iterations += answer_.minimum.iterations;
     if (answer_.minimum.converged) return {};
     return MakeError(
