@@ -87,7 +87,8 @@ void RegisterAll() {
   const SolverRegistry registry = BuiltinSolvers();
   for (const SolverEntry& entry : registry.entries()) {
     const Expected<SolverPtr> solver = registry.Make(entry.example);
-    if (!solver) continue;
+    // Raw views are another kind of scene: bench_joint.
+    if (!solver || (*solver)->spec().needs.board_views > 0) continue;
     auto* benchmark = benchmark::RegisterBenchmark(
         ("solve/" + (*solver)->spec().name).c_str(),
         [solver = *solver](benchmark::State& state) { Solve(state, solver); });
