@@ -308,7 +308,9 @@ Expected<SolverPtr> MakeJoint(const SolverArguments& arguments) {
 SolverEntry JointEntry() {
   return {
       .name = "joint",
-      .summary = "least squares over the pose and every board's, on the raw observations of both",
+      .summary =
+          "least squares over the pose and every board's pose, on the raw observations of both "
+          "sensors",
       .needs = "what the inner solver needs, and raw views of boards (images and scans)",
       .reference = "Triggs et al. 2000, bundle adjustment",
       .example = "joint(kabsch)",
