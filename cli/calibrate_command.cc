@@ -274,10 +274,9 @@ int RunCalibrate(const CalibrateOptions& options) {
   const std::vector<ComparisonRow> rows =
       Compare(assembly->problem, job->solvers, job->session.true_cam_from_lidar);
   const SolveReport* report = rows.front().report ? &*rows.front().report : nullptr;
-  std::string text = DescribeViews(views, *assembly, report) + "\n";
   const std::vector<std::string> findings = FindingsOf(*job, views, *assembly, report);
   if (report == nullptr) {
-    fmt::print("{}{}", text, FindingsText(findings));
+    fmt::print("{}\n{}", DescribeViews(views, *assembly, nullptr, {}), FindingsText(findings));
     return Refuse("calibrate", rows.front().report.error(), kNoAnswer);
   }
   CalibrationResult result = MakeResult(views, *assembly, *report,
@@ -285,6 +284,7 @@ int RunCalibrate(const CalibrateOptions& options) {
                                          .configuration = ConfigurationOf(options, *job),
                                          .warnings = findings});
   HoldAgainstItself(options, *assembly, *job->solvers.front(), *report, result);
+  std::string text = DescribeViews(views, *assembly, report, result.views) + "\n";
   text += DescribeAnswer(*report);
   text += ErrorAgainstTruth(*job, *report);
   if (rows.size() > 1) text += "\n" + DescribeComparison(rows);

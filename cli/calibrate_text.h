@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "calibrate/assemble.h"
+#include "io/calibration_result.h"
 #include "solvers/solver.h"
 
 namespace sextant::cli {
 
-/// What became of each board of each view, a row each; with residuals where there is an answer.
+/// What became of each board of each view, a row each; with residuals where there is an answer, and
+/// how far the view is off the answer of the others where `judged` says it.
 std::string DescribeViews(const std::vector<SessionView>& views, const Assembly& assembly,
-                          const SolveReport* report);
+                          const SolveReport* report, const std::vector<ResultView>& judged);
 
 /// The text in lines of at most `width` characters, broken at blanks.
 std::string Wrapped(const std::string& text, std::size_t width);

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calibrate/assemble.h"
@@ -100,13 +101,20 @@ TEST(AcfrPairs, TheBoardOfEveryPairIsMatchedAndThePoseIsThePublishedOne) {
   }
   EXPECT_TRUE(assembly->matching.as_likely.empty());
   const Rigid3d published = PublishedCamFromLidar(folder / "calibration_quickstart.csv");
-  for (const char* spec : {"gnc(kabsch)", "kabsch"}) {
+  double start_m = 1.0;
+  for (const char* spec : {"kabsch", "gnc(kabsch)", "joint(gnc(kabsch))"}) {
     const Expected<SolveReport> report = (*BuiltinSolvers().Make(spec))->Solve(assembly->problem);
     ASSERT_TRUE(report) << report.error().message;
     const PoseDistance off = DistanceBetween(report->cam_from_lidar.Inverse(), published.Inverse());
     EXPECT_LT(off.rotation_rad * kDegPerRad, 1.2) << spec;
     EXPECT_LT(off.translation_m, 0.06) << spec;
-    EXPECT_LT(HeldOutRmse(assembly->problem, spec), 0.025) << spec;
+    const double held_out_m = HeldOutRmse(assembly->problem, spec);
+    EXPECT_LT(held_out_m, 0.025) << spec;
+    // 12.3 mm against its start's 15.7; kabsch alone has 11.9, for joint leaves two boards out.
+    if (std::string_view(spec).starts_with("joint")) {
+      EXPECT_LE(held_out_m, start_m) << spec;
+    }
+    start_m = held_out_m;
     EXPECT_TRUE(Diagnose(views, *assembly, report->cam_from_lidar).empty());
   }
 }
