@@ -81,7 +81,8 @@ Interval WilsonInterval(std::uint64_t successes, std::uint64_t trials) {
   const double centre = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
   const double half =
       kNormalQuantile975 / (1.0 + z2 / n) * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n));
-  return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+  // None and all are the ends exactly, which the formula meets but for rounding.
+  return {successes == 0 ? 0.0 : centre - half, successes == trials ? 1.0 : centre + half};
 }
 
 double QuantileOfSorted(std::span<const double> sorted, double q) {
