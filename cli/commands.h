@@ -130,6 +130,14 @@ struct FuseOptions {
   std::string out = "fused.ply";
 };
 
+struct ReproduceOptions {
+  std::string experiments = "experiments";
+  std::string claims = "paper/claims.yaml";
+  std::string out;  ///< Empty: paper, or build/paper-quick.
+  int threads = 0;  ///< 0: all.
+  bool quick = false;
+};
+
 struct MarkOptions {
   std::string cloud_path;
   std::string image_path;                   ///< Empty: none.
@@ -172,10 +180,11 @@ int RunDetectors(const DetectorStudyCommandOptions& options);
 int RunExtractors(const ExtractorStudyCommandOptions& options);
 int RunConvert(const ConvertOptions& options);
 int RunBag(const BagOptions& options);
+int RunFuse(const FuseOptions& options);
+int RunReproduce(const ReproduceOptions& options);
 int RunExperiment(const ExperimentOptions& options);
 int RunMerge(const ExperimentOptions& options);
 int RunKinds();
-int RunFuse(const FuseOptions& options);
 int RunMark(const MarkOptions& options);
 int RunSimulateSession(const SimulateSessionOptions& options);
 int RunSimulatePairs(const SimulatePairsOptions& options);

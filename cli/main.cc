@@ -210,6 +210,7 @@ int Main(int argc, char** argv) {
   DetectorStudyCommandOptions detectors;
   ExtractorStudyCommandOptions extractors;
   FuseOptions fuse;
+  ReproduceOptions reproduce;
   MarkOptions mark;
   ExportCommandOptions exported;
   ProjectOptions project;
@@ -231,6 +232,7 @@ int Main(int argc, char** argv) {
   AddBag(app, bag);
   AddSimulate(app, session, pairs);
   AddFuse(app, fuse);
+  AddReproduce(app, reproduce);
   AddConvert(app, convert);
   AddAverage(app, average);
   AddCatalogue(app, catalogue);
@@ -258,10 +260,11 @@ int Main(int argc, char** argv) {
   if (app.got_subcommand("extractors")) return RunExtractors(extractors);
   if (app.got_subcommand("convert")) return RunConvert(convert);
   if (app.got_subcommand("bag")) return RunBag(bag);
+  if (app.got_subcommand("fuse")) return RunFuse(fuse);
+  if (app.got_subcommand("reproduce")) return RunReproduce(reproduce);
   if (app.got_subcommand("run")) return RunExperiment(run);
   if (app.got_subcommand("merge")) return RunMerge(merge);
   if (app.got_subcommand("kinds")) return RunKinds();
-  if (app.got_subcommand("fuse")) return RunFuse(fuse);
   if (app.got_subcommand("advise")) return RunAdvise(advise);
   if (app.got_subcommand("project")) return RunProject(project);
   if (app.got_subcommand("export")) return RunExport(exported);

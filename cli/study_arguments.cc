@@ -76,4 +76,26 @@ void AddKinds(CLI::App& app) {
   app.add_subcommand("kinds", "The kinds of experiments, their parameters and metrics (Markdown)");
 }
 
+void AddReproduce(CLI::App& app, ReproduceOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "reproduce", "The paper's experiments again, with known truth, and a verdict on every claim");
+  command.add_flag("--quick", options.quick, "Few trials: minutes instead of a quarter of an hour");
+  command.add_option("--out", options.out,
+                     "Folder to write; default: paper, or build/paper-quick with --quick. A run\n"
+                     "that was stopped goes on where it was");
+  command.add_option("--experiments", options.experiments, "Folder of the experiment files")
+      ->capture_default_str();
+  command.add_option("--claims", options.claims, "What the paper says, and the rule for each")
+      ->capture_default_str();
+  command.add_option("--threads", options.threads, "0: as many as the machine has")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command.footer(
+      "Run it in the project's folder. Real logs are looked for in SEXTANT_DATA, else in\n"
+      "../shared/data; claims that need them are not testable without.\n"
+      "Examples:\n"
+      "  sextant reproduce --quick\n"
+      "  sextant reproduce");
+}
+
 }  // namespace sextant::cli

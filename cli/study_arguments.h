@@ -14,5 +14,6 @@ void AddRun(CLI::App& app, ExperimentOptions& options);
 void AddMerge(CLI::App& app, ExperimentOptions& options);
 void AddKinds(CLI::App& app);
 void AddFuse(CLI::App& app, FuseOptions& options);
+void AddReproduce(CLI::App& app, ReproduceOptions& options);
 
 }  // namespace sextant::cli

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <string>
+
+#include "support/run_program.h"
+
+namespace sextant {
+namespace {
+
+using test::ProgramRun;
+using test::ReadText;
+using test::TestFolder;
+using test::WriteText;
+using testing::HasSubstr;
+
+ProgramRun RunSextant(const std::string& arguments) {
+  return test::RunProgram(SEXTANT_BINARY, arguments);
+}
+
+std::string Path(const char* name) { return (TestFolder() / name).string(); }
+
+constexpr const char* kExperiment = R"(title: Points
+kind: random_scene
+trials: 200
+quick_trials: 40
+parameters: {data: points, pairs: 8, sigma_m: 0.01}
+solvers: [kabsch, mean_offset]
+tables:
+  - columns: [median(translation_mm)]
+)";
+
+constexpr const char* kLog = R"(kind: average_log
+trials: 1
+parameters: {log: nowhere/avg_values.txt}
+)";
+
+constexpr const char* kClaims = R"(paper: a paper
+experiments: [points, log]
+claims:
+  - {id: exact, where: Table 1, text: Kabsch is off by a metre, printed: 1 m, value: 1000, rule: at_least, unit: mm,
+     ours: {experiment: points, subject: kabsch, statistic: median(translation_mm)}}
+  - {id: close, where: Table 1, text: Kabsch is off by centimetres, printed: 1 cm, value: 10, rule: draw, unit: mm,
+     ours: {experiment: points, subject: kabsch, statistic: median(translation_mm)}}
+  - {id: better, where: Table 2, text: Kabsch is better than the mean offset, printed: '-', rule: less, unit: mm,
+     ours: {experiment: points, subject: kabsch, statistic: median(translation_mm)}, than: {experiment: points, subject: mean_offset, statistic: median(translation_mm)}}
+  - {id: logged, where: Figure 1, text: a log, printed: 3 mm, value: 3, rule: draw,
+     ours: {experiment: log, subject: true mean, index: 1, statistic: mean(from_mean_mm)}}
+errata:
+  - {where: Equation 1, printed: f twice, is: f once}
+)";
+
+std::string Arguments(const char* out) {
+  std::filesystem::create_directories(TestFolder() / "experiments");
+  WriteText(TestFolder() / "experiments" / "points.yaml", kExperiment);
+  WriteText(TestFolder() / "experiments" / "log.yaml", kLog);
+  WriteText(Path("claims.yaml"), kClaims);
+  return "reproduce --experiments " + Path("experiments") + " --claims " + Path("claims.yaml") +
+         " --out " + Path(out);
+}
+
+TEST(Reproduce, JudgesEveryClaimOnOnePage) {
+  const ProgramRun run = RunSextant(Arguments("paper"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("4 claims"));
+  EXPECT_THAT(run.err, HasSubstr("the real data is absent"));
+  const std::string page = ReadText(TestFolder() / "paper" / "REPRODUCTION.md");
+  EXPECT_THAT(page, HasSubstr("4 claims: 1 reproduced, 1 direction reproduced, 1 refuted, 1 not "
+                              "testable."));
+  EXPECT_THAT(page, HasSubstr("| Equation 1 | f twice | f once |"));
+  EXPECT_TRUE(std::filesystem::exists(TestFolder() / "paper" / "points" / "report.md"));
+}
+
+TEST(Reproduce, GoesOnWhereItWasAndGivesTheSamePage) {
+  ASSERT_EQ(RunSextant(Arguments("one") + " --quick --threads 1").exit_code, 0);
+  const std::string page = ReadText(TestFolder() / "one" / "REPRODUCTION.md");
+  EXPECT_THAT(page, HasSubstr("sextant reproduce --quick"));
+  ASSERT_EQ(RunSextant(Arguments("one") + " --quick").exit_code, 0);
+  EXPECT_EQ(ReadText(TestFolder() / "one" / "REPRODUCTION.md"), page);
+  ASSERT_EQ(RunSextant(Arguments("two") + " --quick --threads 2").exit_code, 0);
+  EXPECT_EQ(ReadText(TestFolder() / "two" / "REPRODUCTION.md"), page);
+}
+
+TEST(Reproduce, SaysWhatIsWrong) {
+  const std::string arguments = Arguments("paper");
+  std::string claims = kClaims;
+  claims.replace(claims.find("subject: kabsch"), 15, "subject: kabsh ");
+  WriteText(Path("claims.yaml"), claims);
+  const ProgramRun unknown = RunSextant(arguments + " --quick");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("exact: points has no subject 'kabsh'"));
+  const ProgramRun absent =
+      RunSextant("reproduce --claims " + Path("nowhere.yaml") + " --out " + Path("paper"));
+  EXPECT_EQ(absent.exit_code, 2);
+  EXPECT_THAT(absent.err, HasSubstr("nowhere.yaml"));
+}
+
+}  // namespace
+}  // namespace sextant
