@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "eval/experiment/report.h"
@@ -88,6 +89,19 @@ std::string DataOf(const Lines& lines, bool log_y) {
   return data;
 }
 
+// From zero, where that does not press all values into a corner of the picture.
+bool BeginsAtZero(const Lines& lines) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  for (const auto& [name, points] : lines) {
+    for (const Point& point : points) {
+      least = std::min(least, point.figure.value);
+      most = std::max(most, point.figure.value);
+    }
+  }
+  return least >= 0.0 && least <= 0.5 * most;
+}
+
 }  // namespace
 
 std::string PlotCommands(const Experiment& experiment, const PlotSpec& plot,
@@ -104,12 +118,14 @@ std::string PlotCommands(const Experiment& experiment, const PlotSpec& plot,
   std::string ticks;
   for (const auto& [name, x] : named)
     ticks += fmt::format("{}{} {}", ticks.empty() ? "" : ", ", Quote(name), x);
+  std::string y_axis = BeginsAtZero(lines) ? "set yrange [0:*]\n" : "";
+  if (plot.log_y) y_axis = "set logscale y\n";
   return fmt::format(
       "{}set key outside right noenhanced\nset grid\nset title {} noenhanced\nset xlabel {} "
       "noenhanced\nset ylabel {} noenhanced\n{}{}{}set offsets graph 0.03, graph 0.03, 0, 0\nplot "
       "{}\n",
       DataOf(lines, plot.log_y), Quote(plot.title), Quote(plot.x_label), Quote(plot.y_label),
-      plot.log_x ? "set logscale x\n" : "", plot.log_y ? "set logscale y\n" : "set yrange [0:*]\n",
+      plot.log_x ? "set logscale x\n" : "", y_axis,
       ticks.empty() ? "" : "set xtics (" + ticks + ")\n", fmt::join(series, ", \\\n  "));
 }
 
