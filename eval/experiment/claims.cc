@@ -45,7 +45,7 @@ ClaimFigure ReadFigure(YamlFields& in, const YamlNode& node,
 
 Claim ReadClaim(YamlFields& in, const YamlNode& node, const std::vector<std::string>& experiments) {
   static const Keys kKeys = {"id",     "where", "text", "printed", "rule", "value",
-                             "factor", "ours",  "than", "unit",    "why"};
+                             "factor", "slack", "ours", "than",    "unit", "why"};
   Claim claim;
   if (!in.IsMap(node, "claim", kKeys)) return claim;
   claim.id = in.TextAt(node, "id");
@@ -73,6 +73,7 @@ Claim ReadClaim(YamlFields& in, const YamlNode& node, const std::vector<std::str
     claim.value = in.RealAt(node, "value");
   }
   claim.factor = in.RealAt(node, "factor", claim.factor);
+  claim.slack = in.NonNegativeAt(node, "slack", claim.slack);
   if (in.ok() && !(claim.factor >= 1.0)) in.Fail(node.line, "factor", "expected 1 or more");
   return claim;
 }

@@ -41,6 +41,7 @@ struct Claim {
   double value =
       0.0;  ///< P: what is printed, in the statistic's unit; unused by those that have `than`.
   double factor = 2.0;
+  double slack = 0.0;  ///< Of kDraw: what our truth, the paper's tape, may itself be off by.
   std::optional<ClaimFigure> ours{};
   std::optional<ClaimFigure> than{};  ///< Of kLess (the larger one) and kSimilar.
   std::string unit{};

@@ -114,7 +114,9 @@ Verdict VerdictOf(const Claim& claim, const Interval& ours, const std::optional<
   const double printed = claim.value;
   switch (claim.rule) {
     case ClaimRule::kDraw:
-      return ours.low <= printed && printed <= ours.high ? Verdict::kReproduced : Verdict::kRefuted;
+      return ours.low - claim.slack <= printed && printed <= ours.high + claim.slack
+                 ? Verdict::kReproduced
+                 : Verdict::kRefuted;
     case ClaimRule::kAbout: {
       const bool meets = ours.high >= printed / claim.factor && ours.low <= printed * claim.factor;
       return meets ? Verdict::kReproduced : Verdict::kRefuted;

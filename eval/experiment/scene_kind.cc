@@ -20,7 +20,7 @@ struct Settings : SceneSettings {
 };
 
 // Beside PoseMetrics(), in this order.
-enum Extra : int { kKeptPx = kPoseMetricCount, kMeanMm, kWithoutWorstMm, kBelowKabsch };
+enum Extra : int { kKeptPx = kPoseMetricCount, kPairsMm, kMeanMm, kWithoutWorstMm, kBelowKabsch };
 
 const ParameterSet<Settings>& Parameters() {
   static const ParameterSet<Settings> set = [] {
@@ -41,6 +41,7 @@ const ParameterSet<Settings>& Parameters() {
 std::vector<Metric> Metrics() {
   std::vector<Metric> metrics = PoseMetrics();
   metrics.push_back({"kept_px", "mean reprojection error of the pairs that the answer rests on"});
+  metrics.push_back({"pairs_mm", "RMSE of the 3D-3D pairs, also of solvers that did not get them"});
   metrics.push_back({"mean_mm", "mean distance of the 3D-3D pairs (not its root mean square)"});
   metrics.push_back({"without_worst_mm", "RMSE of the 3D-3D pairs but for the worst"});
   metrics.push_back({"below_kabsch", "1 where rmse_mm is below that of Kabsch on the same pairs"});
@@ -74,6 +75,7 @@ void MeasureDistances(const KnownProblem& known, const Expected<SolveReport>& re
     worst = std::max(worst, d);
   }
   const auto count = static_cast<double>(pairs.size());
+  values.Set(kPairsMm, 1e3 * std::sqrt(squares / count));
   values.Set(kMeanMm, 1e3 * sum / count);
   values.Set(kWithoutWorstMm,
              1e3 * std::sqrt(std::max(0.0, squares - worst * worst) / (count - 1.0)));
