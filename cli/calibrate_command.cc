@@ -80,7 +80,8 @@ Expected<std::vector<SolverPtr>> SolversOf(const std::string& list) {
   const SolverRegistry registry = AllSolvers();
   const bool has_joint = std::ranges::any_of(
       registry.entries(), [](const SolverEntry& entry) { return entry.name == "joint"; });
-  const std::string usual = has_joint ? "joint(gnc(kabsch))" : "gnc(kabsch)";
+  // A beam's spot widens outlines by a percent or two, which joint would take for nearness.
+  const std::string usual = has_joint ? "joint(gnc(kabsch),board_size=scale)" : "gnc(kabsch)";
   const Expected<std::vector<SpecNode>> specs = ParseSpecList(list.empty() ? usual : list);
   if (!specs) return tl::unexpected<Error>(specs.error());
   std::vector<SolverPtr> solvers;

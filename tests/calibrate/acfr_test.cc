@@ -102,7 +102,7 @@ TEST(AcfrPairs, TheBoardOfEveryPairIsMatchedAndThePoseIsThePublishedOne) {
   EXPECT_TRUE(assembly->matching.as_likely.empty());
   const Rigid3d published = PublishedCamFromLidar(folder / "calibration_quickstart.csv");
   double start_m = 1.0;
-  for (const char* spec : {"kabsch", "gnc(kabsch)", "joint(gnc(kabsch))"}) {
+  for (const char* spec : {"kabsch", "gnc(kabsch)", "joint(gnc(kabsch),board_size=scale)"}) {
     const Expected<SolveReport> report = (*BuiltinSolvers().Make(spec))->Solve(assembly->problem);
     ASSERT_TRUE(report) << report.error().message;
     const PoseDistance off = DistanceBetween(report->cam_from_lidar.Inverse(), published.Inverse());
