@@ -20,6 +20,7 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 struct Settings {
   std::string lidar_model = "vlp16";
+  std::string extractor{};
   double distance_m = 2.0;
   double side_m = 0.5;
   double yaw_deg = 20.0;
@@ -59,6 +60,7 @@ const ParameterSet<Settings>& Parameters() {
   static const ParameterSet<Settings> set =
       ParameterSet<Settings>()
           .Text("lidar_model", &Settings::lidar_model, "name", "see sextant lidars")
+          .Text("extractor", &Settings::extractor, "name", "only this one; empty: all")
           .Real("distance_m", &Settings::distance_m, "m", 0.5, 100.0,
                 "from the LiDAR to the board's middle")
           .Real("side_m", &Settings::side_m, "m", 0.05, 10.0, "of the square board")
@@ -76,7 +78,11 @@ class BoardScanTrials final : public Trials {
  public:
   BoardScanTrials(const Settings& settings, LidarModel lidar)
       : settings_(settings), lidar_(std::move(lidar)) {
-    for (const CornerExtractorInfo& info : CornerExtractors()) extractors_.emplace_back(info.name);
+    for (const CornerExtractorInfo& info : CornerExtractors()) {
+      if (settings.extractor.empty() || settings.extractor == info.name) {
+        extractors_.emplace_back(info.name);
+      }
+    }
   }
 
   const std::vector<std::string>& subjects() const override { return extractors_; }
@@ -177,6 +183,12 @@ Expected<TrialsPtr> Make(const KindArguments& arguments) {
   if (!settings) return tl::unexpected<Error>(settings.error());
   Expected<LidarModel> lidar = FindLidarModel(settings->lidar_model);
   if (!lidar) return tl::unexpected<Error>(lidar.error());
+  if (!settings->extractor.empty()) {
+    if (const auto known = ExtractCorners(settings->extractor, {}, {});
+        !known && known.error().code == ErrorCode::kUnknownName) {
+      return tl::unexpected<Error>(known.error());
+    }
+  }
   return std::make_shared<BoardScanTrials>(*settings, std::move(*lidar));
 }
 

@@ -58,8 +58,8 @@ class AverageTrials final : public Trials {
       : sight_(std::move(sight)), scans_(settings.scans), interval_s_(settings.interval_s) {}
 
   const std::vector<std::string>& subjects() const override {
-    static const std::vector<std::string> names = {
-        "true mean", "paper's formula", "original's running average", "kabsch of all pairs"};
+    static const std::vector<std::string> names = {"true mean", "original's running average",
+                                                   "kabsch of all pairs", "one scan / sqrt(N)"};
     return names;
   }
 
@@ -82,16 +82,24 @@ class AverageTrials final : public Trials {
       const int count = static_cast<int>(answers.size());
       if (!IsReported(count)) continue;
       int subject = 0;
-      for (const RotationAverage kind : {RotationAverage::kChordal, RotationAverage::kQuaternionSum,
-                                         RotationAverage::kOriginalRunning}) {
+      for (const RotationAverage kind :
+           {RotationAverage::kChordal, RotationAverage::kOriginalRunning}) {
         Measure(AveragePoses(answers, kind), rows.Add(subject++, count));
       }
       Measure(FitKabsch(in_cam, in_lidar).map([](const KabschFit& all) { return all.b_from_a; }),
-              rows.Add(subject, count));
+              rows.Add(subject++, count));
+      MeasureIdeal(answers[0], count, rows.Add(subject, count));
     }
   }
 
  private:
+  // What is left of the first scan's error where all of it is noise.
+  void MeasureIdeal(const Rigid3d& first, int scans, MetricValues values) const {
+    const PoseDistance error = DistanceBetween(first, sight_.cam_from_lidar());
+    values.Set(kTranslationMm, 1e3 * error.translation_m / std::sqrt(scans));
+    values.Set(kRotationDeg, kDegPerRad * error.rotation_rad / std::sqrt(scans));
+  }
+
   void Measure(const Expected<Rigid3d>& pose, MetricValues values) const {
     if (!pose) return;
     const PoseDistance error = DistanceBetween(*pose, sight_.cam_from_lidar());
