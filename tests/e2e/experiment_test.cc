@@ -98,7 +98,7 @@ TEST(Run, AFullDiskLosesNothing) {
   EXPECT_EQ(full.exit_code, 2);
   EXPECT_THAT(full.err, HasSubstr("the rows so far are kept: make room and run the same command"));
   const std::string kept = Rows("full");
-  EXPECT_GT(kept.size(), 30000U);
+  EXPECT_GT(kept.size(), 9000U) << "at least one block";
   EXPECT_LE(kept.size(), 64U * 1024);
   const ProgramRun again = Sextant(RunArguments(experiment, "full", "--no-csv"));
   EXPECT_THAT(again.err, HasSubstr("of 4000 trials were already in"));
