@@ -100,6 +100,8 @@ BoardField FieldOf(const LidarModel& model, double distance_m) {
     field.most_azimuth_deg = half_view_deg - field.least_azimuth_deg;
     return field;
   }
+  // Side by side too: nearer boards would reach into each other.
+  field.least_azimuth_deg = std::max(field.least_azimuth_deg, reach_deg(0.95 * distance_m));
   const double low_deg = model.rings.front().elevation_rad / kRadPerDeg;
   const double high_deg = model.rings.back().elevation_rad / kRadPerDeg;
   const double reach = reach_deg(0.95 * distance_m);

@@ -19,7 +19,7 @@ constexpr double kLeastShare = 0.6;
 constexpr double kMostRms = 2.8;  // Sigmas; a board of the wrong size has more.
 constexpr double kLeastDensity = 0.3;
 constexpr int kFewestSides = 3;
-constexpr int kFewestEdgePoints = 8;
+constexpr int kFewestEdgePoints = 12;  // Furniture passes for a board by chance with up to 11.
 constexpr int kFewestPoints = 16;
 
 // How far a point is beyond the rectangle's nearest side; negative inside.
