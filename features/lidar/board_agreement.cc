@@ -19,7 +19,8 @@ constexpr double kLeastShare = 0.6;
 constexpr double kMostRms = 2.8;  // Sigmas; a board of the wrong size has more.
 constexpr double kLeastDensity = 0.3;
 constexpr int kFewestSides = 3;
-constexpr int kFewestEdgePoints = 12;  // Furniture passes for a board by chance with up to 11.
+constexpr int kFewestEdgePoints = 8;
+constexpr int kFewestEdgePointsOnFewestRings = 12;  // Furniture there has up to 11 by chance.
 constexpr int kFewestPoints = 16;
 
 // How far a point is beyond the rectangle's nearest side; negative inside.
@@ -103,8 +104,11 @@ std::optional<std::string> WhyNot(const BoardPatch& patch, const Board& board) {
         "more rings",
         agreement.rings, kFewestRings);
   }
-  if (static_cast<int>(patch.edges.size()) < kFewestEdgePoints) {
-    return fmt::format("only {} edge points, {} are needed", patch.edges.size(), kFewestEdgePoints);
+  const int fewest_edge_points =
+      agreement.rings == kFewestRings ? kFewestEdgePointsOnFewestRings : kFewestEdgePoints;
+  if (static_cast<int>(patch.edges.size()) < fewest_edge_points) {
+    return fmt::format("only {} edge points on {} rings, {} are needed", patch.edges.size(),
+                       agreement.rings, fewest_edge_points);
   }
   if (agreement.points < kFewestPoints) {
     return fmt::format("only {} returns on it, {} are needed", agreement.points, kFewestPoints);
