@@ -112,7 +112,8 @@ TEST_F(ResultCommands, ProjectShowsAWrongPose) {
   result_.boards.clear();
   Write();
   const ProgramRun nothing = Project();
-  EXPECT_THAT(nothing.out, HasSubstr("returns in view"));
+  EXPECT_EQ(nothing.exit_code, 1);
+  EXPECT_THAT(nothing.err, HasSubstr("no return of"));
 }
 
 TEST_F(ResultCommands, ProjectSaysWhatDoesNotFit) {
