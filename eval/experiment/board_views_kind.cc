@@ -7,11 +7,8 @@
 namespace sextant {
 namespace {
 
-struct Settings : ViewSimulation {
+struct Settings : ViewSimulation, PoseLimits {
   double size_error = 0.0;
-  double success_deg = PoseLimits{}.success_deg;
-  double success_mm = PoseLimits{}.success_mm;
-  double gross_deg = PoseLimits{}.gross_deg;
 };
 
 // Members of ViewSimulation, as OptionSet<Settings> wants them.
@@ -21,7 +18,7 @@ T Settings::*Of(T ViewSimulation::*member) {
 }
 
 const OptionSet<Settings>& Parameters() {
-  static const OptionSet<Settings> set =
+  static const OptionSet<Settings> set = AddPoseLimits(
       OptionSet<Settings>()
           .Count("views", Of(&ViewSimulation::views), 1, 1000, "times that the board is held anew")
           .Real("board_side_m", Of(&ViewSimulation::board_side_m), "m", 0.05, 10.0,
@@ -44,13 +41,7 @@ const OptionSet<Settings>& Parameters() {
           .Real("pixel_sigma_px", Of(&ViewSimulation::pixel_sigma_px), "px", 1e-9, 100.0,
                 "noise of a tag's corner, per axis")
           .Real("size_error", &Settings::size_error, "1", -0.5, 0.5,
-                "board and tag are stated larger by this share than they are")
-          .Real("success_deg", &Settings::success_deg, "deg", 0.0, 180.0,
-                "a success is within this of the true rotation")
-          .Real("success_mm", &Settings::success_mm, "mm", 0.0, 1e6,
-                "a success is within this of the true translation")
-          .Real("gross_deg", &Settings::gross_deg, "deg", 0.0, 180.0,
-                "a pose that is farther off is another pose, not noise");
+                "board and tag are stated larger by this share than they are"));
   return set;
 }
 
@@ -94,9 +85,9 @@ Expected<TrialsPtr> Make(const KindArguments& arguments) {
                      fmt::format("farthest_m = {} is below nearest_m = {}", settings->farthest_m,
                                  settings->nearest_m));
   }
-  const PoseLimits limits{settings->success_deg, settings->success_mm, settings->gross_deg};
   return MakeProblemTrials(
-      {[s = *settings](const TrialId& id) { return MakeKnown(s, id); }, limits}, arguments.solvers);
+      {[s = *settings](const TrialId& id) { return MakeKnown(s, id); }, *settings},
+      arguments.solvers);
 }
 
 }  // namespace

@@ -21,6 +21,18 @@ struct ProblemMaker {
   std::function<void(const KnownProblem&, const Expected<SolveReport>&, MetricValues)>
       measure_more = {};
 };
+/// The parameters of PoseLimits, for the set of a kind whose settings derive from it.
+template <class Set>
+Set& AddPoseLimits(Set& set) {
+  return set
+      .Real("success_deg", &PoseLimits::success_deg, "deg", 0.0, 180.0,
+            "a success is within this of the true rotation")
+      .Real("success_mm", &PoseLimits::success_mm, "mm", 0.0, 1e6,
+            "a success is within this of the true translation")
+      .Real("gross_deg", &PoseLimits::gross_deg, "deg", 0.0, 180.0,
+            "a pose that is farther off is another pose, not noise");
+}
+
 Expected<TrialsPtr> MakeProblemTrials(ProblemMaker maker, std::vector<SolverPtr> solvers);
 
 }  // namespace sextant

@@ -12,7 +12,7 @@ namespace {
 
 enum class Data { kPoints, kPixels, kBoth };
 
-struct Settings {
+struct Settings : PoseLimits {
   Data data = Data::kBoth;
   int pairs = 8;
   double sigma_m = 0.01;
@@ -25,14 +25,10 @@ struct Settings {
   bool known_inliers = false;
   double focal_error = 0.0;
   double scale_error = 0.0;
-  PoseLimits limits;
-  double success_deg = limits.success_deg;
-  double success_mm = limits.success_mm;
-  double gross_deg = limits.gross_deg;
 };
 
 const OptionSet<Settings>& Parameters() {
-  static const OptionSet<Settings> set =
+  static const OptionSet<Settings> set = AddPoseLimits(
       OptionSet<Settings>()
           .Choice("data", &Settings::data, {"points", "pixels", "both"},
                   "3D-3D pairs and point sets, 2D-3D pairs, or both of the same points")
@@ -54,13 +50,7 @@ const OptionSet<Settings>& Parameters() {
           .Real("focal_error", &Settings::focal_error, "1", -0.5, 0.5,
                 "focal lengths told to the solver are too long by this share")
           .Real("scale_error", &Settings::scale_error, "1", -0.5, 0.5,
-                "points in the camera frame are too far by this share: a wrong board size")
-          .Real("success_deg", &Settings::success_deg, "deg", 0.0, 180.0,
-                "a success is within this of the true rotation")
-          .Real("success_mm", &Settings::success_mm, "mm", 0.0, 1e6,
-                "a success is within this of the true translation")
-          .Real("gross_deg", &Settings::gross_deg, "deg", 0.0, 180.0,
-                "a pose that is farther off is another pose, not noise");
+                "points in the camera frame are too far by this share: a wrong board size"));
   return set;
 }
 
@@ -138,10 +128,9 @@ Expected<TrialsPtr> Make(const KindArguments& arguments) {
                                  "expected depth_m of at least 1.8 extent_m",
                                  settings->extent_m, settings->depth_m));
   }
-  const PoseLimits limits{settings->success_deg, settings->success_mm, settings->gross_deg};
   return MakeProblemTrials(
       {[s = *settings](const TrialId& id) -> Expected<KnownProblem> { return MakeKnown(s, id); },
-       limits},
+       *settings},
       arguments.solvers);
 }
 

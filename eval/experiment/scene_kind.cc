@@ -11,12 +11,8 @@
 namespace sextant {
 namespace {
 
-struct Settings : SceneSettings {
+struct Settings : SceneSettings, PoseLimits {
   int views = 1;
-  PoseLimits limits;
-  double success_deg = limits.success_deg;
-  double success_mm = limits.success_mm;
-  double gross_deg = limits.gross_deg;
 };
 
 // Beside PoseMetrics(), in this order.
@@ -25,14 +21,8 @@ enum Extra : int { kKeptPx = kPoseMetricCount, kPairsMm, kMeanMm, kWithoutWorstM
 const ParameterSet<Settings>& Parameters() {
   static const ParameterSet<Settings> set = [] {
     ParameterSet<Settings> options;
-    AddSceneSettings(options)
-        .Count("views", &Settings::views, 1, 1000, "moments, with the boards hung anew for each")
-        .Real("success_deg", &Settings::success_deg, "deg", 0.0, 180.0,
-              "a success is within this of the true rotation")
-        .Real("success_mm", &Settings::success_mm, "mm", 0.0, 1e6,
-              "a success is within this of the true translation")
-        .Real("gross_deg", &Settings::gross_deg, "deg", 0.0, 180.0,
-              "a pose that is farther off is another pose, not noise");
+    AddPoseLimits(AddSceneSettings(options).Count("views", &Settings::views, 1, 1000,
+                                                  "moments, with the boards hung anew for each"));
     return options;
   }();
   return set;
@@ -117,7 +107,7 @@ Expected<TrialsPtr> Make(const KindArguments& arguments) {
   const int views = settings->views;
   return MakeProblemTrials(
       {.make = [sight, views](const TrialId& id) { return MakeKnown(*sight, views, id); },
-       .limits = {settings->success_deg, settings->success_mm, settings->gross_deg},
+       .limits = *settings,
        .measure_more =
            [](const KnownProblem& known, const Expected<SolveReport>& report, MetricValues values) {
              MeasureExtras(report, values);
