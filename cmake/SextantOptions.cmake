@@ -36,8 +36,14 @@ target_compile_options(sextant_options INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   # Fused multiply-add would round differently from machine to machine: same seed, same bits.
   -ffp-contract=off
+  # Nobody reads errno or traps: square roots are one instruction, and both arms of a choice may be
+  # computed. No result changes.
+  -fno-math-errno -fno-trapping-math
+  # Wide vectors (base/lanes.h) never cross a call.
+  -Wno-psabi
   $<$<BOOL:${SEXTANT_WARNINGS_AS_ERRORS}>:-Werror>)
 if(SEXTANT_SANITIZE)
+  target_compile_definitions(sextant_options INTERFACE SEXTANT_SANITIZED)
   target_compile_options(sextant_options INTERFACE
     -fsanitize=${SEXTANT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
     # g++ 12 takes the optional members of moved values for unset in instrumented code.
