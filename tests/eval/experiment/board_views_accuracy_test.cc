@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// What joint promises on raw views of boards, as experiments/board_views.yaml measures it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "eval/experiment/report.h"
+#include "eval/experiment/run_trials.h"
+#include "support/run_program.h"
+
+namespace sextant::test {
+namespace {
+
+struct Measured {
+  const ReportData& data;
+  const Experiment& experiment;
+
+  // One figure a solver.
+  std::vector<Figure> Of(const std::string& statistic) const {
+    return data.figures(0, *ParseStatistic(statistic, experiment.metrics));
+  }
+};
+
+// The goals: joint within 1.3 of the bound, a covariance with a NEES of 0.9 to 1.1 a degree of
+// freedom and better than every two-stage solver on the same sessions. The NEES of n trials has a
+// standard error of sqrt(1 / (3 n)), of which three are allowed beside the goal.
+TEST(BoardViews, JointIsAtTheBoundAndAheadOfTwoStageSolvers) {
+  struct Case {
+    int views;
+    int trials;
+  };
+  for (const Case& at : {Case{2, 200}, Case{4, 200}, Case{20, 60}, Case{100, 24}}) {
+    SCOPED_TRACE(at.views);
+    const Experiment experiment = *ParseExperiment(
+        "kind: board_views\nseed: 1\ntrials: " + std::to_string(at.trials) +
+            "\nsolvers: [joint(kabsch), kabsch, refine(kabsch), gnc(kabsch), average(kabsch), "
+            "epnp, refine(epnp)]\nparameters: {views: " +
+            std::to_string(at.views) +
+            "}\nmetrics: []\ntables: [{columns: [rms(rotation_deg), rms(translation_mm), "
+            "mean(nees), rate(answered), 'efficiency(rotation_deg, bound_rotation_deg)', "
+            "'efficiency(translation_mm, bound_translation_mm)']}]\n",
+        "board_views.yaml", BuiltinKinds(), BuiltinSolvers());
+    const std::filesystem::path rows = TestFolder() / "rows";
+    ASSERT_TRUE(RunTrials(experiment, {.rows_path = rows, .fresh = true}));
+    const RowFileReader reader = *RowFileReader::Open(rows);
+    const ReportData data = *ReportData::Compute(experiment, reader);
+    const Measured measured{data, experiment};
+    EXPECT_EQ(measured.Of("rate(answered)").front().value, 1.0);
+    EXPECT_LT(measured.Of("efficiency(rotation_deg,bound_rotation_deg)").front().value, 1.3);
+    EXPECT_LT(measured.Of("efficiency(translation_mm,bound_translation_mm)").front().value, 1.3);
+    EXPECT_NEAR(measured.Of("mean(nees)").front().value / 6.0, 1.0,
+                0.1 + 3.0 * std::sqrt(1.0 / (3.0 * at.trials)));
+    for (const char* error : {"rms(rotation_deg)", "rms(translation_mm)"}) {
+      const std::vector<Figure> figures = measured.Of(error);
+      ASSERT_EQ(figures.size(), 7u);
+      for (std::size_t k = 1; k < figures.size(); ++k) {
+        EXPECT_LT(figures[0].value, figures[k].value) << error << " of solver " << k;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sextant::test
