@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
+#include <memory>
+
+#include "base/nearest_name.h"
 #include "base/version.h"
 #include "cli/calibrate_options.h"
 #include "cli/commands.h"
@@ -184,10 +190,59 @@ void AddSimulatePairs(CLI::App& command, SimulatePairsOptions& options) {
   pairs.footer("Example:\n  sextant simulate pairs --views 5 --seed 7 --out session.yaml");
 }
 
-void AddSimulate(CLI::App& app, SimulateSessionOptions& session, SimulatePairsOptions& pairs) {
+struct SimulateOptions {
+  SimulateSessionOptions session;
+  SimulatePairsOptions pairs;
+  bool of_pairs = false;
+};
+
+void AddSimulate(CLI::App& app, SimulateOptions& options) {
   CLI::App& command = *app.add_subcommand("simulate", "Sessions whose truth is known");
-  AddSimulateSession(command, session);
-  AddSimulatePairs(command, pairs);
+  AddSimulateSession(command, options.session);
+  AddSimulatePairs(command, options.pairs);
+  command.get_subcommand("pairs")->callback([&options] { options.of_pairs = true; });
+}
+
+int RunSimulate(const SimulateOptions& options) {
+  return options.of_pairs ? RunSimulatePairs(options.pairs) : RunSimulateSession(options.session);
+}
+
+// The commands, with what runs the one that the user chose.
+class Commands {
+ public:
+  explicit Commands(CLI::App& app) : app_(app) {}
+
+  template <class Options>
+  void Add(void (*add)(CLI::App&, Options&), int (*run)(const Options&)) {
+    const auto options = std::make_shared<Options>();
+    add(app_, *options);
+    // Options must outlive the parsing: the callback holds them.
+    Last().callback([this, options, run] { run_ = [options, run] { return run(*options); }; });
+  }
+
+  void Add(void (*add)(CLI::App&), int (*run)()) {
+    add(app_);
+    Last().callback([this, run] { run_ = run; });
+  }
+
+  int RunChosen() const { return run_(); }
+
+ private:
+  CLI::App& Last() { return *app_.get_subcommands({}).back(); }
+
+  CLI::App& app_;
+  std::function<int()> run_;
+};
+
+// The parser would only say that a command is required.
+bool RefuseUnknownCommand(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return false;
+  std::vector<std::string> known;
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  const std::string name = argv[1];
+  if (std::find(known.begin(), known.end(), name) != known.end()) return false;
+  fmt::print(stderr, "sextant has no command '{}'; {}\n", name, SuggestName(name, known));
+  return true;
 }
 
 int Main(int argc, char** argv) {
@@ -196,81 +251,37 @@ int Main(int argc, char** argv) {
   app.set_help_all_flag("--help-all", "The help of every command");
   app.require_subcommand(1);
   app.footer(kFirstSteps);
-  SolveOptions solve;
-  CompareOptions compare;
-  BoardsOptions boards;
-  CalibrateOptions calibrate;
-  AverageOptions average;
-  CatalogueOptions catalogue;
-  LidarsOptions lidars;
-  ConvertOptions convert;
-  BagOptions bag;
-  BoardOptions board;
-  DetectOptions detect;
-  DetectorStudyCommandOptions detectors;
-  ExtractorStudyCommandOptions extractors;
-  FuseOptions fuse;
-  ReproduceOptions reproduce;
-  MarkOptions mark;
-  ExportCommandOptions exported;
-  ProjectOptions project;
-  AdviseCommandOptions advise;
-  ExperimentOptions run;
-  ExperimentOptions merge;
-  SimulateSessionOptions session;
-  SimulatePairsOptions pairs;
-  AddCalibrate(app, calibrate);
-  AddSolve(app, solve);
-  AddCompare(app, compare);
-  AddDetect(app, detect);
-  AddBoards(app, boards);
-  AddAdvise(app, advise);
-  AddProject(app, project);
-  AddExport(app, exported);
-  AddMark(app, mark);
-  AddBoard(app, board);
-  AddBag(app, bag);
-  AddSimulate(app, session, pairs);
-  AddFuse(app, fuse);
-  AddReproduce(app, reproduce);
-  AddConvert(app, convert);
-  AddAverage(app, average);
-  AddCatalogue(app, catalogue);
-  AddDetectors(app, detectors);
-  AddExtractors(app, extractors);
-  AddLidars(app, lidars);
-  AddRun(app, run);
-  AddMerge(app, merge);
-  AddKinds(app);
+  Commands commands(app);
+  commands.Add(AddCalibrate, RunCalibrate);
+  commands.Add(AddSolve, RunSolve);
+  commands.Add(AddCompare, RunCompare);
+  commands.Add(AddDetect, RunDetect);
+  commands.Add(AddBoards, RunBoards);
+  commands.Add(AddAdvise, RunAdvise);
+  commands.Add(AddProject, RunProject);
+  commands.Add(AddExport, RunExport);
+  commands.Add(AddMark, RunMark);
+  commands.Add(AddBoard, RunBoard);
+  commands.Add(AddBag, RunBag);
+  commands.Add(AddSimulate, RunSimulate);
+  commands.Add(AddFuse, RunFuse);
+  commands.Add(AddReproduce, RunReproduce);
+  commands.Add(AddConvert, RunConvert);
+  commands.Add(AddAverage, RunAverage);
+  commands.Add(AddCatalogue, RunCatalogue);
+  commands.Add(AddDetectors, RunDetectors);
+  commands.Add(AddExtractors, RunExtractors);
+  commands.Add(AddLidars, RunLidars);
+  commands.Add(AddRun, RunExperiment);
+  commands.Add(AddMerge, RunMerge);
+  commands.Add(AddKinds, RunKinds);
+  if (RefuseUnknownCommand(app, argc, argv)) return kWrongUse;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kAnswered : kWrongUse;
   }
-  if (app.got_subcommand("calibrate")) return RunCalibrate(calibrate);
-  if (app.got_subcommand("solve")) return RunSolve(solve);
-  if (app.got_subcommand("compare")) return RunCompare(compare);
-  if (app.got_subcommand("boards")) return RunBoards(boards);
-  if (app.got_subcommand("average")) return RunAverage(average);
-  if (app.got_subcommand("solvers")) return RunCatalogue(catalogue);
-  if (app.got_subcommand("lidars")) return RunLidars(lidars);
-  if (app.got_subcommand("board")) return RunBoard(board);
-  if (app.got_subcommand("detect")) return RunDetect(detect);
-  if (app.got_subcommand("detectors")) return RunDetectors(detectors);
-  if (app.got_subcommand("extractors")) return RunExtractors(extractors);
-  if (app.got_subcommand("convert")) return RunConvert(convert);
-  if (app.got_subcommand("bag")) return RunBag(bag);
-  if (app.got_subcommand("fuse")) return RunFuse(fuse);
-  if (app.got_subcommand("reproduce")) return RunReproduce(reproduce);
-  if (app.got_subcommand("run")) return RunExperiment(run);
-  if (app.got_subcommand("merge")) return RunMerge(merge);
-  if (app.got_subcommand("kinds")) return RunKinds();
-  if (app.got_subcommand("advise")) return RunAdvise(advise);
-  if (app.got_subcommand("project")) return RunProject(project);
-  if (app.got_subcommand("export")) return RunExport(exported);
-  if (app.got_subcommand("mark")) return RunMark(mark);
-  if (app.get_subcommand("simulate")->got_subcommand("pairs")) return RunSimulatePairs(pairs);
-  return RunSimulateSession(session);
+  return commands.RunChosen();
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
+#include "e2e/run_sextant.h"
 #include "support/run_program.h"
 
 namespace sextant {
@@ -16,14 +17,11 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using test::ProgramRun;
 using test::ReadText;
+using test::RunSextant;
 using test::TestFolder;
 using test::WriteText;
 using testing::AllOf;
 using testing::HasSubstr;
-
-ProgramRun RunSextant(const std::string& arguments) {
-  return test::RunProgram(SEXTANT_BINARY, arguments);
-}
 
 constexpr const char* kScene = R"(sextant_scene: 1
 name: two boards

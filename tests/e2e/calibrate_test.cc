@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "e2e/run_sextant.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 
@@ -16,14 +17,11 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using test::ProgramRun;
 using test::ReadText;
+using test::RunSextant;
 using test::TestFolder;
 using test::WriteText;
 using testing::HasSubstr;
 using testing::Not;
-
-ProgramRun RunSextant(const std::string& arguments) {
-  return test::RunProgram(SEXTANT_BINARY, arguments);
-}
 
 // Two boards that swing slowly and far, so that each of a session's scans has them elsewhere.
 constexpr const char* kScene = R"(sextant_scene: 1

@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
+#include "e2e/run_sextant.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 
@@ -15,15 +16,12 @@ namespace {
 using nlohmann::json;
 using test::ProgramRun;
 using test::ReadText;
+using test::RunSextant;
 using test::TestFolder;
 using test::WriteText;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-ProgramRun RunSextant(const std::string& arguments) {
-  return test::RunProgram(SEXTANT_BINARY, arguments);
-}
 
 // The paper's two boards seen from a known pose, as points.txt.
 std::string SimulatedSession(const std::string& options = "") {
@@ -31,6 +29,12 @@ std::string SimulatedSession(const std::string& options = "") {
   const ProgramRun run = RunSextant("simulate pairs --out " + path + " " + options);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   return path;
+}
+
+TEST(Cli, NamesTheCommandThatIsMeant) {
+  const ProgramRun run = RunSextant("calibrat --image photo.png");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.err, "sextant has no command 'calibrat'; did you mean 'calibrate'?\n");
 }
 
 TEST(Cli, HelpTeachesEveryCommand) {

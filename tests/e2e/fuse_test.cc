@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "e2e/run_sextant.h"
 #include "geometry/rigid3d.h"
 #include "io/cloud_file.h"
 #include "io/pcd_file.h"
@@ -15,13 +16,10 @@ namespace sextant {
 namespace {
 
 using test::ProgramRun;
+using test::RunSextant;
 using test::TestFolder;
 using test::WriteText;
 using testing::HasSubstr;
-
-ProgramRun RunSextant(const std::string& arguments) {
-  return test::RunProgram(SEXTANT_BINARY, arguments);
-}
 
 std::string Path(const char* name) { return (TestFolder() / name).string(); }
 

@@ -8,6 +8,7 @@
 #include <ostream>
 #include <string>
 
+#include "e2e/run_sextant.h"
 #include "support/run_program.h"
 
 namespace sextant {
@@ -15,15 +16,12 @@ namespace {
 
 using nlohmann::json;
 using test::ProgramRun;
+using test::RunSextant;
 using test::TestFolder;
 using test::WriteText;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-ProgramRun RunSextant(const std::string& arguments) {
-  return test::RunProgram(SEXTANT_BINARY, arguments);
-}
 
 std::string InFolder(const char* name, const std::string& text) {
   const auto path = TestFolder() / name;

@@ -2,22 +2,23 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <map>
+#include <sstream>
 #include <string>
 
+#include "e2e/run_sextant.h"
 #include "support/run_program.h"
+#include "support/source_tree.h"
 
 namespace sextant {
 namespace {
 
 using test::ProgramRun;
 using test::ReadText;
+using test::RunSextant;
 using test::TestFolder;
 using test::WriteText;
 using testing::HasSubstr;
-
-ProgramRun RunSextant(const std::string& arguments) {
-  return test::RunProgram(SEXTANT_BINARY, arguments);
-}
 
 std::string Path(const char* name) { return (TestFolder() / name).string(); }
 
@@ -94,6 +95,40 @@ TEST(Reproduce, SaysWhatIsWrong) {
       RunSextant("reproduce --claims " + Path("nowhere.yaml") + " --out " + Path("paper"));
   EXPECT_EQ(absent.exit_code, 2);
   EXPECT_THAT(absent.err, HasSubstr("nowhere.yaml"));
+}
+
+// The page's verdicts by where, claim and printed value.
+std::map<std::string, std::string> VerdictsOf(const std::filesystem::path& page) {
+  std::map<std::string, std::string> verdicts;
+  std::istringstream lines(ReadText(page));
+  for (std::string line; std::getline(lines, line);) {
+    std::size_t ours = 0;
+    for (int bar = 0; bar < 4 && ours != std::string::npos; ++bar) ours = line.find("| ", ours + 1);
+    const std::size_t verdict = line.find("| **");
+    if (ours == std::string::npos || verdict == std::string::npos) continue;
+    verdicts[line.substr(0, ours)] =
+        line.substr(verdict + 4, line.find("**", verdict + 4) - verdict - 4);
+  }
+  return verdicts;
+}
+
+// The whole of it: the quick run judges every claim that paper/ judges, and contradicts none.
+TEST(Reproduce, QuicklyAgreesWithThePageOfTheFullRun) {
+  const std::filesystem::path root = test::SourceRoot();
+  const ProgramRun run = RunSextant(
+      "reproduce --quick --experiments " + (root / "experiments").string() + " --claims " +
+      (root / "paper" / "claims.yaml").string() + " --out " + Path("paper"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto full = VerdictsOf(root / "paper" / "REPRODUCTION.md");
+  const auto quick = VerdictsOf(TestFolder() / "paper" / "REPRODUCTION.md");
+  EXPECT_GT(full.size(), 50u);
+  EXPECT_EQ(full.size(), quick.size());
+  for (const auto& [claim, verdict] : full) {
+    ASSERT_TRUE(quick.contains(claim)) << claim << ": run `sextant reproduce` and commit paper/";
+    const std::string& now = quick.at(claim);
+    EXPECT_FALSE(verdict == "refuted" && now.ends_with("reproduced")) << claim;
+    EXPECT_FALSE(verdict.ends_with("reproduced") && now == "refuted") << claim;
+  }
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "calibrate/session.h"
+#include "e2e/run_sextant.h"
 #include "io/board_file.h"
 #include "io/calibration_result.h"
 #include "io/camera_file.h"
@@ -22,14 +23,11 @@ namespace fs = std::filesystem;
 
 using test::ProgramRun;
 using test::ReadText;
+using test::RunSextant;
 using test::TestFolder;
 using test::WriteText;
 using testing::AllOf;
 using testing::HasSubstr;
-
-ProgramRun RunSextant(const std::string& arguments) {
-  return test::RunProgram(SEXTANT_BINARY, arguments);
-}
 
 constexpr const char* kScene = R"(sextant_scene: 1
 name: one board

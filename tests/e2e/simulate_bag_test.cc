@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "e2e/run_sextant.h"
 #include "io/camera_file.h"
 #include "support/run_program.h"
 
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
 
 using test::ProgramRun;
 using test::ReadText;
+using test::RunSextant;
 using test::TestFolder;
 using testing::HasSubstr;
 
@@ -51,10 +53,6 @@ boards:
     pose: {position_m: [2, 0.4, 1], yaw_deg: 10, pitch_deg: 5, roll_deg: 45}
     swing: {axis_in_world: [0, 1, 0], amplitude_deg: 5, period_s: 1.3}
 )";
-
-ProgramRun RunSextant(const std::string& arguments) {
-  return test::RunProgram(SEXTANT_BINARY, arguments);
-}
 
 ProgramRun Simulate(const fs::path& out, const std::string& options) {
   const fs::path scene = TestFolder() / "scene.yaml";

@@ -6,6 +6,7 @@
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 
+#include "e2e/run_sextant.h"
 #include "support/run_program.h"
 
 namespace sextant {
@@ -15,15 +16,12 @@ namespace fs = std::filesystem;
 
 using test::ProgramRun;
 using test::ReadText;
+using test::RunSextant;
 using test::TestFolder;
 using test::WriteText;
 using testing::HasSubstr;
 using testing::Key;
 using testing::UnorderedElementsAre;
-
-ProgramRun RunSextant(const std::string& arguments) {
-  return test::RunProgram(SEXTANT_BINARY, arguments);
-}
 
 // A small image, so that a session takes no time.
 constexpr const char* kScene = R"(sextant_scene: 1

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "support/run_program.h"
+
+namespace sextant::test {
+
+/// Runs the program that was built beside the tests.
+inline ProgramRun RunSextant(const std::string& arguments) {
+  return RunProgram(SEXTANT_BINARY, arguments);
+}
+
+}  // namespace sextant::test
