@@ -11,7 +11,6 @@
 #include "solvers/pair_noise.h"
 #include "solvers/point_to_plane.h"
 #include "solvers/point_tree.h"
-#include "solvers/registry.h"
 
 namespace sextant {
 namespace {
@@ -217,93 +216,6 @@ Rigid3d AlignCentroids(Points target, Points source) {
     return Eigen::Vector3d(sum / static_cast<double>(points.size()));
   };
   return {Eigen::Quaterniond::Identity(), mean(target) - mean(source)};
-}
-
-namespace {
-
-enum class IcpStart { kIdentity, kCentroid, kPose };
-
-struct IcpOptions : IcpSettings {
-  IcpStart init = IcpStart::kCentroid;
-};
-
-const OptionSet<IcpOptions>& Options() {
-  static const OptionSet<IcpOptions> options =
-      OptionSet<IcpOptions>()
-          .Choice("init", &IcpOptions::init, {"identity", "centroid", "pose"},
-                  "where to start: nowhere, centroids aligned without a turn, or the problem's "
-                  "initial pose")
-          .Choice<IcpMetric>(
-              "metric", &IcpOptions::metric, {"point", "plane"},
-              "distance to the matched point, or to the plane through its neighbours")
-          .Real("max_distance_m", &IcpOptions::max_distance_m, "m", 0.0, 1e9,
-                "matches at or beyond this are dropped; 0 keeps all")
-          .Real("trim", &IcpOptions::trim, "1", 0.0, 0.95,
-                "fraction of the matches, the worst, dropped in each iteration")
-          .Count<int>("neighbours", &IcpOptions::neighbours, 3, 1000,
-                      "camera points that a normal is fitted to (metric=plane)")
-          .Count<int>("max_iterations", &IcpOptions::max_iterations, 1, 1000000, "most iterations")
-          .Real("rotation_tolerance_rad", &IcpOptions::rotation_tolerance_rad, "rad", 0.0, 1.0,
-                "converged when a step turns by no more and ...")
-          .Real("translation_tolerance_m", &IcpOptions::translation_tolerance_m, "m", 0.0, 1e3,
-                "... moves by no more");
-  return options;
-}
-
-class IcpSolver final : public Solver {
- public:
-  IcpSolver(const std::string& name, const IcpOptions& options)
-      : Solver({.name = name,
-                .needs = {.points_per_set = 3, .initial_pose = options.init == IcpStart::kPose},
-                .is_global = false}),
-        options_(options) {}
-
- private:
-  Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
-    const PointSets& sets = problem.point_sets;
-    return FitIcp(sets.in_cam, sets.in_lidar, StartFor(problem), options_)
-        .map([](const IcpFit& fit) {
-          Estimate estimate;
-          estimate.cam_from_lidar = fit.target_from_source;
-          estimate.termination =
-              fit.converged ? Termination::kConverged : Termination::kMaxIterations;
-          estimate.iterations = fit.iterations;
-          estimate.covariance = fit.covariance;
-          return estimate;
-        });
-  }
-
-  Rigid3d StartFor(const CalibrationProblem& problem) const {
-    switch (options_.init) {
-      case IcpStart::kIdentity:
-        return {};
-      case IcpStart::kCentroid:
-        return AlignCentroids(problem.point_sets.in_cam, problem.point_sets.in_lidar);
-      case IcpStart::kPose:
-        return *problem.initial_cam_from_lidar;
-    }
-    return {};
-  }
-
-  IcpOptions options_;
-};
-
-}  // namespace
-
-SolverEntry IcpEntry() {
-  return {
-      .name = "icp",
-      .summary = "iterative closest point on sets whose pairing is not known; local",
-      .needs = "3 or more points in each frame, not on a line; near the start",
-      .reference = "Besl and McKay 1992; Chen and Medioni 1992; Chetverikov et al. 2002",
-      .example = "icp(init=centroid)",
-      .options = Options().Describe(),
-      .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
-        return Options().Parse(arguments.options).map([&](const IcpOptions& options) -> SolverPtr {
-          return std::make_shared<IcpSolver>(arguments.name, options);
-        });
-      },
-  };
 }
 
 }  // namespace sextant

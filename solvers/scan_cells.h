@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/lanes.h"
+
+namespace sextant {
+
+/// Moments of the points in a cell, or in several: counts and sums [m, m^2].
+struct CellSums {
+  static constexpr std::size_t kCount = 0;
+  static constexpr std::size_t kFirst = 1;   ///< x, y, z.
+  static constexpr std::size_t kSecond = 4;  ///< xx, xy, xz, yy, yz, zz.
+  static constexpr std::size_t kSize = 10;
+  alignas(16) std::array<double, kSize> of{};
+};
+
+/// A scan cut into cells as its sensor sees it: rows of elevation, columns of azimuth. One pass
+/// over the points, which need no order.
+///
+/// Rows follow the rings: elevations that repeat are told by gaps between them, and a row is as few
+/// whole rings as are `cell_rad` high, so that a row never holds half a ring. Where elevations do
+/// not repeat rows are `cell_rad` high. Points that are more than 76 degrees off the plane that the
+/// sensor sweeps are left out.
+///
+/// The axis that the azimuth goes about is that of the frame's three which the points keep farthest
+/// from: z of a LiDAR, y of a camera.
+class ScanCells {
+ public:
+  /// Points [m] seen from their frame's origin, finite. Requires at least one.
+  ScanCells(std::span<const Eigen::Vector3d> points, double cell_rad);
+
+  int rows() const { return rows_; }
+  int columns() const { return columns_; }
+  /// Row by row.
+  const std::vector<CellSums>& sums() const { return sums_; }
+
+  /// Where eight points fall: cell numbers, or `outside` where there is no row.
+  SEXTANT_INLINE void CellsOf(const std::array<Lanes, 3>& points, std::int32_t outside,
+                              std::int32_t* cells) const {
+    const Lanes x = points[axes_[0]];
+    const Lanes y = points[axes_[1]];
+    std::array<double, kLanes> slopes;
+    StoreLanes(SlopesOf(x, y, points[axes_[2]]), slopes.data());
+    ColumnsOf(x, y, cells);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const std::int32_t row = row_of_bin_[static_cast<std::size_t>(BinOf(slopes[i]))];
+      cells[i] = row < 0 ? outside : row * columns_ + cells[i];
+    }
+  }
+
+ private:
+  static constexpr int kBins = 2048;
+  static constexpr double kSteepest = 4.0;
+
+  // Tangents of elevations, no steeper than kSteepest.
+  static SEXTANT_INLINE Lanes SlopesOf(const Lanes& x, const Lanes& y, const Lanes& z) {
+    const Lanes level = Max(Sqrt(x * x + y * y), AllLanes(1e-12));
+    return Max(Min(z / level, AllLanes(kSteepest)), AllLanes(-kSteepest));
+  }
+
+  // Azimuths in turns, from 0 to 1, within 0.001 of it: that shifts the borders of cells and
+  // nothing else.
+  static SEXTANT_INLINE Lanes TurnsOf(const Lanes& x, const Lanes& y) {
+    const Lanes right = Abs(x);
+    const Lanes up = Abs(y);
+    const Lanes ratio = Min(right, up) / Max(Max(right, up), AllLanes(1e-12));
+    const Lanes eighth = ratio * (0.125 + 0.0434 * (1.0 - ratio));
+    const Lanes quarter = up > right ? 0.25 - eighth : eighth;
+    const Lanes half = x < 0.0 ? 0.5 - quarter : quarter;
+    return y < 0.0 ? 1.0 - half : half;
+  }
+
+  SEXTANT_INLINE void ColumnsOf(const Lanes& x, const Lanes& y, std::int32_t* columns) const {
+    const Lanes turns = TurnsOf(x, y) * static_cast<double>(columns_);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      columns[i] = std::min(static_cast<std::int32_t>(turns[i]), columns_ - 1);
+    }
+  }
+
+  // From 0 on; the first and the last are outside.
+  SEXTANT_INLINE int BinOf(double slope) const {
+    const double bin = (slope - first_slope_) * bins_a_slope_ + 1.0;
+    return static_cast<int>(std::clamp(bin, 0.0, kBins + 1.0));
+  }
+
+  void ChooseAxes(std::span<const Eigen::Vector3d> points);
+  void FindBearings(std::span<const Eigen::Vector3d> points, double* slopes,
+                    std::int32_t* columns) const;
+  void ChooseRows(std::span<const double> slopes, double cell_rad);
+
+  std::array<std::size_t, 3> axes_{0, 1, 2};
+  int rows_ = 0;
+  int columns_ = 0;
+  double first_slope_ = 0.0;
+  double bins_a_slope_ = 0.0;
+  std::array<std::int16_t, kBins + 2> row_of_bin_{};  ///< -1 outside.
+  std::vector<CellSums> sums_;
+};
+
+}  // namespace sextant
