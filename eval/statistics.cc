@@ -85,27 +85,34 @@ Interval WilsonInterval(std::uint64_t successes, std::uint64_t trials) {
   return {successes == 0 ? 0.0 : centre - half, successes == trials ? 1.0 : centre + half};
 }
 
+QuantilePlace PlaceOfQuantile(std::uint64_t count, double q) {
+  assert(count > 0 && q >= 0.0 && q <= 1.0);
+  const double position = q * static_cast<double>(count - 1);
+  const auto below = static_cast<std::uint64_t>(position);
+  if (below + 1 >= count) return {count - 1, count - 1, 0.0};
+  return {below, below + 1, position - static_cast<double>(below)};
+}
+
 double QuantileOfSorted(std::span<const double> sorted, double q) {
-  assert(!sorted.empty() && q >= 0.0 && q <= 1.0);
-  const double position = q * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(position);
-  if (below + 1 >= sorted.size()) return sorted.back();
-  const double share = position - static_cast<double>(below);
-  return sorted[below] + share * (sorted[below + 1] - sorted[below]);
+  const QuantilePlace place = PlaceOfQuantile(sorted.size(), q);
+  return place.Between(sorted[place.below], sorted[place.above]);
+}
+
+RankInterval QuantileIntervalRanks(std::uint64_t count, double q) {
+  const auto k = static_cast<std::uint64_t>(std::lround(q * static_cast<double>(count - 1))) + 1;
+  return {RankReaching(count, k, 0.025) - 1, RankReaching(count, k, 0.975) - 1};
 }
 
 Interval QuantileInterval(std::span<const double> sorted, double q) {
-  const std::size_t n = sorted.size();
-  const auto k = static_cast<std::size_t>(std::lround(q * static_cast<double>(n - 1))) + 1;
-  return {sorted[RankReaching(n, k, 0.025) - 1], sorted[RankReaching(n, k, 0.975) - 1]};
+  const RankInterval ends = QuantileIntervalRanks(sorted.size(), q);
+  return {sorted[ends.low], sorted[ends.high]};
 }
 
 Interval BootstrapRatio(std::span<const double> numerators, std::span<const double> denominators,
                         std::uint64_t seed) {
   assert(!numerators.empty() && numerators.size() == denominators.size());
   constexpr std::size_t kResamples = 1000;
-  constexpr std::size_t kMostBatches = 200;
-  const std::size_t batches = std::min(numerators.size(), kMostBatches);
+  const std::size_t batches = std::min<std::size_t>(numerators.size(), kBootstrapRuns);
   const std::vector<double> above = BatchSums(numerators, batches);
   const std::vector<double> below = BatchSums(denominators, batches);
   Random random(seed);

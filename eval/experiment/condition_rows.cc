@@ -8,6 +8,9 @@
 namespace sextant {
 namespace {
 
+// Two megabytes a column.
+constexpr std::uint64_t kMostKeptRows = 1U << 18U;
+
 CellKey CellOf(std::uint64_t key) { return {SubjectOfKey(key), IndexOfKey(key)}; }
 
 // The place of a cell; rows of one trial mostly go through the cells in order.
@@ -29,6 +32,16 @@ class CellFinder {
   std::size_t last_ = 0;
 };
 
+// Rows hold the wanted metrics alone.
+int ColumnOf(const Experiment& experiment, int metric) {
+  if (metric < 0) return -1;
+  int column = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(metric); ++i) {
+    column += experiment.wanted[i] ? 1 : 0;
+  }
+  return column;
+}
+
 }  // namespace
 
 Expected<ConditionRows> ConditionRows::Open(const Experiment& experiment,
@@ -47,24 +60,43 @@ Expected<ConditionRows> ConditionRows::Open(const Experiment& experiment,
   return rows;
 }
 
-Expected<std::vector<std::vector<double>>> ConditionRows::Column(int metric) const {
-  std::size_t column = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(metric); ++i) {
-    column += experiment_->wanted[i] ? 1U : 0U;
-  }
-  std::vector<std::vector<double>> by_cell(cells_.size());
-  CellFinder finder(cells_);
-  for (std::vector<double>& values : by_cell) values.reserve(experiment_->trials);
-  for (const RowBlockPlace& block : blocks_) {
-    const Expected<std::vector<std::uint64_t>> keys = reader_->ReadKeys(block);
-    if (!keys) return tl::unexpected<Error>(keys.error());
-    const Expected<std::vector<double>> values = reader_->ReadColumn(block, column);
-    if (!values) return tl::unexpected<Error>(values.error());
-    for (std::size_t i = 0; i < keys->size(); ++i) {
-      by_cell[finder.Find(CellOf((*keys)[i]))].push_back((*values)[i]);
+ColumnPasses::ColumnPasses(const ConditionRows& rows, std::vector<int> metrics) : rows_(&rows) {
+  for (const int metric : metrics) columns_.push_back(ColumnOf(*rows.experiment_, metric));
+  std::uint64_t count = 0;
+  for (const RowBlockPlace& block : rows.blocks_) count += block.rows;
+  keep_ = count <= kMostKeptRows;
+}
+
+Expected<void> ColumnPasses::Pass(const std::function<void(const Rows&)>& visit) {
+  for (std::size_t i = 0; i < rows_->blocks_.size(); ++i) {
+    if (i < kept_.size()) {
+      visit(kept_[i]);
+      continue;
     }
+    Expected<Rows> rows = Read(rows_->blocks_[i]);
+    if (!rows) return tl::unexpected<Error>(std::move(rows.error()));
+    visit(*rows);
+    if (keep_) kept_.push_back(std::move(*rows));
   }
-  return by_cell;
+  return {};
+}
+
+Expected<ColumnPasses::Rows> ColumnPasses::Read(const RowBlockPlace& block) const {
+  Rows rows;
+  const Expected<std::vector<std::uint64_t>> keys = rows_->reader_->ReadKeys(block);
+  if (!keys) return tl::unexpected<Error>(keys.error());
+  CellFinder finder(rows_->cells_);
+  for (const std::uint64_t key : *keys)
+    rows.cells.push_back(static_cast<std::uint32_t>(finder.Find(CellOf(key))));
+  for (const int column : columns_) {
+    rows.columns.emplace_back();
+    if (column < 0) continue;
+    Expected<std::vector<double>> values =
+        rows_->reader_->ReadColumn(block, static_cast<std::size_t>(column));
+    if (!values) return tl::unexpected<Error>(std::move(values.error()));
+    rows.columns.back() = std::move(*values);
+  }
+  return rows;
 }
 
 }  // namespace sextant

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "eval/experiment/experiment.h"
@@ -17,7 +19,7 @@ struct CellKey {
   friend auto operator<=>(const CellKey&, const CellKey&) = default;
 };
 
-/// The rows of one condition, read one metric at a time: 8 bytes a row are in memory.
+/// Which rows of the file are one condition's.
 class ConditionRows {
  public:
   /// Requires the reader's rows to be the experiment's. Both must outlive this.
@@ -26,10 +28,9 @@ class ConditionRows {
 
   /// Ascending.
   const std::vector<CellKey>& cells() const { return cells_; }
-  /// The values of a wanted metric by cell, in the order of trials.
-  Expected<std::vector<std::vector<double>>> Column(int metric) const;
 
  private:
+  friend class ColumnPasses;
   ConditionRows(const Experiment& experiment, const RowFileReader& reader)
       : experiment_(&experiment), reader_(&reader) {}
 
@@ -37,6 +38,32 @@ class ConditionRows {
   const RowFileReader* reader_;
   std::vector<RowBlockPlace> blocks_;
   std::vector<CellKey> cells_;
+};
+
+/// Some metrics of one condition's rows, read as often as asked: from the file, block by block, so
+/// that memory does not grow with the trials; rows that are few are kept after the first pass.
+class ColumnPasses {
+ public:
+  /// So many rows in their order: the cell of each, and a column a metric.
+  struct Rows {
+    std::vector<std::uint32_t> cells;
+    std::vector<std::vector<double>> columns;
+  };
+
+  /// Requires wanted metrics; -1 stands for none, whose column stays empty. The rows must outlive
+  /// this.
+  ColumnPasses(const ConditionRows& rows, std::vector<int> metrics);
+
+  /// All rows of the condition, trial by trial.
+  Expected<void> Pass(const std::function<void(const Rows&)>& visit);
+
+ private:
+  Expected<Rows> Read(const RowBlockPlace& block) const;
+
+  const ConditionRows* rows_;
+  std::vector<int> columns_;  // In the file; -1: none.
+  bool keep_ = false;
+  std::vector<Rows> kept_;
 };
 
 }  // namespace sextant

@@ -1,112 +1,141 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/figure.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/random.h"
 
 namespace sextant {
 namespace {
 
+using Kind = Statistic::Kind;
+
 double Square(double x) { return x * x; }
 
-double RatioOfSums(std::span<const double> numerators, std::span<const double> denominators) {
-  return std::accumulate(numerators.begin(), numerators.end(), 0.0) /
-         std::accumulate(denominators.begin(), denominators.end(), 0.0);
-}
+bool IsNeither0NorNan(double value) { return !std::isnan(value) && value != 0.0; }
 
-Figure RatioFigure(std::span<const double> numerators, std::span<const double> denominators,
-                   std::uint64_t seed, bool root) {
-  Interval interval = BootstrapRatio(numerators, denominators, seed);
-  double value = RatioOfSums(numerators, denominators);
-  if (root) {
-    value = std::sqrt(value);
-    interval = {std::sqrt(interval.low), std::sqrt(interval.high)};
-  }
-  return {value, interval, numerators.size()};
-}
-
-Figure MomentFigure(const Statistic& statistic, std::vector<double> values, std::uint64_t seed) {
-  const std::vector<double> ones(values.size(), 1.0);
-  if (statistic.kind == Statistic::Kind::kMean) return RatioFigure(values, ones, seed, false);
-  const double centre = statistic.kind == Statistic::Kind::kSd ? RatioOfSums(values, ones) : 0.0;
-  for (double& value : values) value = Square(value - centre);
-  return RatioFigure(values, ones, seed, true);
-}
-
-Figure QuantileFigure(const Statistic& statistic, std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  Figure figure{.value = QuantileOfSorted(values, statistic.quantile),
-                .interval = {},
-                .trials = values.size()};
-  // The bootstrap knows nothing beyond the sample's ends.
-  if (statistic.quantile > 0.0 && statistic.quantile < 1.0) {
-    figure.interval = QuantileInterval(values, statistic.quantile);
-  }
-  return figure;
-}
-
-Figure RateFigure(std::span<const double> values) {
-  std::uint64_t successes = 0;
-  for (const double value : values) successes += !std::isnan(value) && value != 0.0 ? 1U : 0U;
-  return {static_cast<double>(successes) / static_cast<double>(values.size()),
-          WilsonInterval(successes, values.size()), values.size()};
-}
+// The bootstrap knows nothing beyond the sample's ends.
+bool HasInterval(double q) { return q > 0.0 && q < 1.0; }
 
 }  // namespace
 
-Figure ComputeFigure(const Statistic& statistic, std::vector<double> values,
-                     std::span<const double> reference, std::span<const double> where,
-                     std::uint64_t seed) {
-  const bool is_rate = statistic.kind == Statistic::Kind::kRate;
-  std::vector<double> references;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!where.empty() && (std::isnan(where[i]) || where[i] == 0.0)) continue;
-    if (!is_rate && std::isnan(values[i])) continue;
-    if (!reference.empty()) {
-      if (std::isnan(reference[i])) continue;
-      references.push_back(Square(reference[i]));
-    }
-    values[count++] = values[i];
+FigureGatherer::FigureGatherer(const Statistic& statistic, std::uint64_t seed)
+    : statistic_(statistic), seed_(seed) {}
+
+bool FigureGatherer::Counts(double value, double reference, double where) const {
+  if (statistic_.where >= 0 && !IsNeither0NorNan(where)) return false;
+  if (statistic_.kind == Kind::kRate) return true;
+  return !std::isnan(value) && !(statistic_.reference >= 0 && std::isnan(reference));
+}
+
+void FigureGatherer::Add(double value, double reference, double where) {
+  if (!Counts(value, reference, where)) return;
+  switch (stage_) {
+    case Stage::kCount:
+      ++figure_.trials;
+      successes_ += IsNeither0NorNan(value) ? 1U : 0U;
+      break;
+    case Stage::kSums:
+      if (statistic_.kind == Kind::kMean || statistic_.kind == Kind::kSd) {
+        sums_->Add(value, 1.0);
+      } else {
+        sums_->Add(Square(value), statistic_.kind == Kind::kRms ? 1.0 : Square(reference));
+      }
+      break;
+    case Stage::kDeviations:
+      sums_->Add(Square(value - mean_), 1.0);
+      break;
+    case Stage::kRanks:
+      quantiles_->Add(value);
+      break;
+    case Stage::kDone:
+      break;
   }
-  values.resize(count);
-  if (values.empty()) return {};
-  switch (statistic.kind) {
-    case Statistic::Kind::kQuantile:
-      return QuantileFigure(statistic, std::move(values));
-    case Statistic::Kind::kRate:
-      return RateFigure(values);
-    case Statistic::Kind::kEfficiency:
-      for (double& value : values) value = Square(value);
-      return RatioFigure(values, references, seed, true);
-    default:
-      return MomentFigure(statistic, std::move(values), seed);
+}
+
+void FigureGatherer::EndPass() {
+  switch (stage_) {
+    case Stage::kCount:
+      return EndCount();
+    case Stage::kSums:
+    case Stage::kDeviations:
+      return EndSums();
+    case Stage::kRanks:
+      quantiles_->EndPass();
+      if (++rank_passes_ == QuantileGatherer::kPasses) EndRanks();
+      return;
+    case Stage::kDone:
+      return;
   }
+}
+
+void FigureGatherer::EndCount() {
+  stage_ = Stage::kDone;
+  if (figure_.trials == 0) return;
+  if (statistic_.kind == Kind::kRate) {
+    figure_.value = static_cast<double>(successes_) / static_cast<double>(figure_.trials);
+    figure_.interval = WilsonInterval(successes_, figure_.trials);
+  } else if (statistic_.kind == Kind::kQuantile) {
+    const double q = statistic_.quantile;
+    quantiles_.emplace(figure_.trials, std::vector<QuantileGatherer::Wanted>{{q, HasInterval(q)}});
+    stage_ = Stage::kRanks;
+  } else {
+    sums_.emplace(figure_.trials);
+    stage_ = Stage::kSums;
+  }
+}
+
+void FigureGatherer::EndSums() {
+  if (statistic_.kind == Kind::kSd && stage_ == Stage::kSums) {
+    mean_ = sums_->ratio();
+    sums_.emplace(figure_.trials);
+    stage_ = Stage::kDeviations;
+    return;
+  }
+  figure_.value = sums_->ratio();
+  figure_.interval = sums_->BootstrapInterval(seed_);
+  if (statistic_.kind != Kind::kMean) {
+    figure_.value = std::sqrt(figure_.value);
+    figure_.interval = {std::sqrt(figure_.interval->low), std::sqrt(figure_.interval->high)};
+  }
+  sums_.reset();
+  stage_ = Stage::kDone;
+}
+
+void FigureGatherer::EndRanks() {
+  const double q = statistic_.quantile;
+  figure_.value = quantiles_->Quantile(q);
+  if (HasInterval(q)) figure_.interval = quantiles_->IntervalOf(q);
+  quantiles_.reset();
+  stage_ = Stage::kDone;
 }
 
 Expected<std::vector<Figure>> ComputeFigures(const Statistic& statistic, const ConditionRows& rows,
                                              std::uint64_t seed) {
-  using Columns = std::vector<std::vector<double>>;
-  const auto read = [&rows](int metric) -> Expected<Columns> {
-    if (metric < 0) return Columns(rows.cells().size());
-    return rows.Column(metric);
+  std::vector<FigureGatherer> gatherers;
+  for (std::size_t cell = 0; cell < rows.cells().size(); ++cell) {
+    gatherers.emplace_back(statistic, DeriveSeed(seed, statistic.text, 0, cell));
+  }
+  ColumnPasses passes(rows, {statistic.metric, statistic.reference, statistic.where});
+  const auto visit = [&gatherers](const ColumnPasses::Rows& some) {
+    const auto value = [](const std::vector<double>& column, std::size_t row) {
+      return column.empty() ? 0.0 : column[row];
+    };
+    for (std::size_t row = 0; row < some.cells.size(); ++row) {
+      gatherers[some.cells[row]].Add(some.columns[0][row], value(some.columns[1], row),
+                                     value(some.columns[2], row));
+    }
   };
-  Expected<Columns> values = read(statistic.metric);
-  if (!values) return tl::unexpected<Error>(values.error());
-  const Expected<Columns> references = read(statistic.reference);
-  if (!references) return tl::unexpected<Error>(references.error());
-  const Expected<Columns> where = read(statistic.where);
-  if (!where) return tl::unexpected<Error>(where.error());
-  std::vector<Figure> figures(rows.cells().size());
-  tbb::parallel_for(std::size_t{0}, figures.size(), [&](std::size_t cell) {
-    figures[cell] = ComputeFigure(statistic, std::move((*values)[cell]), (*references)[cell],
-                                  (*where)[cell], DeriveSeed(seed, statistic.text, 0, cell));
-  });
+  const auto is_done = [](const FigureGatherer& gatherer) { return gatherer.done(); };
+  while (!std::all_of(gatherers.begin(), gatherers.end(), is_done)) {
+    if (Expected<void> ok = passes.Pass(visit); !ok) {
+      return tl::unexpected<Error>(std::move(ok.error()));
+    }
+    for (FigureGatherer& gatherer : gatherers) gatherer.EndPass();
+  }
+  std::vector<Figure> figures;
+  for (const FigureGatherer& gatherer : gatherers) figures.push_back(gatherer.figure());
   return figures;
 }
 

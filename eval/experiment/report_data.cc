@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include "eval/experiment/report.h"
 #include "eval/experiment/run_trials.h"
@@ -7,12 +8,15 @@
 namespace sextant {
 namespace {
 
-std::map<std::string, Statistic> StatisticsOf(const Experiment& experiment) {
-  std::map<std::string, Statistic> statistics;
+// Each once.
+std::vector<Statistic> StatisticsOf(const Experiment& experiment) {
+  std::map<std::string, Statistic> by_text;
   for (const TableSpec& table : experiment.tables) {
-    for (const Statistic& column : table.columns) statistics.emplace(column.text, column);
+    for (const Statistic& column : table.columns) by_text.emplace(column.text, column);
   }
-  for (const PlotSpec& plot : experiment.plots) statistics.emplace(plot.y.text, plot.y);
+  for (const PlotSpec& plot : experiment.plots) by_text.emplace(plot.y.text, plot.y);
+  std::vector<Statistic> statistics;
+  for (auto& [text, statistic] : by_text) statistics.push_back(std::move(statistic));
   return statistics;
 }
 
@@ -24,16 +28,19 @@ Expected<ReportData> ReportData::Compute(const Experiment& experiment,
     return MakeError(ErrorCode::kInvalidInput,
                      "the rows are of another configuration than the experiment file's");
   }
-  const std::map<std::string, Statistic> statistics = StatisticsOf(experiment);
+  const std::vector<Statistic> statistics = StatisticsOf(experiment);
   ReportData data;
   for (std::size_t c = 0; c < experiment.conditions.size(); ++c) {
     const Expected<ConditionRows> rows = ConditionRows::Open(experiment, reader, c);
     if (!rows) return tl::unexpected<Error>(rows.error());
+    std::vector<Expected<std::vector<Figure>>> computed(statistics.size());
+    tbb::parallel_for(std::size_t{0}, statistics.size(), [&](std::size_t i) {
+      computed[i] = ComputeFigures(statistics[i], *rows, experiment.seed);
+    });
     std::map<std::string, std::vector<Figure>> figures;
-    for (const auto& [text, statistic] : statistics) {
-      Expected<std::vector<Figure>> of_cells = ComputeFigures(statistic, *rows, experiment.seed);
-      if (!of_cells) return tl::unexpected<Error>(of_cells.error());
-      figures.emplace(text, std::move(*of_cells));
+    for (std::size_t i = 0; i < statistics.size(); ++i) {
+      if (!computed[i]) return tl::unexpected<Error>(std::move(computed[i].error()));
+      figures.emplace(statistics[i].text, std::move(*computed[i]));
     }
     data.cells_.push_back(rows->cells());
     data.figures_.push_back(std::move(figures));

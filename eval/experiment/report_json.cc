@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include <tbb/parallel_for.h>
+
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/version.h"
+#include "eval/experiment/description.h"
 #include "eval/experiment/report.h"
 #include "eval/experiment/run_trials.h"
 
@@ -21,35 +24,51 @@ Json ToJson(const Figure& figure) {
   return json;
 }
 
-Json DescribeValues(std::vector<double> values) {
-  const std::size_t rows = values.size();
-  std::erase_if(values, [](double v) { return std::isnan(v); });
-  Json json = {{"count", values.size()}, {"missing", rows - values.size()}};
-  if (values.empty()) return json;
-  double sum = 0.0;
-  double squares = 0.0;
-  for (const double v : values) sum += v;
-  const double mean = sum / static_cast<double>(values.size());
-  double deviations = 0.0;
-  for (const double v : values) {
-    squares += v * v;
-    deviations += (v - mean) * (v - mean);
+Json ToJson(const Description& values) {
+  Json json = {{"count", values.count()}, {"missing", values.missing()}};
+  if (values.count() == 0) return json;
+  json["mean"] = NumberOrNull(values.mean());
+  json["sd"] = NumberOrNull(values.sd());
+  json["rms"] = NumberOrNull(values.rms());
+  constexpr std::array kNames = {"min", "p05", "p25", "median", "p75", "p95", "max"};
+  static_assert(kNames.size() == Description::kQuantiles.size());
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    json[kNames[i]] = NumberOrNull(values.Quantile(Description::kQuantiles[i]));
   }
-  const auto count = static_cast<double>(values.size());
-  json["mean"] = NumberOrNull(mean);
-  json["sd"] = NumberOrNull(std::sqrt(deviations / count));
-  json["rms"] = NumberOrNull(std::sqrt(squares / count));
-  std::sort(values.begin(), values.end());
-  json["min"] = NumberOrNull(values.front());
-  for (const auto& [name, q] :
-       {std::pair{"p05", 0.05}, std::pair{"p25", 0.25}, std::pair{"median", 0.5},
-        std::pair{"p75", 0.75}, std::pair{"p95", 0.95}}) {
-    json[name] = NumberOrNull(QuantileOfSorted(values, q));
-  }
-  json["max"] = NumberOrNull(values.back());
-  const Interval interval = QuantileInterval(values, 0.5);
+  const Interval interval = values.MedianInterval();
   json["median_interval"] = {NumberOrNull(interval.low), NumberOrNull(interval.high)};
   return json;
+}
+
+// Of the metric, by cell.
+Expected<std::vector<Description>> Describe(const ConditionRows& rows, int metric) {
+  std::vector<Description> cells(rows.cells().size());
+  ColumnPasses passes(rows, {metric});
+  for (int pass = 0; pass < Description::kPasses; ++pass) {
+    const Expected<void> ok = passes.Pass([&cells](const ColumnPasses::Rows& some) {
+      for (std::size_t row = 0; row < some.cells.size(); ++row) {
+        cells[some.cells[row]].Add(some.columns[0][row]);
+      }
+    });
+    if (!ok) return tl::unexpected<Error>(ok.error());
+    for (Description& cell : cells) cell.EndPass();
+  }
+  return cells;
+}
+
+// Of all wanted metrics; empty for the others.
+Expected<std::vector<std::vector<Description>>> DescribeAll(const Experiment& experiment,
+                                                            const ConditionRows& rows) {
+  std::vector<Expected<std::vector<Description>>> described(experiment.metrics.size());
+  tbb::parallel_for(std::size_t{0}, described.size(), [&](std::size_t metric) {
+    if (experiment.wanted[metric]) described[metric] = Describe(rows, static_cast<int>(metric));
+  });
+  std::vector<std::vector<Description>> all;
+  for (Expected<std::vector<Description>>& of_metric : described) {
+    if (!of_metric) return tl::unexpected<Error>(std::move(of_metric.error()));
+    all.push_back(std::move(*of_metric));
+  }
+  return all;
 }
 
 Json ReportFigures(const Experiment& experiment, const ReportData& data, std::size_t condition,
@@ -98,12 +117,13 @@ Expected<std::string> FormatSummary(const Experiment& experiment, const RowFileR
            {"metrics", Json::object()},
            {"figures", ReportFigures(experiment, data, c, i)}});
     }
+    const Expected<std::vector<std::vector<Description>>> descriptions =
+        DescribeAll(experiment, *rows);
+    if (!descriptions) return tl::unexpected<Error>(descriptions.error());
     for (std::size_t m = 0; m < experiment.metrics.size(); ++m) {
       if (!experiment.wanted[m]) continue;
-      Expected<std::vector<std::vector<double>>> column = rows->Column(static_cast<int>(m));
-      if (!column) return tl::unexpected<Error>(column.error());
       for (std::size_t i = 0; i < cells.size(); ++i) {
-        cells[i]["metrics"][experiment.metrics[m].name] = DescribeValues(std::move((*column)[i]));
+        cells[i]["metrics"][experiment.metrics[m].name] = ToJson((*descriptions)[m][i]);
       }
     }
     Json described = DescribeCondition(experiment, condition);

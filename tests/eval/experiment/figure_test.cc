@@ -17,7 +17,15 @@ const double kNone = std::nan("");
 
 Figure Compute(const std::string& statistic, const std::vector<double>& values,
                const std::vector<double>& reference = {}, const std::vector<double>& where = {}) {
-  return ComputeFigure(*ParseStatistic(statistic, Metrics()), values, reference, where, 1);
+  FigureGatherer gatherer(*ParseStatistic(statistic, Metrics()), 1);
+  while (!gatherer.done()) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      gatherer.Add(values[i], reference.empty() ? kNone : reference[i],
+                   where.empty() ? kNone : where[i]);
+    }
+    gatherer.EndPass();
+  }
+  return gatherer.figure();
 }
 
 TEST(Figure, OfEachKind) {
