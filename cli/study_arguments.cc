@@ -28,7 +28,9 @@ void AddFuse(CLI::App& app, FuseOptions& options) {
       "  sextant fuse cam1.pcd cam2.pcd --rts conf/rts.txt");
 }
 
-void AddRun(CLI::App& app, ExperimentOptions& options) {
+namespace {
+
+CLI::App& AddRunOfAll(CLI::App& app, ExperimentOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "run", "An experiment: solvers, conditions and trials of a file, to tables and plots");
   command.add_option("EXPERIMENT", options.experiment_path, "Experiment file (YAML)")->required();
@@ -39,7 +41,9 @@ void AddRun(CLI::App& app, ExperimentOptions& options) {
       "--solvers", options.solvers,
       "Instead of the file's, separated by commas; conditions that they have no data\n"
       "for are left out");
-  command.add_option("--threads", options.threads, "Default: as many as the machine has")
+  command
+      .add_option("--threads", options.threads,
+                  "Default: as many as the machine has; of ranks that share one, its share")
       ->check(CLI::Range(1, 1024));
   command.add_option("--trials", options.trials, "Instead of the file's")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
@@ -47,6 +51,13 @@ void AddRun(CLI::App& app, ExperimentOptions& options) {
   command.add_flag("--quick", options.quick, "The file's quick_trials instead of its trials");
   command.add_flag("--fresh", options.fresh, "Throw away rows that are there");
   command.add_flag("--no-csv", options.no_csv, "Without rows.csv, which is large for many trials");
+  return command;
+}
+
+}  // namespace
+
+void AddRun(CLI::App& app, ExperimentOptions& options) {
+  CLI::App& command = AddRunOfAll(app, options);
   command.add_option("--shard", options.shard,
                      "I/N: the I-th of N parts only, for as many machines; join them by merge");
   command.footer(
@@ -56,6 +67,20 @@ void AddRun(CLI::App& app, ExperimentOptions& options) {
       "  sextant run experiments/leaderboard.yaml --quick\n"
       "  sextant run experiments/leaderboard.yaml --solvers 'kabsch,my_solver' --out mine\n"
       "  sextant run experiments/accuracy.yaml --shard 2/8 --out /tmp/accuracy");
+}
+
+void AddRunOnRanks(CLI::App& app, ExperimentOptions& options) {
+  AddRunOfAll(app, options)
+      .footer(
+          "Each rank runs its share of the trials into a row file of its own; the first joins them "
+          "to\n"
+          "the bytes of sextant run and writes the report. The folder of --out must be one that "
+          "all "
+          "ranks\n"
+          "share. Rows that are there, of any number of ranks or of --shard, are not run again.\n"
+          "Examples:\n"
+          "  mpirun -n 4 sextant-mpi run experiments/leaderboard.yaml\n"
+          "  mpirun --hostfile machines --map-by ppr:1:node --bind-to none sextant-mpi run x.yaml");
 }
 
 void AddMerge(CLI::App& app, ExperimentOptions& options) {

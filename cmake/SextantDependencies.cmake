@@ -59,6 +59,16 @@ find_dependency(SQLite3)
   endif()
 endif()
 
+# Experiments on many machines: optional.
+option(SEXTANT_MPI "Build sextant-mpi, where MPI is found" ON)
+if(SEXTANT_MPI AND SEXTANT_OPENCV)
+  find_package(MPI QUIET COMPONENTS CXX)
+  if(NOT MPI_CXX_FOUND)
+    message(STATUS "MPI not found: no sextant-mpi")
+    set(SEXTANT_MPI OFF)
+  endif()
+endif()
+
 # yaml-cpp 0.7 (Debian 12) exports its target without the namespace that 0.8 gives it.
 if(NOT TARGET yaml-cpp::yaml-cpp)
   add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)

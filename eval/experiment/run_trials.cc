@@ -47,7 +47,7 @@ FinishedBlock RunBlock(const Experiment& experiment, std::uint64_t block) {
   return {MakeRowBlock(block, range.first, rows).Encode(), range.end - range.first};
 }
 
-// The shard's blocks in order, of which the file has the first `kept`.
+// The shard's blocks in order.
 std::vector<std::uint64_t> BlocksOfShard(const Experiment& experiment, const Shard& shard) {
   std::vector<std::uint64_t> blocks;
   for (std::uint64_t b = shard.number; b < BlocksOf(experiment); b += shard.of) blocks.push_back(b);
@@ -56,29 +56,38 @@ std::vector<std::uint64_t> BlocksOfShard(const Experiment& experiment, const Sha
 
 Expected<void> CheckKept(const std::vector<std::uint64_t>& kept,
                          const std::vector<std::uint64_t>& blocks, const RunSettings& settings) {
-  if (kept.size() <= blocks.size() && std::equal(kept.begin(), kept.end(), blocks.begin())) {
-    return {};
-  }
+  const auto is_of_shard = [&blocks](std::uint64_t block) {
+    return std::binary_search(blocks.begin(), blocks.end(), block);
+  };
+  const bool fits = settings.held.empty() ? kept.size() <= blocks.size() &&
+                                                std::equal(kept.begin(), kept.end(), blocks.begin())
+                                          : std::all_of(kept.begin(), kept.end(), is_of_shard);
+  if (fits) return {};
   return MakeError(ErrorCode::kInvalidInput,
                    fmt::format("'{}' holds blocks of another --shard; start anew with --fresh, or "
                                "name another folder with --out",
                                settings.rows_path.string()));
 }
 
-// Runs blocks[first..] on all threads; they are written in order, and few wait to be.
+// The blocks that neither this file nor another holds.
+std::vector<std::uint64_t> Missing(std::vector<std::uint64_t> blocks,
+                                   std::vector<std::uint64_t> kept,
+                                   const std::vector<std::uint64_t>& held) {
+  std::sort(kept.begin(), kept.end());
+  std::erase_if(blocks, [&](std::uint64_t block) {
+    return std::binary_search(kept.begin(), kept.end(), block) ||
+           std::binary_search(held.begin(), held.end(), block);
+  });
+  return blocks;
+}
+
+// Runs blocks on all threads; they are written in order, and few wait to be.
 class BlockPipeline {
  public:
-  BlockPipeline(const Experiment& experiment, std::vector<std::uint64_t> blocks, std::size_t first,
+  BlockPipeline(const Experiment& experiment, std::vector<std::uint64_t> blocks,
                 const RunSettings& settings, RowFileWriter& writer)
-      : experiment_(experiment),
-        blocks_(std::move(blocks)),
-        next_(first),
-        settings_(settings),
-        writer_(writer) {
-    for (std::size_t i = first; i < blocks_.size(); ++i) {
-      const TrialRange range = RangeOf(experiment_, blocks_[i]);
-      to_do_ += range.end - range.first;
-    }
+      : experiment_(experiment), blocks_(std::move(blocks)), settings_(settings), writer_(writer) {
+    for (const std::uint64_t block : blocks_) to_do_ += TrialsOfBlock(experiment_, block);
   }
 
   Expected<std::uint64_t> Run() {
@@ -125,7 +134,7 @@ class BlockPipeline {
 
   const Experiment& experiment_;
   std::vector<std::uint64_t> blocks_;
-  std::size_t next_;
+  std::size_t next_ = 0;
   const RunSettings& settings_;
   RowFileWriter& writer_;
   std::uint64_t to_do_ = 0;
@@ -135,6 +144,11 @@ class BlockPipeline {
 };
 
 }  // namespace
+
+std::uint64_t TrialsOfBlock(const Experiment& experiment, std::uint64_t block) {
+  const TrialRange range = RangeOf(experiment, block);
+  return range.end - range.first;
+}
 
 std::uint64_t BlocksPerCondition(const Experiment& experiment) {
   const auto size = static_cast<std::uint64_t>(experiment.trials_per_block);
@@ -178,17 +192,16 @@ Expected<RunOutcome> RunTrials(const Experiment& experiment, const RunSettings& 
       RowFileWriter::Open(settings.rows_path, ConfigurationOf(experiment), settings.fresh);
   if (!writer) return tl::unexpected<Error>(writer.error());
   std::vector<std::uint64_t> blocks = BlocksOfShard(experiment, settings.shard);
-  const std::size_t kept = writer->kept().size();
   if (Expected<void> ok = CheckKept(writer->kept(), blocks, settings); !ok) {
     return tl::unexpected<Error>(std::move(ok.error()));
   }
   RunOutcome outcome;
-  for (std::size_t i = 0; i < kept; ++i) {
-    const TrialRange range = RangeOf(experiment, blocks[i]);
-    outcome.kept_trials += range.end - range.first;
+  for (const std::uint64_t block : writer->kept()) {
+    outcome.kept_trials += TrialsOfBlock(experiment, block);
   }
+  blocks = Missing(std::move(blocks), writer->kept(), settings.held);
   Expected<std::uint64_t> run =
-      BlockPipeline(experiment, std::move(blocks), kept, settings, *writer).Run();
+      BlockPipeline(experiment, std::move(blocks), settings, *writer).Run();
   if (!run) return tl::unexpected<Error>(run.error());
   outcome.run_trials = *run;
   if (Expected<void> ok = writer->Flush(); !ok) return tl::unexpected<Error>(std::move(ok.error()));

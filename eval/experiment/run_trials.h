@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "eval/experiment/experiment.h"
@@ -22,6 +23,9 @@ struct RunSettings {
   int threads = 0;     ///< 0: as many as the machine has.
   bool fresh = false;  ///< Rows that are there are thrown away.
   Shard shard{};
+  /// Blocks that other row files hold, ascending: they are not run. Where some are named, the file
+  /// may hold any blocks of its shard; otherwise only the first of them, in order.
+  std::vector<std::uint64_t> held{};
   /// After each block, in order: trials done of trials to do in this call. Also before the first.
   std::function<void(std::uint64_t, std::uint64_t)> after_block = [](std::uint64_t, std::uint64_t) {
   };
@@ -33,12 +37,15 @@ struct RunOutcome {
 };
 
 /// Runs the trials that the row file does not yet hold and appends them, block by block in order.
-/// The bytes depend on the experiment and the shard alone: not on threads, nor on how often the run
-/// was interrupted. Memory does not grow with the number of trials. Errors: those of RowFileWriter.
+/// The bytes depend on the experiment, the shard and what others held alone: not on threads, nor on
+/// how often the run was interrupted. Memory does not grow with the number of trials. Errors: those
+/// of RowFileWriter.
 Expected<RunOutcome> RunTrials(const Experiment& experiment, const RunSettings& settings);
 
 /// What the rows depend on, as the JSON with which the row file begins.
 std::string ConfigurationOf(const Experiment& experiment);
+
+std::uint64_t TrialsOfBlock(const Experiment& experiment, std::uint64_t block);
 
 /// Blocks of one condition, and of all.
 std::uint64_t BlocksPerCondition(const Experiment& experiment);

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// `mpirun sextant-mpi run` as users run it, and the job scripts of Slurm without Slurm.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include "support/run_program.h"
+#include "support/source_tree.h"
+
+namespace sextant::test {
+namespace {
+
+using testing::HasSubstr;
+
+std::string Quoted(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
+
+std::filesystem::path WriteExperiment(int trials) {
+  const std::filesystem::path path = TestFolder() / "small.yaml";
+  WriteText(path, "title: A small one\nkind: random_scene\ntrials: " + std::to_string(trials) +
+                      "\nparameters: {data: points}\nsolvers: [kabsch, 'ransac(kabsch, seed=3)']\n"
+                      "grid: {outliers: [0, 0.25]}\nmetrics: [rotation_deg, nees]\n"
+                      "tables: [{columns: ['rms(rotation_deg, where=fine)']}]\n"
+                      "plots: [{name: growth, x: outliers, y: median(rotation_deg)}]\n");
+  return path;
+}
+
+std::string RunArguments(const std::filesystem::path& experiment, const std::string& out) {
+  return "run " + Quoted(experiment) + " --no-csv --out " + Quoted(TestFolder() / out);
+}
+
+std::string Rows(const std::string& out) { return ReadText(TestFolder() / out / "rows.sxtrows"); }
+
+// The rows of one process, for comparison.
+std::string WholeRows(const std::filesystem::path& experiment) {
+  const ProgramRun run = RunProgram(SEXTANT_BINARY, RunArguments(experiment, "whole"));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  return Rows("whole");
+}
+
+int CountOf(const std::string& part, const std::string& text) {
+  int count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+class Mpi : public testing::Test {
+ protected:
+  void SetUp() override {
+#ifndef SEXTANT_MPI_BINARY
+    GTEST_SKIP() << "sextant-mpi was not built: MPI was not found";
+#endif
+  }
+
+  // A command of the shell in the place of a rank, whose number is in $OMPI_COMM_WORLD_RANK.
+  static ProgramRun Start(int ranks, const std::string& rank_command) {
+    const std::string shell = "sh -c " + Quoted(rank_command);
+    return RunProgram(
+        "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+        "OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_btl=self,vader "
+        "OMPI_MCA_btl_vader_single_copy_mechanism=none " +
+            Mpirun(),
+        "-n " + std::to_string(ranks) + " " + shell);
+  }
+
+  static ProgramRun Run(int ranks, const std::filesystem::path& experiment,
+                        const std::string& out) {
+    return Start(ranks, "exec " + Program() + " " + Unquoted(RunArguments(experiment, out)));
+  }
+
+  // Kills one of the ranks as soon as it has written two more blocks of its rows, or three.
+  static ProgramRun RunKilled(int ranks, int killed, const std::filesystem::path& experiment,
+                              const std::string& out) {
+    const std::string rows = (TestFolder() / out / "shard_").string() + std::to_string(killed + 1) +
+                             "_of_" + std::to_string(ranks) + ".sxtrows";
+    const std::string size = "$(stat -c %s " + rows + " 2>/dev/null || echo 0)";
+    return Start(ranks, "if [ $OMPI_COMM_WORLD_RANK = " + std::to_string(killed) +
+                            " ]; then enough=$((" + size +
+                            " + 20000)); (for i in $(seq 3000); do " + "[ " + size +
+                            " -gt $enough ] && kill -KILL $$ && break; sleep 0.01; done) " +
+                            ">/dev/null 2>&1 & fi; exec " + Program() + " " +
+                            Unquoted(RunArguments(experiment, out)));
+  }
+
+  // The test's folder has no blank in its name.
+  static std::string Unquoted(std::string arguments) {
+    std::erase(arguments, '\'');
+    return arguments;
+  }
+
+#ifdef SEXTANT_MPI_BINARY
+  static std::string Program() { return SEXTANT_MPI_BINARY; }
+  static std::string Mpirun() { return SEXTANT_MPIRUN; }
+#else
+  static std::string Program() { return {}; }
+  static std::string Mpirun() { return {}; }
+#endif
+};
+
+TEST_F(Mpi, SameBytesAsOneProcess) {
+  const std::filesystem::path experiment = WriteExperiment(450);
+  WholeRows(experiment);
+  for (const int ranks : {1, 2, 4}) {
+    const std::string out = "ranks" + std::to_string(ranks);
+    const ProgramRun run = Run(ranks, experiment, out);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("rms(rotation_deg,where=fine)"));
+    for (const char* name :
+         {"rows.sxtrows", "summary.json", "report.md", "tables.tex", "growth.svg"}) {
+      EXPECT_TRUE(ReadText(TestFolder() / out / name) == ReadText(TestFolder() / "whole" / name))
+          << name << " of " << ranks << " ranks";
+    }
+    EXPECT_FALSE(std::filesystem::exists(TestFolder() / out / "shard_1_of_2.sxtrows"));
+  }
+}
+
+TEST_F(Mpi, AKilledRankLosesWhatWasInFlight) {
+  const std::filesystem::path experiment = WriteExperiment(10000);
+  const std::string whole = WholeRows(experiment);
+  for (const int killed : {1, 0}) {
+    const ProgramRun run = RunKilled(2, killed, experiment, "out");
+    EXPECT_NE(run.exit_code, 0) << "it was done before it could be killed";
+  }
+  for (const char* rows : {"shard_1_of_2.sxtrows", "shard_2_of_2.sxtrows"}) {
+    EXPECT_GT(std::filesystem::file_size(TestFolder() / "out" / rows), 20000U) << rows;
+  }
+  const ProgramRun last = Run(2, experiment, "out");
+  ASSERT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_THAT(last.err, HasSubstr(" of 20000 trials were already in"));
+  EXPECT_TRUE(Rows("out") == whole);
+  EXPECT_THAT(Run(2, experiment, "out").err, HasSubstr("20000 of 20000 trials were already in"));
+}
+
+TEST_F(Mpi, AnyNumberOfRanksGoesOnWithTheRowsOfAnother) {
+  const std::filesystem::path experiment = WriteExperiment(10000);
+  const std::string whole = WholeRows(experiment);
+  ASSERT_EQ(RunProgram(SEXTANT_BINARY, RunArguments(experiment, "out") + " --shard 2/5").exit_code,
+            0);
+  EXPECT_NE(RunKilled(4, 3, experiment, "out").exit_code, 0);
+  EXPECT_NE(RunKilled(2, 1, experiment, "out").exit_code, 0);
+  const ProgramRun last = Run(3, experiment, "out");
+  ASSERT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_THAT(last.err, HasSubstr("trials were already in"));
+  EXPECT_TRUE(Rows("out") == whole);
+}
+
+// Somebody else has the file of the second rank.
+TEST_F(Mpi, WhatFailsOnOneRankIsToldAndEndsAll) {
+  const std::filesystem::path experiment = WriteExperiment(300);
+  std::filesystem::create_directories(TestFolder() / "out");
+  const std::string rank = "exec " + Program() + " " + Unquoted(RunArguments(experiment, "out"));
+  const ProgramRun run = Start(3, "if [ $OMPI_COMM_WORLD_RANK = 1 ]; then exec flock " +
+                                      (TestFolder() / "out" / "shard_2_of_3.sxtrows").string() +
+                                      " " + rank.substr(5) + "; else " + rank + "; fi");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("sextant run: rank 1 of 3 on "));
+  EXPECT_THAT(run.err, HasSubstr("is being written by another run"));
+  const ProgramRun again = Run(3, experiment, "out");
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(Rows("out") == WholeRows(experiment));
+}
+
+// A limit of the file's size stands for a full disk of one rank's machine.
+TEST_F(Mpi, AFullDiskOfOneRankLosesNothing) {
+  const std::filesystem::path experiment = WriteExperiment(2000);
+  const std::string rank = Program() + " " + Unquoted(RunArguments(experiment, "out"));
+  const ProgramRun full =
+      Start(2,
+            "if [ $OMPI_COMM_WORLD_RANK = 1 ]; then trap \"\" XFSZ; ulimit -f 48; fi; "
+            "OMPI_MCA_btl=self,tcp exec " +
+                rank);
+  EXPECT_EQ(full.exit_code, 2);
+  EXPECT_THAT(full.err, HasSubstr("make room and run the same command again"));
+  const ProgramRun again = Run(2, experiment, "out");
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr(" of 4000 trials were already in"));
+  EXPECT_TRUE(Rows("out") == WholeRows(experiment));
+}
+
+TEST_F(Mpi, AMistakeOfTheUserIsToldOnce) {
+  const ProgramRun no_file = Start(2, "exec " + Program() + " run nowhere.yaml");
+  EXPECT_EQ(no_file.exit_code, 2);
+  EXPECT_EQ(CountOf("cannot read 'nowhere.yaml'", no_file.err), 1) << no_file.err;
+  const ProgramRun no_option = Start(2, "exec " + Program() + " run x.yaml --shard 1/2");
+  EXPECT_EQ(no_option.exit_code, 2);
+  EXPECT_EQ(CountOf("--shard", no_option.err + no_option.out), 1) << no_option.err;
+}
+
+TEST_F(Mpi, TheSlurmJobStartsIt) {
+  const std::filesystem::path experiment = WriteExperiment(150);
+  const std::filesystem::path bin = TestFolder() / "bin";
+  std::filesystem::create_directories(bin);
+  // What Slurm's own does with these arguments on two nodes.
+  WriteText(bin / "srun",
+            "#!/bin/sh\n[ \"$1 $2\" = '--mpi=pmix --cpus-per-task=1' ] || exit 9\nshift 2\nexec " +
+                Mpirun() + " -n 2 \"$@\"\n");
+  std::filesystem::permissions(bin / "srun", std::filesystem::perms::owner_all);
+  const ProgramRun run = RunProgram(
+      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+      "OMPI_MCA_rmaps_base_oversubscribe=1 SLURM_CPUS_PER_TASK=1 SEXTANT_MPI=" +
+          Program() + " PATH=" + bin.string() + ":$PATH " +
+          (SourceRoot() / "scripts/slurm/mpi").string(),
+      Quoted(experiment) + " --no-csv --out " + Quoted(TestFolder() / "out"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Rows("out") == WholeRows(experiment));
+}
+
+TEST(SlurmArray, ItsShardsMergeToTheWhole) {
+  const std::filesystem::path experiment = WriteExperiment(450);
+  const std::string script = "SEXTANT=" SEXTANT_BINARY " SLURM_CPUS_PER_TASK=1 " +
+                             (SourceRoot() / "scripts/slurm/array").string();
+  const std::string arguments =
+      "3 " + Quoted(experiment) + " --no-csv --out " + Quoted(TestFolder() / "parts");
+  for (const char* task : {"3", "1", "2"}) {
+    const ProgramRun run =
+        RunProgram("SLURM_ARRAY_TASK_ID=" + std::string(task) + " " + script, arguments);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  const ProgramRun merge =
+      RunProgram(SEXTANT_BINARY,
+                 "merge " + Quoted(experiment) + " --no-csv " + (TestFolder() / "parts").string() +
+                     "/shard_*_of_3.sxtrows --out " + Quoted(TestFolder() / "parts"));
+  ASSERT_EQ(merge.exit_code, 0) << merge.err;
+  EXPECT_TRUE(Rows("parts") == WholeRows(experiment));
+  EXPECT_EQ(RunProgram(script, arguments).exit_code, 2) << "without a task there is no shard";
+}
+
+}  // namespace
+}  // namespace sextant::test
