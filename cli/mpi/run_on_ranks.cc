@@ -77,7 +77,8 @@ int ThreadsOf(const Ranks& ranks, const ExperimentOptions& options) {
 void TellPlan(const Plan& plan, const Ranks& ranks, int threads) {
   std::uint64_t held = 0;
   for (const std::uint64_t block : plan.held) held += TrialsOfBlock(plan.experiment, block);
-  fmt::print(stderr, "sextant-mpi run: {} ranks, {} threads on the first", ranks.count(), threads);
+  fmt::print(stderr, "sextant-mpi run: {} rank{}, {} thread{} on the first", ranks.count(),
+             ranks.count() == 1 ? "" : "s", threads, threads == 1 ? "" : "s");
   if (held > 0) {
     fmt::print(stderr, "; {} of {} trials were already in {}{}", held,
                plan.experiment.trials * plan.experiment.conditions.size(), plan.folder.string(),
