@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "features/camera/apriltag_family.h"
+#include "features/camera/contrast_regions.h"
 
 namespace sextant {
 namespace {
@@ -81,17 +82,34 @@ class AprilTagDetector final : public TagDetector {
  private:
   Detections DoDetect(const cv::Mat& grey) const override {
     std::unique_ptr<Engine> engine = Take();
-    const std::unique_ptr<zarray_t, void (*)(zarray_t*)> quads(engine->Detect(grey),
-                                                               apriltag_detections_destroy);
     Detections found;
-    for (int i = 0; i < zarray_size(quads.get()); ++i) {
-      apriltag_detection_t* tag = nullptr;
-      zarray_get(quads.get(), i, &tag);
-      if (tag->decision_margin >= options_.min_margin) found.tags.push_back(FromLibrary(*tag));
-    }
+    for (const cv::Rect& region : RegionsOf(grey)) DetectIn(*engine, grey, region, found);
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(engine));
     return found;
+  }
+
+  // Tiles of the reduced image must be where they would be in the whole one.
+  std::vector<cv::Rect> RegionsOf(const cv::Mat& grey) const {
+    const bool fits =
+        options_.decimate == 1.0 || options_.decimate == 2.0 || options_.decimate == 4.0;
+    if (fits && options_.blur_px == 0.0) return ContrastRegions(grey);
+    return {cv::Rect(0, 0, grey.cols, grey.rows)};
+  }
+
+  void DetectIn(Engine& engine, const cv::Mat& grey, const cv::Rect& region,
+                Detections& found) const {
+    const std::unique_ptr<zarray_t, void (*)(zarray_t*)> quads(engine.Detect(grey(region)),
+                                                               apriltag_detections_destroy);
+    for (int i = 0; i < zarray_size(quads.get()); ++i) {
+      apriltag_detection_t* tag = nullptr;
+      zarray_get(quads.get(), i, &tag);
+      if (tag->decision_margin < options_.min_margin) continue;
+      found.tags.push_back(FromLibrary(*tag));
+      for (Eigen::Vector2d& corner : found.tags.back().corners_px) {
+        corner += Eigen::Vector2d(region.x, region.y);
+      }
+    }
   }
 
   std::unique_ptr<Engine> Take() const {

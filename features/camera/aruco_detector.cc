@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/camera/aruco_detector.h"
 
+#include <algorithm>
 #include <opencv2/aruco.hpp>
 
 #include "features/camera/aruco_dictionary.h"
+#include "features/camera/contrast_regions.h"
 #include "features/camera/tag_reading.h"
 
 namespace sextant {
@@ -85,13 +87,27 @@ class ArucoDetector final : public TagDetector {
 
  private:
   Detections DoDetect(const cv::Mat& grey) const override {
+    Detections found;
+    for (const cv::Rect& region : ContrastRegions(grey)) DetectIn(grey, region, found);
+    return found;
+  }
+
+  void DetectIn(const cv::Mat& grey, const cv::Rect& region, Detections& found) const {
+    // Perimeters are told in sides of the image.
+    const double sides =
+        static_cast<double>(std::max(grey.cols, grey.rows)) / std::max(region.width, region.height);
+    const auto parameters = cv::makePtr<cv::aruco::DetectorParameters>(*parameters_);
+    parameters->minMarkerPerimeterRate *= sides;
+    parameters->maxMarkerPerimeterRate *= sides;
     std::vector<std::vector<cv::Point2f>> corners;
     std::vector<int> ids;
-    cv::aruco::detectMarkers(grey, dictionary_, corners, ids, parameters_);
-    Detections found;
+    cv::aruco::detectMarkers(grey(region), dictionary_, corners, ids, parameters);
+    const Eigen::Vector2d origin(region.x, region.y);
     for (std::size_t i = 0; i < ids.size(); ++i) {
       Quad quad;
-      for (std::size_t k = 0; k < 4; ++k) quad[k] = {corners[i][k].x, corners[i][k].y};
+      for (std::size_t k = 0; k < 4; ++k) {
+        quad[k] = origin + Eigen::Vector2d(corners[i][k].x, corners[i][k].y);
+      }
       quad = Normalised(quad, refine_);
       const TagReading reading = ReadTag(grey, quad, MakeArucoPattern(*dictionary_, ids[i]));
       found.tags.push_back({.family = family_,
@@ -100,7 +116,6 @@ class ArucoDetector final : public TagDetector {
                             .decision_margin = reading.margin,
                             .hamming = reading.wrong_cells});
     }
-    return found;
   }
 
   std::string family_;

@@ -5,6 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "base/lanes.h"
 
 namespace sextant {
 namespace {
@@ -67,7 +71,10 @@ class Collector {
     }
   }
 
-  std::vector<EdgePixel> Take() { return std::move(pixels_); }
+  EdgePixels Take() {
+    while (last_ && pixels_.x.size() % kLanes != 0) Add(*last_, pixels_.grey.back());
+    return std::move(pixels_);
+  }
 
  private:
   void Consider(const Eigen::Vector2i& pixel, std::size_t edge) {
@@ -91,12 +98,24 @@ class Collector {
         return;
       }
     }
-    const std::optional<Undistortion::Point> straight = undistortion_.Straighten(at);
+    const std::optional<Undistortion::Point> straight =
+        last_ ? undistortion_.StraightenNear(at, last_px_, *last_) : undistortion_.Straighten(at);
     if (!straight) return;
-    pixels_.push_back({.straight_px = straight->straight_px,
-                       .straight_by_pixel = straight->straight_by_pixel,
-                       .grey = static_cast<double>(grey_.at<std::uint8_t>(pixel.y(), pixel.x())),
-                       .edge = static_cast<int>(edge)});
+    last_ = straight;
+    last_px_ = at;
+    Add(*straight, static_cast<double>(grey_.at<std::uint8_t>(pixel.y(), pixel.x())));
+    ++pixels_.count;
+    ++pixels_.on_edge[edge];
+  }
+
+  void Add(const Undistortion::Point& straight, double grey) {
+    pixels_.x.push_back(straight.straight_px.x());
+    pixels_.y.push_back(straight.straight_px.y());
+    pixels_.x_by_u.push_back(straight.straight_by_pixel(0, 0));
+    pixels_.x_by_v.push_back(straight.straight_by_pixel(0, 1));
+    pixels_.y_by_u.push_back(straight.straight_by_pixel(1, 0));
+    pixels_.y_by_v.push_back(straight.straight_by_pixel(1, 1));
+    pixels_.grey.push_back(grey);
   }
 
   double Outward(const Eigen::Vector2d& at, std::size_t edge) const {
@@ -108,15 +127,15 @@ class Collector {
   std::array<Band, 4> bands_;
   const Undistortion& undistortion_;
   const EdgeRefineOptions& options_;
-  std::vector<EdgePixel> pixels_;
+  EdgePixels pixels_;
+  std::optional<Undistortion::Point> last_;  // Its neighbour's straight place is near to it.
+  Eigen::Vector2d last_px_ = Eigen::Vector2d::Zero();
 };
 
 }  // namespace
 
-std::vector<EdgePixel> CollectEdgePixels(const cv::Mat& grey, const Quad& corners_px,
-                                         const TagPattern& pattern,
-                                         const Undistortion& undistortion,
-                                         const EdgeRefineOptions& options) {
+EdgePixels CollectEdgePixels(const cv::Mat& grey, const Quad& corners_px, const TagPattern& pattern,
+                             const Undistortion& undistortion, const EdgeRefineOptions& options) {
   Collector collector(grey, corners_px, pattern, undistortion, options);
   for (std::size_t edge = 0; edge < 4; ++edge) collector.CollectEdge(edge);
   return collector.Take();

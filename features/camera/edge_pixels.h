@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
@@ -8,18 +10,19 @@
 
 namespace sextant {
 
-/// A pixel near an edge of a tag.
-struct EdgePixel {
-  Eigen::Vector2d straight_px;        ///< Where it is in the undistorted image.
-  Eigen::Matrix2d straight_by_pixel;  ///< Maps the blur there.
-  double grey = 0.0;
-  int edge = 0;  ///< From corner `edge` to the next.
+/// Pixels near the edges of a tag, structure of arrays, filled up with copies of the last to a
+/// multiple of kLanes.
+struct EdgePixels {
+  std::vector<double> x, y;            ///< Where they are in the undistorted image [px].
+  std::vector<double> x_by_u, x_by_v;  ///< Derivatives by the pixel: they map the blur there.
+  std::vector<double> y_by_u, y_by_v;
+  std::vector<double> grey;
+  Eigen::Index count = 0;        ///< Without the copies.
+  std::array<int, 4> on_edge{};  ///< How many are nearest to the edge from corner i to the next.
 };
 
 /// The pixels that RefineTag looks at, each once, for a tag with these corners.
-std::vector<EdgePixel> CollectEdgePixels(const cv::Mat& grey, const Quad& corners_px,
-                                         const TagPattern& pattern,
-                                         const Undistortion& undistortion,
-                                         const EdgeRefineOptions& options);
+EdgePixels CollectEdgePixels(const cv::Mat& grey, const Quad& corners_px, const TagPattern& pattern,
+                             const Undistortion& undistortion, const EdgeRefineOptions& options);
 
 }  // namespace sextant

@@ -8,22 +8,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <utility>
 
-#include "features/camera/blurred_pattern.h"
 #include "features/camera/edge_pixels.h"
+#include "features/camera/tag_model.h"
 
 namespace sextant {
 namespace {
-
-// Unknowns: 8 of the homography, the logarithm of the blur, then light: gain and offset, each
-// constant, by x and by y.
-constexpr int kBlur = 8;
-constexpr int kGain = 9;
-constexpr int kOffset = 12;
-constexpr int kUnknowns = 15;
-using Row = Eigen::Matrix<double, kUnknowns, 1>;
-using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
 constexpr double kHuber = 2.5;
 constexpr double kFirstBlur_px = 1.0;   ///< Wide, so that a start far off still feels the edges.
@@ -33,16 +24,9 @@ constexpr double kLeastContrast = 5.0;
 constexpr double kLastStep = 5e-5;  ///< Of the homography, in half sides of the tag.
 constexpr double kStalledStep =
     1e-4;  ///< Of a minimum that only rounding and the blur's derivative hide.
+constexpr double kFirstLook = 2e-3;  ///< A step that tells whether the pixels fit.
 constexpr double kPixelsStillFit_px = 0.7;
 constexpr int kLeastPixelsAnEdge = 6;
-
-// The tag's square is [-1, 1]^2 here, which keeps the normal matrix well scaled.
-struct State {
-  Eigen::Matrix3d tag_from_straight;
-  double blur_px = kFirstBlur_px;
-  Eigen::Vector3d gain = Eigen::Vector3d::Zero();
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-};
 
 constexpr double kSquareX[] = {-1.0, 1.0, 1.0, -1.0};
 constexpr double kSquareY[] = {-1.0, -1.0, 1.0, 1.0};
@@ -66,77 +50,46 @@ Eigen::Matrix2d ByPoint(const Eigen::Matrix3d& matrix, const Eigen::Vector2d& po
 
 class Fit {
  public:
-  Fit(const TagPattern& pattern, const std::vector<EdgePixel>& pixels, State start)
-      : pattern_(pattern), pixels_(pixels), state_(std::move(start)) {}
-
-  // Residual and derivative of one pixel. Everything is linear in the light.
-  double Residual(const State& state, const EdgePixel& pixel, Row* row) const {
-    const Eigen::Vector2d tag =
-        (state.tag_from_straight * pixel.straight_px.homogeneous()).hnormalized();
-    const Eigen::Matrix2d tag_by_pixel =
-        ByPoint(state.tag_from_straight, pixel.straight_px) * pixel.straight_by_pixel;
-    const double cells_a_unit = 0.5 * pattern_.edge_cells;
-    const Eigen::Vector2d cells =
-        (tag.array() + 1.0) * cells_a_unit + static_cast<double>(pattern_.edge_first);
-    const Eigen::Vector2d blur_cells = state.blur_px * cells_a_unit * tag_by_pixel.rowwise().norm();
-    const double correlation =
-        tag_by_pixel.row(0).normalized().dot(tag_by_pixel.row(1).normalized());
-    const BlurredCell cell = BlurAt(pattern_, cells, blur_cells, correlation);
-    const Eigen::Vector3d place(1.0, tag.x(), tag.y());
-    const double gain = state.gain.dot(place);
-    if (row != nullptr) {
-      const Eigen::Vector2d by_tag = gain * cells_a_unit * cell.by_point;
-      row->head<8>() = ByHomography(tag).transpose() * by_tag;
-      (*row)[kBlur] = gain * cell.by_relative_blur;
-      row->segment<3>(kGain) = cell.white * place;
-      row->segment<3>(kOffset) = place;
-    }
-    return pixel.grey - (gain * cell.white + state.offset.dot(place));
-  }
+  Fit(const TagPattern& pattern, const EdgePixels& pixels, TagState start)
+      : model_(pattern, pixels), next_(model_), state_(std::move(start)) {}
 
   // Gain and offset alone, by linear least squares.
   void FitLight() {
-    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Identity() * 1e-6;
-    Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
-    State dark = state_;
-    dark.gain.setZero();
-    dark.offset.setZero();
-    Row row;
-    for (const EdgePixel& pixel : pixels_) {
-      const double grey = Residual(dark, pixel, &row);
-      normal += row.tail<6>() * row.tail<6>().transpose();
-      right += row.tail<6>() * grey;
-    }
-    const Eigen::Matrix<double, 6, 1> light = normal.ldlt().solve(right);
+    state_.gain.setZero();
+    state_.offset.setZero();
+    model_.Evaluate(state_);
+    model_.Linearise(HUGE_VAL, normal_, right_);
+    normal_.diagonal().array() += 1e-6;
+    const Eigen::Matrix<double, 6, 1> light =
+        normal_.bottomRightCorner<6, 6>().ldlt().solve(right_.tail<6>());
     state_.gain = light.head<3>();
     state_.offset = light.tail<3>();
   }
 
-  // True once no step is left to take.
-  bool Minimise(int max_iterations) {
+  // True once no step as large as last_step is left to take.
+  bool Minimise(int max_iterations, double last_step) {
     double damping = 1e-4;
-    Evaluate(state_, residuals_, rows_);
+    model_.Evaluate(state_);
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
       const double scale = Scale();
-      Linearise(scale);
-      const double before = Cost(residuals_, scale);
+      model_.Linearise(kHuber * scale, normal_, right_);
+      const double before = Cost(model_.residuals(), scale);
       double size = 0.0;
       bool fell = false;
       for (; damping < 1e8 && !fell; damping *= fell ? 0.1 : 10.0) {
-        Normal damped = normal_;
+        TagNormal damped = normal_;
         damped.diagonal() *= 1.0 + damping;
-        const Row step = damped.ldlt().solve(right_);
+        const TagRow step = damped.ldlt().solve(right_);
         if (!step.allFinite()) return false;
         size = step.head<8>().cwiseAbs().maxCoeff();
-        const State next = Moved(state_, step);
-        Evaluate(next, next_residuals_, next_rows_);
-        fell = Cost(next_residuals_, scale) < before;
+        const TagState moved = Moved(state_, step);
+        next_.Evaluate(moved);
+        fell = Cost(next_.residuals(), scale) < before;
         if (fell) {
-          state_ = next;
-          residuals_.swap(next_residuals_);
-          rows_.swap(next_rows_);
+          state_ = moved;
+          std::swap(model_, next_);
         }
-        if (size < kLastStep) return true;
+        if (size < last_step) return true;
       }
       if (!fell) return size < kStalledStep;
       damping = std::max(damping, 1e-9);
@@ -147,73 +100,51 @@ class Fit {
   // Of the homography's 8, all else estimated too; to be called at the minimum.
   Matrix8d Covariance(double* noise) {
     const double scale = Scale();
-    Linearise(scale);
-    const double squares = residuals_.cwiseAbs().cwiseMin(kHuber * scale).squaredNorm();
-    const double variance = squares / static_cast<double>(residuals_.size() - kUnknowns);
+    model_.Linearise(kHuber * scale, normal_, right_);
+    const Eigen::VectorXd& residuals = model_.residuals();
+    const double squares = residuals.cwiseAbs().cwiseMin(kHuber * scale).squaredNorm();
+    const double variance = squares / static_cast<double>(residuals.size() - kTagUnknowns);
     *noise = std::sqrt(variance);
-    return variance * normal_.ldlt().solve(Normal::Identity()).eval().topLeftCorner<8, 8>();
+    return variance * normal_.ldlt().solve(TagNormal::Identity()).eval().topLeftCorner<8, 8>();
   }
 
-  const State& state() const { return state_; }
+  const TagState& state() const { return state_; }
 
  private:
-  using Rows = Eigen::Matrix<double, kUnknowns, Eigen::Dynamic>;
-
-  void Evaluate(const State& state, Eigen::VectorXd& residuals, Rows& rows) const {
-    residuals.resize(std::ssize(pixels_));
-    rows.resize(Eigen::NoChange, std::ssize(pixels_));
-    Row row;
-    for (Eigen::Index i = 0; i < residuals.size(); ++i) {
-      residuals[i] = Residual(state, pixels_[static_cast<std::size_t>(i)], &row);
-      rows.col(i) = row;
-    }
-  }
-
   static double Cost(const Eigen::VectorXd& residuals, double scale) {
     const Eigen::ArrayXd size = residuals.array().abs() / scale;
     return (size < kHuber).select(0.5 * size.square(), kHuber * (size - 0.5 * kHuber)).sum();
   }
 
   // Robust standard deviation of the residuals.
-  double Scale() const {
-    Eigen::VectorXd sizes = residuals_.cwiseAbs();
-    const auto middle = sizes.begin() + sizes.size() / 2;
-    std::nth_element(sizes.begin(), middle, sizes.end());
+  double Scale() {
+    sizes_ = model_.residuals().cwiseAbs();
+    const auto middle = sizes_.begin() + sizes_.size() / 2;
+    std::nth_element(sizes_.begin(), middle, sizes_.end());
     constexpr double kLeast = 0.3;  // Rounding to whole grey levels alone.
     return std::max(1.4826 * *middle, kLeast);
   }
 
-  void Linearise(double scale) {
-    const Eigen::VectorXd weights = (kHuber * scale / residuals_.array().abs().max(1e-12)).min(1.0);
-    weighted_ = rows_ * weights.asDiagonal();
-    normal_.noalias() = weighted_ * rows_.transpose();
-    right_.noalias() = weighted_ * residuals_;
-  }
-
-  static State Moved(const State& state, const Row& step) {
+  static TagState Moved(const TagState& state, const TagRow& step) {
     Eigen::Matrix3d change = Eigen::Matrix3d::Identity();
     change.row(0) += step.segment<3>(0).transpose();
     change.row(1) += step.segment<3>(3).transpose();
     change.block<1, 2>(2, 0) += step.segment<2>(6).transpose();
-    State moved = state;
+    TagState moved = state;
     moved.tag_from_straight = change * state.tag_from_straight;
-    moved.blur_px = std::clamp(state.blur_px * std::exp(std::clamp(step[kBlur], -0.5, 0.5)),
+    moved.blur_px = std::clamp(state.blur_px * std::exp(std::clamp(step[kTagBlur], -0.5, 0.5)),
                                kLeastBlur_px, kMostBlur_px);
-    moved.gain += step.segment<3>(kGain);
-    moved.offset += step.segment<3>(kOffset);
+    moved.gain += step.segment<3>(kTagGain);
+    moved.offset += step.segment<3>(kTagOffset);
     return moved;
   }
 
-  const TagPattern& pattern_;
-  const std::vector<EdgePixel>& pixels_;
-  State state_;
-  Eigen::VectorXd residuals_;
-  Eigen::VectorXd next_residuals_;
-  Rows rows_;
-  Rows next_rows_;
-  Rows weighted_;
-  Normal normal_ = Normal::Zero();
-  Row right_ = Row::Zero();
+  TagModel model_;
+  TagModel next_;  // Where a step leads.
+  TagState state_;
+  Eigen::VectorXd sizes_;
+  TagNormal normal_ = TagNormal::Zero();
+  TagRow right_ = TagRow::Zero();
 };
 
 std::optional<Eigen::Matrix3d> TagFromStraight(const Quad& corners_px,
@@ -232,7 +163,7 @@ std::optional<Eigen::Matrix3d> TagFromStraight(const Quad& corners_px,
 }
 
 // The corners of the tag's square in the image, and their derivative by the homography's 8.
-bool CornersOf(const State& state, const Undistortion& undistortion, Quad& corners_px,
+bool CornersOf(const TagState& state, const Undistortion& undistortion, Quad& corners_px,
                Matrix8d& by_homography) {
   const Eigen::Matrix3d straight_from_tag = state.tag_from_straight.inverse();
   for (std::size_t k = 0; k < 4; ++k) {
@@ -246,15 +177,13 @@ bool CornersOf(const State& state, const Undistortion& undistortion, Quad& corne
   return true;
 }
 
-Expected<void> CheckPixels(const std::vector<EdgePixel>& pixels) {
-  std::array<int, 4> on_edge{};
-  for (const EdgePixel& pixel : pixels) ++on_edge[static_cast<std::size_t>(pixel.edge)];
+Expected<void> CheckPixels(const EdgePixels& pixels) {
   for (std::size_t edge = 0; edge < 4; ++edge) {
-    if (on_edge[edge] < kLeastPixelsAnEdge) {
+    if (pixels.on_edge[edge] < kLeastPixelsAnEdge) {
       return MakeError(ErrorCode::kDegenerate,
                        fmt::format("edge {} of the tag has {} pixels to look at, expected {} or "
                                    "more: it is too small, or cut by the image's border",
-                                   edge, on_edge[edge], kLeastPixelsAnEdge));
+                                   edge, pixels.on_edge[edge], kLeastPixelsAnEdge));
     }
   }
   return {};
@@ -272,32 +201,40 @@ Expected<RefinedTag> RefineTag(const cv::Mat& grey, const Quad& start, const Tag
                                const Undistortion& undistortion, const EdgeRefineOptions& options) {
   RefinedTag refined{.corners_px = start};
   Matrix8d by_homography;
-  State state;
+  TagState state{.blur_px = kFirstBlur_px};
   // A start that was off chose pixels that are off too: these are chosen again, once.
-  for (int pass = 0; pass < 2; ++pass) {
+  for (const bool is_last : {false, true}) {
     const auto homography = TagFromStraight(refined.corners_px, undistortion);
     if (!homography) {
       return MakeError(ErrorCode::kDegenerate,
                        "the tag's corners are no convex quadrilateral within the lens model");
     }
-    const std::vector<EdgePixel> pixels =
+    const EdgePixels pixels =
         CollectEdgePixels(grey, refined.corners_px, pattern, undistortion, options);
     if (Expected<void> ok = CheckPixels(pixels); !ok) return tl::unexpected<Error>(ok.error());
     state.tag_from_straight = *homography;
+    const Quad before = refined.corners_px;
     Fit fit(pattern, pixels, state);
     fit.FitLight();
-    const bool converged = fit.Minimise(options.max_iterations);
+    bool converged = fit.Minimise(options.max_iterations, is_last ? kLastStep : kFirstLook);
+    bool is_in_domain = CornersOf(fit.state(), undistortion, refined.corners_px, by_homography);
+    if (!is_last && LargestMove(refined.corners_px, before) < kPixelsStillFit_px) {
+      converged = fit.Minimise(options.max_iterations, kLastStep);
+      is_in_domain = CornersOf(fit.state(), undistortion, refined.corners_px, by_homography);
+    }
     state = fit.state();
-    const Quad before = refined.corners_px;
-    if (!CornersOf(state, undistortion, refined.corners_px, by_homography) ||
-        LargestMove(refined.corners_px, start) > options.max_move_px || (pass == 1 && !converged)) {
+    if (!is_in_domain || LargestMove(refined.corners_px, start) > options.max_move_px ||
+        (is_last && !converged)) {
       return MakeError(ErrorCode::kNoConvergence,
                        fmt::format("no edges within {} px of the tag's corners fit its pattern",
                                    options.max_move_px));
     }
+    if (!is_last && (!converged || LargestMove(refined.corners_px, before) > kPixelsStillFit_px)) {
+      continue;
+    }
     refined.covariance_px2 =
         by_homography * fit.Covariance(&refined.noise_grey) * by_homography.transpose();
-    if (converged && LargestMove(refined.corners_px, before) < kPixelsStillFit_px) break;
+    break;
   }
   refined.blur_px = state.blur_px;
   refined.contrast_grey = state.gain.x();

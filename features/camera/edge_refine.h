@@ -33,7 +33,7 @@ struct RefinedTag {
 ///
 /// Least squares over the grey levels I(p) = g(p) w(h(p)) + o(p): h the homography from the
 /// undistorted image to the tag's cells, so that edges are straight there and meet in its corners;
-/// w the printed cells through a Gaussian blur (blurred_pattern.h), which tells the steps of
+/// w the printed cells through a Gaussian blur (tag_model.h), which tells the steps of
 /// neighbouring cells apart where a cell is only a pixel or two wide; g and o planes, for uneven
 /// light. 15 unknowns: 8 of h, the blur, 3 + 3 of g and o. Levenberg-Marquardt with Huber weights
 /// (Huber 1964) at 2.5 robust standard deviations. The covariance is the residual variance times

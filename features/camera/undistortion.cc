@@ -24,6 +24,26 @@ std::optional<Undistortion::Point> Undistortion::Straighten(const Eigen::Vector2
                                     focal.cwiseInverse().asDiagonal()};
 }
 
+std::optional<Undistortion::Point> Undistortion::StraightenNear(const Eigen::Vector2d& pixel,
+                                                                const Eigen::Vector2d& near_px,
+                                                                const Point& near) const {
+  if (!camera_ || camera_->model == CameraModel::kPinhole) return Straighten(pixel);
+  // A Newton step of s leaves s^2 times half the lens's curvature, at most 0.01 a px.
+  constexpr double kShortStep_px = 0.1;
+  constexpr int kMostSteps = 3;
+  Point point{.straight_px = near.straight_px + near.straight_by_pixel * (pixel - near_px),
+              .straight_by_pixel = near.straight_by_pixel};
+  for (int i = 0; i < kMostSteps; ++i) {
+    const std::optional<Bent> bent = Bend(point.straight_px);
+    if (!bent) break;
+    point.straight_by_pixel = bent->pixel_by_straight.inverse();
+    const Eigen::Vector2d step = point.straight_by_pixel * (pixel - bent->pixel);
+    point.straight_px += step;
+    if (step.squaredNorm() < kShortStep_px * kShortStep_px) return point;
+  }
+  return Straighten(pixel);
+}
+
 std::optional<Undistortion::Bent> Undistortion::Bend(const Eigen::Vector2d& straight_px) const {
   if (!camera_ || camera_->model == CameraModel::kPinhole) {
     return Bent{.pixel = straight_px, .pixel_by_straight = Eigen::Matrix2d::Identity()};

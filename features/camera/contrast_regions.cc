@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/camera/contrast_regions.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <opencv2/imgproc.hpp>
+
+namespace sextant {
+namespace {
+
+constexpr int kReduction = 4;
+constexpr int kTile = 4;  ///< Reduced pixels.
+constexpr int kTile_px = kReduction * kTile;
+constexpr int kLeastSide_px = 160;
+constexpr double kMostShare = 0.7;  ///< Of the image: a detector's call for each region costs too.
+
+// Least and largest of the reduced image within each tile and the tiles round it.
+cv::Mat RangesOfTiles(const cv::Mat& grey) {
+  cv::Mat reduced;
+  cv::resize(grey(cv::Rect(0, 0, grey.cols / kReduction * kReduction,
+                           grey.rows / kReduction * kReduction)),
+             reduced, {grey.cols / kReduction, grey.rows / kReduction}, 0.0, 0.0, cv::INTER_AREA);
+  const int columns = (reduced.cols + kTile - 1) / kTile;
+  const int rows = (reduced.rows + kTile - 1) / kTile;
+  cv::Mat least(rows, columns, CV_8U, cv::Scalar(255));
+  cv::Mat most(rows, columns, CV_8U, cv::Scalar(0));
+  for (int y = 0; y < reduced.rows; ++y) {
+    const std::uint8_t* row = reduced.ptr<std::uint8_t>(y);
+    std::uint8_t* low = least.ptr<std::uint8_t>(y / kTile);
+    std::uint8_t* high = most.ptr<std::uint8_t>(y / kTile);
+    for (int x = 0; x < reduced.cols; ++x) {
+      low[x / kTile] = std::min(low[x / kTile], row[x]);
+      high[x / kTile] = std::max(high[x / kTile], row[x]);
+    }
+  }
+  cv::erode(least, least, {});
+  cv::dilate(most, most, {});
+  return most - least;
+}
+
+// In tiles: what differs, and round it what a tag as large as that has for a margin.
+std::vector<cv::Rect> BoundsOfParts(const cv::Mat& ranges) {
+  constexpr int kSidesAMargin = 8;
+  cv::Mat labels;
+  cv::Mat stats;
+  cv::Mat middles;
+  const int count =
+      cv::connectedComponentsWithStats(ranges >= kTagContrast, labels, stats, middles);
+  std::vector<cv::Rect> bounds;
+  for (int i = 1; i < count; ++i) {
+    const cv::Rect part(stats.at<int>(i, cv::CC_STAT_LEFT), stats.at<int>(i, cv::CC_STAT_TOP),
+                        stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT));
+    const int margin = 1 + std::max(part.width, part.height) / kSidesAMargin;
+    bounds.push_back(part + cv::Size(2 * margin, 2 * margin) - cv::Point(margin, margin));
+  }
+  return bounds;
+}
+
+// Rectangles that overlap become one that holds both, until none do.
+void Merge(std::vector<cv::Rect>& rectangles) {
+  for (std::size_t i = 0; i < rectangles.size();) {
+    const auto overlaps = [&](const cv::Rect& other) { return (rectangles[i] & other).area() > 0; };
+    const auto other = std::find_if(rectangles.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                                    rectangles.end(), overlaps);
+    if (other == rectangles.end()) {
+      ++i;
+      continue;
+    }
+    rectangles[i] |= *other;
+    rectangles.erase(other);
+    i = 0;
+  }
+}
+
+}  // namespace
+
+std::vector<cv::Rect> ContrastRegions(const cv::Mat& grey) {
+  const cv::Rect whole(0, 0, grey.cols, grey.rows);
+  if (std::min(grey.cols, grey.rows) < kLeastSide_px) return {whole};
+  std::vector<cv::Rect> regions = BoundsOfParts(RangesOfTiles(grey));
+  Merge(regions);
+  double area = 0.0;
+  for (cv::Rect& region : regions) {
+    region = cv::Rect(region.x * kTile_px, region.y * kTile_px, region.width * kTile_px,
+                      region.height * kTile_px);
+    // The last tiles may be cut off by the reduction.
+    if (region.br().x + kTile_px > grey.cols) region.width = grey.cols - region.x;
+    if (region.br().y + kTile_px > grey.rows) region.height = grey.rows - region.y;
+    region &= whole;
+    area += region.area();
+  }
+  if (area > kMostShare * whole.area()) return {whole};
+  return regions;
+}
+
+}  // namespace sextant
