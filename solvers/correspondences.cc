@@ -29,20 +29,8 @@ Expected<Correspondences> PrepareCorrespondences(std::span<const Eigen::Vector2d
 
 ImageFit FitOf(const Correspondences& data, const Eigen::Matrix3d& rotation,
                const Eigen::Vector3d& centroid_in_cam) {
-  ImageFit fit;
-  const Eigen::Vector3d translation = centroid_in_cam - rotation * data.frame.centroid;
-  for (std::size_t i = 0; i < data.points.size(); ++i) {
-    const Eigen::Vector3d in_cam = rotation * data.points[i] + translation;
-    if (!(in_cam.z() > 0.0)) {
-      ++fit.behind;
-      continue;
-    }
-    const double inverse = 1.0 / in_cam.z();
-    const double du = in_cam.x() * inverse - data.image_points[i].x();
-    const double dv = in_cam.y() * inverse - data.image_points[i].y();
-    fit.sum_squares += du * du + dv * dv;
-  }
-  return fit;
+  return FitOf(data.image_points, data.points, rotation,
+               centroid_in_cam - rotation * data.frame.centroid);
 }
 
 void PolishIfExact(const Correspondences& data, const ImageFit& fit, Eigen::Matrix3d& rotation,

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "geometry/rigid3d.h"
+#include "solvers/cloud_sums.h"
 #include "solvers/image_moments.h"
 #include "solvers/p3p.h"
 #include "solvers/point_cloud_frame.h"
@@ -37,10 +38,6 @@ Expected<Correspondences> PrepareCorrespondences(std::span<const Eigen::Vector2d
                                                  std::size_t min_points);
 
 /// How a rotation with the centroid in the camera frame explains the image.
-struct ImageFit {
-  std::size_t behind = 0;    ///< Points behind the camera.
-  double sum_squares = 0.0;  ///< Of the image plane's residuals of the points in front.
-};
 ImageFit FitOf(const Correspondences& data, const Eigen::Matrix3d& rotation,
                const Eigen::Vector3d& centroid_in_cam);
 

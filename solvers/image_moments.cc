@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "solvers/cloud_sums.h"
+
 namespace sextant {
 namespace {
 
@@ -28,28 +30,12 @@ Expected<ImageMoments> ComputeImageMoments(std::span<const Eigen::Vector2d> imag
                                            const PointCloudFrame& frame) {
   ImageMoments moments;
   const auto count = static_cast<double>(points.size());
-  for (const Eigen::Vector2d& image_point : image_points) moments.mean += image_point;
-  moments.mean /= count;
-  const Eigen::Matrix3d to_axes = frame.axes.transpose();
-  Triangle sum_u{};
-  Triangle sum_v{};
-  Triangle sum_w{};
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d h = to_axes * (points[i] - frame.centroid);
-    const Eigen::Vector2d uv = image_points[i] - moments.mean;
-    const double squares = uv.squaredNorm();
-    const Triangle products = {1.0,           h.x(),         h.y(),         h.z(),
-                               h.x() * h.x(), h.x() * h.y(), h.x() * h.z(), h.y() * h.y(),
-                               h.y() * h.z(), h.z() * h.z()};
-    for (std::size_t k = 0; k < products.size(); ++k) {
-      sum_u[k] += uv.x() * products[k];
-      sum_v[k] += uv.y() * products[k];
-      sum_w[k] += squares * products[k];
-    }
-  }
-  moments.u = Mean(sum_u, count);
-  moments.v = Mean(sum_v, count);
-  moments.w = Mean(sum_w, count);
+  moments.mean = MeanOf(image_points);
+  const MomentSums sums =
+      SumMoments(image_points, moments.mean, points, frame.centroid, frame.axes);
+  moments.u = Mean(sums.u, count);
+  moments.v = Mean(sums.v, count);
+  moments.w = Mean(sums.w, count);
   if (!(moments.Spread() > kMinSpread)) {
     return MakeError(ErrorCode::kDegenerate,
                      "all pixels coincide: the points are too far away, or their pixels are wrong");

@@ -42,15 +42,25 @@ NullDirection FindNullDirection(const Eigen::Matrix3d& q) {
 // Whether points of a plane fix a homography. Three of four on a line, or a point twice, do not,
 // but noise of the pixels hides it: so the points are taken for their own image, where the
 // homography is the identity and its other candidates show in the upper left.
-template <class Coordinates>
-bool FixHomography(std::size_t count, const Coordinates& coordinates) {
+bool FixHomography(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& centroid,
+                   const Eigen::Matrix<double, 2, 3>& unit_from_points) {
   constexpr double kMinRelativeGap = 1e-12;
-  const Moments own(
-      count, [&](std::size_t i) -> Eigen::Vector2d { return coordinates(i).template head<2>(); },
-      coordinates);
-  const Eigen::Matrix3d reduced = own.Reduced();
+  constexpr double kLeastReduced = 1e-6;
+  Eigen::Matrix3d u = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d v = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : points) {
+    const Eigen::Vector3d a = (unit_from_points * (p - centroid)).homogeneous();
+    const Eigen::Matrix3d outer = a * a.transpose();
+    u += a.x() * outer;
+    v += a.y() * outer;
+    square += (a.x() * a.x() + a.y() * a.y()) * outer;
+  }
+  const Eigen::Matrix3d reduced = square - (u * u + v * v) / static_cast<double>(points.size());
   const double determinant = reduced(0, 0) * reduced(1, 1) - reduced(0, 1) * reduced(1, 0);
-  return determinant > kMinRelativeGap * reduced.trace() * reduced.trace();
+  // What three points leave is rounding throughout.
+  const double size = std::max(reduced.trace(), kLeastReduced * square.trace());
+  return determinant > kMinRelativeGap * size * size;
 }
 
 // The two rotations of the plane z = 0 whose image at the plane's origin has value (h02, h12) / h22
@@ -201,14 +211,9 @@ class AlgebraicError {
 // Infinite where a point is behind the camera.
 double SumSquares(const Rigid3d& pose, std::span<const Eigen::Vector2d> image_points,
                   std::span<const Eigen::Vector3d> points) {
-  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
-  double sum = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d q = rotation * points[i] + pose.translation;
-    if (!(q.z() > 0.0)) return std::numeric_limits<double>::infinity();
-    sum += (image_points[i] - q.head<2>() / q.z()).squaredNorm();
-  }
-  return sum;
+  const ImageFit fit =
+      FitOf(image_points, points, pose.rotation.toRotationMatrix(), pose.translation);
+  return fit.behind > 0 ? std::numeric_limits<double>::infinity() : fit.sum_squares;
 }
 
 // Adds a pose in front of the camera. Where there is one minimum both starts end in it, and the
@@ -240,16 +245,16 @@ Expected<IppeFit> SolveIppe(std::span<const Eigen::Vector2d> image_points,
   const Eigen::Vector2d extent = frame->deviation.head<2>();
   const Eigen::Matrix<double, 2, 3> unit_from_lidar =
       extent.cwiseInverse().asDiagonal() * frame->axes.leftCols<2>().transpose();
-  const auto coordinates = [&](std::size_t i) -> Eigen::Vector3d {
-    return (unit_from_lidar * (points_in_lidar[i] - frame->centroid)).homogeneous();
-  };
-  const std::size_t count = points_in_lidar.size();
-  const Moments moments(
-      count, [&](std::size_t i) { return image_points[i]; }, coordinates);
-  const NullDirection depth = FindNullDirection(moments.Reduced());
+  const Moments moments(image_points, points_in_lidar, frame->centroid, unit_from_lidar);
+  const Eigen::Matrix3d reduced = moments.Reduced();
+  const NullDirection depth = FindNullDirection(reduced);
   constexpr double kMinGap = 1e-13;
+  // Three points fit any direction: what is left is rounding.
+  constexpr double kMinLeft = 1e-13;
   constexpr double kGapOfNoise = 0.03;
-  if (!(depth.gap > kMinGap) || (depth.gap < kGapOfNoise && !FixHomography(count, coordinates))) {
+  if (!(reduced.trace() > kMinLeft * moments.square.trace()) || !(depth.gap > kMinGap) ||
+      (depth.gap < kGapOfNoise &&
+       !FixHomography(points_in_lidar, frame->centroid, unit_from_lidar))) {
     return MakeError(ErrorCode::kDegenerate,
                      "the pixels or the points are less than four, or three of four are on one "
                      "line, which leaves the plane's pose undetermined; use four that span a "

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/cloud_sums.h"
+
 namespace sextant {
 namespace {
 
@@ -38,15 +40,8 @@ Eigen::Vector3d LeastDirection(const Eigen::Matrix3d& symmetric) {
 
 Expected<PlaneFrame> FramePlane(std::span<const Eigen::Vector3d> points) {
   PlaneFrame frame;
-  const auto count = static_cast<double>(points.size());
-  for (const Eigen::Vector3d& point : points) frame.centroid += point;
-  frame.centroid /= count;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& point : points) {
-    const Eigen::Vector3d offset = point - frame.centroid;
-    covariance.noalias() += offset * offset.transpose();
-  }
-  covariance /= count;
+  frame.centroid = MeanOf(points);
+  const Eigen::Matrix3d covariance = ScatterAbout(frame.centroid, points);
   const double variance = covariance.trace();
   if (!(std::sqrt(variance) + frame.centroid.norm() < kMaxDistance_m)) {
     return MakeError(ErrorCode::kDegenerate,

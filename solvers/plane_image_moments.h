@@ -2,8 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
-#include <cstddef>
+#include <span>
+
+#include "solvers/cloud_sums.h"
 
 namespace sextant {
 
@@ -22,22 +25,19 @@ struct PlaneImageMoments {
   Eigen::Matrix3d v = Eigen::Matrix3d::Zero();       ///< V = sum v a a^T
   Eigen::Matrix3d square = Eigen::Matrix3d::Zero();  ///< sum (u^2 + v^2) a a^T
 
-  /// `image(i)` is (u_i, v_i) and `coordinates(i)` is a_i, for i < points.
-  template <class Image, class Coordinates>
-  PlaneImageMoments(std::size_t points, const Image& image, const Coordinates& coordinates) {
-    count = static_cast<double>(points);
-    for (std::size_t i = 0; i < points; ++i) centre += image(i);
-    centre /= count;
-    for (std::size_t i = 0; i < points; ++i) size += (image(i) - centre).squaredNorm();
-    size = std::sqrt(size / count);
-    for (std::size_t i = 0; i < points; ++i) {
-      const Eigen::Vector2d normalised = (image(i) - centre) / size;
-      const Eigen::Vector3d a = coordinates(i);
-      const Eigen::Matrix3d outer = a * a.transpose();
-      u += normalised.x() * outer;
-      v += normalised.y() * outer;
-      square += normalised.squaredNorm() * outer;
-    }
+  /// Shapes: a_i = (unit_from_points (p_i - centroid), 1).
+  PlaneImageMoments(std::span<const Eigen::Vector2d> image_points,
+                    std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& centroid,
+                    const Eigen::Matrix<double, 2, 3>& unit_from_points) {
+    count = static_cast<double>(points.size());
+    centre = MeanOf(image_points);
+    Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
+    axes.leftCols<2>() = unit_from_points.transpose();
+    const MomentSums sums = SumMoments(image_points, centre, points, centroid, axes);
+    size = std::sqrt(sums.w[0] / count);
+    u = OnPlane(sums.u) / size;
+    v = OnPlane(sums.v) / size;
+    square = OnPlane(sums.w) / (size * size);
   }
 
   /// Q = sum (u^2 + v^2) a a^T - (U^2 + V^2) / n
@@ -50,6 +50,14 @@ struct PlaneImageMoments {
     homography.row(1) = (size / count * (v * h3) + centre.y() * h3).transpose();
     homography.row(2) = h3.transpose();
     return homography;
+  }
+
+ private:
+  // Of the moments of (1, x, y, z) those of (x, y, 1).
+  static Eigen::Matrix3d OnPlane(const std::array<double, 10>& s) {
+    Eigen::Matrix3d m;
+    m << s[4], s[5], s[1], s[5], s[7], s[2], s[1], s[2], s[0];
+    return m;
   }
 };
 

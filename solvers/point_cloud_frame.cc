@@ -6,6 +6,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "solvers/cloud_sums.h"
+
 namespace sextant {
 namespace {
 
@@ -36,15 +38,8 @@ void FindDifferent(std::span<const Eigen::Vector3d> points, double variance,
 Expected<PointCloudFrame> FramePointCloud(std::span<const Eigen::Vector3d> points,
                                           int min_different) {
   PointCloudFrame frame;
-  const auto count = static_cast<double>(points.size());
-  for (const Eigen::Vector3d& point : points) frame.centroid += point;
-  frame.centroid /= count;
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& point : points) {
-    const Eigen::Vector3d offset = point - frame.centroid;
-    scatter.noalias() += offset * offset.transpose();
-  }
-  scatter /= count;
+  frame.centroid = MeanOf(points);
+  const Eigen::Matrix3d scatter = ScatterAbout(frame.centroid, points);
   const double variance = scatter.trace();
   if (!(std::sqrt(variance) + frame.centroid.norm() < kMaxDistance_m)) {
     return MakeError(ErrorCode::kDegenerate,
