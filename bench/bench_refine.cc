@@ -6,11 +6,13 @@
 #include <ceres/tiny_solver_autodiff_function.h>
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bench/check.h"
 #include "eval/mismatched_pairs.h"
+#include "solvers/p3p_start.h"
 #include "solvers/refine_pose.h"
 #include "solvers/registry.h"
 
@@ -86,6 +88,45 @@ void Refine(benchmark::State& state) {
 }
 BENCHMARK(Refine)->Name("refine/sextant")->Arg(20);
 
+std::vector<RandomScene> Scenes(const benchmark::State& state) {
+  return MakeScenes({.pairs = static_cast<int>(state.range(0)), .sigma_px = 1.0});
+}
+
+std::vector<Rigid3d> TruthsOf(const std::vector<RandomScene>& scenes) {
+  std::vector<Rigid3d> truths;
+  for (const RandomScene& scene : scenes) truths.push_back(scene.cam_from_lidar);
+  return truths;
+}
+
+// From pixels and points to the least squares: the kernels.
+void RefinedP3p(benchmark::State& state) {
+  const std::vector<RandomScene> scenes = Scenes(state);
+  std::vector<PairTerms> terms;
+  for (const RandomScene& scene : scenes) {
+    terms.push_back(MakeTerms(scene.problem, PairKind::k2d3d, {}));
+  }
+  Time(state, TruthsOf(scenes), kRefined, 0, [&](std::size_t i) {
+    const std::optional<Rigid3d> start = StartFromTriples(terms[i].pixels.View(), terms[i].camera);
+    return start ? RefinePose(terms[i].View(), *start, {}).cam_from_lidar : Rigid3d{};
+  });
+}
+BENCHMARK(RefinedP3p)->Name("refine_p3p/sextant")->Arg(8)->Arg(20)->Arg(100)->Arg(1000);
+
+// The whole of Solve: checks, covariance and evaluation besides.
+void SolveRefinedP3p(benchmark::State& state) {
+  std::vector<RandomScene> scenes = Scenes(state);
+  for (RandomScene& scene : scenes) {
+    scene.problem.pairs_3d3d.clear();
+    scene.problem.point_sets = {};
+  }
+  const SolverPtr solver = *BuiltinSolvers().Make("refine(p3p)");
+  Time(state, TruthsOf(scenes), kRefined, 0, [&](std::size_t i) {
+    const Expected<SolveReport> report = solver->Solve(scenes[i].problem);
+    return report ? report->cam_from_lidar : Rigid3d{};
+  });
+}
+BENCHMARK(SolveRefinedP3p)->Name("refine_p3p/solve")->Arg(8)->Arg(20)->Arg(100)->Arg(1000);
+
 // What one would write with Ceres: reprojection by automatic derivatives.
 struct Reprojection {
   const CalibrationProblem* problem;
@@ -133,21 +174,20 @@ std::vector<RandomScene> Mismatched(int percent) {
   return scenes;
 }
 
-std::vector<Rigid3d> TruthsOf(const std::vector<RandomScene>& scenes) {
-  std::vector<Rigid3d> truths;
-  for (const RandomScene& scene : scenes) truths.push_back(scene.cam_from_lidar);
-  return truths;
-}
-
 // The whole of Solve: refined, with its covariance.
 void Ransac(benchmark::State& state, int percent) {
-  const std::vector<RandomScene> scenes = Mismatched(percent);
-  const SolverPtr solver = *BuiltinSolvers().Make("ransac(p3p)");
+  std::vector<RandomScene> scenes = Mismatched(percent);
+  for (RandomScene& scene : scenes) {
+    scene.problem.pairs_3d3d.clear();
+    scene.problem.point_sets = {};
+  }
+  const SolverPtr solver = *BuiltinSolvers().Make("ransac(p3p, threshold=4)");
   Time(state, TruthsOf(scenes), kSuccess, scenes.size() / 10, [&](std::size_t i) {
     const Expected<SolveReport> report = solver->Solve(scenes[i].problem);
     return report ? report->cam_from_lidar : Rigid3d{};
   });
 }
+BENCHMARK_CAPTURE(Ransac, none, 0)->Name("ransac_0/sextant/100");
 BENCHMARK_CAPTURE(Ransac, half, 50)->Name("ransac_50/sextant/100");
 BENCHMARK_CAPTURE(Ransac, most, 80)->Name("ransac_80/sextant/100");
 

@@ -40,7 +40,7 @@ double ChanceOfAgreement(const PairTerms& terms, double max_squared) {
   }
   Eigen::AlignedBox2d box;
   double radius = 0.0;
-  for (const PixelTerm& term : terms.pixels) {
+  for (const PixelTerm term : terms.pixels) {
     box.extend(term.pixel);
     radius += threshold / term.inverse_sigma;
   }
@@ -74,7 +74,7 @@ int CountDistinct(const PairTerms& terms, std::span<const int> indices) {
   for (const int i : indices) {
     const auto index = static_cast<std::size_t>(i);
     const bool is_point = terms.pixels.empty();
-    const Eigen::Vector3d& p =
+    const Eigen::Vector3d p =
         is_point ? terms.points[index].in_lidar : terms.pixels[index].in_lidar;
     const Eigen::Vector3d m =
         is_point ? terms.points[index].in_cam : terms.pixels[index].pixel.homogeneous().eval();

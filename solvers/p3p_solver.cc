@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "solvers/p3p_solver.h"
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -192,6 +194,11 @@ class P3pSolver final : public Solver {
 };
 
 }  // namespace
+
+bool IsP3pOfPinhole(const Solver& solver, const CalibrationProblem& problem) {
+  return problem.camera && problem.camera->model == CameraModel::kPinhole &&
+         dynamic_cast<const P3pSolver*>(&solver) != nullptr;
+}
 
 SolverEntry P3pEntry() {
   return {

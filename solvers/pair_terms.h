@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "geometry/calibration_problem.h"
+#include "solvers/pixel_terms.h"
 #include "solvers/solver.h"
 
 namespace sextant {
@@ -39,28 +40,21 @@ struct PointTerm {
   Eigen::Matrix3d whitener;
 };
 
-/// A 2D-3D pair made ready: r = inverse_sigma * (pixel - projection), likewise.
-struct PixelTerm {
-  Eigen::Vector2d pixel;
-  Eigen::Vector3d in_lidar;
-  double inverse_sigma = 1.0;
-};
-
-/// Whitened residuals as spans: what the kernels take.
+/// Whitened residuals, not owned: what the kernels take.
 struct TermsView {
   std::span<const PointTerm> points;
-  std::span<const PixelTerm> pixels;
+  PixelTermsView pixels;
   const Camera* camera = nullptr;  ///< Needed where there are pixels.
 };
 
 /// Pairs of a problem with their noise, ready for scoring and minimisation.
 struct PairTerms {
   std::vector<PointTerm> points;
-  std::vector<PixelTerm> pixels;
+  PixelTerms pixels;
   Camera camera;
   bool noise_known = true;  ///< False where a pair's noise was assumed.
 
-  TermsView View() const { return {points, pixels, &camera}; }
+  TermsView View() const { return {points, pixels.View(), &camera}; }
   std::size_t size() const { return points.size() + pixels.size(); }
 
   void Add(std::span<const Pair3d3d> pairs, const AssumedNoise& assumed);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "solvers/pixel_sums.h"
+
 namespace sextant {
 namespace {
 
@@ -21,17 +23,19 @@ void PoseScorer::ForEach(const Rigid3d& cam_from_lidar, Visit&& visit) const {
   }
   const Camera& camera = terms_->camera;
   if (camera.model == CameraModel::kPinhole) {
-    for (const PixelTerm& term : terms_->pixels) {
-      const Eigen::Vector3d point = r * term.in_lidar + t;
-      const double inverse_z = 1.0 / point.z();
-      const double du = term.pixel.x() - (camera.fx_px * point.x() * inverse_z + camera.cx_px);
-      const double dv = term.pixel.y() - (camera.fy_px * point.y() * inverse_z + camera.cy_px);
-      const double squared = (du * du + dv * dv) * term.inverse_sigma * term.inverse_sigma;
-      if (!visit(point.z() > 0.0 ? squared : kNotProjected)) return;
+    const PinholePose pose(camera, cam_from_lidar);
+    std::size_t left = terms_->pixels.size();
+    for (const PixelBlock& block : terms_->pixels.blocks()) {
+      double squared[kLanes];
+      SquarePixels(std::span(&block, 1), pose, squared);
+      for (std::size_t k = 0; k < std::min(left, kLanes); ++k) {
+        if (!visit(squared[k])) return;
+      }
+      left -= std::min(left, kLanes);
     }
     return;
   }
-  for (const PixelTerm& term : terms_->pixels) {
+  for (const PixelTerm term : terms_->pixels) {
     const std::optional<Eigen::Vector2d> projected = Project(camera, r * term.in_lidar + t);
     const double squared = projected ? (term.pixel - *projected).squaredNorm() *
                                            term.inverse_sigma * term.inverse_sigma
@@ -41,6 +45,10 @@ void PoseScorer::ForEach(const Rigid3d& cam_from_lidar, Visit&& visit) const {
 }
 
 double PoseScorer::Cost(const Rigid3d& cam_from_lidar, double give_up) const {
+  if (terms_->points.empty() && terms_->camera.model == CameraModel::kPinhole) {
+    return TruncatedPixelCost(terms_->pixels.blocks(), PinholePose(terms_->camera, cam_from_lidar),
+                              max_squared_, give_up);
+  }
   double cost = 0.0;
   ForEach(cam_from_lidar, [&](double squared) {
     // A residual that is not a number counts as an outlier's.

@@ -7,6 +7,8 @@
 
 #include "base/random.h"
 #include "solvers/consensus.h"
+#include "solvers/p3p_consensus.h"
+#include "solvers/p3p_solver.h"
 #include "solvers/pose_scorer.h"
 #include "solvers/refine_pose.h"
 #include "solvers/registry.h"
@@ -149,19 +151,16 @@ class RansacSolver final : public Solver {
         options_.sample_size > 0 ? options_.sample_size : LeastPairs(inner_->spec().needs);
     const PairTerms terms = MakeTerms(problem, kind_, options_.Assumed());
     const PoseScorer scorer(terms, options_.MaxSquared(kind_));
+    if (sample_size == 3 && options_.local_optimisation > 0 && IsP3pOfPinhole(*inner_, problem)) {
+      return SolveByTriples(terms, scorer);
+    }
     ConsensusSearch search(*inner_, options_, sample_size, problem, terms, scorer);
     search.Run();
-    if (!search.found()) {
-      return MakeError(ErrorCode::kDegenerate,
-                       fmt::format("none of {} samples of {} pairs determines a pose; the points "
-                                   "coincide or lie on one line",
-                                   search.iterations(), sample_size));
-    }
+    if (!search.found()) return NoPose(search.iterations(), sample_size);
     search.Optimise(kFinalLimits);
     Expected<Estimate> estimate = Finish(problem, terms, scorer, search.best());
     if (!estimate) return estimate;
-    const int least = std::max(options_.min_inliers, LeastPairs(inner_->spec().needs) + 1);
-    if (Expected<void> ok = CheckConsensus(terms, scorer, estimate->inliers, least); !ok) {
+    if (Expected<void> ok = CheckConsensus(terms, scorer, estimate->inliers, LeastInliers()); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
     if (2 * estimate->inliers.size() < terms.size()) {
@@ -173,6 +172,36 @@ class RansacSolver final : public Solver {
     estimate->termination =
         search.exhausted() ? Termination::kMaxIterations : Termination::kConverged;
     return estimate;
+  }
+
+  // The same search around p3p, whose refit on the inliers would be worse than least squares.
+  Expected<Estimate> SolveByTriples(const PairTerms& terms, const PoseScorer& scorer) const {
+    const P3pConsensus found = FindP3pConsensus(terms.pixels.View(), terms.camera,
+                                                {.max_squared = scorer.max_squared(),
+                                                 .confidence = options_.confidence,
+                                                 .max_samples = options_.max_iterations,
+                                                 .local_rounds = options_.local_optimisation,
+                                                 .seed = options_.seed});
+    if (!found.found) return NoPose(found.samples, 3);
+    Estimate estimate = LeastSquaresOnInliers(terms, scorer, found.cam_from_lidar);
+    if (Expected<void> ok = CheckConsensus(terms, scorer, estimate.inliers, LeastInliers()); !ok) {
+      return tl::unexpected<Error>(std::move(ok.error()));
+    }
+    estimate.iterations = found.samples;
+    estimate.termination = found.samples < options_.max_iterations ? Termination::kConverged
+                                                                   : Termination::kMaxIterations;
+    return estimate;
+  }
+
+  int LeastInliers() const {
+    return std::max(options_.min_inliers, LeastPairs(inner_->spec().needs) + 1);
+  }
+
+  static tl::unexpected<Error> NoPose(int samples, int sample_size) {
+    return MakeError(ErrorCode::kDegenerate,
+                     fmt::format("none of {} samples of {} pairs determines a pose; the points "
+                                 "coincide or lie on one line",
+                                 samples, sample_size));
   }
 
   // Of mirrored points, those near one plane agree on a pose, which is not the answer.

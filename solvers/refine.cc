@@ -2,11 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <tuple>
 
 #include "solvers/consensus.h"
+#include "solvers/p3p_solver.h"
+#include "solvers/p3p_start.h"
 #include "solvers/refine_camera.h"
 #include "solvers/refine_ceres.h"
 #include "solvers/refine_options.h"
@@ -82,6 +87,7 @@ class RefineSolver final : public Solver {
 
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
+    if (std::optional<Estimate> quick = FromTriples(problem)) return *std::move(quick);
     Expected<SolveReport> start = inner_->Solve(problem);
     if (!start) return tl::unexpected<Error>(std::move(start.error()));
     const UsedPairs used = Choose(problem, *start);
@@ -98,11 +104,46 @@ class RefineSolver final : public Solver {
     return estimate;
   }
 
+  // Plain least squares on pixels from p3p: from triples solved side by side, without what only p3p
+  // itself reports. None where that is not what is asked for, or where the residuals say that the
+  // start was a bad one.
+  std::optional<Estimate> FromTriples(const CalibrationProblem& problem) const {
+    if (options_.on != RefineOn::k2d3d || options_.Loss().kind != LossKind::kNone ||
+        options_.intrinsics != 0U || !IsP3pOfPinhole(*inner_, problem)) {
+      return std::nullopt;
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    const PairTerms terms = MakeTerms(problem, PairKind::k2d3d, Assumed());
+    const std::optional<Rigid3d> start = StartFromTriples(terms.pixels.View(), terms.camera);
+    const std::chrono::duration<double, std::micro> wall_time =
+        std::chrono::steady_clock::now() - begin;
+    if (!start) return std::nullopt;
+    const RefinedPose refined = RefinePose(terms.View(), *start, Limits());
+    if (terms.noise_known && !IsExplained(refined, terms.size())) return std::nullopt;
+    Expected<Estimate> estimate = EstimateOf(terms, refined);
+    if (!estimate) return std::nullopt;
+    estimate->termination = Termination::kConverged;
+    estimate->inliers = AllOf(terms.size());
+    estimate->stages.push_back({inner_->spec().name, *start, 0, wall_time.count()});
+    return *std::move(estimate);
+  }
+
   Expected<Estimate> PoseOf(const PairTerms& terms, const Rigid3d& start) const {
     const RobustLoss loss = options_.Loss();
     const RefinedPose refined = loss.kind == LossKind::kNone
                                     ? RefinePose(terms.View(), start, Limits())
                                     : RefinePoseWithCeres(terms.View(), start, loss, Limits());
+    return EstimateOf(terms, refined);
+  }
+
+  // Whether noise as stated leaves such residuals of pixels: the sum of squares is chi-square, ten
+  // standard deviations above its mean at the most.
+  static bool IsExplained(const RefinedPose& refined, std::size_t pixels) {
+    const double freedom = std::max(1.0, 2.0 * static_cast<double>(pixels) - 6.0);
+    return 2.0 * refined.cost <= freedom + 10.0 * std::sqrt(2.0 * freedom);
+  }
+
+  Expected<Estimate> EstimateOf(const PairTerms& terms, const RefinedPose& refined) const {
     if (Expected<void> ok = CheckOutcome(refined); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
@@ -127,6 +168,8 @@ class RefineSolver final : public Solver {
         });
   }
 
+  AssumedNoise Assumed() const { return {options_.sigma_m, options_.sigma_px}; }
+
   RefineLimits Limits() const { return {options_.max_iterations, options_.step_tolerance}; }
 
   // Of the inner solver's kind, the inliers; of the other, all but those that carry the id of a
@@ -148,7 +191,7 @@ class RefineSolver final : public Solver {
   }
 
   PairTerms TermsOf(const CalibrationProblem& problem, const UsedPairs& used) const {
-    const AssumedNoise assumed{options_.sigma_m, options_.sigma_px};
+    const AssumedNoise assumed = Assumed();
     PairTerms terms;
     if (Uses3d3d(options_.on)) terms.Add(PairsAt(problem.pairs_3d3d, used.points), assumed);
     if (Uses2d3d(options_.on)) {

@@ -109,7 +109,7 @@ bool SumUp(const PairTerms& terms, const std::vector<int>& free, const RobustLos
   sum.levers.setZero(count);
   const Camera camera = WithIntrinsics(terms.camera, sum.numbers);
   for (const PointTerm& term : terms.points) AddPoint(term, weigh.get(), sum);
-  for (const PixelTerm& term : terms.pixels) {
+  for (const PixelTerm term : terms.pixels) {
     if (!AddPixel(term, camera, free, weigh.get(), sum)) return false;
   }
   return std::isfinite(sum.cost);
@@ -128,7 +128,7 @@ ceres::Solver::Summary Minimise(const PairTerms& terms, const std::vector<int>& 
     problem.AddResidualBlock(new PairCost<PointTerm, 3>(term, nullptr), NewLoss(loss), rotation,
                              translation);
   }
-  for (const PixelTerm& term : terms.pixels) {
+  for (const PixelTerm term : terms.pixels) {
     problem.AddResidualBlock(new CameraCost(term, terms.camera), NewLoss(loss), rotation,
                              translation, numbers);
   }

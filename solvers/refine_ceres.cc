@@ -24,7 +24,7 @@ class PoseProblem {
       problem_.AddResidualBlock(new PairCost<PointTerm, 3>(term, nullptr), NewLoss(loss), rotation_,
                                 translation_);
     }
-    for (const PixelTerm& term : terms.pixels) {
+    for (const PixelTerm term : terms.pixels) {
       problem_.AddResidualBlock(new PairCost<PixelTerm, 2>(term, terms.camera), NewLoss(loss),
                                 rotation_, translation_);
     }
@@ -40,12 +40,12 @@ class PoseProblem {
   double* translation_;
 };
 
-template <int kResiduals, class Term>
-bool AddWeighted(std::span<const Term> terms, const Camera* camera, const ceres::LossFunction* loss,
+template <int kResiduals, class Terms>
+bool AddWeighted(const Terms& terms, const Camera* camera, const ceres::LossFunction* loss,
                  RefinedPose& sum) {
   const Eigen::Matrix3d r = sum.cam_from_lidar.rotation.toRotationMatrix();
   TermDerivatives<kResiduals> at;
-  for (const Term& term : terms) {
+  for (const auto& term : terms) {
     if (!Differentiate(term, camera, r, sum.cam_from_lidar.translation, at)) return false;
     const double squared = at.residual.squaredNorm();
     double rho[3] = {squared, 1.0, 0.0};

