@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// No kernel allocates once it has what it needs: this binary counts every call of malloc, which
+// operator new and Eigen's matrices of any size end in.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdlib>
+
+#include "eval/mismatched_pairs.h"
+#include "solvers/registry.h"
+#include "support/kernel_calls.h"
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define SEXTANT_COUNTS_ALLOCATIONS
+#endif
+
+namespace {
+// Of this thread; a plain number that needs no set-up, as malloc is called before main.
+thread_local long allocations = 0;
+}  // namespace
+
+#ifdef SEXTANT_COUNTS_ALLOCATIONS
+// The C library's own, under the names that it exports for this purpose.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* old, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  ++allocations;
+  return __libc_calloc(count, size);
+}
+void* realloc(void* old, std::size_t size) {
+  ++allocations;
+  return __libc_realloc(old, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++allocations;
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** result, std::size_t alignment, std::size_t size) {
+  ++allocations;
+  *result = __libc_memalign(alignment, size);
+  return *result == nullptr ? 12 : 0;
+}
+}
+#endif
+
+namespace sextant::test {
+namespace {
+
+class Allocation : public testing::Test {
+ protected:
+  void SetUp() override {
+#ifndef SEXTANT_COUNTS_ALLOCATIONS
+    GTEST_SKIP() << "allocations cannot be counted with a sanitizer or another C library";
+#endif
+  }
+};
+
+template <class Call>
+long AllocationsOf(const Call& call) {
+  const long before = allocations;
+  call();
+  return allocations - before;
+}
+
+TEST_F(Allocation, IsCounted) {
+  EXPECT_EQ(AllocationsOf([] { std::free(std::malloc(100)); }), 1);
+  EXPECT_EQ(AllocationsOf([] { delete new volatile double(1.0); }), 1);
+  EXPECT_EQ(AllocationsOf([] { std::vector<double>(3).push_back(1.0); }), 2);
+  EXPECT_EQ(AllocationsOf([] { Eigen::VectorXd::Zero(9).eval(); }), 1);
+  EXPECT_EQ(AllocationsOf([] { Eigen::Matrix3d::Zero().eval(); }), 0);
+}
+
+TEST_F(Allocation, NoKernelAllocates) {
+  for (const KernelCall& kernel : KernelCalls()) {
+    kernel.call();  // Buffers grow to their size in the first call.
+    EXPECT_EQ(AllocationsOf(kernel.call), 0)
+        << kernel.name << ", in " << kernel.problems << " problems";
+  }
+}
+
+// A scene without a consensus, so that ransac tries all that it may.
+CalibrationProblem Hopeless(bool pixels) {
+  const RandomSceneOptions options{.pairs = 100, .sigma_m = 0.01, .sigma_px = 1.0};
+  Random random(3);
+  RandomScene scene = MakeRandomScene(options, random);
+  MismatchPairs(options, 0, random, scene);
+  scene.problem.point_sets = {};
+  if (pixels) scene.problem.pairs_3d3d.clear();
+  if (!pixels) scene.problem.pairs_2d3d.clear();
+  return scene.problem;
+}
+
+TEST_F(Allocation, TheLoopOfRansacAllocatesNothing) {
+  for (const std::string inner : {"kabsch", "p3p", "epnp"}) {
+    const CalibrationProblem problem = Hopeless(inner != "kabsch");
+    const auto of_iterations = [&](int count) {
+      const SolverPtr solver = *BuiltinSolvers().Make(
+          "ransac(" + inner + ",max_iterations=" + std::to_string(count) + ")");
+      static_cast<void>(solver->Solve(problem));
+      return AllocationsOf([&] { static_cast<void>(solver->Solve(problem)); });
+    };
+    // Whole stages come and go with the poses found, a buffer each.
+    EXPECT_NEAR(static_cast<double>(of_iterations(2000)), static_cast<double>(of_iterations(1000)),
+                20.0)
+        << inner;
+  }
+}
+
+}  // namespace
+}  // namespace sextant::test
