@@ -82,6 +82,9 @@ const std::map<std::string_view, Folders>& OnlyIn() {
       {"CLI/", {"cli", "cli/mpi"}},
       {"mpi.h", {"cli/mpi"}},
       {"opengv/", {"bench"}},
+      {"pcl/", {"bench"}},
+      {"open3d/", {"bench"}},
+      {"valgrind/", {"tests"}},
       {"gtest/", {"tests"}},
       {"gmock/", {"tests"}},
   };

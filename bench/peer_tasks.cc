@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/peer_tasks.h"
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "base/random.h"
+#include "bench/check.h"
+#include "eval/lidar/scan_pairs.h"
+#include "eval/mismatched_pairs.h"
+#include "eval/random_scene.h"
+#include "solvers/kabsch.h"
+
+namespace sextant::bench {
+namespace {
+
+using Problems = std::vector<PointProblem>;
+
+constexpr double kSigma = 0.01;
+constexpr double kDegree = 0.017453292519943295;
+
+PointProblem FromScene(const RandomScene& scene) {
+  PointProblem problem{
+      .in_cam = {}, .in_lidar = {}, .sigma_m = kSigma, .cam_from_lidar = scene.cam_from_lidar};
+  for (const Pair3d3d& pair : scene.problem.pairs_3d3d) {
+    problem.in_cam.push_back(pair.point_in_cam);
+    problem.in_lidar.push_back(pair.point_in_lidar);
+  }
+  return problem;
+}
+
+Problems PairProblems(int pairs, double outliers) {
+  const RandomSceneOptions options{.pairs = pairs, .sigma_m = kSigma};
+  Random random(3);
+  Problems problems;
+  for (std::size_t i = 0; i < SceneCount(pairs); ++i) {
+    RandomScene scene = MakeRandomScene(options, random);
+    MismatchPairs(options, InlierCount(pairs, outliers), random, scene);
+    problems.push_back(FromScene(scene));
+  }
+  return problems;
+}
+
+// How far least squares of the true pairs is off: no solver is expected to do better.
+double OracleError(const PointProblem& problem, double outliers) {
+  const auto inliers =
+      static_cast<std::size_t>(InlierCount(static_cast<int>(problem.in_cam.size()), outliers));
+  const std::span<const Eigen::Vector3d> in_cam(problem.in_cam);
+  const std::span<const Eigen::Vector3d> in_lidar(problem.in_lidar);
+  const Expected<KabschFit> fit = FitKabsch(in_cam.first(inliers), in_lidar.first(inliers));
+  return fit ? DistanceBetween(fit->b_from_a, problem.cam_from_lidar).rotation_rad : 1.0;
+}
+
+// Eight corners of two boards, in another order in the second list.
+Problems CornerProblems() {
+  Random random(5);
+  Problems problems(64);
+  for (PointProblem& problem : problems) {
+    Vector6d off;
+    for (double& x : off) x = 3.0 * kDegree / 1.732 * random.Normal();
+    problem.cam_from_lidar = Perturb(LocalStart(), off);
+    for (const double side : {-0.5, 0.5}) {
+      for (const auto& [across, up] :
+           {std::pair{0.0, 0.3}, std::pair{0.3, 0.0}, std::pair{0.0, -0.3}, std::pair{-0.3, 0.0}}) {
+        problem.in_lidar.push_back({side + across, up, 2.0 + 0.4 * side + 0.2 * across});
+      }
+    }
+    for (const Eigen::Vector3d& point : problem.in_lidar) {
+      Eigen::Vector3d noise;
+      for (double& x : noise) x = 0.5 * kSigma * random.Normal();
+      problem.in_cam.push_back(problem.cam_from_lidar * point + noise);
+    }
+    std::rotate(problem.in_cam.begin(), problem.in_cam.begin() + 3, problem.in_cam.end());
+  }
+  return problems;
+}
+
+Problems RoomProblems() {
+  LidarModel model = *FindLidarModel("vlp16");
+  model.ring_bias_sigma_m = 0.0;
+  Problems problems;
+  for (std::uint64_t room = 0; room < 3; ++room) {
+    const Expected<ScanPair> pair = ScanRoomTwice(model, room);
+    if (!pair) continue;
+    problems.push_back({.in_cam = pair->in_target,
+                        .in_lidar = pair->in_source,
+                        .sigma_m = 0.02,
+                        .cam_from_lidar = pair->target_from_source});
+  }
+  return problems;
+}
+
+// Allowed errors by problem.
+using Allowed = std::vector<Tolerance>;
+
+void Time(benchmark::State& state, const Problems& problems, const Allowed& allowed,
+          const Prepare& prepare) {
+  std::vector<PeerCall> calls;
+  std::size_t wrong = 0;
+  double worst = 0.0;
+  for (std::size_t i = 0; i < problems.size(); ++i) {
+    calls.push_back(prepare(problems[i]));
+    const std::optional<Rigid3d> answer = calls.back()();
+    const PoseDistance off = answer ? DistanceBetween(*answer, problems[i].cam_from_lidar)
+                                    : PoseDistance{.rotation_rad = 3.14, .translation_m = 1e9};
+    worst = std::max(worst, off.rotation_rad);
+    wrong +=
+        off.rotation_rad > allowed[i].rotation_rad || off.translation_m > allowed[i].translation_m
+            ? 1U
+            : 0U;
+  }
+  if (wrong > 0) state.SetLabel(fmt::format("{} of {} wrong", wrong, problems.size()));
+  if (10 * wrong > problems.size()) {
+    return state.SkipWithError(fmt::format("wrong in {} of {}, by up to {:.2g} deg", wrong,
+                                           problems.size(), worst / kDegree)
+                                   .c_str());
+  }
+  std::size_t next = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(calls[next]());
+    next = next + 1 < calls.size() ? next + 1 : 0;
+  }
+}
+
+template <class Make>
+void Register(const std::string& task, const std::string& peer, int count, const Prepare& prepare,
+              const Make& make) {
+  benchmark::RegisterBenchmark(fmt::format("{}/{}/{}", task, peer, count).c_str(),
+                               [prepare, make](benchmark::State& state) {
+                                 const auto [problems, allowed] = make();
+                                 Time(state, problems, allowed, prepare);
+                               });
+}
+
+}  // namespace
+
+void RegisterPairs(const std::string& peer, const Prepare& prepare) {
+  for (const int pairs : {8, 100, 1000}) {
+    Register("pairs", peer, pairs, prepare, [pairs] {
+      const Problems problems = PairProblems(pairs, 0.0);
+      return std::pair(problems, Allowed(problems.size(), {0.05, 0.2}));
+    });
+  }
+}
+
+void RegisterOutliers(const std::string& peer, const Prepare& prepare) {
+  const auto add = [&](int pairs, int percent) {
+    Register(fmt::format("pairs_{}", percent), peer, pairs, prepare, [pairs, percent] {
+      const Problems problems = PairProblems(pairs, 0.01 * percent);
+      Allowed allowed;
+      for (const PointProblem& problem : problems) {
+        const double oracle = OracleError(problem, 0.01 * percent);
+        allowed.push_back({std::max(0.5 * kDegree, 1.5 * oracle), 0.3});
+      }
+      return std::pair(problems, allowed);
+    });
+  };
+  for (const int percent : {20, 50, 80, 95}) add(100, percent);
+  for (const int percent : {50, 80, 95}) add(1000, percent);
+}
+
+void RegisterCorners(const std::string& peer, const Prepare& prepare) {
+  Register("corners", peer, 8, prepare, [] {
+    const Problems problems = CornerProblems();
+    return std::pair(problems, Allowed(problems.size(), {0.05, 0.1}));
+  });
+}
+
+void RegisterRooms(const std::string& peer, const Prepare& prepare) {
+  Register("room", peer, 16, prepare, [] {
+    const Problems problems = RoomProblems();
+    return std::pair(problems, Allowed(problems.size(), {0.1 * kDegree, 0.02}));
+  });
+}
+
+}  // namespace sextant::bench
