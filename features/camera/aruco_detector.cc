@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <opencv2/aruco.hpp>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+#include <vector>
 
 #include "features/camera/aruco_dictionary.h"
 #include "features/camera/contrast_regions.h"
@@ -34,6 +37,7 @@ struct ArucoOptions {
   int window_px = 5;
   double min_perimeter = 0.03;
   double error_correction = 0.6;
+  int decimate = 1;
 };
 
 OptionSet<ArucoOptions> Options() {
@@ -45,7 +49,9 @@ OptionSet<ArucoOptions> Options() {
       .Real("min_perimeter", &ArucoOptions::min_perimeter, "image sides", 0.001, 4.0,
             "least perimeter of a tag, in longer sides of the image")
       .Real("error_correction", &ArucoOptions::error_correction, "1", 0.0, 1.0,
-            "share of the correctable bits that is corrected");
+            "share of the correctable bits that is corrected")
+      .Count("decimate", &ArucoOptions::decimate, 1, 8,
+             "the image is reduced by this before tags are looked for");
   return options;
 }
 
@@ -78,7 +84,8 @@ class ArucoDetector final : public TagDetector {
         family_(std::move(family)),
         dictionary_(std::move(dictionary)),
         parameters_(cv::aruco::DetectorParameters::create()),
-        refine_(options.refine) {
+        refine_(options.refine),
+        decimate_(options.decimate) {
     parameters_->cornerRefinementMethod = static_cast<int>(options.refine);
     parameters_->cornerRefinementWinSize = options.window_px;
     parameters_->minMarkerPerimeterRate = options.min_perimeter;
@@ -87,41 +94,63 @@ class ArucoDetector final : public TagDetector {
 
  private:
   Detections DoDetect(const cv::Mat& grey) const override {
+    cv::Mat reduced = grey;
+    if (decimate_ > 1) {
+      const cv::Size size(grey.cols / decimate_, grey.rows / decimate_);
+      cv::resize(grey(cv::Rect(cv::Point(), size * decimate_)), reduced, size, 0.0, 0.0,
+                 cv::INTER_AREA);
+    }
     Detections found;
-    for (const cv::Rect& region : ContrastRegions(grey)) DetectIn(grey, region, found);
+    for (const cv::Rect& region : ContrastRegions(reduced)) {
+      for (const auto& [id, corners] : LookAt(reduced, region))
+        found.tags.push_back(Read(grey, id, corners));
+    }
     return found;
   }
 
-  void DetectIn(const cv::Mat& grey, const cv::Rect& region, Detections& found) const {
+  using Find = std::pair<int, Quad>;
+
+  // Corners in pixels of `image`.
+  std::vector<Find> LookAt(const cv::Mat& image, const cv::Rect& region) const {
     // Perimeters are told in sides of the image.
-    const double sides =
-        static_cast<double>(std::max(grey.cols, grey.rows)) / std::max(region.width, region.height);
+    const double sides = static_cast<double>(std::max(image.cols, image.rows)) /
+                         std::max(region.width, region.height);
     const auto parameters = cv::makePtr<cv::aruco::DetectorParameters>(*parameters_);
     parameters->minMarkerPerimeterRate *= sides;
     parameters->maxMarkerPerimeterRate *= sides;
     std::vector<std::vector<cv::Point2f>> corners;
     std::vector<int> ids;
-    cv::aruco::detectMarkers(grey(region), dictionary_, corners, ids, parameters);
+    cv::aruco::detectMarkers(image(region), dictionary_, corners, ids, parameters);
     const Eigen::Vector2d origin(region.x, region.y);
+    std::vector<Find> finds;
     for (std::size_t i = 0; i < ids.size(); ++i) {
       Quad quad;
       for (std::size_t k = 0; k < 4; ++k) {
-        quad[k] = origin + Eigen::Vector2d(corners[i][k].x, corners[i][k].y);
+        quad[k] = Eigen::Vector2d(corners[i][k].x, corners[i][k].y) + origin;
       }
-      quad = Normalised(quad, refine_);
-      const TagReading reading = ReadTag(grey, quad, MakeArucoPattern(*dictionary_, ids[i]));
-      found.tags.push_back({.family = family_,
-                            .id = ids[i],
-                            .corners_px = quad,
-                            .decision_margin = reading.margin,
-                            .hamming = reading.wrong_cells});
+      finds.emplace_back(ids[i], Normalised(quad, refine_));
     }
+    return finds;
+  }
+
+  TagDetection Read(const cv::Mat& grey, int id, Quad corners) const {
+    // The middle of a reduced pixel is that of the pixels that it is of.
+    for (Eigen::Vector2d& corner : corners) {
+      corner = corner * decimate_ + Eigen::Vector2d::Constant(0.5 * (decimate_ - 1));
+    }
+    const TagReading reading = ReadTag(grey, corners, MakeArucoPattern(*dictionary_, id));
+    return {.family = family_,
+            .id = id,
+            .corners_px = corners,
+            .decision_margin = reading.margin,
+            .hamming = reading.wrong_cells};
   }
 
   std::string family_;
   cv::Ptr<cv::aruco::Dictionary> dictionary_;
   cv::Ptr<cv::aruco::DetectorParameters> parameters_;
   Refinement refine_;
+  int decimate_;
 };
 
 Expected<TagDetectorPtr> Make(const std::string& name, const OptionValues& values) {

@@ -103,30 +103,65 @@ BoardPoints PointsOf(const BoardChecker& checker, const CheckerDetection& seen) 
   return points;
 }
 
+using Detectors = std::map<std::string, TagDetectorPtr>;
+
+Expected<void> Add(const std::string& key, const std::string& spec, Detectors& detectors) {
+  return MakeTagDetector(spec).map([&](TagDetectorPtr made) { detectors[key] = std::move(made); });
+}
+
+// The same detector on an image reduced by two; none where the user said by how much.
+std::optional<std::string> QuickSpec(const std::string& spec) {
+  SpecNode node = *ParseSpec(spec);
+  for (const auto& [option, value] : node.options) {
+    if (option == "decimate") return std::nullopt;
+  }
+  node.options.emplace_back("decimate", "2");
+  return FormatSpec(node);
+}
+
+Expected<void> Look(const cv::Mat& grey, const Detectors& detectors, Detections& found) {
+  for (const auto& [family, detector] : detectors) {
+    Expected<Detections> some = detector->Detect(grey);
+    if (!some) return tl::unexpected<Error>(some.error());
+    for (TagDetection& tag : some->tags) {
+      found.tags.push_back(AsFamily(std::move(tag), family));
+    }
+    for (CheckerDetection& checker : some->checkers) found.checkers.push_back(std::move(checker));
+  }
+  return {};
+}
+
+bool HasAllTags(const SeenBoards& seen) {
+  return std::ranges::all_of(seen.boards, [](const SeenBoard& board) {
+    return board.missing_tags.empty() && board.duplicate_tags.empty() &&
+           std::ranges::all_of(board.tags,
+                               [](const SeenTag& tag) { return tag.refined.has_value(); });
+  });
+}
+
 }  // namespace
 
 Expected<BoardFinder> BoardFinder::Make(std::vector<Board> boards, std::optional<Camera> camera,
                                         const std::string& detector) {
   if (Expected<void> ok = CheckBoards(boards); !ok) return tl::unexpected<Error>(ok.error());
   BoardFinder finder;
-  const auto add = [&finder](const std::string& key, const std::string& spec) -> Expected<void> {
-    Expected<TagDetectorPtr> made = MakeTagDetector(spec);
-    if (!made) return tl::unexpected<Error>(made.error());
-    finder.detectors_[key] = std::move(*made);
-    return {};
-  };
   for (const Board& board : boards) {
     for (const BoardTag& tag : board.tags) {
       if (finder.detectors_.contains(tag.family)) continue;
       const Expected<std::string> spec = SpecFor(tag.family, detector);
       if (!spec) return tl::unexpected<Error>(spec.error());
-      if (Expected<void> ok = add(tag.family, *spec); !ok) return tl::unexpected<Error>(ok.error());
+      const Expected<void> ok = Add(tag.family, *spec, finder.detectors_).and_then([&] {
+        const std::optional<std::string> quick = QuickSpec(*spec);
+        return quick ? Add(tag.family, *quick, finder.quick_) : Expected<void>();
+      });
+      if (!ok) return tl::unexpected<Error>(ok.error());
     }
     if (!board.checker) continue;
     const Expected<void> ok =
-        add(CheckerKey(*board.checker),
+        Add(CheckerKey(*board.checker),
             fmt::format("checkerboard(columns={},rows={})", board.checker->inner_columns,
-                        board.checker->inner_rows));
+                        board.checker->inner_rows),
+            finder.checkers_);
     if (!ok) return tl::unexpected<Error>(ok.error());
   }
   finder.boards_ = std::move(boards);
@@ -143,18 +178,28 @@ Expected<SeenBoards> BoardFinder::Find(const cv::Mat& image) const {
                      fmt::format("the image has {} x {} pixels, expected the camera's {} x {}",
                                  grey->cols, grey->rows, camera_->width_px, camera_->height_px));
   }
-  Detections found;
-  for (const auto& [family, detector] : detectors_) {
-    Expected<Detections> some = detector->Detect(*grey);
-    if (!some) return tl::unexpected<Error>(some.error());
-    for (TagDetection& tag : some->tags) {
-      found.tags.push_back(AsFamily(std::move(tag), family));
-    }
-    for (CheckerDetection& checker : some->checkers) found.checkers.push_back(std::move(checker));
+  Detections checkers;
+  if (Expected<void> ok = Look(*grey, checkers_, checkers); !ok) {
+    return tl::unexpected<Error>(ok.error());
   }
+  if (!quick_.empty() && quick_.size() == detectors_.size()) {
+    Detections found = checkers;
+    if (Expected<void> ok = Look(*grey, quick_, found); !ok) {
+      return tl::unexpected<Error>(ok.error());
+    }
+    SeenBoards seen = Assemble(*grey, std::move(found));
+    if (HasAllTags(seen)) return seen;
+  }
+  if (Expected<void> ok = Look(*grey, detectors_, checkers); !ok) {
+    return tl::unexpected<Error>(ok.error());
+  }
+  return Assemble(*grey, std::move(checkers));
+}
+
+SeenBoards BoardFinder::Assemble(const cv::Mat& grey, Detections found) const {
   SeenBoards seen;
   for (std::size_t i = 0; i < boards_.size(); ++i) {
-    seen.boards.push_back(Assign(i, *grey, found));
+    seen.boards.push_back(Assign(i, grey, found));
     AddPoints(seen.boards.back());
     if (camera_) AddPose(seen.boards.back());
   }

@@ -56,19 +56,26 @@ class BoardFinder {
   const std::vector<Board>& boards() const { return boards_; }
   const std::optional<Camera>& camera() const { return camera_; }
 
+  /// Tags are looked for in the image reduced by two, unless `detector` says otherwise, and in the
+  /// whole image only where that left a tag out, or one that could not be refined.
   /// Errors: those of TagDetector::Detect; kInvalidInput for an image of another size than the
   /// camera's.
   Expected<SeenBoards> Find(const cv::Mat& image) const;
 
  private:
+  using Detectors = std::map<std::string, TagDetectorPtr>;
+
   BoardFinder() = default;
+  SeenBoards Assemble(const cv::Mat& grey, Detections found) const;
   SeenBoard Assign(std::size_t index, const cv::Mat& grey, Detections& found) const;
   void AddPoints(SeenBoard& seen) const;
   void AddPose(SeenBoard& seen) const;
 
   std::vector<Board> boards_;
   std::optional<Camera> camera_;
-  std::map<std::string, TagDetectorPtr> detectors_;  ///< By the boards' family, or "7x5".
+  Detectors detectors_;  ///< By the boards' family.
+  Detectors quick_;      ///< Those that look at the image reduced by two first.
+  Detectors checkers_;   ///< By "7x5".
 };
 
 /// Standard deviation of a corner that has only the detector's own accuracy, per axis [px]:

@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <string>
 
 #include "base/random.h"
 #include "eval/simulator/camera_model.h"
@@ -149,6 +150,33 @@ TEST(FindBoards, AmbiguityIsReportedAndResolvedByOtherTags) {
   ASSERT_TRUE(both.boards[0].pose && *both.boards[0].pose);
   EXPECT_FALSE((*both.boards[0].pose)->ambiguous_with);
   EXPECT_LT(DistanceBetween((*both.boards[0].pose)->cam_from_board, pose).rotation_rad, 0.02);
+}
+
+// Of tags that get smaller, every one that the whole image shows.
+TEST(FindBoards, WhatAReducedImageHidesIsFoundInTheWhole) {
+  Rigid3d pose;
+  pose.translation = {0.0, 0.0, 2.0};
+  int hidden = 0;
+  for (const double side_px : {30.0, 26.0, 22.0, 18.0, 16.0, 14.0, 12.0}) {
+    Board board{.id = 0, .top_right_m = 0.6, .right_bottom_m = 0.4};
+    board.tags = {{.family = "tag36h11", .id = 1, .edge_m = 0.2, .center_in_board_m = {-0.15, 0.0}},
+                  {.family = "tag36h11",
+                   .id = 2,
+                   .edge_m = side_px / 350.0,
+                   .center_in_board_m = {0.15, 0.0}}};
+    const Photo photo = Photograph({board}, {pose}, 6);
+    const auto sees_all = [&](const std::string& detector) {
+      const SeenBoards seen =
+          *BoardFinder::Make({board}, photo.camera, detector)->Find(photo.image);
+      return seen.boards[0].missing_tags.empty();
+    };
+    for (const std::string library : {"apriltag", "aruco"}) {
+      if (!sees_all(library + "(decimate=1)")) continue;
+      EXPECT_TRUE(sees_all(library)) << library << " " << side_px;
+      if (!sees_all(library + "(decimate=2)")) ++hidden;
+    }
+  }
+  EXPECT_GT(hidden, 0);
 }
 
 // OpenCV reads AprilTag's families too, and calls another corner the first.

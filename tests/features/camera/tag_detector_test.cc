@@ -68,6 +68,24 @@ TEST_P(EveryFamily, IsFoundWithItsOwnTopLeftFirst) {
 INSTANTIATE_TEST_SUITE_P(Families, EveryFamily, testing::ValuesIn(TagFamilies()),
                          [](const auto& family) { return family.param; });
 
+// Half a pixel forgotten on the way back from the reduced image would move the middle.
+TEST(TagDetector, AReducedImageShowsTheTagWhereItIs) {
+  const TagPattern pattern = *MakeTagPattern("aruco_6x6_250", 17);
+  const Quad upright = CornersOfPrint(pattern);
+  for (const int decimate : {1, 2, 4}) {
+    const std::string spec = "aruco(dictionary=6x6_250,decimate=" + std::to_string(decimate) + ")";
+    const Expected<Detections> found = (*MakeTagDetector(spec))->Detect(Print(pattern));
+    ASSERT_TRUE(found) << found.error().message;
+    ASSERT_EQ(found->tags.size(), 1U) << spec;
+    Eigen::Vector2d off = Eigen::Vector2d::Zero();
+    for (std::size_t k = 0; k < 4; ++k) {
+      off += 0.25 * (found->tags[0].corners_px[k] - upright[k]);
+      EXPECT_LT((found->tags[0].corners_px[k] - upright[k]).norm(), 0.75 * decimate) << spec;
+    }
+    EXPECT_LT(off.norm(), 0.2) << spec;
+  }
+}
+
 TEST(TagDetector, SpecsAreCheckedByName) {
   const auto message = [](const char* spec) {
     const Expected<TagDetectorPtr> made = MakeTagDetector(spec);
