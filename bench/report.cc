@@ -110,7 +110,7 @@ std::string FormatTime(double ns) {
 std::optional<double> BestPeer(const Row& row) {
   std::optional<double> best;
   for (const auto& [name, timing] : row) {
-    if (name == "sextant" || !timing.median_ns) continue;
+    if (name.starts_with("sextant") || !timing.median_ns) continue;
     best = std::min(best.value_or(*timing.median_ns), *timing.median_ns);
   }
   return best;
