@@ -96,43 +96,59 @@ Problems RoomProblems() {
 // Allowed errors by problem.
 using Allowed = std::vector<Tolerance>;
 
-void Time(benchmark::State& state, const Problems& problems, const Allowed& allowed,
-          const Prepare& prepare) {
+// A peer's calls, made and checked once for all repetitions.
+struct Checked {
+  Problems problems;
   std::vector<PeerCall> calls;
   std::size_t wrong = 0;
-  double worst = 0.0;
-  for (std::size_t i = 0; i < problems.size(); ++i) {
-    calls.push_back(prepare(problems[i]));
-    const std::optional<Rigid3d> answer = calls.back()();
-    const PoseDistance off = answer ? DistanceBetween(*answer, problems[i].cam_from_lidar)
+  double worst_rad = 0.0;
+};
+
+std::shared_ptr<const Checked> Check(Problems problems, const Allowed& allowed,
+                                     const Prepare& prepare) {
+  const auto checked = std::make_shared<Checked>();
+  checked->problems = std::move(problems);
+  for (std::size_t i = 0; i < checked->problems.size(); ++i) {
+    checked->calls.push_back(prepare(checked->problems[i]));
+    const std::optional<Rigid3d> answer = checked->calls.back()();
+    const PoseDistance off = answer ? DistanceBetween(*answer, checked->problems[i].cam_from_lidar)
                                     : PoseDistance{.rotation_rad = 3.14, .translation_m = 1e9};
-    worst = std::max(worst, off.rotation_rad);
-    wrong +=
+    checked->worst_rad = std::max(checked->worst_rad, off.rotation_rad);
+    checked->wrong +=
         off.rotation_rad > allowed[i].rotation_rad || off.translation_m > allowed[i].translation_m
             ? 1U
             : 0U;
   }
-  if (wrong > 0) state.SetLabel(fmt::format("{} of {} wrong", wrong, problems.size()));
-  if (10 * wrong > problems.size()) {
-    return state.SkipWithError(fmt::format("wrong in {} of {}, by up to {:.2g} deg", wrong,
-                                           problems.size(), worst / kDegree)
+  return checked;
+}
+
+void Time(benchmark::State& state, const Checked& checked) {
+  const std::size_t all = checked.calls.size();
+  if (checked.wrong > 0) state.SetLabel(fmt::format("{} of {} wrong", checked.wrong, all));
+  if (10 * checked.wrong > all) {
+    return state.SkipWithError(fmt::format("wrong in {} of {}, by up to {:.2g} deg", checked.wrong,
+                                           all, checked.worst_rad / kDegree)
                                    .c_str());
   }
   std::size_t next = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(calls[next]());
-    next = next + 1 < calls.size() ? next + 1 : 0;
+    benchmark::DoNotOptimize(checked.calls[next]());
+    next = next + 1 < all ? next + 1 : 0;
   }
 }
 
 template <class Make>
 void Register(const std::string& task, const std::string& peer, int count, const Prepare& prepare,
               const Make& make) {
-  benchmark::RegisterBenchmark(fmt::format("{}/{}/{}", task, peer, count).c_str(),
-                               [prepare, make](benchmark::State& state) {
-                                 const auto [problems, allowed] = make();
-                                 Time(state, problems, allowed, prepare);
-                               });
+  benchmark::RegisterBenchmark(
+      fmt::format("{}/{}/{}", task, peer, count).c_str(),
+      [prepare, make, checked = std::shared_ptr<const Checked>()](benchmark::State& state) mutable {
+        if (!checked) {
+          auto [problems, allowed] = make();
+          checked = Check(std::move(problems), allowed, prepare);
+        }
+        Time(state, *checked);
+      });
 }
 
 }  // namespace

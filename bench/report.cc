@@ -64,6 +64,7 @@ constexpr Goal kGoals[] = {
     {"refine", 20, "ceres_tiny", 1.5},
     {"ransac_50", 100, "opencv_usac_default", 4.0},
     {"ransac_50", 100, "opencv_usac_fast", 4.0},
+    {"corners", 8, "open3d_icp", 2.0},
 };
 
 double Nanoseconds(const json& benchmark) {
