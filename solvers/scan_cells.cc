@@ -75,6 +75,16 @@ std::vector<int> RowStarts(const Rings& rings, double cell_bins, int bins) {
 
 }  // namespace
 
+// Before its first use, as clang wants of functions of many versions.
+SEXTANT_MULTIVERSION
+void ScanCells::FindBearings(Points points, double* slopes, std::int32_t* columns) const {
+  for (std::size_t i = 0; i < points.size(); i += kLanes) {
+    const std::array<Lanes, 3> xyz = LoadPoints(points, i, axes_);
+    StoreLanes(SlopesOf(xyz[0], xyz[1], xyz[2]), slopes + i);
+    ColumnsOf(xyz[0], xyz[1], columns + i);
+  }
+}
+
 ScanCells::ScanCells(Points points, double cell_rad) {
   ChooseAxes(points);
   columns_ = std::max(kLeastColumns, static_cast<int>(2.0 * std::numbers::pi / cell_rad));
@@ -112,15 +122,6 @@ void ScanCells::ChooseAxes(Points points) {
   }
   const auto polar = static_cast<std::size_t>(least);
   axes_ = {(polar + 1) % 3, (polar + 2) % 3, polar};
-}
-
-SEXTANT_MULTIVERSION
-void ScanCells::FindBearings(Points points, double* slopes, std::int32_t* columns) const {
-  for (std::size_t i = 0; i < points.size(); i += kLanes) {
-    const std::array<Lanes, 3> xyz = LoadPoints(points, i, axes_);
-    StoreLanes(SlopesOf(xyz[0], xyz[1], xyz[2]), slopes + i);
-    ColumnsOf(xyz[0], xyz[1], columns + i);
-  }
 }
 
 void ScanCells::ChooseRows(std::span<const double> slopes, double cell_rad) {
