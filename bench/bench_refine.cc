@@ -125,7 +125,7 @@ void SolveRefinedP3p(benchmark::State& state) {
     return report ? report->cam_from_lidar : Rigid3d{};
   });
 }
-BENCHMARK(SolveRefinedP3p)->Name("refine_p3p/solve")->Arg(8)->Arg(20)->Arg(100)->Arg(1000);
+BENCHMARK(SolveRefinedP3p)->Name("refine_p3p_solve/sextant")->Arg(8)->Arg(20)->Arg(100)->Arg(1000);
 
 // What one would write with Ceres: reprojection by automatic derivatives.
 struct Reprojection {

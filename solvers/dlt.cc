@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <optional>
 
 #include "solvers/correspondences.h"
 #include "solvers/max_trace_rotation.h"
@@ -22,14 +23,8 @@ constexpr double kMinThickness = 1e-5;
 // Two null directions closer than this cannot be told apart.
 constexpr double kMinRelativeGap = 1e-13;
 
-}  // namespace
-
-Expected<Rigid3d> SolveDlt(std::span<const Eigen::Vector2d> image_points,
-                           std::span<const Eigen::Vector3d> points_in_lidar) {
-  const Expected<Correspondences> data =
-      PrepareCorrespondences(image_points, points_in_lidar, kMinPoints);
-  if (!data) return tl::unexpected<Error>(data.error());
-  const PointCloudFrame& frame = data->frame;
+Expected<Rigid3d> PoseOf(const Correspondences& data) {
+  const PointCloudFrame& frame = data.frame;
   const double thickness = frame.deviation.z() / frame.deviation.x();
   if (!(thickness > kMinThickness)) {
     return MakeError(ErrorCode::kDegenerate,
@@ -41,9 +36,9 @@ Expected<Rigid3d> SolveDlt(std::span<const Eigen::Vector2d> image_points,
   // To coordinates (1, p) of unit covariance.
   Eigen::Vector4d to_unit;
   to_unit << 1.0, frame.deviation.cwiseInverse();
-  const Eigen::Matrix4d u = to_unit.asDiagonal() * data->moments.u * to_unit.asDiagonal();
-  const Eigen::Matrix4d v = to_unit.asDiagonal() * data->moments.v * to_unit.asDiagonal();
-  const Eigen::Matrix4d w = to_unit.asDiagonal() * data->moments.w * to_unit.asDiagonal();
+  const Eigen::Matrix4d u = to_unit.asDiagonal() * data.moments.u * to_unit.asDiagonal();
+  const Eigen::Matrix4d v = to_unit.asDiagonal() * data.moments.v * to_unit.asDiagonal();
+  const Eigen::Matrix4d w = to_unit.asDiagonal() * data.moments.w * to_unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(w - u * u - v * v);
   const Eigen::Vector4d& lambda = eigen.eigenvalues();
   if (!(lambda(1) - lambda(0) > kMinRelativeGap * lambda(3))) {
@@ -54,8 +49,8 @@ Expected<Rigid3d> SolveDlt(std::span<const Eigen::Vector2d> image_points,
   Eigen::Vector4d depth = eigen.eigenvectors().col(0);
   if (depth(0) < 0.0) depth = -depth;
   Eigen::Matrix<double, 3, 4> model;
-  model.row(0) = u * depth + data->moments.mean.x() * depth;
-  model.row(1) = v * depth + data->moments.mean.y() * depth;
+  model.row(0) = u * depth + data.moments.mean.x() * depth;
+  model.row(1) = v * depth + data.moments.mean.y() * depth;
   model.row(2) = depth;
   const Eigen::Matrix3d linear =
       model.rightCols<3>() * frame.deviation.cwiseInverse().asDiagonal() * frame.axes.transpose();
@@ -70,6 +65,16 @@ Expected<Rigid3d> SolveDlt(std::span<const Eigen::Vector2d> image_points,
   }
   const double scale = nearest->trace / 3.0;
   return Rigid3d{nearest->rotation, model.col(0) / scale - nearest->rotation * frame.centroid};
+}
+
+}  // namespace
+
+Expected<Rigid3d> SolveDlt(std::span<const Eigen::Vector2d> image_points,
+                           std::span<const Eigen::Vector3d> points_in_lidar) {
+  const Expected<Correspondences> data =
+      PrepareCorrespondences(image_points, points_in_lidar, kMinPoints);
+  if (!data) return tl::unexpected<Error>(data.error());
+  return PoseOf(*data);
 }
 
 SolverEntry DltEntry() {
@@ -87,7 +92,11 @@ SolverEntry DltEntry() {
         };
         return std::make_shared<PnpSolver>(
             SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = kMinPoints}}, kernel,
-            PnpCovariance::kMoments);
+            [](const Correspondences& data, const Rigid3d&) -> std::optional<Rigid3d> {
+              const Expected<Rigid3d> pose = PoseOf(data);
+              if (!pose) return std::nullopt;
+              return *pose;
+            });
       },
   };
 }

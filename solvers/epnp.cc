@@ -16,7 +16,7 @@ constexpr double kThin = 0.05;
 
 /// Tries every start, and gives the error of the best improper rotation.
 template <int kAxes>
-double Search(const Correspondences& data, const Rigid3d* near, EpnpCandidate& best) {
+double SearchAxes(const Correspondences& data, const Rigid3d* near, EpnpCandidate& best) {
   DepthKernel<kAxes> kernel(data, near);
   if (near != nullptr) {
     kernel.SearchNear();
@@ -32,6 +32,23 @@ double Search(const Correspondences& data, const Rigid3d* near, EpnpCandidate& b
   }
   if (kernel.best().IsBetterThan(best)) best = kernel.best();
   return kernel.MirroredSumSquares();
+}
+
+Rigid3d PoseOf(const Correspondences& data, const EpnpCandidate& candidate) {
+  Rigid3d pose;
+  pose.rotation = Eigen::Quaterniond(candidate.rotation).normalized();
+  pose.translation = candidate.centroid - pose.rotation * data.frame.centroid;
+  return pose;
+}
+
+/// The best candidate over the axes that the points have, and the error of the best mirror image.
+double Search(const Correspondences& data, const Rigid3d* near, EpnpCandidate& best) {
+  double mirrored = std::numeric_limits<double>::infinity();
+  if (!data.frame.IsPlanar()) mirrored = SearchAxes<3>(data, near, best);
+  if (data.frame.deviation.z() < kThin * data.frame.deviation.x()) {
+    SearchAxes<2>(data, near, best);
+  }
+  return mirrored;
 }
 
 /// Whether the best candidate is an answer.
@@ -54,11 +71,8 @@ Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
   const Expected<Correspondences> data =
       PrepareCorrespondences(image_points, points_in_lidar, kMinPoints);
   if (!data) return tl::unexpected<Error>(data.error());
-  const PointCloudFrame& frame = data->frame;
   EpnpCandidate best;
-  double mirrored = std::numeric_limits<double>::infinity();
-  if (!frame.IsPlanar()) mirrored = Search<3>(*data, choice.near, best);
-  if (frame.deviation.z() < kThin * frame.deviation.x()) Search<2>(*data, choice.near, best);
+  const double mirrored = Search(*data, choice.near, best);
   if (choice.near != nullptr) {
     best.fit = FitOf(*data, best.rotation, best.centroid);
   } else if (Expected<void> ok = Check(*data, best, mirrored); !ok && !choice.unchecked) {
@@ -66,10 +80,16 @@ Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
   }
   PolishIfExact(*data, best.fit, best.rotation, best.centroid);
   EpnpFit fit;
-  fit.cam_from_lidar.rotation = Eigen::Quaterniond(best.rotation).normalized();
-  fit.cam_from_lidar.translation = best.centroid - fit.cam_from_lidar.rotation * frame.centroid;
+  fit.cam_from_lidar = PoseOf(*data, best);
   fit.sum_squares = best.fit.sum_squares;
   return fit;
+}
+
+std::optional<Rigid3d> EpnpNear(const Correspondences& data, const Rigid3d& near) {
+  EpnpCandidate best;
+  Search(data, &near, best);
+  if (best.fit.behind == std::numeric_limits<std::size_t>::max()) return std::nullopt;
+  return PoseOf(data, best);
 }
 
 }  // namespace sextant

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 
 #include "base/error.h"
@@ -40,5 +41,10 @@ struct EpnpFit {
 Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
                             std::span<const Eigen::Vector3d> points_in_lidar,
                             const PnpChoice& choice = {});
+
+/// The candidate nearest to `near` for data whose moments may have been displaced: SolveEpnp with
+/// that choice, but for the last step that only exact data takes. Looks at no image point where
+/// there are more than four different points. None where no candidate is found.
+std::optional<Rigid3d> EpnpNear(const Correspondences& data, const Rigid3d& near);
 
 }  // namespace sextant

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solvers/pixel_sums.h"
 #include "solvers/residuals.h"
 
 namespace sextant {
@@ -33,6 +34,14 @@ void EvaluatePairs3d3d(const CalibrationProblem& problem, const Rigid3d& cam_fro
 void EvaluatePairs2d3d(const CalibrationProblem& problem, const Rigid3d& cam_from_lidar,
                        Evaluation& evaluation) {
   if (!problem.camera) return;
+  if (problem.camera->model == CameraModel::kPinhole) {
+    evaluation.per_pair_px.resize(problem.pairs_2d3d.size());
+    const PixelErrors errors = MeasurePixels(
+        problem.pairs_2d3d, PinholePose(*problem.camera, cam_from_lidar), evaluation.per_pair_px);
+    evaluation.cost += 0.5 * errors.squares;
+    if (errors.projected > 0) evaluation.rmse_px = std::sqrt(errors.squares_px2 / errors.projected);
+    return;
+  }
   evaluation.per_pair_px.reserve(problem.pairs_2d3d.size());
   double sum = 0.0;
   int projected = 0;

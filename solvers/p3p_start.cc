@@ -12,7 +12,7 @@ namespace sextant {
 namespace {
 
 constexpr std::size_t kMaxCorners = 5;
-constexpr std::size_t kMaxBlocks = 8;
+constexpr std::size_t kMaxBlocks = 4;
 constexpr std::size_t kMaxTerms = kMaxBlocks * kLanes;
 
 // Of the triples of five, those that together use each corner about as often.

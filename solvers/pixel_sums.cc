@@ -175,6 +175,45 @@ void SquarePixels(std::span<const PixelBlock> blocks, const PinholePose& pose, d
 }
 
 SEXTANT_MULTIVERSION
+PixelErrors MeasurePixels(std::span<const Pair2d3d> pairs, const PinholePose& pose,
+                          std::span<double> distances_px) {
+  Lanes count = {};
+  Lanes squares_px2 = {};
+  Lanes squares = {};
+  for (std::size_t at = 0; at < pairs.size(); at += kLanes) {
+    const std::size_t left = pairs.size() - at;
+    PixelBlock block;
+    Lanes inverse_variance;
+    Lanes given;
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      const Pair2d3d& pair = pairs[at + (k < left ? k : 0)];
+      block.x[k] = pair.point_in_lidar.data()[0];
+      block.y[k] = pair.point_in_lidar.data()[1];
+      block.z[k] = pair.point_in_lidar.data()[2];
+      block.u[k] = pair.pixel.data()[0];
+      block.v[k] = pair.pixel.data()[1];
+      block.inverse_sigma[k] = 1.0;
+      const double sigma = pair.sigma_px > 0.0 ? pair.sigma_px : 1.0;
+      inverse_variance[k] = sigma * sigma;
+      given[k] = k < left ? 1.0 : 0.0;
+    }
+    inverse_variance = 1.0 / inverse_variance;
+    const Lanes squared = SquaresOf(See(block, pose));
+    const Lanes projects = squared < std::numeric_limits<double>::infinity() ? given : Lanes{};
+    const Lanes counted = projects > 0.0 ? squared : Lanes{};
+    count += projects;
+    squares_px2 += counted;
+    squares += counted * inverse_variance;
+    double distances[kLanes];
+    StoreLanes(Sqrt(squared), distances);
+    for (std::size_t k = 0; k < (left < kLanes ? left : kLanes); ++k) {
+      distances_px[at + k] = distances[k];
+    }
+  }
+  return {static_cast<int>(SumLanes(count)), SumLanes(squares_px2), SumLanes(squares)};
+}
+
+SEXTANT_MULTIVERSION
 double TruncatedPixelCost(std::span<const PixelBlock> blocks, const PinholePose& pose,
                           double max_squared, double give_up) {
   double cost = 0.0;

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "geometry/camera.h"
+#include "geometry/calibration_problem.h"
 #include "geometry/rigid3d.h"
 #include "solvers/p3p.h"
 #include "solvers/pixel_terms.h"
@@ -46,6 +46,18 @@ void SquarePixels(std::span<const PixelBlock> blocks, const PinholePose& pose, d
 /// reached it.
 double TruncatedPixelCost(std::span<const PixelBlock> blocks, const PinholePose& pose,
                           double max_squared, double give_up);
+
+/// How pairs are explained, as Evaluation counts it: those that project.
+struct PixelErrors {
+  int projected = 0;
+  double squares_px2 = 0.0;
+  double squares = 0.0;  ///< In sigmas, or in pixels where none is stated.
+};
+
+/// Sums, and the distances in pixels from the projections, infinite behind the camera. Shape:
+/// distances_px has the size of pairs.
+PixelErrors MeasurePixels(std::span<const Pair2d3d> pairs, const PinholePose& pose,
+                          std::span<double> distances_px);
 
 /// When to give a pose up before all terms were seen: the sequential probability ratio test (Wald
 /// 1947; Matas and Chum 2005), an inlier or an outlier at a time.

@@ -85,7 +85,18 @@ class PixelTerms {
     size_ = 0;
   }
   void reserve(std::size_t count) { blocks_.reserve((count + kLanes - 1) / kLanes); }
-  void push_back(const PixelTerm& term);
+  void push_back(const PixelTerm& term) {
+    const std::size_t k = size_ % kLanes;
+    if (k == 0) AddBlock(term);
+    PixelBlock& block = blocks_.back();
+    block.x[k] = term.in_lidar.x();
+    block.y[k] = term.in_lidar.y();
+    block.z[k] = term.in_lidar.z();
+    block.u[k] = term.pixel.x();
+    block.v[k] = term.pixel.y();
+    block.inverse_sigma[k] = term.inverse_sigma;
+    ++size_;
+  }
 
   PixelTermsView View() const { return {blocks_.data(), size_}; }
   PixelTerm operator[](std::size_t i) const { return View()[i]; }
@@ -94,6 +105,9 @@ class PixelTerms {
   std::span<const PixelBlock> blocks() const { return blocks_; }
 
  private:
+  // Whose places all repeat a term and add nothing.
+  void AddBlock(const PixelTerm& term);
+
   std::vector<PixelBlock> blocks_;
   std::size_t size_ = 0;
 };

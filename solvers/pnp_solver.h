@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solvers/correspondences.h"
+#include "solvers/moment_slopes.h"
 #include "solvers/solver.h"
 #include "solvers/triple_covariance.h"
 
@@ -46,6 +47,8 @@ enum class PnpCovariance {
 class PnpSolver final : public Solver {
  public:
   PnpSolver(SolverSpec spec, PnpKernel kernel, PnpCovariance covariance);
+  /// Of kind kMoments, for a kernel that can be given displaced moments.
+  PnpSolver(SolverSpec spec, PnpKernel kernel, PoseOfMoments of_moments);
 
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override;
@@ -55,6 +58,7 @@ class PnpSolver final : public Solver {
 
   PnpKernel kernel_;
   PnpCovariance covariance_;
+  PoseOfMoments of_moments_ = {};
 };
 
 }  // namespace sextant

@@ -131,7 +131,8 @@ DataNeeds WithSample(const DataNeeds& inner, PairKind kind, int sample_size) {
 /// each new best (Lebeda, Matas and Chum 2012, LO+-RANSAC), then the inner solver on all inliers.
 ///
 /// The inner's refit is taken unless it costs more than least squares on the same inliers, as that
-/// of a minimal solver or of EPnP may; then least squares is the answer. The paper's plain scheme:
+/// of a minimal solver or of EPnP may; then least squares is the answer. Around p3p the search is
+/// FindP3pConsensus where the camera has no distortion. The paper's plain scheme:
 /// sample_size=15, max_iterations=10000, local_optimisation=0. Errors: kDegenerate (1000 samples
 /// and not one pose), kNoConsensus (see CheckConsensus), kMirrored.
 class RansacSolver final : public Solver {

@@ -147,10 +147,18 @@ class RefineSolver final : public Solver {
     if (Expected<void> ok = CheckOutcome(refined); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
+    std::optional<Matrix6d> inverse = InvertInformation(refined.information);
+    if (!inverse) {
+      return MakeError(ErrorCode::kDegenerate,
+                       "the pairs leave a direction of the pose undetermined; use points that span "
+                       "a plane");
+    }
     Estimate estimate;
     estimate.cam_from_lidar = refined.cam_from_lidar;
     estimate.iterations = refined.iterations;
-    estimate.covariance = LeastSquaresCovariance(terms, refined.information, refined.cost);
+    estimate.covariance = terms.noise_known
+                              ? inverse
+                              : LeastSquaresCovariance(terms, refined.information, refined.cost);
     return estimate;
   }
 
@@ -219,11 +227,6 @@ class RefineSolver final : public Solver {
                          fmt::format("at the answer of '{}' a point does not project into the "
                                      "image; wrap it in ransac or give a better start",
                                      inner_->spec().name));
-    }
-    if (!InvertInformation(refined.information)) {
-      return MakeError(ErrorCode::kDegenerate,
-                       "the pairs leave a direction of the pose undetermined; use points that span "
-                       "a plane");
     }
     return {};
   }
