@@ -56,8 +56,43 @@ SEXTANT_INLINE Lanes Max(const Lanes& a, const Lanes& b) { return a < b ? b : a;
 
 /// The sum, always in the same order: halves onto each other.
 SEXTANT_INLINE double SumLanes(const Lanes& lanes) {
-  return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) +
-         ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
+  using Four = double __attribute__((vector_size(32)));
+  using Two = double __attribute__((vector_size(16)));
+  const Four four = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3) +
+                    __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+  const Two two =
+      __builtin_shufflevector(four, four, 0, 1) + __builtin_shufflevector(four, four, 2, 3);
+  return two[0] + two[1];
 }
+
+SEXTANT_INLINE Lanes SumPairs(const Lanes& p, const Lanes& q) {
+  return __builtin_shufflevector(p, q, 0, 8, 2, 10, 4, 12, 6, 14) +
+         __builtin_shufflevector(p, q, 1, 9, 3, 11, 5, 13, 7, 15);
+}
+
+SEXTANT_INLINE Lanes SumFours(const Lanes& p, const Lanes& q) {
+  return __builtin_shufflevector(p, q, 0, 1, 8, 9, 4, 5, 12, 13) +
+         __builtin_shufflevector(p, q, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+/// The sums of eight vectors side by side, in a third of the time of eight SumLanes and in an order
+/// of its own: neighbours first.
+SEXTANT_INLINE Lanes SumEach(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d,
+                             const Lanes& e, const Lanes& f, const Lanes& g, const Lanes& h) {
+  const Lanes abcd = SumFours(SumPairs(a, b), SumPairs(c, d));
+  const Lanes efgh = SumFours(SumPairs(e, f), SumPairs(g, h));
+  return __builtin_shufflevector(abcd, efgh, 0, 1, 2, 3, 8, 9, 10, 11) +
+         __builtin_shufflevector(abcd, efgh, 4, 5, 6, 7, 12, 13, 14, 15);
+}
+
+SEXTANT_INLINE long long OrOfLanes(const LaneMask& mask) {
+  using Four = long long __attribute__((vector_size(32)));
+  const Four four = __builtin_shufflevector(mask, mask, 0, 1, 2, 3) |
+                    __builtin_shufflevector(mask, mask, 4, 5, 6, 7);
+  return (four[0] | four[1]) | (four[2] | four[3]);
+}
+
+/// Whether a comparison holds in some lane.
+SEXTANT_INLINE bool AnyLane(const LaneMask& mask) { return OrOfLanes(mask) != 0; }
 
 }  // namespace sextant

@@ -5,10 +5,12 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
+#include "base/lanes.h"
 #include "base/random.h"
 #include "bench/check.h"
 #include "geometry/so3.h"
 #include "solvers/kabsch.h"
+#include "solvers/kabsch_batch.h"
 
 namespace sextant::bench {
 namespace {
@@ -93,6 +95,97 @@ void UmeyamaFixed(benchmark::State& state) {
   Umeyama<Eigen::Matrix<double, 3, kCount>>(state);
 }
 
+// As many problems at once as one call of FitKabschBatch gets here; the peers take them in turn.
+constexpr std::size_t kBatch = 64;
+
+std::vector<PointPairs> FullBatch(const benchmark::State& state) {
+  std::vector<PointPairs> problems = MakePointPairs(state);
+  while (problems.size() < kBatch) problems.push_back(problems[problems.size() / 2]);
+  problems.resize(kBatch);
+  return problems;
+}
+
+void KabschBatch(benchmark::State& state) {
+  const std::vector<PointPairs> problems = FullBatch(state);
+  const auto count = static_cast<std::size_t>(state.range(0));
+  PointBatch batch(kBatch, count);
+  for (std::size_t k = 0; k < kBatch; ++k) {
+    for (std::size_t i = 0; i < count; ++i) {
+      batch.Set(k, i, problems[k].in_cam[i], problems[k].in_lidar[i]);
+    }
+  }
+  std::vector<KabschOutcome> fits(kBatch);
+  FitKabschBatch(batch, fits);
+  for (std::size_t k = 0; k < kBatch; ++k) {
+    if (!fits[k]) return state.SkipWithError("no fit");
+    if (!CheckPose(state, fits[k]->b_from_a, problems[k].cam_from_lidar, kTolerance)) return;
+  }
+  for (auto _ : state) {
+    FitKabschBatch(batch, fits);
+    benchmark::DoNotOptimize(fits.data());
+    benchmark::ClobberMemory();
+  }
+}
+
+template <int kCount>
+void UmeyamaBatch(benchmark::State& state) {
+  using Matrix = Eigen::Matrix<double, 3, kCount>;
+  std::vector<Matrix> in_cam;
+  std::vector<Matrix> in_lidar;
+  for (const PointPairs& points : FullBatch(state)) {
+    in_cam.push_back(Columns<Matrix>(points.in_cam));
+    in_lidar.push_back(Columns<Matrix>(points.in_lidar));
+  }
+  for (auto _ : state) {
+    for (std::size_t k = 0; k < kBatch; ++k) {
+      const Eigen::Matrix4d answer = Eigen::umeyama(in_lidar[k], in_cam[k], false);
+      benchmark::DoNotOptimize(answer);
+    }
+  }
+}
+
+// Ten to one and more: the two larger eigenvalues of Horn's matrix come close.
+void KabschElongated(benchmark::State& state) {
+  std::vector<PointPairs> problems(64);
+  Random random(2);
+  const double narrow = 1.0 / static_cast<double>(state.range(0));
+  for (PointPairs& points : problems) {
+    points.cam_from_lidar.rotation = ExpSo3(NormalVector(random));
+    for (int i = 0; i < 8; ++i) {
+      points.in_lidar.push_back(
+          NormalVector(random).cwiseProduct(Eigen::Vector3d(1.0, narrow, narrow)));
+      points.in_cam.push_back(points.cam_from_lidar * points.in_lidar.back() +
+                              0.01 * narrow * NormalVector(random));
+    }
+    const Expected<KabschFit> fit = FitKabsch(points.in_cam, points.in_lidar);
+    if (!fit) return state.SkipWithError(fit.error().message.c_str());
+    if (!CheckPose(state, fit->b_from_a, points.cam_from_lidar, kTolerance)) return;
+  }
+  std::size_t next = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(FitKabsch(problems[next].in_cam, problems[next].in_lidar));
+    next = next + 1 < problems.size() ? next + 1 : 0;
+  }
+}
+
+SEXTANT_MULTIVERSION double ReadAll(const double* numbers, std::size_t count) {
+  Lanes sums[4] = {};
+  for (std::size_t i = 0; i + 4 * kLanes <= count; i += 4 * kLanes) {
+    for (std::size_t k = 0; k < 4; ++k) sums[k] += LoadLanes(numbers + i + k * kLanes);
+  }
+  return SumLanes((sums[0] + sums[1]) + (sums[2] + sums[3]));
+}
+
+// What the memory allows: the same arrays, read once.
+void Reading(benchmark::State& state) {
+  const std::vector<PointPairs> problems = MakePointPairs(state);
+  const std::size_t count = 3 * problems[0].in_cam.size();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(ReadAll(problems[0].in_cam[0].data(), count) +
+                             ReadAll(problems[0].in_lidar[0].data(), count));
+  }
+}
+
 void AllCounts(benchmark::internal::Benchmark* benchmark) {
   for (const int count : {3, 4, 8, 20, 100, 1000, 1000000}) benchmark->Arg(count);
 }
@@ -106,6 +199,12 @@ BENCHMARK(UmeyamaFixed<4>)->Name("kabsch/umeyama_fixed")->Arg(4);
 BENCHMARK(UmeyamaFixed<8>)->Name("kabsch/umeyama_fixed")->Arg(8);
 BENCHMARK(UmeyamaFixed<20>)->Name("kabsch/umeyama_fixed")->Arg(20);
 BENCHMARK(UmeyamaFixed<100>)->Name("kabsch/umeyama_fixed")->Arg(100);
+BENCHMARK(KabschBatch)->Name("kabsch_64_problems/sextant")->Arg(3)->Arg(4)->Arg(8);
+BENCHMARK(UmeyamaBatch<3>)->Name("kabsch_64_problems/umeyama_fixed")->Arg(3);
+BENCHMARK(UmeyamaBatch<4>)->Name("kabsch_64_problems/umeyama_fixed")->Arg(4);
+BENCHMARK(UmeyamaBatch<8>)->Name("kabsch_64_problems/umeyama_fixed")->Arg(8);
+BENCHMARK(KabschElongated)->Name("kabsch_elongated/sextant")->Arg(10)->Arg(30)->Arg(100);
+BENCHMARK(Reading)->Name("read_points/sextant")->Arg(1000000);
 
 }  // namespace
 }  // namespace sextant::bench

@@ -18,6 +18,9 @@ struct KabschFit {
   double mirrored_sum_squares = 0.0;
 };
 
+/// A fit or why there is none, without a message: for searches, which discard most unread.
+using KabschOutcome = tl::expected<KabschFit, ErrorCode>;
+
 /// argmin over R in SO(3), t of sum_i w_i |b_i - R a_i - t|^2, in closed form.
 ///
 /// The unit quaternion of R is the eigenvector of the largest eigenvalue of Horn's symmetric 4x4

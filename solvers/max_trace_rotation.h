@@ -19,9 +19,10 @@ struct MaxTraceRotation {
 ///
 /// The unit quaternion of R is the eigenvector of the largest eigenvalue of Horn's symmetric 4x4
 /// matrix K. That eigenvalue is the largest root of x^4 - 2 |cross|^2 x^2 - 8 det(cross) x + det K,
-/// found by Newton from above, and the eigenvector is a column of the adjugate of K - x I (Horn
-/// 1987, JOSA A 4; Theobald 2005, Acta Cryst. A61). Where the residual K q - x q does not prove
-/// that answer to rounding, an eigensolver decides.
+/// found by Householder's iteration from above, and the eigenvector is a column of the adjugate of
+/// K - x I (Horn 1987, JOSA A 4; Theobald 2005, Acta Cryst. A61), made exact by its Rayleigh
+/// quotient. Where the residual K q - x q does not prove that answer to rounding, an eigensolver
+/// decides.
 ///
 /// `trace_bound` > 0 is at least the maximum: half of sum w (|a|^2 + |b|^2) for
 /// cross = sum w a b^T. None where the two largest eigenvalues are closer than 1e-10 of it, that is

@@ -14,11 +14,6 @@ Eigen::Matrix3d StatedCovariance(const Pair3d3d& pair) {
   return Eigen::Matrix3d::Identity() * (sigma * sigma);
 }
 
-double IsotropicWeight(const Pair3d3d& pair) {
-  if (pair.covariance_in_cam) return 3.0 / pair.covariance_in_cam->trace();
-  return pair.sigma_m > 0.0 ? 1.0 / (pair.sigma_m * pair.sigma_m) : 1.0;
-}
-
 std::vector<double> IsotropicWeights(std::span<const Pair3d3d> pairs) {
   std::vector<double> weights;
   weights.reserve(pairs.size());

@@ -13,7 +13,10 @@ namespace sextant {
 Eigen::Matrix3d StatedCovariance(const Pair3d3d& pair);
 
 /// 1 / (mean variance per axis) of a pair; 1 where it states no noise.
-double IsotropicWeight(const Pair3d3d& pair);
+inline double IsotropicWeight(const Pair3d3d& pair) {
+  if (pair.covariance_in_cam) return 3.0 / pair.covariance_in_cam->trace();
+  return pair.sigma_m > 0.0 ? 1.0 / (pair.sigma_m * pair.sigma_m) : 1.0;
+}
 std::vector<double> IsotropicWeights(std::span<const Pair3d3d> pairs);
 
 /// Covariance of (dphi, dt) of the minimum of sum_i w_i |q_i - R p_i - t|^2 at `pose`.

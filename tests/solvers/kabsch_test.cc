@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "geometry/so3.h"
+#include "solvers/pair_noise.h"
 #include "solvers/registry.h"
 #include "support/scenes.h"
 
@@ -96,6 +97,30 @@ TEST(Kabsch, ReportsTheSumsOfSquaresOfBothKinds) {
     if (!mirrored) continue;
     EXPECT_NEAR(fit->mirrored_sum_squares, mirrored->sum_squares,
                 1e-6 * static_cast<double>(a.size()));
+  }
+}
+
+// The closed form of the covariance is that of the implicit function theorem pair by pair, with
+// known and with unknown noise.
+TEST(Kabsch, StatesTheCovarianceOfThePropagation) {
+  Random random(8);
+  const SolverPtr solver = *BuiltinSolvers().Make("kabsch");
+  for (const int pairs : {3, 4, 8, 13, 100}) {
+    for (const bool known : {true, false}) {
+      Scene scene = MakeScene({.pairs = pairs, .sigma_m = 0.05}, random);
+      for (Pair3d3d& pair : scene.problem.pairs_3d3d) {
+        pair.sigma_m = known ? 0.05 * random.Uniform(0.5, 2.0) : 0.0;
+      }
+      const Expected<SolveReport> report = solver->Solve(scene.problem);
+      ASSERT_TRUE(report) << report.error().message;
+      const auto propagated =
+          PropagateCovariance(scene.problem.pairs_3d3d, IsotropicWeights(scene.problem.pairs_3d3d),
+                              report->cam_from_lidar);
+      ASSERT_TRUE(report->covariance && propagated);
+      EXPECT_TRUE(report->covariance->isApprox(*propagated, 1e-9)) << pairs << " pairs:\n"
+                                                                   << *report->covariance << "\n\n"
+                                                                   << *propagated;
+    }
   }
 }
 

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/kabsch_batch.h"
+
+#include <algorithm>
+#include <array>
+
+#include "solvers/kabsch_kernel.h"
+#include "solvers/trace_formula.h"
+
+namespace sextant {
+namespace {
+
+static_assert(PointBatch::kGroup == kLanes);
+
+using EightNumbers = std::array<double, kLanes>;
+
+// Eight problems, taken apart by lane.
+struct GroupFit {
+  double At(int number, std::size_t lane) const {
+    return numbers[static_cast<std::size_t>(number)][lane];
+  }
+
+  KernelFit Kernel(std::size_t lane) const {
+    return {{At(0, lane), At(1, lane), At(2, lane), At(3, lane)},
+            {At(4, lane), At(5, lane), At(6, lane)},
+            At(7, lane),
+            At(8, lane)};
+  }
+  double squares(std::size_t lane) const { return At(9, lane); }
+
+  CentredMoments<double> Moments(std::size_t lane) const {
+    CentredMoments<double> m{};
+    m.squares = squares(lane);
+    m.mean_a = {At(10, lane), At(11, lane), At(12, lane)};
+    m.mean_b = {At(13, lane), At(14, lane), At(15, lane)};
+    m.cross = {At(16, lane), At(17, lane), At(18, lane), At(19, lane), At(20, lane),
+               At(21, lane), At(22, lane), At(23, lane), At(24, lane)};
+    return m;
+  }
+
+  std::array<EightNumbers, 25> numbers;
+  std::array<long long, kLanes> proven;  // -1 where the formula proved itself.
+};
+
+SEXTANT_INLINE Point3<Lanes> LoadPoint(const double* from) {
+  return {LoadLanes(from), LoadLanes(from + kLanes), LoadLanes(from + 2 * kLanes)};
+}
+
+SEXTANT_INLINE Point3<Lanes> operator+(const Point3<Lanes>& a, const Point3<Lanes>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+SEXTANT_INLINE CentredMoments<Lanes> MomentsOf(const double* group, std::size_t points) {
+  const Point3<Lanes> origin_a = LoadPoint(group);
+  const Point3<Lanes> origin_b = LoadPoint(group + 3 * kLanes);
+  MomentSums<Lanes> sums{};
+  for (std::size_t i = 1; i < points; ++i) {
+    const double* point = group + i * 6 * kLanes;
+    sums.Add<false, false>(LoadPoint(point) - origin_a, LoadPoint(point + 3 * kLanes) - origin_b,
+                           Lanes{});
+  }
+  CentredMoments<Lanes> m = Centre<false>(sums, AllLanes(static_cast<double>(points)));
+  m.mean_a = m.mean_a + origin_a;
+  m.mean_b = m.mean_b + origin_b;
+  return m;
+}
+
+// MaximizeTraceByFormula in lanes. One that is done is left alone, so that no problem notices its
+// neighbours.
+SEXTANT_INLINE LaneMask FindRoot(const Quartic<Lanes>& quartic, const Lanes& bound, Lanes& x) {
+  constexpr int kMaxIterations = 8;
+  x = bound;
+  LaneMask done{};
+  for (int i = 0; i < kMaxIterations && AnyLane(~done); ++i) {
+    const Lanes step = HouseholderStep(quartic, x);
+    x = done ? x : x - step;
+    done |= Abs(step) <= 1e-3 * bound;
+  }
+  return done;
+}
+
+SEXTANT_INLINE LaneMask FindVector(const HornMatrix<Lanes>& horn, const Invariants<Lanes>& v,
+                                   const Lanes& bound, Lanes& e1, Vector4<Lanes>& q) {
+  constexpr int kMaxRounds = 4;
+  const Lanes none{};
+  q = {none, none, none, none};
+  LaneMask done{};
+  for (int round = 0; round < kMaxRounds && AnyLane(~done); ++round) {
+    Vector4<Lanes> column = NullVector(horn, e1);
+    for (int polish = 0; polish < 2 && AnyLane(~done); ++polish) {
+      const EigenResidual<Lanes> r = ResidualOf(horn, e1, column);
+      const Lanes scale = 1.0 / Sqrt(r.length2);
+      q = Select(
+          done, q,
+          Vector4<Lanes>{scale * column.x, scale * column.y, scale * column.z, scale * column.w});
+      e1 = done ? e1 : e1 + r.shift;
+      done |= IsProven<LaneMask>(r, SeparationOf(v, e1), bound);
+      column = WithoutFarParts(column, r, e1);
+    }
+  }
+  return done;
+}
+
+SEXTANT_INLINE void Store(const CentredMoments<Lanes>& m, GroupFit& fit) {
+  const Lanes all[] = {m.squares,  m.mean_a.x, m.mean_a.y, m.mean_a.z, m.mean_b.x, m.mean_b.y,
+                       m.mean_b.z, m.cross.xx, m.cross.xy, m.cross.xz, m.cross.yx, m.cross.yy,
+                       m.cross.yz, m.cross.zx, m.cross.zy, m.cross.zz};
+  for (std::size_t i = 0; i < 16; ++i) StoreLanes(all[i], fit.numbers[9 + i].data());
+}
+
+SEXTANT_MULTIVERSION void FitGroup(const double* group, std::size_t points, GroupFit& fit) {
+  const CentredMoments<Lanes> m = MomentsOf(group, points);
+  Store(m, fit);
+  const Lanes bound = 0.5 * m.squares;
+  const HornMatrix<Lanes> horn = MakeHornMatrix(m.cross);
+  const Invariants<Lanes> v = ComputeInvariants(m.cross);
+  Lanes e1;
+  LaneMask proven = FindRoot(CharacteristicPolynomial(v), bound, e1);
+  Vector4<Lanes> q;
+  proven &= FindVector(horn, v, bound, e1, q);
+  proven &= SeparationOf(v, e1) > kMinSeparation * bound * bound * bound;
+  const RotationMatrix<Lanes> r = MakeRotationMatrix(q);
+  const Point3<Lanes> translation = m.mean_b - Rotate(r, m.mean_a);
+  const Lanes all[] = {q.x,
+                       q.y,
+                       q.z,
+                       q.w,
+                       translation.x,
+                       translation.y,
+                       translation.z,
+                       e1,
+                       e1 - 2.0 * LeastSingularValue(r, m.cross)};
+  for (std::size_t i = 0; i < 9; ++i) StoreLanes(all[i], fit.numbers[i].data());
+  std::memcpy(fit.proven.data(), &proven, sizeof proven);
+}
+
+KabschOutcome OutcomeOf(const GroupFit& group, std::size_t lane) {
+  if (group.proven[lane] != 0) return JudgeFit(group.Kernel(lane), group.squares(lane));
+  KernelFit kernel;
+  if (!FitByEigensolver(group.Moments(lane), kernel)) {
+    return tl::unexpected(ErrorCode::kDegenerate);
+  }
+  return JudgeFit(kernel, group.squares(lane));
+}
+
+}  // namespace
+
+PointBatch::PointBatch(std::size_t problems, std::size_t points_per_problem)
+    : problems_(problems),
+      points_(points_per_problem),
+      numbers_((problems + kGroup - 1) / kGroup * points_per_problem * 6 * kGroup, 0.0) {}
+
+void FitKabschBatch(const PointBatch& batch, std::span<KabschOutcome> fits) {
+  if (batch.points_per_problem() < 3) {
+    std::fill(fits.begin(), fits.end(), tl::unexpected(ErrorCode::kTooFewPairs));
+    return;
+  }
+  GroupFit group;
+  for (std::size_t first = 0; first < batch.problems(); first += kLanes) {
+    FitGroup(batch.Group(first / kLanes), batch.points_per_problem(), group);
+    const std::size_t count = std::min(kLanes, batch.problems() - first);
+    for (std::size_t lane = 0; lane < count; ++lane) fits[first + lane] = OutcomeOf(group, lane);
+  }
+}
+
+}  // namespace sextant
