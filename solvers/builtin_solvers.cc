@@ -16,6 +16,7 @@
   X(Ransac)                \
   X(Gnc)                   \
   X(Clique)                \
+  X(Robust)                \
   X(DropWorst)             \
   X(Refine)                \
   X(Joint)                 \

@@ -4,9 +4,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solvers/consensus.h"
 #include "solvers/max_clique.h"
+#include "solvers/pair_columns.h"
 #include "solvers/pair_noise.h"
 #include "solvers/registry.h"
 #include "solvers/subset.h"
@@ -57,38 +59,18 @@ class CliqueSolver final : public Solver {
     }
     const PairTerms terms = MakeTerms(problem, PairKind::k3d3d, options_.Assumed());
     const PoseScorer scorer(terms, options_.MaxSquared(PairKind::k3d3d));
-    const BitGraph graph = AgreementGraph(problem.pairs_3d3d);
+    const BitGraph graph = GraphOf(problem.pairs_3d3d);
     const Clique clique = FindMaximumClique(graph, options_.max_nodes);
-    Expected<Estimate> best = AnswerFrom(problem, terms, scorer, clique);
-    if (clique.vertices.size() > kSmallClique) return best;
-    // Distances do not tell a point from its mirror image: a false pair may have taken the place
-    // of a true one. So each is left out in turn, and the best pose counts.
-    for (const int suspect : clique.vertices) {
-      BitGraph without = graph;
-      without.Isolate(suspect);
-      Expected<Estimate> other =
-          AnswerFrom(problem, terms, scorer, FindMaximumClique(without, options_.max_nodes));
-      if (other &&
-          (!best || scorer.Cost(other->cam_from_lidar) < scorer.Cost(best->cam_from_lidar))) {
-        best = std::move(other);
-      }
-    }
-    if (best || 2 * clique.vertices.size() > problem.pairs_3d3d.size()) return best;
-    return MakeError(ErrorCode::kNoConsensus,
-                     fmt::format("at most {} of {} pairs agree on their distances, and on no pose; "
-                                 "check the pairing and the sigmas",
-                                 clique.vertices.size(), problem.pairs_3d3d.size()));
-  }
-
-  Expected<Estimate> AnswerFrom(const CalibrationProblem& problem, const PairTerms& terms,
-                                const PoseScorer& scorer, const Clique& clique) const {
     const int least = spec().needs.pairs_3d3d;
     if (Expected<void> ok = CheckConsensus(terms, scorer, clique.vertices, least); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
-    const Expected<Rigid3d> on_clique = PoseOfSubset(*inner_, problem, terms, clique.vertices);
-    if (!on_clique) return tl::unexpected<Error>(on_clique.error());
-    Expected<Estimate> estimate = Gather(problem, terms, scorer, *on_clique);
+    Expected<Rigid3d> pose = PoseFrom(problem, terms, scorer, clique);
+    if (clique.vertices.size() <= kSmallClique) {
+      pose = BestWithoutOne(problem, terms, scorer, graph, clique, std::move(pose));
+    }
+    if (!pose) return tl::unexpected<Error>(std::move(pose.error()));
+    Expected<Estimate> estimate = BetterOnInliers(*inner_, problem, terms, scorer, *pose);
     if (!estimate) return estimate;
     if (Expected<void> ok = CheckConsensus(terms, scorer, estimate->inliers, least); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
@@ -99,17 +81,45 @@ class CliqueSolver final : public Solver {
     return estimate;
   }
 
-  // All pairs within the threshold of the clique's pose, and the answer on them.
-  Expected<Estimate> Gather(const CalibrationProblem& problem, const PairTerms& terms,
-                            const PoseScorer& scorer, const Rigid3d& pose) const {
-    if (!spec().estimates_rotation) return RefitOnInliers(*inner_, problem, scorer, pose);
+  // The pose of the clique, then of all pairs within its threshold.
+  Expected<Rigid3d> PoseFrom(const CalibrationProblem& problem, const PairTerms& terms,
+                             const PoseScorer& scorer, const Clique& clique) const {
+    Expected<Rigid3d> pose = PoseOfSubset(*inner_, problem, terms, clique.vertices);
+    if (!pose || !spec().estimates_rotation) return pose;
     InlierWorkspace workspace;
-    return BetterOnInliers(*inner_, problem, terms, scorer,
-                           OptimiseOnInliers(terms, scorer, pose, kMaxRounds, {}, workspace));
+    return OptimiseOnInliers(terms, scorer, *pose, kMaxRounds, {}, workspace);
   }
 
-  BitGraph AgreementGraph(const std::vector<Pair3d3d>& pairs) const {
+  // Distances do not tell a point from its mirror image: a false pair may have taken the place of
+  // a true one. So each is left out in turn, and the best pose counts.
+  Expected<Rigid3d> BestWithoutOne(const CalibrationProblem& problem, const PairTerms& terms,
+                                   const PoseScorer& scorer, const BitGraph& graph,
+                                   const Clique& clique, Expected<Rigid3d> best) const {
+    double least_cost = best ? scorer.Cost(*best) : std::numeric_limits<double>::infinity();
+    for (const int suspect : clique.vertices) {
+      BitGraph without = graph;
+      without.Isolate(suspect);
+      const Clique other = FindMaximumClique(without, options_.max_nodes);
+      if (static_cast<int>(other.vertices.size()) < LeastPairs(inner_->spec().needs)) continue;
+      Expected<Rigid3d> pose = PoseFrom(problem, terms, scorer, other);
+      const double cost = pose ? scorer.Cost(*pose) : std::numeric_limits<double>::infinity();
+      if (!(cost < least_cost)) continue;
+      least_cost = cost;
+      best = std::move(pose);
+    }
+    if (best || 2 * clique.vertices.size() > problem.pairs_3d3d.size()) return best;
+    return MakeError(ErrorCode::kNoConsensus,
+                     fmt::format("at most {} of {} pairs agree on their distances, and on no pose; "
+                                 "check the pairing and the sigmas",
+                                 clique.vertices.size(), problem.pairs_3d3d.size()));
+  }
+
+  BitGraph GraphOf(const std::vector<Pair3d3d>& pairs) const {
     const double max_squared = options_.MaxSquared(PairKind::k3d3d);
+    if (std::none_of(pairs.begin(), pairs.end(),
+                     [](const Pair3d3d& pair) { return pair.covariance_in_cam.has_value(); })) {
+      return AgreementGraph(PairColumns(pairs, options_.Assumed()), max_squared);
+    }
     std::vector<Eigen::Matrix3d> noise;
     noise.reserve(pairs.size());
     for (const Pair3d3d& pair : pairs) {

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "solvers/isotropic_points.h"
 #include "solvers/subset.h"
 
 namespace sextant {
@@ -35,8 +36,7 @@ double ChanceOfAgreement(const PairTerms& terms, double max_squared) {
       radius += threshold / std::cbrt(std::abs(term.whitener.determinant()));
     }
     radius /= static_cast<double>(terms.points.size());
-    const double ball = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-    return std::min(1.0, ball / (box.sizes().array() + 2.0 * radius).prod());
+    return ChanceInBox(box, radius);
   }
   Eigen::AlignedBox2d box;
   double radius = 0.0;
@@ -52,7 +52,9 @@ double ChanceOfAgreement(const PairTerms& terms, double max_squared) {
 // log of (n over k). By sums: std::lgamma writes a global, which is a data race.
 double LogChoose(int n, int k) {
   double sum = 0.0;
-  for (int i = 1; i <= k; ++i) sum += std::log(static_cast<double>(n - k + i) / i);
+  for (int i = 1; i <= std::min(k, n - k); ++i) {
+    sum += std::log(static_cast<double>(n - std::min(k, n - k) + i) / i);
+  }
   return sum;
 }
 
@@ -62,10 +64,20 @@ double BinomialTail(int trials, int successes, double p) {
   double log_choose = LogChoose(trials, successes);
   double tail = 0.0;
   for (int k = successes; k <= trials; ++k) {
-    tail += std::exp(log_choose + k * std::log(p) + (trials - k) * std::log1p(-p));
+    const double term = std::exp(log_choose + k * std::log(p) + (trials - k) * std::log1p(-p));
+    tail += term;
+    // Beyond the mean each is smaller than the one before, ever faster.
+    if (k > trials * p && term < 1e-17 * tail) break;
     if (k < trials) log_choose += std::log((trials - k) / (k + 1.0));
   }
   return tail;
+}
+
+// Expected number of poses that so many pairs agree on by chance.
+double FalseAlarms(PairKind kind, int distinct, int count, double chance) {
+  const int absorbed = kind == PairKind::k3d3d ? 2 : 3;
+  return std::exp(LogChoose(count, std::min(absorbed, count))) *
+         BinomialTail(count - absorbed, distinct - absorbed, chance);
 }
 
 int CountDistinct(const PairTerms& terms, std::span<const int> indices) {
@@ -108,14 +120,22 @@ DataNeeds NeedsOfConsensus(DataNeeds inner, PairKind kind) {
   return inner;
 }
 
+bool IsBeyondChance(PairKind kind, int distinct, int count, double chance) {
+  return FalseAlarms(kind, distinct, count, chance) < kMaxFalseAlarms;
+}
+
+double ChanceInBox(const Eigen::AlignedBox3d& box, double radius) {
+  const double ball = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+  return std::min(1.0, ball / (box.sizes().array() + 2.0 * radius).prod());
+}
+
 Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer,
                               std::span<const int> inliers, int least) {
   const int inlier_count = CountDistinct(terms, inliers);
   const int count = static_cast<int>(terms.size());
-  const int absorbed = terms.pixels.empty() ? 2 : 3;
-  const double p = ChanceOfAgreement(terms, scorer.max_squared());
-  const double tail = BinomialTail(count - absorbed, inlier_count - absorbed, p);
-  const double false_alarms = std::exp(LogChoose(count, std::min(absorbed, count))) * tail;
+  const double false_alarms =
+      FalseAlarms(terms.pixels.empty() ? PairKind::k3d3d : PairKind::k2d3d, inlier_count, count,
+                  ChanceOfAgreement(terms, scorer.max_squared()));
   if (inlier_count >= least && false_alarms < kMaxFalseAlarms) return {};
   return MakeError(
       ErrorCode::kNoConsensus,
@@ -183,7 +203,10 @@ Rigid3d OptimiseOnInliers(const PairTerms& terms, const PoseScorer& scorer, cons
     scorer.Inliers(current, workspace.inliers, widening);
     if (workspace.inliers.size() < least) break;
     workspace.terms.AssignSubset(terms, workspace.inliers);
-    current = RefinePose(workspace.terms.View(), current, limits).cam_from_lidar;
+    const std::optional<Rigid3d> closed_form =
+        FitIsotropicPoints(workspace.terms.points, workspace.buffers);
+    current = closed_form ? *closed_form
+                          : RefinePose(workspace.terms.View(), current, limits).cam_from_lidar;
     const double cost = scorer.Cost(current, best_cost);
     const bool falls = current.IsFinite() && cost < best_cost;
     if (falls) {

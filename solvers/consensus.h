@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "solvers/isotropic_points.h"
 #include "solvers/options.h"
 #include "solvers/pose_scorer.h"
 #include "solvers/refine_pose.h"
@@ -49,6 +51,13 @@ OptionSet<Options>& AddInlierOptions(OptionSet<Options>& options) {
 Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer,
                               std::span<const int> inliers, int least);
 
+/// The same verdict on its numbers: so many different pairs of `count` agree on a pose, with the
+/// probability `chance` that one of chance does.
+bool IsBeyondChance(PairKind kind, int distinct, int count, double chance);
+
+/// The probability that a point of chance in `box`, grown by `radius`, is within it of another.
+double ChanceInBox(const Eigen::AlignedBox3d& box, double radius);
+
 /// The least pairs of one kind that `needs` states.
 int LeastPairs(const DataNeeds& needs);
 
@@ -77,6 +86,7 @@ Expected<Estimate> SolveSubset(const Solver& inner, const CalibrationProblem& pr
 struct InlierWorkspace {
   std::vector<int> inliers;
   PairTerms terms;
+  PointBuffers buffers;
 };
 
 /// The cheapest pose met by alternating least squares on the inliers with choosing them, `pose`

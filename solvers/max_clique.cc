@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <deque>
 #include <numeric>
 
 namespace sextant {
@@ -10,110 +11,196 @@ namespace {
 
 constexpr int kWordBits = 64;
 
+using Bits = std::vector<std::uint64_t>;
+
 std::size_t WordOf(int vertex) { return static_cast<std::size_t>(vertex) / kWordBits; }
 std::uint64_t BitOf(int vertex) { return std::uint64_t{1} << (vertex % kWordBits); }
+
+template <class Visit>
+void ForEachBit(const std::uint64_t* bits, std::size_t words, Visit&& visit) {
+  for (std::size_t w = 0; w < words; ++w) {
+    for (std::uint64_t left = bits[w]; left != 0; left &= left - 1) {
+      visit(static_cast<int>(w) * kWordBits + std::countr_zero(left));
+    }
+  }
+}
+
+std::vector<int> DegreesOf(const BitGraph& graph) {
+  std::vector<int> degrees(static_cast<std::size_t>(graph.vertices()), 0);
+  for (int v = 0; v < graph.vertices(); ++v) {
+    for (std::size_t w = 0; w < graph.words(); ++w) {
+      degrees[static_cast<std::size_t>(v)] += std::popcount(graph.Row(v)[w]);
+    }
+  }
+  return degrees;
+}
+
+// From each of the best connected vertices, whoever is connected with all so far, best connected
+// first.
+std::vector<int> GreedyClique(const BitGraph& graph, const std::vector<int>& degrees) {
+  constexpr std::size_t kStarts = 16;
+  std::vector<int> order(degrees.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return degrees[static_cast<std::size_t>(a)] > degrees[static_cast<std::size_t>(b)];
+  });
+  std::vector<int> best;
+  std::vector<int> clique;
+  Bits candidates(graph.words());
+  for (std::size_t start = 0; start < std::min(kStarts, order.size()); ++start) {
+    clique.clear();
+    const auto add = [&](int v) {
+      clique.push_back(v);
+      const std::uint64_t* row = graph.Row(v);
+      for (std::size_t w = 0; w < candidates.size(); ++w) candidates[w] &= row[w];
+    };
+    std::fill(candidates.begin(), candidates.end(), ~std::uint64_t{0});
+    add(order[start]);
+    for (const int v : order) {
+      if ((candidates[WordOf(v)] & BitOf(v)) != 0) add(v);
+    }
+    if (clique.size() > best.size()) best = clique;
+  }
+  return best;
+}
+
+// The vertices left, ascending, when none has fewer than `least` neighbours among them.
+std::vector<int> CoreOf(const BitGraph& graph, std::vector<int> degrees, int least) {
+  std::vector<int> removed;
+  const auto is_low = [&](int v) { return degrees[static_cast<std::size_t>(v)] < least; };
+  for (int v = 0; v < graph.vertices(); ++v) {
+    if (is_low(v)) removed.push_back(v);
+  }
+  for (std::size_t next = 0; next < removed.size(); ++next) {
+    ForEachBit(graph.Row(removed[next]), graph.words(), [&](int v) {
+      if (degrees[static_cast<std::size_t>(v)]-- == least) removed.push_back(v);
+    });
+  }
+  std::vector<int> core;
+  for (int v = 0; v < graph.vertices(); ++v) {
+    if (!is_low(v)) core.push_back(v);
+  }
+  return core;
+}
+
+BitGraph Subgraph(const BitGraph& graph, const std::vector<int>& vertices) {
+  const int n = static_cast<int>(vertices.size());
+  BitGraph sub(n);
+  for (int a = 0; a < n; ++a) {
+    for (int b = 0; b < a; ++b) {
+      if (graph.AreConnected(vertices[static_cast<std::size_t>(a)],
+                             vertices[static_cast<std::size_t>(b)])) {
+        sub.Connect(a, b);
+      }
+    }
+  }
+  return sub;
+}
 
 // Vertices so that each has the fewest neighbours among those after it, then reversed: the search
 // meets the best connected ones first in colouring.
 std::vector<int> DegeneracyOrder(const BitGraph& graph) {
-  const int n = graph.vertices();
-  std::vector<int> degree(static_cast<std::size_t>(n), 0);
-  for (int v = 0; v < n; ++v) {
-    for (std::size_t w = 0; w < graph.words(); ++w) {
-      degree[static_cast<std::size_t>(v)] += std::popcount(graph.Row(v)[w]);
-    }
-  }
-  std::vector<int> left(static_cast<std::size_t>(n));
+  std::vector<int> degrees = DegreesOf(graph);
+  std::vector<int> left(degrees.size());
   std::iota(left.begin(), left.end(), 0);
   std::vector<int> order;
   while (!left.empty()) {
     const auto least = std::min_element(left.begin(), left.end(), [&](int a, int b) {
-      return degree[static_cast<std::size_t>(a)] < degree[static_cast<std::size_t>(b)];
+      return degrees[static_cast<std::size_t>(a)] < degrees[static_cast<std::size_t>(b)];
     });
     const int removed = *least;
     left.erase(least);
     order.push_back(removed);
-    for (const int v : left) {
-      if (graph.AreConnected(v, removed)) --degree[static_cast<std::size_t>(v)];
-    }
+    ForEachBit(graph.Row(removed), graph.words(),
+               [&](int v) { --degrees[static_cast<std::size_t>(v)]; });
   }
   std::reverse(order.begin(), order.end());
   return order;
 }
 
+/// Cliques larger than one that is known.
 class CliqueSearch {
  public:
-  CliqueSearch(const BitGraph& graph, std::int64_t max_nodes)
-      : max_nodes_(max_nodes), order_(DegeneracyOrder(graph)), sorted_(graph.vertices()) {
-    const int n = graph.vertices();
-    for (int a = 0; a < n; ++a) {
-      for (int b = 0; b < a; ++b) {
-        if (graph.AreConnected(Original(a), Original(b))) sorted_.Connect(a, b);
-      }
-    }
+  CliqueSearch(const BitGraph& graph, std::size_t known, std::int64_t max_nodes)
+      : max_nodes_(max_nodes),
+        order_(DegeneracyOrder(graph)),
+        sorted_(Subgraph(graph, order_)),
+        largest_(known) {}
+
+  void Run() {
+    Level& root = LevelAt(0);
+    for (int v = 0; v < sorted_.vertices(); ++v) root.candidates[WordOf(v)] |= BitOf(v);
+    Expand(0);
   }
 
-  Clique Run() {
-    Bits all(sorted_.words(), 0);
-    for (int v = 0; v < sorted_.vertices(); ++v) all[WordOf(v)] |= BitOf(v);
-    Expand(all);
-    Clique clique;
-    clique.is_maximum = nodes_ < max_nodes_;
-    clique.nodes = nodes_;
-    for (const int v : best_) clique.vertices.push_back(Original(v));
-    std::sort(clique.vertices.begin(), clique.vertices.end());
-    return clique;
+  bool is_maximum() const { return nodes_ < max_nodes_; }
+  std::int64_t nodes() const { return nodes_; }
+  /// Vertices of the given graph; empty where none is larger than the known.
+  std::vector<int> best() const {
+    std::vector<int> vertices;
+    for (const int v : best_) vertices.push_back(order_[static_cast<std::size_t>(v)]);
+    return vertices;
   }
 
  private:
-  using Bits = std::vector<std::uint64_t>;
-
   // A candidate and the number of colours that it and the candidates before it need.
   struct Coloured {
     int vertex;
     int colours;
   };
 
-  int Original(int v) const { return order_[static_cast<std::size_t>(v)]; }
-
-  // Candidates by rising colour; those that cannot lead beyond the best are left out.
-  std::vector<Coloured> Colour(const Bits& candidates) const {
+  // Buffers of one depth of the search, kept from node to node.
+  struct Level {
+    Bits candidates;
     std::vector<Coloured> coloured;
-    const int useless = static_cast<int>(best_.size()) - static_cast<int>(current_.size());
-    Bits uncoloured = candidates;
-    Bits same_colour(candidates.size());
-    for (int colour = 1; AnyOf(uncoloured); ++colour) {
-      same_colour = uncoloured;
-      for (std::size_t w = 0; w < same_colour.size(); ++w) {
-        while (same_colour[w] != 0) {
-          const int v = static_cast<int>(w) * kWordBits + std::countr_zero(same_colour[w]);
-          uncoloured[w] &= ~BitOf(v);
-          same_colour[w] &= ~BitOf(v);
+  };
+
+  Level& LevelAt(std::size_t depth) {
+    // A deque leaves its levels where they are.
+    while (levels_.size() <= depth) levels_.push_back({Bits(sorted_.words(), 0), {}});
+    return levels_[depth];
+  }
+
+  // Candidates by rising colour; those that cannot lead beyond the largest are left out.
+  void Colour(Level& level) {
+    level.coloured.clear();
+    const int useless = static_cast<int>(largest_) - static_cast<int>(current_.size());
+    uncoloured_ = level.candidates;
+    for (int colour = 1; AnyOf(uncoloured_); ++colour) {
+      same_colour_ = uncoloured_;
+      for (std::size_t w = 0; w < same_colour_.size(); ++w) {
+        while (same_colour_[w] != 0) {
+          const int v = static_cast<int>(w) * kWordBits + std::countr_zero(same_colour_[w]);
+          uncoloured_[w] &= ~BitOf(v);
+          same_colour_[w] &= ~BitOf(v);
           const std::uint64_t* row = sorted_.Row(v);
-          for (std::size_t k = w; k < same_colour.size(); ++k) same_colour[k] &= ~row[k];
-          if (colour > useless) coloured.push_back({v, colour});
+          for (std::size_t k = w; k < same_colour_.size(); ++k) same_colour_[k] &= ~row[k];
+          if (colour > useless) level.coloured.push_back({v, colour});
         }
       }
     }
-    return coloured;
   }
 
-  void Expand(Bits& candidates) {
+  void Expand(std::size_t depth) {
     ++nodes_;
-    if (current_.size() > best_.size()) best_ = current_;
-    const std::vector<Coloured> coloured = Colour(candidates);
-    Bits next(candidates.size());
-    for (auto branch = coloured.rbegin(); branch != coloured.rend(); ++branch) {
+    if (current_.size() > largest_) {
+      best_ = current_;
+      largest_ = best_.size();
+    }
+    Level& level = LevelAt(depth);
+    Level& next = LevelAt(depth + 1);
+    Colour(level);
+    for (auto branch = level.coloured.rbegin(); branch != level.coloured.rend(); ++branch) {
       if (nodes_ >= max_nodes_) return;
-      if (static_cast<int>(current_.size()) + branch->colours <= static_cast<int>(best_.size())) {
-        return;
-      }
+      if (current_.size() + static_cast<std::size_t>(branch->colours) <= largest_) return;
       const std::uint64_t* row = sorted_.Row(branch->vertex);
-      for (std::size_t w = 0; w < next.size(); ++w) next[w] = candidates[w] & row[w];
+      for (std::size_t w = 0; w < next.candidates.size(); ++w) {
+        next.candidates[w] = level.candidates[w] & row[w];
+      }
       current_.push_back(branch->vertex);
-      Expand(next);
+      Expand(depth + 1);
       current_.pop_back();
-      candidates[WordOf(branch->vertex)] &= ~BitOf(branch->vertex);
+      level.candidates[WordOf(branch->vertex)] &= ~BitOf(branch->vertex);
     }
   }
 
@@ -125,8 +212,12 @@ class CliqueSearch {
   std::int64_t nodes_ = 0;
   std::vector<int> order_;  // Vertex of the given graph at each place of `sorted_`.
   BitGraph sorted_;
+  std::deque<Level> levels_;
+  Bits uncoloured_;
+  Bits same_colour_;
   std::vector<int> current_;
   std::vector<int> best_;
+  std::size_t largest_;
 };
 
 }  // namespace
@@ -153,7 +244,23 @@ void BitGraph::Isolate(int vertex) {
 bool BitGraph::AreConnected(int a, int b) const { return (Row(a)[WordOf(b)] & BitOf(b)) != 0; }
 
 Clique FindMaximumClique(const BitGraph& graph, std::int64_t max_nodes) {
-  return CliqueSearch(graph, max_nodes).Run();
+  const std::vector<int> degrees = DegreesOf(graph);
+  Clique clique;
+  clique.vertices = GreedyClique(graph, degrees);
+  const std::vector<int> core = CoreOf(graph, degrees, static_cast<int>(clique.vertices.size()));
+  if (!core.empty()) {
+    CliqueSearch search(Subgraph(graph, core), clique.vertices.size(), max_nodes);
+    search.Run();
+    clique.is_maximum = search.is_maximum();
+    clique.nodes = search.nodes();
+    const std::vector<int> larger = search.best();
+    if (!larger.empty()) {
+      clique.vertices.clear();
+      for (const int v : larger) clique.vertices.push_back(core[static_cast<std::size_t>(v)]);
+    }
+  }
+  std::sort(clique.vertices.begin(), clique.vertices.end());
+  return clique;
 }
 
 }  // namespace sextant

@@ -93,7 +93,7 @@ TEST(Ransac, CountsAPairGivenSeveralTimesOnce) {
 TEST(Ransac, SaysThatThePointsAreMirrored) {
   Scene scene = SceneWithOutliers(13, 20, 0.0);
   for (Pair3d3d& pair : scene.problem.pairs_3d3d) pair.point_in_lidar.x() *= -1.0;
-  for (const char* spec : {"ransac(kabsch)", "gnc(kabsch)", "clique(kabsch)"}) {
+  for (const char* spec : {"ransac(kabsch)", "gnc(kabsch)", "clique(kabsch)", "robust(kabsch)"}) {
     const Expected<SolveReport> report = Solve(spec, scene.problem);
     ASSERT_FALSE(report) << spec;
     EXPECT_EQ(report.error().code, ErrorCode::kMirrored) << spec;

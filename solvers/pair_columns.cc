@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/pair_columns.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "solvers/consensus.h"
+#include "solvers/kabsch_kernel.h"
+#include "solvers/trace_formula.h"
+
+namespace sextant {
+namespace {
+
+constexpr int kColumns = 8;
+constexpr int kVariance = 6;
+constexpr int kInverseVariance = 7;
+constexpr std::size_t kBlock = 64;
+
+SEXTANT_INLINE Point3<Lanes> PointsAt(const PairColumns& pairs, int first, std::size_t place) {
+  return {LoadLanes(pairs.Column(first) + place), LoadLanes(pairs.Column(first + 1) + place),
+          LoadLanes(pairs.Column(first + 2) + place)};
+}
+
+SEXTANT_INLINE Point3<double> PointOf(const PairColumns& pairs, int first, std::size_t place) {
+  return {pairs.Column(first)[place], pairs.Column(first + 1)[place],
+          pairs.Column(first + 2)[place]};
+}
+
+template <class Real>
+SEXTANT_INLINE Real SquaredLength(const Point3<Real>& v) {
+  return v.x * v.x + v.y * v.y + v.z * v.z;
+}
+
+// | |c| - |l| |^2 <= t without a root: (c^2 - l^2)^2 <= t (2 (c^2 + l^2) - t), or c^2 + l^2 <= t.
+template <class Mask, class Real>
+SEXTANT_INLINE Mask LengthsAgree(const Real& c2, const Real& l2, const Real& t) {
+  const Real difference = c2 - l2;
+  const Real sum = c2 + l2;
+  const Mask is_short = sum <= t;
+  const Mask is_alike = difference * difference <= t * (sum + sum - t);
+  return is_short | is_alike;
+}
+
+SEXTANT_MULTIVERSION void FillGraph(const PairColumns& pairs, double max_squared, BitGraph& graph) {
+  const LaneMask shifts = {0, 8, 16, 24, 32, 40, 48, 56};
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::size_t place = PairColumns::Place(i);
+    const Point3<double> cam = PointOf(pairs, 0, place);
+    const Point3<double> lidar = PointOf(pairs, 3, place);
+    const double variance = pairs.Column(kVariance)[place];
+    std::uint64_t* row = graph.Row(static_cast<int>(i));
+    for (std::size_t block = 0; block < pairs.padded(); block += kBlock) {
+      LaneMask bits{};
+      for (std::size_t k = kLanes; k-- > 0;) {
+        const std::size_t at = block + kLanes * k;
+        const Lanes c2 = SquaredLength(PointsAt(pairs, 0, at) - cam);
+        const Lanes l2 = SquaredLength(PointsAt(pairs, 3, at) - lidar);
+        const Lanes t = max_squared * (LoadLanes(pairs.Column(kVariance) + at) + variance);
+        // -1 where it holds: the bits gathered so far move up by one.
+        const LaneMask agree = LengthsAgree<LaneMask>(c2, l2, t);
+        bits = bits + bits - agree;
+      }
+      bits <<= shifts;
+      row[block / kBlock] = static_cast<std::uint64_t>(OrOfLanes(bits));
+    }
+    row[i / kBlock] &= ~(std::uint64_t{1} << (i % kBlock));
+  }
+}
+
+struct Pose {
+  RotationMatrix<double> r;
+  Point3<double> t;
+};
+
+SEXTANT_INLINE Pose PoseOf(const Rigid3d& cam_from_lidar) {
+  const Eigen::Quaterniond& q = cam_from_lidar.rotation;
+  return {MakeRotationMatrix(Vector4<double>{q.x(), q.y(), q.z(), q.w()}),
+          PointAt(cam_from_lidar.translation)};
+}
+
+SEXTANT_INLINE Lanes SquaredSigmas(const PairColumns& pairs, const Pose& pose, std::size_t at) {
+  const Point3<Lanes> cam = PointsAt(pairs, 0, at);
+  const Point3<Lanes> p = PointsAt(pairs, 3, at);
+  const Lanes x = cam.x - (pose.r.xx * p.x + pose.r.xy * p.y + pose.r.xz * p.z + pose.t.x);
+  const Lanes y = cam.y - (pose.r.yx * p.x + pose.r.yy * p.y + pose.r.yz * p.z + pose.t.y);
+  const Lanes z = cam.z - (pose.r.zx * p.x + pose.r.zy * p.y + pose.r.zz * p.z + pose.t.z);
+  return (x * x + y * y + z * z) * LoadLanes(pairs.Column(kInverseVariance) + at);
+}
+
+// Of the padded pairs too, whose residual is not a number and costs as an outlier's.
+SEXTANT_MULTIVERSION double SumTruncated(const PairColumns& pairs, const Pose& pose,
+                                         double max_squared) {
+  const Lanes most = AllLanes(max_squared);
+  Lanes cost{};
+  for (std::size_t at = 0; at < pairs.padded(); at += kLanes) {
+    const Lanes squared = SquaredSigmas(pairs, pose, at);
+    cost += squared < most ? squared : most;
+  }
+  return SumLanes(cost);
+}
+
+SEXTANT_MULTIVERSION void MarkInliers(const PairColumns& pairs, const Pose& pose,
+                                      double max_squared, std::uint64_t* bits_of_block) {
+  const LaneMask shifts = {0, 8, 16, 24, 32, 40, 48, 56};
+  for (std::size_t block = 0; block < pairs.padded(); block += kBlock) {
+    LaneMask bits{};
+    for (std::size_t k = kLanes; k-- > 0;) {
+      const LaneMask is_inlier = SquaredSigmas(pairs, pose, block + kLanes * k) <= max_squared;
+      bits = bits + bits - is_inlier;
+    }
+    bits <<= shifts;
+    bits_of_block[block / kBlock] = static_cast<std::uint64_t>(OrOfLanes(bits));
+  }
+}
+
+struct InlierMoments {
+  CentredMoments<double> moments;
+  double cost = 0.0;
+  double count = 0.0;
+  KernelFit fit;
+  bool fitted = false;
+};
+
+SEXTANT_MULTIVERSION void SumInliers(const PairColumns& pairs, const Pose& pose, double max_squared,
+                                     InlierMoments& result) {
+  const Lanes most = AllLanes(max_squared);
+  const Lanes none{};
+  const Point3<double> origin_a = PointOf(pairs, 3, 0);
+  const Point3<double> origin_b = PointOf(pairs, 0, 0);
+  MomentSums<Lanes> sums{};
+  Lanes cost{};
+  Lanes count{};
+  for (std::size_t at = 0; at < pairs.padded(); at += kLanes) {
+    const Lanes squared = SquaredSigmas(pairs, pose, at);
+    const LaneMask is_inlier = squared <= most;
+    cost += is_inlier ? squared : most;
+    count += is_inlier ? none + 1.0 : none;
+    const Point3<Lanes> a = PointsAt(pairs, 3, at) - origin_a;
+    const Point3<Lanes> b = PointsAt(pairs, 0, at) - origin_b;
+    sums.Add<true, false>({is_inlier ? a.x : none, is_inlier ? a.y : none, is_inlier ? a.z : none},
+                          {is_inlier ? b.x : none, is_inlier ? b.y : none, is_inlier ? b.z : none},
+                          is_inlier ? LoadLanes(pairs.Column(kInverseVariance) + at) : none);
+  }
+  result.cost = SumLanes(cost);
+  result.count = SumLanes(count);
+  const MomentSums<double> sum = SumOf<true, false>(sums);
+  CentredMoments<double>& m = result.moments;
+  m = Centre<false>(sum, sum.weight);
+  m.mean_a = {m.mean_a.x + origin_a.x, m.mean_a.y + origin_a.y, m.mean_a.z + origin_a.z};
+  m.mean_b = {m.mean_b.x + origin_b.x, m.mean_b.y + origin_b.y, m.mean_b.z + origin_b.z};
+  const std::optional<TraceMaximum> best = MaximizeTraceByFormula(m.cross, 0.5 * m.squares);
+  result.fitted = best.has_value();
+  if (!best) return;
+  result.fit = {best->q, m.mean_b - Rotate(best->matrix, m.mean_a), best->trace,
+                best->mirrored_trace};
+}
+
+double CostOfPadding(const PairColumns& pairs, double max_squared) {
+  return static_cast<double>(pairs.padded() - pairs.size()) * max_squared;
+}
+
+}  // namespace
+
+PairColumns::PairColumns(std::span<const Pair3d3d> pairs, const AssumedNoise& assumed)
+    : size_(pairs.size()),
+      padded_((pairs.size() + kBlock - 1) / kBlock * kBlock),
+      numbers_(kColumns * padded_) {
+  const auto set = [this](int column, std::size_t place, double value) {
+    numbers_[static_cast<std::size_t>(column) * padded_ + place] = value;
+  };
+  for (std::size_t i = 0; i < size_; ++i) {
+    const Pair3d3d& pair = pairs[i];
+    const std::size_t place = Place(i);
+    for (int axis = 0; axis < 3; ++axis) {
+      set(axis, place, pair.point_in_cam[axis]);
+      set(3 + axis, place, pair.point_in_lidar[axis]);
+    }
+    const double sigma = pair.sigma_m > 0.0 ? pair.sigma_m : assumed.sigma_m;
+    set(kVariance, place, sigma * sigma);
+    set(kInverseVariance, place, 1.0 / (sigma * sigma));
+  }
+  for (std::size_t i = size_; i < padded_; ++i) {
+    for (int column = 0; column < kColumns; ++column) {
+      set(column, Place(i), std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+}
+
+BitGraph AgreementGraph(const PairColumns& pairs, double max_squared) {
+  BitGraph graph(static_cast<int>(pairs.size()));
+  FillGraph(pairs, max_squared, graph);
+  return graph;
+}
+
+bool Agree(const PairColumns& pairs, std::size_t i, std::size_t j, double max_squared) {
+  const std::size_t a = PairColumns::Place(i);
+  const std::size_t b = PairColumns::Place(j);
+  const double c2 = SquaredLength(PointOf(pairs, 0, a) - PointOf(pairs, 0, b));
+  const double l2 = SquaredLength(PointOf(pairs, 3, a) - PointOf(pairs, 3, b));
+  const double t = max_squared * (pairs.Column(kVariance)[a] + pairs.Column(kVariance)[b]);
+  return LengthsAgree<bool>(c2, l2, t);
+}
+
+double TruncatedCost(const PairColumns& pairs, const Rigid3d& cam_from_lidar, double max_squared) {
+  return SumTruncated(pairs, PoseOf(cam_from_lidar), max_squared) -
+         CostOfPadding(pairs, max_squared);
+}
+
+InlierFit FitInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar, double max_squared) {
+  InlierMoments sum;
+  SumInliers(pairs, PoseOf(cam_from_lidar), max_squared, sum);
+  InlierFit result;
+  result.cost = sum.cost - CostOfPadding(pairs, max_squared);
+  result.inliers = static_cast<int>(sum.count);
+  if (result.inliers < 3) return result;
+  if (!sum.fitted && !FitByEigensolver(sum.moments, sum.fit)) return result;
+  result.fitted = true;
+  result.cam_from_lidar.rotation = ToQuaternion(sum.fit.q);
+  result.cam_from_lidar.translation = {sum.fit.translation.x, sum.fit.translation.y,
+                                       sum.fit.translation.z};
+  return result;
+}
+
+Rigid3d OptimiseOnInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
+                          double max_squared) {
+  constexpr int kMaxRounds = 20;
+  Rigid3d best = cam_from_lidar;
+  Rigid3d current = cam_from_lidar;
+  double best_cost = TruncatedCost(pairs, best, max_squared);
+  double widening = 4.0;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const InlierFit fit = FitInliers(pairs, current, widening * max_squared);
+    if (!fit.fitted) break;
+    current = fit.cam_from_lidar;
+    const double cost = TruncatedCost(pairs, current, max_squared);
+    const bool falls = cost < best_cost;
+    if (falls) {
+      best = current;
+      best_cost = cost;
+    }
+    if (widening == 1.0 && !falls) break;
+    widening = std::max(1.0, 0.5 * widening);
+  }
+  return best;
+}
+
+std::vector<int> InliersOf(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
+                           double max_squared) {
+  std::vector<std::uint64_t> bits(pairs.padded() / kBlock);
+  MarkInliers(pairs, PoseOf(cam_from_lidar), max_squared, bits.data());
+  std::vector<int> inliers;
+  inliers.reserve(pairs.size());
+  for (std::size_t block = 0; block < bits.size(); ++block) {
+    for (std::uint64_t left = bits[block]; left != 0; left &= left - 1) {
+      inliers.push_back(static_cast<int>(block * kBlock) + std::countr_zero(left));
+    }
+  }
+  return inliers;
+}
+
+double ChanceOfAgreement(const PairColumns& pairs, double max_squared) {
+  Eigen::AlignedBox3d box;
+  double sigmas = 0.0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::size_t place = PairColumns::Place(i);
+    const Point3<double> p = PointOf(pairs, 0, place);
+    box.extend(Eigen::Vector3d(p.x, p.y, p.z));
+    sigmas += std::sqrt(pairs.Column(kVariance)[place]);
+  }
+  const double radius = std::sqrt(max_squared) * sigmas / static_cast<double>(pairs.size());
+  return ChanceInBox(box, radius);
+}
+
+int LeastDistinct(const PairColumns& pairs, std::span<const int> indices) {
+  // Marks in a table of a sixteenth's occupation: two different pairs rarely meet.
+  std::vector<bool> marked(std::bit_ceil(16 * pairs.size()));
+  int distinct = 0;
+  for (const int i : indices) {
+    std::uint64_t hash = 0;
+    for (int column = 0; column < kVariance; ++column) {
+      // Zero has two signs.
+      const double number = pairs.Column(column)[PairColumns::Place(static_cast<std::size_t>(i))];
+      hash = (hash ^ std::bit_cast<std::uint64_t>(number + 0.0)) * 0x9E3779B97F4A7C15ULL;
+      hash ^= hash >> 29;
+    }
+    const std::size_t mark = hash & (marked.size() - 1);
+    if (!marked[mark]) ++distinct;
+    marked[mark] = true;
+  }
+  return distinct;
+}
+
+}  // namespace sextant
