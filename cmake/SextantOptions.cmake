@@ -12,6 +12,7 @@ option(SEXTANT_OPENCV "Cameras, simulator, program and tests, which need OpenCV;
 option(SEXTANT_BENCH "Build the benchmarks" ON)
 option(SEXTANT_ROSBAG_ORACLE "Hold our ROS 1 bags to librosbag-storage in the tests" OFF)
 option(SEXTANT_FUZZ "Build the fuzz targets (clang)" OFF)
+option(SEXTANT_NATIVE "Compile for the machine that builds; runs on no lesser one" OFF)
 set(SEXTANT_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined")
 
 set(CMAKE_CXX_STANDARD 20)
@@ -42,6 +43,13 @@ target_compile_options(sextant_options INTERFACE
   # Wide vectors (base/lanes.h) never cross a call.
   -Wno-psabi
   $<$<BOOL:${SEXTANT_WARNINGS_AS_ERRORS}>:-Werror>)
+if(SEXTANT_NATIVE)
+  # Eigen aligns by instruction set, and its types cross into Debian's libraries, which are built for
+  # SSE2: with these its layouts and its allocator stay theirs.
+  target_compile_options(sextant_options INTERFACE -march=native)
+  target_compile_definitions(sextant_options INTERFACE
+    EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
+endif()
 if(SEXTANT_SANITIZE)
   target_compile_definitions(sextant_options INTERFACE SEXTANT_SANITIZED)
   target_compile_options(sextant_options INTERFACE
