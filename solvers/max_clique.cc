@@ -38,7 +38,7 @@ std::vector<int> DegreesOf(const BitGraph& graph) {
 // From each of the best connected vertices, whoever is connected with all so far, best connected
 // first.
 std::vector<int> GreedyClique(const BitGraph& graph, const std::vector<int>& degrees) {
-  constexpr std::size_t kStarts = 16;
+  constexpr std::size_t kStarts = 4;
   std::vector<int> order(degrees.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {

@@ -111,7 +111,8 @@ TEST(Cli, CompareRunsEverySolverThatFits) {
   for (const json& result : results) solvers.push_back(result.at("solver"));
   for (const char* expected :
        {"mean_offset", "kabsch", "eigen.umeyama", "icp", "ransac(kabsch)", "gnc(kabsch)",
-        "clique(kabsch)", "drop_worst(kabsch)", "average(kabsch)", "refine(kabsch)"}) {
+        "clique(kabsch)", "robust(kabsch)", "drop_worst(kabsch)", "average(kabsch)",
+        "refine(kabsch)"}) {
     EXPECT_THAT(solvers, testing::Contains(expected));
   }
 }
