@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "solvers/pair_lanes.h"
+#include "solvers/pixel_sums.h"
 #include "solvers/residuals.h"
 
 namespace sextant {
