@@ -95,12 +95,6 @@ SEXTANT_INLINE void Collect(const Lanes (&lanes)[kSums], PixelSums& sums) {
   sums.squares = SumLanes(lanes[kSquares]);
 }
 
-SEXTANT_INLINE bool AnyLane(const LaneMask& mask) {
-  long long any = 0;
-  for (std::size_t i = 0; i < kLanes; ++i) any |= mask[i];
-  return any != 0;
-}
-
 }  // namespace
 
 PinholePose::PinholePose(const Camera& camera, const Rigid3d& cam_from_lidar)
