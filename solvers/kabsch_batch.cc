@@ -53,7 +53,7 @@ SEXTANT_INLINE Point3<Lanes> operator+(const Point3<Lanes>& a, const Point3<Lane
 SEXTANT_INLINE CentredMoments<Lanes> MomentsOf(const double* group, std::size_t points) {
   const Point3<Lanes> origin_a = LoadPoint(group);
   const Point3<Lanes> origin_b = LoadPoint(group + 3 * kLanes);
-  MomentSums<Lanes> sums{};
+  PairMomentSums<Lanes> sums{};
   for (std::size_t i = 1; i < points; ++i) {
     const double* point = group + i * 6 * kLanes;
     sums.Add<false, false>(LoadPoint(point) - origin_a, LoadPoint(point + 3 * kLanes) - origin_b,

@@ -20,7 +20,7 @@ struct SymmetricMatrix {
 
 /// About provisional origins.
 template <class Real>
-struct MomentSums {
+struct PairMomentSums {
   Real weight, squares;
   Point3<Real> a, b;
   CrossMatrix<Real> cross;
@@ -52,11 +52,11 @@ struct MomentSums {
 };
 
 template <bool kWeighted, bool kScatter>
-SEXTANT_INLINE MomentSums<double> SumOf(const MomentSums<Lanes>& s) {
+SEXTANT_INLINE PairMomentSums<double> SumOf(const PairMomentSums<Lanes>& s) {
   const CrossMatrix<Lanes>& m = s.cross;
   const Lanes first = SumEach(s.squares, s.a.x, s.a.y, s.a.z, s.b.x, s.b.y, s.b.z, m.xx);
   const Lanes second = SumEach(m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz);
-  MomentSums<double> sum{};
+  PairMomentSums<double> sum{};
   if constexpr (kWeighted) sum.weight = SumLanes(s.weight);
   sum.squares = first[0];
   sum.a = {first[1], first[2], first[3]};
@@ -80,7 +80,7 @@ struct CentredMoments {
 };
 
 template <bool kScatter, class Real>
-SEXTANT_INLINE CentredMoments<Real> Centre(const MomentSums<Real>& s, const Real& weight) {
+SEXTANT_INLINE CentredMoments<Real> Centre(const PairMomentSums<Real>& s, const Real& weight) {
   const Real inverse = 1.0 / weight;
   const Point3<Real> ma = {s.a.x * inverse, s.a.y * inverse, s.a.z * inverse};
   const Point3<Real> mb = {s.b.x * inverse, s.b.y * inverse, s.b.z * inverse};
@@ -148,14 +148,14 @@ SEXTANT_INLINE CentredMoments<double> ComputeMoments(const Points& points) {
   const Point3<double> origin_a = points.a(0);
   const Point3<double> origin_b = points.b(0);
   const std::size_t count = points.size();
-  MomentSums<double> sums{};
+  PairMomentSums<double> sums{};
   if (count < kLanes) {
     for (std::size_t i = 0; i < count; ++i) {
       sums.Add<kWeighted, kScatter>(points.a(i) - origin_a, points.b(i) - origin_b,
                                     kWeighted ? points.weight(i) : 1.0);
     }
   } else {
-    MomentSums<Lanes> eight{};
+    PairMomentSums<Lanes> eight{};
     std::size_t i = 0;
     for (; i + kLanes <= count; i += kLanes) {
       Lanes weight{};

@@ -130,7 +130,7 @@ SEXTANT_MULTIVERSION void SumInliers(const PairColumns& pairs, const Pose& pose,
   const Lanes none{};
   const Point3<double> origin_a = PointOf(pairs, 3, 0);
   const Point3<double> origin_b = PointOf(pairs, 0, 0);
-  MomentSums<Lanes> sums{};
+  PairMomentSums<Lanes> sums{};
   Lanes cost{};
   Lanes count{};
   for (std::size_t at = 0; at < pairs.padded(); at += kLanes) {
@@ -146,7 +146,7 @@ SEXTANT_MULTIVERSION void SumInliers(const PairColumns& pairs, const Pose& pose,
   }
   result.cost = SumLanes(cost);
   result.count = SumLanes(count);
-  const MomentSums<double> sum = SumOf<true, false>(sums);
+  const PairMomentSums<double> sum = SumOf<true, false>(sums);
   CentredMoments<double>& m = result.moments;
   m = Centre<false>(sum, sum.weight);
   m.mean_a = {m.mean_a.x + origin_a.x, m.mean_a.y + origin_a.y, m.mean_a.z + origin_a.z};

@@ -109,10 +109,9 @@ TEST(Cli, CompareRunsEverySolverThatFits) {
   std::vector<std::string> solvers;
   const json results = json::parse(run.out).at("results");
   for (const json& result : results) solvers.push_back(result.at("solver"));
-  for (const char* expected :
-       {"mean_offset", "kabsch", "eigen.umeyama", "icp", "ransac(kabsch)", "gnc(kabsch)",
-        "clique(kabsch)", "robust(kabsch)", "drop_worst(kabsch)", "average(kabsch)",
-        "refine(kabsch)"}) {
+  for (const char* expected : {"mean_offset", "kabsch", "eigen.umeyama", "icp", "ransac(kabsch)",
+                               "gnc(kabsch)", "clique(kabsch)", "robust(kabsch)",
+                               "drop_worst(kabsch)", "average(kabsch)", "refine(kabsch)"}) {
     EXPECT_THAT(solvers, testing::Contains(expected));
   }
 }
