@@ -54,11 +54,21 @@ void TwoBoards(benchmark::State& state, const char* lidar) {
   state.counters["points"] = static_cast<double>(scan->cloud.points.size());
 }
 
-BENCHMARK_CAPTURE(TwoBoards, vlp16, "vlp16")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(TwoBoards, hdl64e, "hdl64e")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(TwoBoards, os1_64, "os1_64")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(TwoBoards, os1_128, "os1_128")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(TwoBoards, livox, "livox")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(TwoBoards, vlp16, "vlp16")
+    ->Name("boards_in_scan/vlp16/2")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(TwoBoards, hdl64e, "hdl64e")
+    ->Name("boards_in_scan/hdl64e/2")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(TwoBoards, os1_64, "os1_64")
+    ->Name("boards_in_scan/os1_64/2")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(TwoBoards, os1_128, "os1_128")
+    ->Name("boards_in_scan/os1_128/2")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(TwoBoards, livox, "livox")
+    ->Name("boards_in_scan/livox/2")
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace sextant

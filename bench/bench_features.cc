@@ -105,18 +105,36 @@ void LibraryAruco(benchmark::State& state, cv::aruco::CornerRefineMethod refine)
   if (ids.size() != 4) state.SkipWithError("not all tags were found");
 }
 
-BENCHMARK_CAPTURE(LibraryAprilTag, decimate_1, 1.0F)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(Ours, apriltag_decimate_1, "apriltag")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(LibraryAprilTag, decimate_2, 2.0F)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(Ours, apriltag_decimate_2, "apriltag(decimate=2)")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(LibraryAruco, none, cv::aruco::CORNER_REFINE_NONE)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(LibraryAprilTag, decimate_1, 1.0F)
+    ->Name("tags_1280x720/apriltag_library_decimate_1/4")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Ours, apriltag_decimate_1, "apriltag")
+    ->Name("tags_1280x720/sextant_apriltag_decimate_1/4")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(LibraryAprilTag, decimate_2, 2.0F)
+    ->Name("tags_1280x720/apriltag_library_decimate_2/4")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Ours, apriltag_decimate_2, "apriltag(decimate=2)")
+    ->Name("tags_1280x720/sextant_apriltag_decimate_2/4")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(LibraryAruco, none, cv::aruco::CORNER_REFINE_NONE)
+    ->Name("tags_1280x720/opencv_library_none/4")
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(LibraryAruco, subpix, cv::aruco::CORNER_REFINE_SUBPIX)
+    ->Name("tags_1280x720/opencv_library_subpix/4")
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(Ours, aruco, "aruco")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Ours, aruco, "aruco")
+    ->Name("tags_1280x720/sextant_aruco/4")
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(LibraryAruco, contour, cv::aruco::CORNER_REFINE_CONTOUR)
+    ->Name("tags_1280x720/opencv_library_contour/4")
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(Ours, aruco_contour, "aruco(refine=contour)")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(Ours, aruco_subpix, "aruco(refine=subpix)")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Ours, aruco_contour, "aruco(refine=contour)")
+    ->Name("tags_1280x720/sextant_aruco_contour/4")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Ours, aruco_subpix, "aruco(refine=subpix)")
+    ->Name("tags_1280x720/sextant_aruco_subpix/4")
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace sextant

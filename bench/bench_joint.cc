@@ -31,6 +31,7 @@ void BM_Joint(benchmark::State& state) {
   state.counters["iterations"] = report->iterations;
 }
 BENCHMARK(BM_Joint)
+    ->Name("joint/sextant")
     ->RangeMultiplier(10)
     ->Range(1, 1000)
     ->Arg(4)

@@ -46,7 +46,8 @@ void RegisterOurs() {
       return fit->b_from_a;
     };
   });
-  RegisterOutliers("sextant", BySolver("clique(kabsch)", true));
+  RegisterOutliers("sextant", BySolver("robust(kabsch)", true));
+  RegisterOutliers("sextant_clique", BySolver("clique(kabsch)", true));
   RegisterOutliers("sextant_ransac", BySolver("ransac(kabsch)", true));
   RegisterOutliers("sextant_gnc", BySolver("gnc(kabsch)", true));
   RegisterCorners("sextant", BySolver("icp(init=identity)", false));

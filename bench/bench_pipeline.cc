@@ -88,7 +88,7 @@ void BM_OnePair(benchmark::State& state) {
   }
   for (auto _ : state) benchmark::DoNotOptimize(Answer(recording, observer, *solver));
 }
-BENCHMARK(BM_OnePair)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_OnePair)->Name("calibrate/one_pair/1")->Unit(benchmark::kMillisecond);
 
 void BM_ImageAndScan(benchmark::State& state) {
   cv::setNumThreads(1);
@@ -98,7 +98,7 @@ void BM_ImageAndScan(benchmark::State& state) {
     benchmark::DoNotOptimize(observer.Observe(recording.image, recording.cloud));
   }
 }
-BENCHMARK(BM_ImageAndScan)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_ImageAndScan)->Name("calibrate/image_and_scan/1")->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace sextant
