@@ -104,7 +104,7 @@ void AddKinds(CLI::App& app) {
 void AddReproduce(CLI::App& app, ReproduceOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "reproduce", "The paper's experiments again, with known truth, and a verdict on every claim");
-  command.add_flag("--quick", options.quick, "Few trials: minutes instead of a quarter of an hour");
+  command.add_flag("--quick", options.quick, "Few trials: a minute instead of ten or more");
   command.add_option("--out", options.out,
                      "Folder to write; default: paper, or build/paper-quick with --quick. A run\n"
                      "that was stopped goes on where it was");
