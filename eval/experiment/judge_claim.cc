@@ -12,6 +12,10 @@
 namespace sextant {
 namespace {
 
+// Of so many trials, all lie within bounds that hold a further one in 95 of 100 cases: outside the
+// middle 95 percent of fewer says nothing.
+constexpr std::uint64_t kFewestDraws = 39;
+
 // A figure of ours, ready to be compared.
 struct OurFigure {
   double value = 0.0;
@@ -165,6 +169,10 @@ Expected<JudgedClaim> JudgeClaim(const Claim& claim, const std::map<std::string,
     return judged;
   }
   judged.verdict = VerdictOf(claim, ours->interval, than);
+  if (claim.rule == ClaimRule::kDraw && judged.verdict == Verdict::kRefuted &&
+      ours->trials < kFewestDraws) {
+    judged.verdict = Verdict::kUndecided;
+  }
   return judged;
 }
 

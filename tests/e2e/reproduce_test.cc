@@ -83,6 +83,18 @@ TEST(Reproduce, GoesOnWhereItWasAndGivesTheSamePage) {
   EXPECT_EQ(ReadText(TestFolder() / "two" / "REPRODUCTION.md"), page);
 }
 
+// Outside the range of ten trials lies one further trial in six: no reason to refute.
+TEST(Reproduce, FewTrialsDoNotRefuteASingleMeasurement) {
+  const std::string arguments = Arguments("paper");
+  std::string experiment = kExperiment;
+  experiment.replace(experiment.find("quick_trials: 40"), 16, "quick_trials: 10");
+  WriteText(TestFolder() / "experiments" / "points.yaml", experiment);
+  ASSERT_EQ(RunSextant(arguments + " --quick").exit_code, 0);
+  EXPECT_THAT(ReadText(TestFolder() / "paper" / "REPRODUCTION.md"),
+              HasSubstr("4 claims: 1 reproduced, 1 direction reproduced, 1 undecided at so many "
+                        "trials, 1 not testable."));
+}
+
 TEST(Reproduce, SaysWhatIsWrong) {
   const std::string arguments = Arguments("paper");
   std::string claims = kClaims;
