@@ -8,22 +8,19 @@
 #include <thread>
 
 namespace sextant::bench {
-namespace {
 
-std::string FirstLineWith(const std::string& path, const std::string& mark) {
-  std::ifstream file(path);
+std::string ProcessorName() {
+  std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {
-    if (line.starts_with(mark)) return line.substr(line.find(':') + 2);
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
   }
   return "unknown";
 }
 
-}  // namespace
-
 std::string DescribeMachine() {
   double load = 0.0;
   getloadavg(&load, 1);
-  return fmt::format("{}, {} cores; load {:.1f}", FirstLineWith("/proc/cpuinfo", "model name"),
+  return fmt::format("{}, {} cores; load {:.1f}", ProcessorName(),
                      std::thread::hardware_concurrency(), load);
 }
 

@@ -5,7 +5,10 @@
 
 namespace sextant::bench {
 
-/// "AMD EPYC, 2 cores; load at the start 0.4".
+/// "AMD EPYC"; "unknown" where the system does not say.
+std::string ProcessorName();
+
+/// "AMD EPYC, 2 cores; load 0.4".
 std::string DescribeMachine();
 
 }  // namespace sextant::bench

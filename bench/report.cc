@@ -14,16 +14,14 @@
 #include <string>
 #include <vector>
 
+#include "bench/machine.h"
+#include "bench/results.h"
+
+namespace sextant::bench {
 namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-struct Timing {
-  std::optional<double> median_ns;  // None where the answer was wrong.
-  double spread = 0.0;              // Standard deviation over mean of the repetitions.
-  std::string error;
-};
 
 struct Key {
   std::string task;
@@ -102,13 +100,6 @@ constexpr Limit kLimits[] = {
     {"calibrate", 1, "one_pair", 40000.0},
 };
 
-double Nanoseconds(const json& benchmark) {
-  static const std::map<std::string, double> kUnits = {
-      {"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}};
-  return benchmark.at("cpu_time").get<double>() *
-         kUnits.at(benchmark.at("time_unit").get<std::string>());
-}
-
 struct Parsed {
   Key key;
   std::string implementation;
@@ -123,23 +114,14 @@ std::optional<Parsed> ParseName(const std::string& name) {
                 name.substr(first + 1, last - first - 1)};
 }
 
-void Add(const json& benchmark, std::map<Key, Row>& rows) {
-  const std::optional<Parsed> parsed = ParseName(benchmark.at("run_name").get<std::string>());
-  if (!parsed) return;
-  Timing& timing = rows[parsed->key][parsed->implementation];
-  if (benchmark.value("error_occurred", false)) {
-    timing.error = benchmark.value("error_message", "failed");
-    return;
+// Benchmarks that are named otherwise are left out.
+std::map<Key, Row> RowsOf(const Timings& timings) {
+  std::map<Key, Row> rows;
+  for (const auto& [name, timing] : timings) {
+    const std::optional<Parsed> parsed = ParseName(name);
+    if (parsed) rows[parsed->key][parsed->implementation] = timing;
   }
-  const std::string aggregate = benchmark.value("aggregate_name", "");
-  if (aggregate == "median") timing.median_ns = Nanoseconds(benchmark);
-  if (aggregate == "cv") timing.spread = benchmark.at("cpu_time").get<double>();
-}
-
-std::string FormatTime(double ns) {
-  if (ns < 1e3) return fmt::format("{:.0f} ns", ns);
-  if (ns < 1e6) return fmt::format("{:.2f} us", ns * 1e-3);
-  return fmt::format("{:.2f} ms", ns * 1e-6);
+  return rows;
 }
 
 // The fastest of the peers; none where there is none.
@@ -203,14 +185,6 @@ void PrintGoals(const std::map<Key, Row>& rows) {
   }
 }
 
-std::string FirstLineWith(const std::string& path, const std::string& mark) {
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);) {
-    if (line.starts_with(mark)) return line.substr(line.find(':') + 2);
-  }
-  return "unknown";
-}
-
 std::string ReadLine(const fs::path& path) {
   std::ifstream file(path);
   std::string line;
@@ -218,10 +192,20 @@ std::string ReadLine(const fs::path& path) {
   return line;
 }
 
-void PrintMachine(const json& context, const fs::path& folder) {
-  fmt::print("- machine: {}, {} cores; load at the start {:.1f}\n",
-             FirstLineWith("/proc/cpuinfo", "model name"), context.at("num_cpus").get<int>(),
-             context.at("load_avg").at(0).get<double>());
+// What one of the runs says of the machine; they share it. The folder has been read before.
+json ContextOf(const fs::path& folder) {
+  fs::path run;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".json") run = entry.path();
+  }
+  std::ifstream file(run);
+  return json::parse(file).at("context");
+}
+
+void PrintMachine(const fs::path& folder) {
+  const json context = ContextOf(folder);
+  fmt::print("- machine: {}, {} cores; load at the start {:.1f}\n", ProcessorName(),
+             context.at("num_cpus").get<int>(), context.at("load_avg").at(0).get<double>());
   fmt::print("- compiler and flags: {}\n", ReadLine(folder / "flags.txt"));
   const std::string absent = ReadLine(folder / "absent_peers.txt");
   if (!absent.empty()) fmt::print("- peers not installed: {}\n", absent);
@@ -232,38 +216,25 @@ void PrintMachine(const json& context, const fs::path& folder) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int Main(int argc, char** argv) {
   if (argc != 2) {
     std::fputs("usage: bench_report <folder of the JSON files>\n", stderr);
     return 2;
   }
   const fs::path folder = argv[1];
-  std::map<Key, Row> rows;
-  json context;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() != ".json") continue;
-    std::ifstream file(entry.path());
-    const json run = json::parse(file, nullptr, /*allow_exceptions=*/false);
-    if (run.is_discarded()) {
-      fmt::print(stderr, "{} is not JSON: run scripts/bench again\n", entry.path().string());
-      return 1;
-    }
-    context = run.at("context");
-    for (const json& benchmark : run.at("benchmarks")) Add(benchmark, rows);
-  }
-  if (rows.empty()) {
-    fmt::print(stderr, "{} has no benchmark: run scripts/bench\n", folder.string());
+  const Expected<Timings> timings = ReadTimings(folder);
+  if (!timings) {
+    fmt::print(stderr, "{}\n", timings.error().message);
     return 1;
   }
+  const std::map<Key, Row> rows = RowsOf(*timings);
   fmt::print(
       "# Performance\n\nWritten by `scripts/bench`; do not edit. One thread, CPU time, medians of "
       "repetitions; the spread is their standard deviation over their mean. Every answer was "
       "checked against the truth before it was timed. Ratios are to the fastest peer of the same "
       "run. What profiles showed, and what each change gave: "
       "[performance_notes.md](performance_notes.md).\n\n");
-  PrintMachine(context, folder);
+  PrintMachine(folder);
   PrintGoals(rows);
   fmt::print(
       "\n## Medians\n\n| task | N | implementation | median | spread | faster than the best peer "
@@ -271,3 +242,8 @@ int main(int argc, char** argv) {
   for (const auto& [key, row] : rows) PrintRow(key, row);
   return 0;
 }
+
+}  // namespace
+}  // namespace sextant::bench
+
+int main(int argc, char** argv) { return sextant::bench::Main(argc, argv); }

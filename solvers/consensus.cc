@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "solvers/isotropic_points.h"
+#include "solvers/shrinking_inliers.h"
 #include "solvers/subset.h"
 
 namespace sextant {
@@ -18,8 +19,6 @@ namespace {
 
 constexpr double kMaxFalseAlarms = 0.01;
 constexpr int kMaxRefits = 10;
-// Of the squared threshold, in the first round of OptimiseOnInliers; halved in the next.
-constexpr double kFirstWidening = 4.0;
 // Quantiles at 0.99 of chi-square with 2 and 3 degrees of freedom.
 constexpr double kChiSquare2 = 9.210340371976184;
 constexpr double kChiSquare3 = 11.344866730144373;
@@ -195,28 +194,18 @@ Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem&
 Rigid3d OptimiseOnInliers(const PairTerms& terms, const PoseScorer& scorer, const Rigid3d& pose,
                           int rounds, const RefineLimits& limits, InlierWorkspace& workspace) {
   const std::size_t least = terms.pixels.empty() ? 3 : 4;
-  Rigid3d best = pose;
-  double best_cost = scorer.Cost(pose);
-  Rigid3d current = pose;
-  double widening = kFirstWidening;
-  for (int round = 0; round < rounds; ++round) {
-    scorer.Inliers(current, workspace.inliers, widening);
-    if (workspace.inliers.size() < least) break;
-    workspace.terms.AssignSubset(terms, workspace.inliers);
-    const std::optional<Rigid3d> closed_form =
-        FitIsotropicPoints(workspace.terms.points, workspace.buffers);
-    current = closed_form ? *closed_form
-                          : RefinePose(workspace.terms.View(), current, limits).cam_from_lidar;
-    const double cost = scorer.Cost(current, best_cost);
-    const bool falls = current.IsFinite() && cost < best_cost;
-    if (falls) {
-      best = current;
-      best_cost = cost;
-    }
-    if (widening == 1.0 && !falls) break;
-    widening = std::max(1.0, 0.5 * widening);
-  }
-  return best;
+  return OptimiseOnShrinkingInliers(
+      pose, scorer.Cost(pose), rounds,
+      [&](const Rigid3d& at, double most) { return scorer.Cost(at, most); },
+      [&](const Rigid3d& at, double widening) -> std::optional<Rigid3d> {
+        scorer.Inliers(at, workspace.inliers, widening);
+        if (workspace.inliers.size() < least) return std::nullopt;
+        workspace.terms.AssignSubset(terms, workspace.inliers);
+        const std::optional<Rigid3d> closed_form =
+            FitIsotropicPoints(workspace.terms.points, workspace.buffers);
+        if (closed_form) return closed_form;
+        return RefinePose(workspace.terms.View(), at, limits).cam_from_lidar;
+      });
 }
 
 Estimate LeastSquaresOnInliers(const PairTerms& terms, const PoseScorer& scorer,

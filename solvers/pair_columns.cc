@@ -9,6 +9,7 @@
 
 #include "solvers/consensus.h"
 #include "solvers/kabsch_kernel.h"
+#include "solvers/shrinking_inliers.h"
 #include "solvers/trace_formula.h"
 
 namespace sextant {
@@ -227,24 +228,14 @@ InlierFit FitInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar, do
 Rigid3d OptimiseOnInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
                           double max_squared) {
   constexpr int kMaxRounds = 20;
-  Rigid3d best = cam_from_lidar;
-  Rigid3d current = cam_from_lidar;
-  double best_cost = TruncatedCost(pairs, best, max_squared);
-  double widening = 4.0;
-  for (int round = 0; round < kMaxRounds; ++round) {
-    const InlierFit fit = FitInliers(pairs, current, widening * max_squared);
-    if (!fit.fitted) break;
-    current = fit.cam_from_lidar;
-    const double cost = TruncatedCost(pairs, current, max_squared);
-    const bool falls = cost < best_cost;
-    if (falls) {
-      best = current;
-      best_cost = cost;
-    }
-    if (widening == 1.0 && !falls) break;
-    widening = std::max(1.0, 0.5 * widening);
-  }
-  return best;
+  return OptimiseOnShrinkingInliers(
+      cam_from_lidar, TruncatedCost(pairs, cam_from_lidar, max_squared), kMaxRounds,
+      [&](const Rigid3d& at, double) { return TruncatedCost(pairs, at, max_squared); },
+      [&](const Rigid3d& at, double widening) -> std::optional<Rigid3d> {
+        const InlierFit fit = FitInliers(pairs, at, widening * max_squared);
+        if (!fit.fitted) return std::nullopt;
+        return fit.cam_from_lidar;
+      });
 }
 
 std::vector<int> InliersOf(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
