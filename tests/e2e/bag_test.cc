@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "e2e/run_sextant.h"
 #include "io/camera_file.h"
 #include "io/cloud_file.h"
 #include "support/real_data.h"
@@ -17,9 +18,7 @@ using test::ProgramRun;
 using test::TestFolder;
 using testing::HasSubstr;
 
-ProgramRun RunBag(const std::string& arguments) {
-  return test::RunProgram(SEXTANT_BINARY, "bag " + arguments);
-}
+ProgramRun RunBag(const std::string& arguments) { return test::RunSextant("bag " + arguments); }
 
 std::string Seed(const std::string& name) {
   return (test::SourceFolder() / "tests/fuzz/corpus" / name).string();

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "e2e/run_sextant.h"
 #include "support/run_program.h"
 
 namespace sextant {
@@ -30,14 +31,14 @@ ProgramRun PrintBoard(const std::string& yaml, const std::string& out,
                       const std::string& more = "") {
   const auto path = TestFolder() / "board.yaml";
   WriteText(path, yaml);
-  return test::RunProgram(SEXTANT_BINARY, "board " + path.string() + " --out " +
-                                              (TestFolder() / out).string() + " " + more);
+  return test::RunSextant("board " + path.string() + " --out " + (TestFolder() / out).string() +
+                          " " + more);
 }
 
 json Detect(const std::string& image) {
   const ProgramRun run =
-      test::RunProgram(SEXTANT_BINARY, "detect " + (TestFolder() / image).string() + " --board " +
-                                           (TestFolder() / "board.yaml").string() + " --json -");
+      test::RunSextant("detect " + (TestFolder() / image).string() + " --board " +
+                       (TestFolder() / "board.yaml").string() + " --json -");
   EXPECT_EQ(run.exit_code, 0) << run.err;
   return json::parse(run.out).at("images").at(0).at("boards").at(0);
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "e2e/run_sextant.h"
 #include "eval/simulator/tag_picture.h"
 #include "io/board_file.h"
 #include "support/real_data.h"
@@ -22,9 +23,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-ProgramRun Detect(const std::string& arguments) {
-  return test::RunProgram(SEXTANT_BINARY, "detect " + arguments);
-}
+ProgramRun Detect(const std::string& arguments) { return test::RunSextant("detect " + arguments); }
 
 std::string PathOf(const std::string& name) { return (TestFolder() / name).string(); }
 

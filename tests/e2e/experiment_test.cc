@@ -7,14 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "e2e/run_sextant.h"
 #include "support/run_program.h"
 
 namespace sextant::test {
 namespace {
 
 using testing::HasSubstr;
-
-ProgramRun Sextant(const std::string& arguments) { return RunProgram(SEXTANT_BINARY, arguments); }
 
 std::string Quoted(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
 
@@ -42,7 +41,7 @@ std::string RunArguments(const std::filesystem::path& experiment, const std::str
 std::string Rows(const std::string& out) { return ReadText(TestFolder() / out / "rows.sxtrows"); }
 
 TEST(Run, WritesRowsTablesAndPlots) {
-  const ProgramRun run = Sextant(RunArguments(WriteExperiment(200), "out"));
+  const ProgramRun run = RunSextant(RunArguments(WriteExperiment(200), "out"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("rms(rotation_deg,where=fine)"));
   EXPECT_THAT(run.out, HasSubstr("ransac(kabsch,seed=3)"));
@@ -68,8 +67,8 @@ TEST(Run, WritesRowsTablesAndPlots) {
 
 TEST(Run, SameBytesOnOneAndTwoThreads) {
   const std::filesystem::path experiment = WriteExperiment(150);
-  ASSERT_EQ(Sextant(RunArguments(experiment, "one", "--threads 1")).exit_code, 0);
-  ASSERT_EQ(Sextant(RunArguments(experiment, "two", "--threads 2")).exit_code, 0);
+  ASSERT_EQ(RunSextant(RunArguments(experiment, "one", "--threads 1")).exit_code, 0);
+  ASSERT_EQ(RunSextant(RunArguments(experiment, "two", "--threads 2")).exit_code, 0);
   for (const char* name :
        {"rows.sxtrows", "rows.csv", "summary.json", "report.md", "tables.tex", "growth.svg"}) {
     EXPECT_TRUE(ReadText(TestFolder() / "one" / name) == ReadText(TestFolder() / "two" / name))
@@ -79,12 +78,12 @@ TEST(Run, SameBytesOnOneAndTwoThreads) {
 
 TEST(Run, KilledAtAnyMomentItGoesOn) {
   const std::filesystem::path experiment = WriteExperiment(4000);
-  ASSERT_EQ(Sextant(RunArguments(experiment, "whole", "--no-csv")).exit_code, 0);
+  ASSERT_EQ(RunSextant(RunArguments(experiment, "whole", "--no-csv")).exit_code, 0);
   for (const char* seconds : {"0.05", "0.1", "0.15", "0.2"}) {
     RunProgram("timeout -s KILL " + std::string(seconds) + " " + SEXTANT_BINARY,
                RunArguments(experiment, "killed", "--no-csv"));
   }
-  const ProgramRun last = Sextant(RunArguments(experiment, "killed", "--no-csv"));
+  const ProgramRun last = RunSextant(RunArguments(experiment, "killed", "--no-csv"));
   ASSERT_EQ(last.exit_code, 0) << last.err;
   EXPECT_TRUE(Rows("killed") == Rows("whole"));
 }
@@ -92,7 +91,7 @@ TEST(Run, KilledAtAnyMomentItGoesOn) {
 // A limit of the file's size stands for a full disk.
 TEST(Run, AFullDiskLosesNothing) {
   const std::filesystem::path experiment = WriteExperiment(2000);
-  ASSERT_EQ(Sextant(RunArguments(experiment, "whole", "--no-csv")).exit_code, 0);
+  ASSERT_EQ(RunSextant(RunArguments(experiment, "whole", "--no-csv")).exit_code, 0);
   const ProgramRun full = RunProgram("trap '' XFSZ; ulimit -f 64; " SEXTANT_BINARY,
                                      RunArguments(experiment, "full", "--no-csv"));
   EXPECT_EQ(full.exit_code, 2);
@@ -100,7 +99,7 @@ TEST(Run, AFullDiskLosesNothing) {
   const std::string kept = Rows("full");
   EXPECT_GT(kept.size(), 9000U) << "at least one block";
   EXPECT_LE(kept.size(), 64U * 1024);
-  const ProgramRun again = Sextant(RunArguments(experiment, "full", "--no-csv"));
+  const ProgramRun again = RunSextant(RunArguments(experiment, "full", "--no-csv"));
   EXPECT_THAT(again.err, HasSubstr("of 4000 trials were already in"));
   EXPECT_TRUE(Rows("full") == Rows("whole"));
 }
@@ -108,10 +107,10 @@ TEST(Run, AFullDiskLosesNothing) {
 TEST(Run, FoldersThatCannotBeWrittenAreNamed) {
   const std::filesystem::path experiment = WriteExperiment(10);
   WriteText(TestFolder() / "file", "not a folder");
-  const ProgramRun in_file = Sextant(RunArguments(experiment, "file/out"));
+  const ProgramRun in_file = RunSextant(RunArguments(experiment, "file/out"));
   EXPECT_EQ(in_file.exit_code, 2);
   EXPECT_THAT(in_file.err, HasSubstr("cannot make the folder"));
-  const ProgramRun denied = Sextant("run " + Quoted(experiment) + " --out /proc/sextant");
+  const ProgramRun denied = RunSextant("run " + Quoted(experiment) + " --out /proc/sextant");
   EXPECT_EQ(denied.exit_code, 2);
   EXPECT_THAT(denied.err, HasSubstr("cannot make the folder '/proc/sextant'"));
 }
@@ -119,36 +118,37 @@ TEST(Run, FoldersThatCannotBeWrittenAreNamed) {
 TEST(Run, BadFilesAreRefusedBeforeAnythingIsWritten) {
   const std::filesystem::path path = TestFolder() / "bad.yaml";
   WriteText(path, "kind: random_scene\ntrials: 10\nsolvers: [kabsh]\n");
-  const ProgramRun run = Sextant(RunArguments(path, "out"));
+  const ProgramRun run = RunSextant(RunArguments(path, "out"));
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("bad.yaml:3: solvers: unknown solver 'kabsh'; did you mean"));
   EXPECT_FALSE(std::filesystem::exists(TestFolder() / "out"));
-  EXPECT_THAT(Sextant("run '/nowhere/x.yaml'").err, HasSubstr("cannot read"));
-  EXPECT_THAT(Sextant(RunArguments(WriteExperiment(10), "out", "--shard 3/2")).err,
+  EXPECT_THAT(RunSextant("run '/nowhere/x.yaml'").err, HasSubstr("cannot read"));
+  EXPECT_THAT(RunSextant(RunArguments(WriteExperiment(10), "out", "--shard 3/2")).err,
               HasSubstr("expected I/N with 1 <= I <= N"));
 }
 
 TEST(Run, FinishedRowsAreNotRunAgainUnlessAsked) {
   const std::filesystem::path experiment = WriteExperiment(100);
-  ASSERT_EQ(Sextant(RunArguments(experiment, "out")).exit_code, 0);
-  EXPECT_THAT(Sextant(RunArguments(experiment, "out")).err,
+  ASSERT_EQ(RunSextant(RunArguments(experiment, "out")).exit_code, 0);
+  EXPECT_THAT(RunSextant(RunArguments(experiment, "out")).err,
               HasSubstr("200 of 200 trials were already in"));
-  EXPECT_EQ(Sextant(RunArguments(experiment, "out", "--fresh")).err, "");
-  const ProgramRun other = Sextant(RunArguments(experiment, "out", "--seed 5"));
+  EXPECT_EQ(RunSextant(RunArguments(experiment, "out", "--fresh")).err, "");
+  const ProgramRun other = RunSextant(RunArguments(experiment, "out", "--seed 5"));
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.err, HasSubstr("start anew with --fresh, or name another folder"));
 }
 
 TEST(Merge, OfShardsIsTheWhole) {
   const std::filesystem::path experiment = WriteExperiment(300);
-  ASSERT_EQ(Sextant(RunArguments(experiment, "whole")).exit_code, 0);
+  ASSERT_EQ(RunSextant(RunArguments(experiment, "whole")).exit_code, 0);
   for (const char* shard : {"1/3", "2/3", "3/3"}) {
-    ASSERT_EQ(Sextant(RunArguments(experiment, "parts", std::string("--shard ") + shard)).exit_code,
-              0);
+    ASSERT_EQ(
+        RunSextant(RunArguments(experiment, "parts", std::string("--shard ") + shard)).exit_code,
+        0);
   }
   const ProgramRun merge =
-      Sextant("merge " + Quoted(experiment) + " " + (TestFolder() / "parts").string() +
-              "/shard_*.sxtrows --out " + Quoted(TestFolder() / "merged"));
+      RunSextant("merge " + Quoted(experiment) + " " + (TestFolder() / "parts").string() +
+                 "/shard_*.sxtrows --out " + Quoted(TestFolder() / "merged"));
   ASSERT_EQ(merge.exit_code, 0) << merge.err;
   EXPECT_TRUE(Rows("merged") == Rows("whole"));
   EXPECT_EQ(ReadText(TestFolder() / "merged" / "summary.json"),
@@ -156,7 +156,7 @@ TEST(Merge, OfShardsIsTheWhole) {
 }
 
 TEST(Kinds, AreListed) {
-  const ProgramRun run = Sextant("kinds");
+  const ProgramRun run = RunSextant("kinds");
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_THAT(run.out, HasSubstr("### random_scene"));
   EXPECT_THAT(run.out, HasSubstr("| `sigma_px` | 1 | px | noise of pixels, per axis |"));
