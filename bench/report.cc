@@ -96,6 +96,7 @@ constexpr Limit kLimits[] = {
     {"rooms", 16, "sextant", 5000.0},
     {"rooms", 64, "sextant", 10000.0},
     {"tags_1280x720", 4, "sextant_aruco", 8000.0},
+    {"tags_1280x720", 4, "sextant_apriltag", 8000.0},
     {"boards_in_scan", 2, "vlp16", 10000.0},
     {"calibrate", 1, "one_pair", 40000.0},
 };

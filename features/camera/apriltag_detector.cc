@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/camera/apriltag_detector.h"
 
+#include <algorithm>
 #include <mutex>
 
 #include "features/camera/apriltag_family.h"
 #include "features/camera/contrast_regions.h"
+#include "features/camera/image_noise.h"
 
 namespace sextant {
 namespace {
@@ -62,7 +64,8 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  zarray_t* Detect(const cv::Mat& grey) {
+  zarray_t* Detect(const cv::Mat& grey, int least_range) {
+    detector_->qtp.min_white_black_diff = least_range;
     image_u8_t image = {grey.cols, grey.rows, static_cast<std::int32_t>(grey.step), grey.data};
     return apriltag_detector_detect(detector_.get(), &image);
   }
@@ -71,6 +74,18 @@ class Engine {
   AprilTagFamily family_;
   std::unique_ptr<apriltag_detector_t, void (*)(apriltag_detector_t*)> detector_;
 };
+
+// The library thresholds where the grey levels of 12 x 12 pixels range over this. 144 pixels of
+// white noise range over 5.2 of its sigmas, those on a tag's edge over the tag's contrast besides:
+// from 6.5 sigmas on, noise is no longer traced, and every tag is still found that the library
+// finds in it at all (3 sigmas of contrast). Of what would ask for more, texture is the likelier
+// cause.
+int LeastRange(double noise_grey) {
+  constexpr double kSigmas = 6.5;
+  constexpr int kUsual = 5;
+  constexpr int kMost = 32;
+  return std::clamp(static_cast<int>(kSigmas * noise_grey), kUsual, kMost);
+}
 
 class AprilTagDetector final : public TagDetector {
  public:
@@ -89,18 +104,24 @@ class AprilTagDetector final : public TagDetector {
     return found;
   }
 
-  // Tiles of the reduced image must be where they would be in the whole one.
+  // The library reduces by leaving pixels out, which keeps their noise, and its tiles of the
+  // reduced image are where they would be in the whole one.
+  bool SeesPixels() const {
+    const double decimate = options_.decimate;
+    return (decimate == 1.0 || decimate == 2.0 || decimate == 4.0) && options_.blur_px == 0.0;
+  }
+
   std::vector<cv::Rect> RegionsOf(const cv::Mat& grey) const {
-    const bool fits =
-        options_.decimate == 1.0 || options_.decimate == 2.0 || options_.decimate == 4.0;
-    if (fits && options_.blur_px == 0.0) return ContrastRegions(grey);
+    if (SeesPixels()) return ContrastRegions(grey);
     return {cv::Rect(0, 0, grey.cols, grey.rows)};
   }
 
   void DetectIn(Engine& engine, const cv::Mat& grey, const cv::Rect& region,
                 Detections& found) const {
-    const std::unique_ptr<zarray_t, void (*)(zarray_t*)> quads(engine.Detect(grey(region)),
-                                                               apriltag_detections_destroy);
+    const cv::Mat part = grey(region);
+    const double noise_grey = SeesPixels() ? EstimateNoise_grey(part) : 0.0;
+    const std::unique_ptr<zarray_t, void (*)(zarray_t*)> quads(
+        engine.Detect(part, LeastRange(noise_grey)), apriltag_detections_destroy);
     for (int i = 0; i < zarray_size(quads.get()); ++i) {
       apriltag_detection_t* tag = nullptr;
       zarray_get(quads.get(), i, &tag);
