@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <memory>
 
-#include "solvers/consensus.h"
+#include "solvers/clique_listing.h"
 #include "solvers/max_clique.h"
-#include "solvers/pair_columns.h"
-#include "solvers/pair_noise.h"
+#include "solvers/pair_judge.h"
 #include "solvers/registry.h"
-#include "solvers/subset.h"
 
 namespace sextant {
 namespace {
@@ -20,11 +16,9 @@ struct CliqueOptions : InlierOptions {
   std::int64_t max_nodes = 20'000;
 };
 
-// Of least squares on the inliers; far fewer are needed.
-constexpr int kMaxRounds = 20;
-
 // In a larger clique one false pair does little harm.
 constexpr std::size_t kSmallClique = 16;
+constexpr std::size_t kMostCliques = 300;
 
 // The graph, twice, takes 100 MB.
 constexpr std::size_t kMostPairs = 20'000;
@@ -35,10 +29,11 @@ constexpr std::size_t kMostPairs = 20'000;
 /// `threshold` of its sigma sqrt(u^T (S_i + S_j) u), u along c_i - c_j. Outliers agree with each
 /// other by chance only, so the true pairs are the maximum clique of the graph of agreements even
 /// at 95 percent outliers (Leordeanu and Hebert 2005; Shi, Yang and Carlone 2021, ROBIN). The inner
-/// solver's pose then gathers its inliers anew, and the inner solver answers on them unless least
-/// squares fits them better. Exact up to max_nodes nodes of the search; after
-/// that the largest so far, and termination kMaxIterations. Memory N^2 / 4 bytes, time N^2 to
-/// build. Errors: kNoConsensus (see CheckConsensus), those of the inner solver.
+/// solver's pose then gathers its inliers anew, with FinalMaxSquared of the options, and the inner
+/// solver answers on them unless least squares fits them better. Exact up to max_nodes nodes of the
+/// search; after that the largest so far, and termination kMaxIterations. Memory N^2 / 8 bytes, and
+/// as much again where hardly any pair is false; time N^2 to build. Errors: kNoConsensus (see
+/// CheckConsensus), those of the inner solver.
 class CliqueSolver final : public Solver {
  public:
   CliqueSolver(const SolverArguments& arguments, const CliqueOptions& options)
@@ -57,22 +52,18 @@ class CliqueSolver final : public Solver {
                                    "ransac or gnc",
                                    problem.pairs_3d3d.size(), kMostPairs));
     }
-    const PairTerms terms = MakeTerms(problem, PairKind::k3d3d, options_.Assumed());
-    const PoseScorer scorer(terms, options_.MaxSquared(PairKind::k3d3d));
-    const BitGraph graph = GraphOf(problem.pairs_3d3d);
+    const std::unique_ptr<PairJudge> judge = MakePairJudge(*inner_, problem, options_);
+    const BitGraph graph = judge->Graph();
     const Clique clique = FindMaximumClique(graph, options_.max_nodes);
     const int least = spec().needs.pairs_3d3d;
-    if (Expected<void> ok = CheckConsensus(terms, scorer, clique.vertices, least); !ok) {
+    if (Expected<void> ok = judge->Check(clique.vertices, least); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
-    Expected<Rigid3d> pose = PoseFrom(problem, terms, scorer, clique);
-    if (clique.vertices.size() <= kSmallClique) {
-      pose = BestWithoutOne(problem, terms, scorer, graph, clique, std::move(pose));
-    }
-    if (!pose) return tl::unexpected<Error>(std::move(pose.error()));
-    Expected<Estimate> estimate = BetterOnInliers(*inner_, problem, terms, scorer, *pose);
+    const Expected<Rigid3d> pose = PoseFrom(problem, *judge, graph, clique);
+    if (!pose) return tl::unexpected<Error>(pose.error());
+    Expected<Estimate> estimate = judge->Answer(*pose);
     if (!estimate) return estimate;
-    if (Expected<void> ok = CheckConsensus(terms, scorer, estimate->inliers, least); !ok) {
+    if (Expected<void> ok = judge->Check(estimate->inliers, least); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
     estimate->iterations = static_cast<int>(std::min<std::int64_t>(clique.nodes, 1'000'000'000));
@@ -81,67 +72,65 @@ class CliqueSolver final : public Solver {
     return estimate;
   }
 
-  // The pose of the clique, then of all pairs within its threshold.
-  Expected<Rigid3d> PoseFrom(const CalibrationProblem& problem, const PairTerms& terms,
-                             const PoseScorer& scorer, const Clique& clique) const {
-    Expected<Rigid3d> pose = PoseOfSubset(*inner_, problem, terms, clique.vertices);
-    if (!pose || !spec().estimates_rotation) return pose;
-    InlierWorkspace workspace;
-    return OptimiseOnInliers(terms, scorer, *pose, kMaxRounds, {}, workspace);
+  // Distances do not tell a point from its mirror image: a false pair may have taken the place of
+  // a true one, and as many of chance may agree. So where there are few, all cliques count that are
+  // as large or lack one, and the cheapest pose is taken.
+  Expected<Rigid3d> PoseFrom(const CalibrationProblem& problem, const PairJudge& judge,
+                             const BitGraph& graph, const Clique& clique) const {
+    std::vector<std::vector<int>> cliques;
+    if (clique.vertices.size() <= kSmallClique) {
+      const auto fewest = static_cast<std::size_t>(LeastPairs(inner_->spec().needs));
+      cliques = ListCliques(graph, std::max(clique.vertices.size() - 1, fewest), kMostCliques,
+                            options_.max_nodes);
+    }
+    // The first, should there be more than are listed.
+    cliques.insert(cliques.begin(), clique.vertices);
+    std::vector<JudgedPose> poses;
+    for (const std::vector<int>& vertices : cliques) AddPoses(problem, judge, vertices, poses);
+    if (poses.empty()) return WhyNoPose(problem, clique);
+    return BestOptimised(judge, std::move(poses));
   }
 
-  // Distances do not tell a point from its mirror image: a false pair may have taken the place of
-  // a true one. So each is left out in turn, and the best pose counts.
-  Expected<Rigid3d> BestWithoutOne(const CalibrationProblem& problem, const PairTerms& terms,
-                                   const PoseScorer& scorer, const BitGraph& graph,
-                                   const Clique& clique, Expected<Rigid3d> best) const {
-    double least_cost = best ? scorer.Cost(*best) : std::numeric_limits<double>::infinity();
-    for (const int suspect : clique.vertices) {
-      BitGraph without = graph;
-      without.Isolate(suspect);
-      const Clique other = FindMaximumClique(without, options_.max_nodes);
-      if (static_cast<int>(other.vertices.size()) < LeastPairs(inner_->spec().needs)) continue;
-      Expected<Rigid3d> pose = PoseFrom(problem, terms, scorer, other);
-      const double cost = pose ? scorer.Cost(*pose) : std::numeric_limits<double>::infinity();
-      if (!(cost < least_cost)) continue;
-      least_cost = cost;
-      best = std::move(pose);
+  struct JudgedPose {
+    double cost;
+    Rigid3d pose;
+  };
+
+  void AddPoses(const CalibrationProblem& problem, const PairJudge& judge,
+                std::span<const int> vertices, std::vector<JudgedPose>& judged) const {
+    std::vector<Rigid3d> poses;
+    inner_->Hypothesize(problem, vertices, poses);
+    for (const Rigid3d& pose : poses) judged.push_back({judge.Cost(pose), pose});
+  }
+
+  // Of the most promising.
+  Rigid3d BestOptimised(const PairJudge& judge, std::vector<JudgedPose> poses) const {
+    constexpr std::size_t kMostOptimised = 3;
+    const std::size_t optimised = std::min(kMostOptimised, poses.size());
+    const auto is_cheaper = [](const JudgedPose& a, const JudgedPose& b) {
+      return a.cost < b.cost;
+    };
+    std::stable_sort(poses.begin(), poses.end(), is_cheaper);
+    if (!spec().estimates_rotation) return poses.front().pose;
+    poses.resize(optimised);
+    for (JudgedPose& judged : poses) {
+      judged.pose = judge.Optimise(judged.pose);
+      judged.cost = judge.Cost(judged.pose);
     }
-    if (best || 2 * clique.vertices.size() > problem.pairs_3d3d.size()) return best;
+    return std::min_element(poses.begin(), poses.end(), is_cheaper)->pose;
+  }
+
+  // The inner solver's reason where most pairs agree on their distances.
+  Expected<Rigid3d> WhyNoPose(const CalibrationProblem& problem, const Clique& clique) const {
+    if (2 * clique.vertices.size() > problem.pairs_3d3d.size()) {
+      return SolveSubset(*inner_, problem, clique.vertices).map([](const Estimate& estimate) {
+        return estimate.cam_from_lidar;
+      });
+    }
     return MakeError(ErrorCode::kNoConsensus,
                      fmt::format("at most {} of {} pairs agree on their distances, and on no pose; "
                                  "check the pairing and the sigmas",
                                  clique.vertices.size(), problem.pairs_3d3d.size()));
-  }
-
-  BitGraph GraphOf(const std::vector<Pair3d3d>& pairs) const {
-    const double max_squared = options_.MaxSquared(PairKind::k3d3d);
-    if (std::none_of(pairs.begin(), pairs.end(),
-                     [](const Pair3d3d& pair) { return pair.covariance_in_cam.has_value(); })) {
-      return AgreementGraph(PairColumns(pairs, options_.Assumed()), max_squared);
-    }
-    std::vector<Eigen::Matrix3d> noise;
-    noise.reserve(pairs.size());
-    for (const Pair3d3d& pair : pairs) {
-      noise.push_back(HasKnownNoise(pair) ? StatedCovariance(pair)
-                                          : Eigen::Matrix3d(Eigen::Matrix3d::Identity() *
-                                                            options_.sigma_m * options_.sigma_m));
-    }
-    BitGraph graph(static_cast<int>(pairs.size()));
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        const Eigen::Vector3d in_cam = pairs[i].point_in_cam - pairs[j].point_in_cam;
-        const double lidar_length = (pairs[i].point_in_lidar - pairs[j].point_in_lidar).norm();
-        const double cam_squared = in_cam.squaredNorm();
-        const double excess = std::sqrt(cam_squared) - lidar_length;
-        // excess^2 <= max_squared u^T S u, without the division by |c|^2.
-        const double spread = in_cam.dot((noise[i] + noise[j]) * in_cam);
-        if (excess * excess * cam_squared <= max_squared * spread) {
-          graph.Connect(static_cast<int>(i), static_cast<int>(j));
-        }
-      }
-    }
-    return graph;
   }
 
   SolverPtr inner_;

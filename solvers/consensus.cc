@@ -23,31 +23,6 @@ constexpr int kMaxRefits = 10;
 constexpr double kChiSquare2 = 9.210340371976184;
 constexpr double kChiSquare3 = 11.344866730144373;
 
-// Volume within the threshold over the volume of the box of the measurements, the box grown by
-// the threshold so that flat data has a volume.
-double ChanceOfAgreement(const PairTerms& terms, double max_squared) {
-  const double threshold = std::sqrt(max_squared);
-  if (terms.pixels.empty()) {
-    Eigen::AlignedBox3d box;
-    double radius = 0.0;
-    for (const PointTerm& term : terms.points) {
-      box.extend(term.in_cam);
-      radius += threshold / std::cbrt(std::abs(term.whitener.determinant()));
-    }
-    radius /= static_cast<double>(terms.points.size());
-    return ChanceInBox(box, radius);
-  }
-  Eigen::AlignedBox2d box;
-  double radius = 0.0;
-  for (const PixelTerm term : terms.pixels) {
-    box.extend(term.pixel);
-    radius += threshold / term.inverse_sigma;
-  }
-  radius /= static_cast<double>(terms.pixels.size());
-  const double disc = std::numbers::pi * radius * radius;
-  return std::min(1.0, disc / (box.sizes().array() + 2.0 * radius).prod());
-}
-
 // log of (n over k). By sums: std::lgamma writes a global, which is a data race.
 double LogChoose(int n, int k) {
   double sum = 0.0;
@@ -95,21 +70,17 @@ int CountDistinct(const PairTerms& terms, std::span<const int> indices) {
   return static_cast<int>(std::unique(numbers.begin(), numbers.end()) - numbers.begin());
 }
 
-// Whether `inner` can work on so few.
-Expected<void> CheckEnough(const Solver& inner, std::size_t inlier_count) {
-  const int least = LeastPairs(inner.spec().needs);
-  if (inlier_count >= static_cast<std::size_t>(least)) return {};
-  return MakeError(ErrorCode::kNoConsensus,
-                   fmt::format("{} pairs agree on a pose, expected at least {}; check the pairing "
-                               "and the sigmas",
-                               inlier_count, least));
-}
-
 }  // namespace
 
 double InlierOptions::MaxSquared(PairKind kind) const {
   if (threshold > 0.0) return threshold * threshold;
   return kind == PairKind::k3d3d ? kChiSquare3 : kChiSquare2;
+}
+
+double InlierOptions::FinalMaxSquared(std::size_t count, double chance_at_9999) const {
+  constexpr double kMostFalsePairs = 0.05;
+  const bool is_safe = static_cast<double>(count) * chance_at_9999 < kMostFalsePairs;
+  return threshold == 0.0 && is_safe ? kChiSquare3At9999 : MaxSquared(PairKind::k3d3d);
 }
 
 int LeastPairs(const DataNeeds& needs) { return std::max(needs.pairs_3d3d, needs.pairs_2d3d); }
@@ -119,8 +90,27 @@ DataNeeds NeedsOfConsensus(DataNeeds inner, PairKind kind) {
   return inner;
 }
 
-bool IsBeyondChance(PairKind kind, int distinct, int count, double chance) {
-  return FalseAlarms(kind, distinct, count, chance) < kMaxFalseAlarms;
+double ChanceOfAgreement(const PairTerms& terms, double max_squared) {
+  const double threshold = std::sqrt(max_squared);
+  if (terms.pixels.empty()) {
+    Eigen::AlignedBox3d box;
+    double radius = 0.0;
+    for (const PointTerm& term : terms.points) {
+      box.extend(term.in_cam);
+      radius += threshold / std::cbrt(std::abs(term.whitener.determinant()));
+    }
+    radius /= static_cast<double>(terms.points.size());
+    return ChanceInBox(box, radius);
+  }
+  Eigen::AlignedBox2d box;
+  double radius = 0.0;
+  for (const PixelTerm term : terms.pixels) {
+    box.extend(term.pixel);
+    radius += threshold / term.inverse_sigma;
+  }
+  radius /= static_cast<double>(terms.pixels.size());
+  const double disc = std::numbers::pi * radius * radius;
+  return std::min(1.0, disc / (box.sizes().array() + 2.0 * radius).prod());
 }
 
 double ChanceInBox(const Eigen::AlignedBox3d& box, double radius) {
@@ -128,31 +118,48 @@ double ChanceInBox(const Eigen::AlignedBox3d& box, double radius) {
   return std::min(1.0, ball / (box.sizes().array() + 2.0 * radius).prod());
 }
 
-Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer,
-                              std::span<const int> inliers, int least) {
-  const int inlier_count = CountDistinct(terms, inliers);
-  const int count = static_cast<int>(terms.size());
-  const double false_alarms =
-      FalseAlarms(terms.pixels.empty() ? PairKind::k3d3d : PairKind::k2d3d, inlier_count, count,
-                  ChanceOfAgreement(terms, scorer.max_squared()));
-  if (inlier_count >= least && false_alarms < kMaxFalseAlarms) return {};
+Expected<void> CheckConsensus(PairKind kind, int distinct, int count, double chance, int least) {
+  const double false_alarms = FalseAlarms(kind, distinct, count, chance);
+  if (distinct >= least && false_alarms < kMaxFalseAlarms) return {};
   return MakeError(
       ErrorCode::kNoConsensus,
       fmt::format("the best pose gathers {} of {} pairs (each counted once), expected at least {} "
                   "and more than chance "
                   "explains ({:.2g} such poses, fewer than {:g} wanted); check the pairing and the "
                   "sigmas",
-                  inlier_count, count, least, false_alarms, kMaxFalseAlarms));
+                  distinct, count, least, false_alarms, kMaxFalseAlarms));
+}
+
+Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer,
+                              std::span<const int> inliers, int least) {
+  return CheckConsensus(terms.pixels.empty() ? PairKind::k3d3d : PairKind::k2d3d,
+                        CountDistinct(terms, inliers), static_cast<int>(terms.size()),
+                        ChanceOfAgreement(terms, scorer.max_squared()), least);
+}
+
+Expected<void> CheckEnough(const Solver& inner, std::size_t inlier_count) {
+  const int least = LeastPairs(inner.spec().needs);
+  if (inlier_count >= static_cast<std::size_t>(least)) return {};
+  return MakeError(ErrorCode::kNoConsensus,
+                   fmt::format("{} pairs agree on a pose, expected at least {}; check the pairing "
+                               "and the sigmas",
+                               inlier_count, least));
+}
+
+Expected<Estimate> SolveWhole(const Solver& inner, const CalibrationProblem& problem) {
+  Expected<SolveReport> report = inner.Solve(problem);
+  if (!report) return tl::unexpected<Error>(std::move(report.error()));
+  Estimate estimate = std::move(static_cast<Estimate&>(*report));
+  estimate.stages.push_back(
+      {report->solver, report->cam_from_lidar, report->iterations, report->wall_time_us});
+  return estimate;
 }
 
 Expected<Estimate> SolveSubset(const Solver& inner, const CalibrationProblem& problem,
                                std::span<const int> indices) {
-  Expected<SolveReport> report = inner.Solve(SubsetOf(problem, inner.spec().needs, indices));
-  if (!report) return tl::unexpected<Error>(std::move(report.error()));
-  Estimate estimate = std::move(static_cast<Estimate&>(*report));
-  for (int& i : estimate.inliers) i = indices[static_cast<std::size_t>(i)];
-  estimate.stages.push_back(
-      {report->solver, report->cam_from_lidar, report->iterations, report->wall_time_us});
+  Expected<Estimate> estimate = SolveWhole(inner, SubsetOf(problem, inner.spec().needs, indices));
+  if (!estimate) return estimate;
+  for (int& i : estimate->inliers) i = indices[static_cast<std::size_t>(i)];
   return estimate;
 }
 

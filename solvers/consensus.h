@@ -26,7 +26,16 @@ struct InlierOptions {
   /// Largest squared whitened residual of an inlier: the 0.99 quantile of chi-square with 3 or 2
   /// degrees of freedom, or threshold^2.
   double MaxSquared(PairKind kind) const;
+
+  /// Of 3D-3D pairs, for the last word on who is an inlier: the 0.9999 quantile where no threshold
+  /// is set and, as the probability `chance_at_9999` that a pair of chance is within it tells,
+  /// hardly one of `count` is. Leaving out one true pair in a hundred costs two percent of
+  /// accuracy, and where few are true the best four of five often look better than all five.
+  double FinalMaxSquared(std::size_t count, double chance_at_9999) const;
 };
+
+/// The 0.9999 quantile of chi-square with 3 degrees of freedom.
+inline constexpr double kChiSquare3At9999 = 21.107513466204896;
 
 /// Adds threshold, sigma_m and sigma_px to a combinator's options.
 template <class Options>
@@ -53,7 +62,10 @@ Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer,
 
 /// The same verdict on its numbers: so many different pairs of `count` agree on a pose, with the
 /// probability `chance` that one of chance does.
-bool IsBeyondChance(PairKind kind, int distinct, int count, double chance);
+Expected<void> CheckConsensus(PairKind kind, int distinct, int count, double chance, int least);
+
+/// The probability that a pair of chance agrees with a pose; see above.
+double ChanceOfAgreement(const PairTerms& terms, double max_squared);
 
 /// The probability that a point of chance in `box`, grown by `radius`, is within it of another.
 double ChanceInBox(const Eigen::AlignedBox3d& box, double radius);
@@ -63,6 +75,9 @@ int LeastPairs(const DataNeeds& needs);
 
 /// `inner` with one pair more of its kind, as a consensus takes.
 DataNeeds NeedsOfConsensus(DataNeeds inner, PairKind kind);
+
+/// Error: kNoConsensus where `inner` cannot work on so few.
+Expected<void> CheckEnough(const Solver& inner, std::size_t inlier_count);
 
 /// `inner` on all inliers of `pose`, again and again until the inliers stay the same (at most ten
 /// times). The estimate's inliers are those it was solved from, as indices of the whole problem;
@@ -81,6 +96,9 @@ Expected<Rigid3d> PoseOfSubset(const Solver& inner, const CalibrationProblem& pr
 /// has `inner` as its last stage.
 Expected<Estimate> SolveSubset(const Solver& inner, const CalibrationProblem& problem,
                                std::span<const int> indices);
+
+/// `inner` on the whole problem, which is not copied, and as its last stage.
+Expected<Estimate> SolveWhole(const Solver& inner, const CalibrationProblem& problem);
 
 /// Buffers of OptimiseOnInliers, to be kept between calls.
 struct InlierWorkspace {

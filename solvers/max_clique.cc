@@ -5,45 +5,34 @@
 #include <bit>
 #include <deque>
 #include <numeric>
+#include <utility>
 
 namespace sextant {
 namespace {
 
-constexpr int kWordBits = 64;
-
 using Bits = std::vector<std::uint64_t>;
 
-std::size_t WordOf(int vertex) { return static_cast<std::size_t>(vertex) / kWordBits; }
-std::uint64_t BitOf(int vertex) { return std::uint64_t{1} << (vertex % kWordBits); }
-
-template <class Visit>
-void ForEachBit(const std::uint64_t* bits, std::size_t words, Visit&& visit) {
-  for (std::size_t w = 0; w < words; ++w) {
-    for (std::uint64_t left = bits[w]; left != 0; left &= left - 1) {
-      visit(static_cast<int>(w) * kWordBits + std::countr_zero(left));
-    }
+// Vertices by falling degree, those of one degree ascending.
+std::vector<int> ByFallingDegree(const std::vector<int>& degrees) {
+  std::vector<int> begins(degrees.size() + 1, 0);
+  for (const int degree : degrees) ++begins[static_cast<std::size_t>(degree)];
+  int begin = 0;
+  for (auto count = begins.rbegin(); count != begins.rend(); ++count) {
+    begin += std::exchange(*count, begin);
   }
-}
-
-std::vector<int> DegreesOf(const BitGraph& graph) {
-  std::vector<int> degrees(static_cast<std::size_t>(graph.vertices()), 0);
-  for (int v = 0; v < graph.vertices(); ++v) {
-    for (std::size_t w = 0; w < graph.words(); ++w) {
-      degrees[static_cast<std::size_t>(v)] += std::popcount(graph.Row(v)[w]);
-    }
+  std::vector<int> order(degrees.size());
+  for (std::size_t v = 0; v < degrees.size(); ++v) {
+    int& place = begins[static_cast<std::size_t>(degrees[v])];
+    order[static_cast<std::size_t>(place++)] = static_cast<int>(v);
   }
-  return degrees;
+  return order;
 }
 
 // From each of the best connected vertices, whoever is connected with all so far, best connected
 // first.
 std::vector<int> GreedyClique(const BitGraph& graph, const std::vector<int>& degrees) {
   constexpr std::size_t kStarts = 4;
-  std::vector<int> order(degrees.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return degrees[static_cast<std::size_t>(a)] > degrees[static_cast<std::size_t>(b)];
-  });
+  const std::vector<int> order = ByFallingDegree(degrees);
   std::vector<int> best;
   std::vector<int> clique;
   Bits candidates(graph.words());
@@ -84,15 +73,18 @@ std::vector<int> CoreOf(const BitGraph& graph, std::vector<int> degrees, int lea
 }
 
 BitGraph Subgraph(const BitGraph& graph, const std::vector<int>& vertices) {
-  const int n = static_cast<int>(vertices.size());
-  BitGraph sub(n);
-  for (int a = 0; a < n; ++a) {
-    for (int b = 0; b < a; ++b) {
-      if (graph.AreConnected(vertices[static_cast<std::size_t>(a)],
-                             vertices[static_cast<std::size_t>(b)])) {
-        sub.Connect(a, b);
-      }
-    }
+  constexpr int kNowhere = -1;
+  std::vector<int> places(static_cast<std::size_t>(graph.vertices()), kNowhere);
+  for (std::size_t place = 0; place < vertices.size(); ++place) {
+    places[static_cast<std::size_t>(vertices[place])] = static_cast<int>(place);
+  }
+  BitGraph sub(static_cast<int>(vertices.size()));
+  for (const int v : vertices) {
+    std::uint64_t* row = sub.Row(places[static_cast<std::size_t>(v)]);
+    ForEachBit(graph.Row(v), graph.words(), [&](int neighbour) {
+      const int place = places[static_cast<std::size_t>(neighbour)];
+      if (place != kNowhere) row[WordOf(place)] |= BitOf(place);
+    });
   }
   return sub;
 }
@@ -193,12 +185,10 @@ class CliqueSearch {
     for (auto branch = level.coloured.rbegin(); branch != level.coloured.rend(); ++branch) {
       if (nodes_ >= max_nodes_) return;
       if (current_.size() + static_cast<std::size_t>(branch->colours) <= largest_) return;
-      const std::uint64_t* row = sorted_.Row(branch->vertex);
-      for (std::size_t w = 0; w < next.candidates.size(); ++w) {
-        next.candidates[w] = level.candidates[w] & row[w];
-      }
+      const int candidates = Intersect(level.candidates.data(), sorted_.Row(branch->vertex),
+                                       sorted_.words(), next.candidates.data());
       current_.push_back(branch->vertex);
-      Expand(depth + 1);
+      if (current_.size() + static_cast<std::size_t>(candidates) > largest_) Expand(depth + 1);
       current_.pop_back();
       level.candidates[WordOf(branch->vertex)] &= ~BitOf(branch->vertex);
     }
@@ -221,27 +211,6 @@ class CliqueSearch {
 };
 
 }  // namespace
-
-BitGraph::BitGraph(int vertices)
-    : vertices_(vertices),
-      words_((static_cast<std::size_t>(vertices) + kWordBits - 1) / kWordBits),
-      bits_(static_cast<std::size_t>(vertices) * words_, 0) {}
-
-void BitGraph::Connect(int a, int b) {
-  bits_[static_cast<std::size_t>(a) * words_ + WordOf(b)] |= BitOf(b);
-  bits_[static_cast<std::size_t>(b) * words_ + WordOf(a)] |= BitOf(a);
-}
-
-void BitGraph::Isolate(int vertex) {
-  for (int v = 0; v < vertices_; ++v) {
-    bits_[static_cast<std::size_t>(v) * words_ + WordOf(vertex)] &= ~BitOf(vertex);
-  }
-  std::fill_n(
-      bits_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(vertex) * words_),
-      words_, 0);
-}
-
-bool BitGraph::AreConnected(int a, int b) const { return (Row(a)[WordOf(b)] & BitOf(b)) != 0; }
 
 Clique FindMaximumClique(const BitGraph& graph, std::int64_t max_nodes) {
   const std::vector<int> degrees = DegreesOf(graph);

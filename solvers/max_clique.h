@@ -4,33 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "solvers/bit_graph.h"
+
 namespace sextant {
-
-/// An undirected graph without loops, as a matrix of bits.
-class BitGraph {
- public:
-  explicit BitGraph(int vertices);
-
-  int vertices() const { return vertices_; }
-  void Connect(int a, int b);
-  /// Removes every edge of `vertex`.
-  void Isolate(int vertex);
-  bool AreConnected(int a, int b) const;
-
-  /// The row of `vertex`: bit j of the row is set where j is a neighbour. `words()` words.
-  const std::uint64_t* Row(int vertex) const {
-    return bits_.data() + static_cast<std::size_t>(vertex) * words_;
-  }
-  std::uint64_t* Row(int vertex) {
-    return bits_.data() + static_cast<std::size_t>(vertex) * words_;
-  }
-  std::size_t words() const { return words_; }
-
- private:
-  int vertices_;
-  std::size_t words_;
-  std::vector<std::uint64_t> bits_;
-};
 
 struct Clique {
   std::vector<int> vertices;  ///< Ascending.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solvers/column_points.h"
 #include "solvers/consensus.h"
 #include "solvers/kabsch_kernel.h"
 #include "solvers/shrinking_inliers.h"
@@ -16,60 +17,7 @@ namespace sextant {
 namespace {
 
 constexpr int kColumns = 8;
-constexpr int kVariance = 6;
-constexpr int kInverseVariance = 7;
-constexpr std::size_t kBlock = 64;
-
-SEXTANT_INLINE Point3<Lanes> PointsAt(const PairColumns& pairs, int first, std::size_t place) {
-  return {LoadLanes(pairs.Column(first) + place), LoadLanes(pairs.Column(first + 1) + place),
-          LoadLanes(pairs.Column(first + 2) + place)};
-}
-
-SEXTANT_INLINE Point3<double> PointOf(const PairColumns& pairs, int first, std::size_t place) {
-  return {pairs.Column(first)[place], pairs.Column(first + 1)[place],
-          pairs.Column(first + 2)[place]};
-}
-
-template <class Real>
-SEXTANT_INLINE Real SquaredLength(const Point3<Real>& v) {
-  return v.x * v.x + v.y * v.y + v.z * v.z;
-}
-
-// | |c| - |l| |^2 <= t without a root: (c^2 - l^2)^2 <= t (2 (c^2 + l^2) - t), or c^2 + l^2 <= t.
-template <class Mask, class Real>
-SEXTANT_INLINE Mask LengthsAgree(const Real& c2, const Real& l2, const Real& t) {
-  const Real difference = c2 - l2;
-  const Real sum = c2 + l2;
-  const Mask is_short = sum <= t;
-  const Mask is_alike = difference * difference <= t * (sum + sum - t);
-  return is_short | is_alike;
-}
-
-SEXTANT_MULTIVERSION void FillGraph(const PairColumns& pairs, double max_squared, BitGraph& graph) {
-  const LaneMask shifts = {0, 8, 16, 24, 32, 40, 48, 56};
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const std::size_t place = PairColumns::Place(i);
-    const Point3<double> cam = PointOf(pairs, 0, place);
-    const Point3<double> lidar = PointOf(pairs, 3, place);
-    const double variance = pairs.Column(kVariance)[place];
-    std::uint64_t* row = graph.Row(static_cast<int>(i));
-    for (std::size_t block = 0; block < pairs.padded(); block += kBlock) {
-      LaneMask bits{};
-      for (std::size_t k = kLanes; k-- > 0;) {
-        const std::size_t at = block + kLanes * k;
-        const Lanes c2 = SquaredLength(PointsAt(pairs, 0, at) - cam);
-        const Lanes l2 = SquaredLength(PointsAt(pairs, 3, at) - lidar);
-        const Lanes t = max_squared * (LoadLanes(pairs.Column(kVariance) + at) + variance);
-        // -1 where it holds: the bits gathered so far move up by one.
-        const LaneMask agree = LengthsAgree<LaneMask>(c2, l2, t);
-        bits = bits + bits - agree;
-      }
-      bits <<= shifts;
-      row[block / kBlock] = static_cast<std::uint64_t>(OrOfLanes(bits));
-    }
-    row[i / kBlock] &= ~(std::uint64_t{1} << (i % kBlock));
-  }
-}
+constexpr std::size_t kBlock = PairColumns::kBlock;
 
 struct Pose {
   RotationMatrix<double> r;
@@ -83,12 +31,12 @@ SEXTANT_INLINE Pose PoseOf(const Rigid3d& cam_from_lidar) {
 }
 
 SEXTANT_INLINE Lanes SquaredSigmas(const PairColumns& pairs, const Pose& pose, std::size_t at) {
-  const Point3<Lanes> cam = PointsAt(pairs, 0, at);
-  const Point3<Lanes> p = PointsAt(pairs, 3, at);
+  const Point3<Lanes> cam = PointsAt(pairs, kCamColumn, at);
+  const Point3<Lanes> p = PointsAt(pairs, kLidarColumn, at);
   const Lanes x = cam.x - (pose.r.xx * p.x + pose.r.xy * p.y + pose.r.xz * p.z + pose.t.x);
   const Lanes y = cam.y - (pose.r.yx * p.x + pose.r.yy * p.y + pose.r.yz * p.z + pose.t.y);
   const Lanes z = cam.z - (pose.r.zx * p.x + pose.r.zy * p.y + pose.r.zz * p.z + pose.t.z);
-  return (x * x + y * y + z * z) * LoadLanes(pairs.Column(kInverseVariance) + at);
+  return (x * x + y * y + z * z) * LoadLanes(pairs.Column(kInverseVarianceColumn) + at);
 }
 
 // Of the padded pairs too, whose residual is not a number and costs as an outlier's.
@@ -129,8 +77,8 @@ SEXTANT_MULTIVERSION void SumInliers(const PairColumns& pairs, const Pose& pose,
                                      InlierMoments& result) {
   const Lanes most = AllLanes(max_squared);
   const Lanes none{};
-  const Point3<double> origin_a = PointOf(pairs, 3, 0);
-  const Point3<double> origin_b = PointOf(pairs, 0, 0);
+  const Point3<double> origin_a = PointOf(pairs, kLidarColumn, 0);
+  const Point3<double> origin_b = PointOf(pairs, kCamColumn, 0);
   PairMomentSums<Lanes> sums{};
   Lanes cost{};
   Lanes count{};
@@ -139,11 +87,11 @@ SEXTANT_MULTIVERSION void SumInliers(const PairColumns& pairs, const Pose& pose,
     const LaneMask is_inlier = squared <= most;
     cost += is_inlier ? squared : most;
     count += is_inlier ? none + 1.0 : none;
-    const Point3<Lanes> a = PointsAt(pairs, 3, at) - origin_a;
-    const Point3<Lanes> b = PointsAt(pairs, 0, at) - origin_b;
+    const Point3<Lanes> a = PointsAt(pairs, kLidarColumn, at) - origin_a;
+    const Point3<Lanes> b = PointsAt(pairs, kCamColumn, at) - origin_b;
     sums.Add<true, false>({is_inlier ? a.x : none, is_inlier ? a.y : none, is_inlier ? a.z : none},
                           {is_inlier ? b.x : none, is_inlier ? b.y : none, is_inlier ? b.z : none},
-                          is_inlier ? LoadLanes(pairs.Column(kInverseVariance) + at) : none);
+                          is_inlier ? LoadLanes(pairs.Column(kInverseVarianceColumn) + at) : none);
   }
   result.cost = SumLanes(cost);
   result.count = SumLanes(count);
@@ -176,33 +124,18 @@ PairColumns::PairColumns(std::span<const Pair3d3d> pairs, const AssumedNoise& as
     const Pair3d3d& pair = pairs[i];
     const std::size_t place = Place(i);
     for (int axis = 0; axis < 3; ++axis) {
-      set(axis, place, pair.point_in_cam[axis]);
-      set(3 + axis, place, pair.point_in_lidar[axis]);
+      set(kCamColumn + axis, place, pair.point_in_cam[axis]);
+      set(kLidarColumn + axis, place, pair.point_in_lidar[axis]);
     }
     const double sigma = pair.sigma_m > 0.0 ? pair.sigma_m : assumed.sigma_m;
-    set(kVariance, place, sigma * sigma);
-    set(kInverseVariance, place, 1.0 / (sigma * sigma));
+    set(kVarianceColumn, place, sigma * sigma);
+    set(kInverseVarianceColumn, place, 1.0 / (sigma * sigma));
   }
   for (std::size_t i = size_; i < padded_; ++i) {
     for (int column = 0; column < kColumns; ++column) {
       set(column, Place(i), std::numeric_limits<double>::quiet_NaN());
     }
   }
-}
-
-BitGraph AgreementGraph(const PairColumns& pairs, double max_squared) {
-  BitGraph graph(static_cast<int>(pairs.size()));
-  FillGraph(pairs, max_squared, graph);
-  return graph;
-}
-
-bool Agree(const PairColumns& pairs, std::size_t i, std::size_t j, double max_squared) {
-  const std::size_t a = PairColumns::Place(i);
-  const std::size_t b = PairColumns::Place(j);
-  const double c2 = SquaredLength(PointOf(pairs, 0, a) - PointOf(pairs, 0, b));
-  const double l2 = SquaredLength(PointOf(pairs, 3, a) - PointOf(pairs, 3, b));
-  const double t = max_squared * (pairs.Column(kVariance)[a] + pairs.Column(kVariance)[b]);
-  return LengthsAgree<bool>(c2, l2, t);
 }
 
 double TruncatedCost(const PairColumns& pairs, const Rigid3d& cam_from_lidar, double max_squared) {
@@ -257,9 +190,9 @@ double ChanceOfAgreement(const PairColumns& pairs, double max_squared) {
   double sigmas = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const std::size_t place = PairColumns::Place(i);
-    const Point3<double> p = PointOf(pairs, 0, place);
+    const Point3<double> p = PointOf(pairs, kCamColumn, place);
     box.extend(Eigen::Vector3d(p.x, p.y, p.z));
-    sigmas += std::sqrt(pairs.Column(kVariance)[place]);
+    sigmas += std::sqrt(pairs.Column(kVarianceColumn)[place]);
   }
   const double radius = std::sqrt(max_squared) * sigmas / static_cast<double>(pairs.size());
   return ChanceInBox(box, radius);
@@ -271,7 +204,7 @@ int LeastDistinct(const PairColumns& pairs, std::span<const int> indices) {
   int distinct = 0;
   for (const int i : indices) {
     std::uint64_t hash = 0;
-    for (int column = 0; column < kVariance; ++column) {
+    for (int column = 0; column < kVarianceColumn; ++column) {
       // Zero has two signs.
       const double number = pairs.Column(column)[PairColumns::Place(static_cast<std::size_t>(i))];
       hash = (hash ^ std::bit_cast<std::uint64_t>(number + 0.0)) * 0x9E3779B97F4A7C15ULL;

@@ -7,7 +7,6 @@
 
 #include "geometry/calibration_problem.h"
 #include "solvers/kabsch.h"
-#include "solvers/max_clique.h"
 #include "solvers/pair_terms.h"
 
 namespace sextant {
@@ -19,6 +18,8 @@ namespace sextant {
 /// and agree with nothing.
 class PairColumns {
  public:
+  static constexpr std::size_t kBlock = 64;
+
   /// Requires that no pair states a covariance; one that states no sigma gets the assumed.
   PairColumns(std::span<const Pair3d3d> pairs, const AssumedNoise& assumed);
 
@@ -32,7 +33,7 @@ class PairColumns {
 
   /// Where the numbers of a pair stand in a column.
   static std::size_t Place(std::size_t pair) {
-    const std::size_t in_block = pair % 64;
+    const std::size_t in_block = pair % kBlock;
     return pair - in_block + 8 * (in_block % 8) + in_block / 8;
   }
 
@@ -41,13 +42,6 @@ class PairColumns {
   std::size_t padded_;
   std::vector<double> numbers_;
 };
-
-/// Pairs i and j are connected where the lengths from i to j in both frames differ by no more than
-/// sqrt(max_squared (variance_i + variance_j)).
-BitGraph AgreementGraph(const PairColumns& pairs, double max_squared);
-
-/// Whether pairs i and j would be connected.
-bool Agree(const PairColumns& pairs, std::size_t i, std::size_t j, double max_squared);
 
 /// sum_i min(r_i^2, max_squared), r_i in sigmas: PoseScorer::Cost.
 double TruncatedCost(const PairColumns& pairs, const Rigid3d& cam_from_lidar, double max_squared);
@@ -70,7 +64,7 @@ Rigid3d OptimiseOnInliers(const PairColumns& pairs, const Rigid3d& cam_from_lida
 std::vector<int> InliersOf(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
                            double max_squared);
 
-/// Probability that a pair of chance agrees with a pose; see CheckConsensus.
+/// ChanceOfAgreement of consensus.h.
 double ChanceOfAgreement(const PairColumns& pairs, double max_squared);
 
 /// At most as many as `indices` has different pairs, and nearly as many.

@@ -5,11 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "base/random.h"
+#include "solvers/agreement_graph.h"
 #include "solvers/consensus.h"
 #include "solvers/pair_columns.h"
+#include "solvers/pair_judge.h"
 #include "solvers/registry.h"
 
 namespace sextant {
@@ -22,8 +23,6 @@ struct RobustOptions : InlierOptions {
   double confidence = 0.9999;
   std::uint64_t seed = 1;
 };
-
-constexpr int kMaxRefits = 10;
 
 /// Triples of pairs that agree on their lengths, the pose that most pairs follow, least squares on
 /// these. Samples of outliers cost three comparisons: hardly any agrees.
@@ -55,9 +54,10 @@ class TripleSearch {
   int samples() const { return samples_; }
 
  private:
-  // A sample costs what 50 pairs cost in the graph of all pairs, which then is the better choice.
-  static constexpr double kLeastBudget = 1000.0;
-  static constexpr double kBudgetShare = 1.0 / 50.0;
+  // Then the graph of all pairs is the better choice: a sample costs what 20 to 50 of its pairs
+  // cost.
+  static constexpr double kLeastBudget = 200.0;
+  static constexpr double kBudgetShare = 1.0 / 200.0;
 
   // Draws three pairs; the third only where the first two agree, which outliers hardly ever do.
   bool DrawAgreeing() {
@@ -144,7 +144,10 @@ class RobustSolver final : public Solver {
       const PairColumns pairs(problem.pairs_3d3d, options_.Assumed());
       TripleSearch search(*inner_, problem, pairs, options_);
       if (search.Settles()) {
-        Expected<Estimate> estimate = Refit(problem, pairs, search.best());
+        const double max_squared =
+            options_.FinalMaxSquared(pairs.size(), ChanceOfAgreement(pairs, kChiSquare3At9999));
+        Expected<Estimate> estimate =
+            RefitOnInliers(*inner_, problem, pairs, search.best(), max_squared);
         if (estimate && IsConsensus(problem, pairs, estimate->inliers)) {
           estimate->iterations = search.samples();
           estimate->termination = Termination::kConverged;
@@ -152,42 +155,7 @@ class RobustSolver final : public Solver {
         }
       }
     }
-    std::vector<int> all(problem.pairs_3d3d.size());
-    std::iota(all.begin(), all.end(), 0);
-    return SolveSubset(*clique_, problem, all);
-  }
-
-  static bool AreIsotropic(const std::vector<Pair3d3d>& pairs) {
-    return std::none_of(pairs.begin(), pairs.end(),
-                        [](const Pair3d3d& pair) { return pair.covariance_in_cam.has_value(); });
-  }
-
-  // Leaving out one true pair in a hundred costs two percent of accuracy. Where even the wider
-  // threshold lets in no false pair, as the chance of one tells, it is taken in the end.
-  double FinalMaxSquared(const PairColumns& pairs) const {
-    constexpr double kChiSquare3At9999 = 21.107513466204896;
-    constexpr double kMostFalsePairs = 0.05;
-    if (options_.threshold > 0.0) return options_.MaxSquared(PairKind::k3d3d);
-    const double false_pairs =
-        static_cast<double>(pairs.size()) * ChanceOfAgreement(pairs, kChiSquare3At9999);
-    return false_pairs < kMostFalsePairs ? kChiSquare3At9999 : options_.MaxSquared(PairKind::k3d3d);
-  }
-
-  // RefitOnInliers in columns.
-  Expected<Estimate> Refit(const CalibrationProblem& problem, const PairColumns& pairs,
-                           const Rigid3d& pose) const {
-    const double max_squared = FinalMaxSquared(pairs);
-    std::vector<int> inliers = InliersOf(pairs, pose, max_squared);
-    for (int refit = 0;; ++refit) {
-      if (static_cast<int>(inliers.size()) < spec().needs.pairs_3d3d) {
-        return MakeError(ErrorCode::kNoConsensus, "too few pairs follow the pose");
-      }
-      Expected<Estimate> estimate = SolveSubset(*inner_, problem, inliers);
-      if (!estimate) return estimate;
-      std::vector<int> next = InliersOf(pairs, estimate->cam_from_lidar, max_squared);
-      if (next == inliers || refit + 1 == kMaxRefits) return estimate;
-      inliers = std::move(next);
-    }
+    return SolveWhole(*clique_, problem);
   }
 
   // Of mirrored points, those near one plane agree on a pose, which is not the answer: what few
@@ -195,14 +163,12 @@ class RobustSolver final : public Solver {
   bool IsConsensus(const CalibrationProblem& problem, const PairColumns& pairs,
                    const std::vector<int>& inliers) const {
     const double chance = ChanceOfAgreement(pairs, options_.MaxSquared(PairKind::k3d3d));
-    if (!IsBeyondChance(PairKind::k3d3d, LeastDistinct(pairs, inliers),
-                        static_cast<int>(pairs.size()), chance)) {
+    if (!CheckConsensus(PairKind::k3d3d, LeastDistinct(pairs, inliers),
+                        static_cast<int>(pairs.size()), chance, spec().needs.pairs_3d3d)) {
       return false;
     }
     if (2 * inliers.size() >= pairs.size()) return true;
-    std::vector<int> all(pairs.size());
-    std::iota(all.begin(), all.end(), 0);
-    const Expected<Estimate> estimate = SolveSubset(*inner_, problem, all);
+    const Expected<Estimate> estimate = SolveWhole(*inner_, problem);
     return estimate || estimate.error().code != ErrorCode::kMirrored;
   }
 

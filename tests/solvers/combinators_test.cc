@@ -4,7 +4,6 @@
 
 #include <numeric>
 
-#include "solvers/max_clique.h"
 #include "solvers/registry.h"
 #include "support/outliers.h"
 
@@ -137,50 +136,6 @@ TEST(Gnc, LeavesCleanDataAlone) {
   EXPECT_EQ(gnc->inliers.size(), 8U);
   EXPECT_EQ(gnc->iterations, 1);
   EXPECT_EQ(gnc->cam_from_lidar.translation, plain->cam_from_lidar.translation);
-}
-
-// Every subset of a small graph, to hold the search to exactness.
-std::size_t LargestCliqueByBruteForce(const BitGraph& graph) {
-  std::size_t largest = 0;
-  for (unsigned subset = 0; subset < (1U << graph.vertices()); ++subset) {
-    std::vector<int> members;
-    for (int v = 0; v < graph.vertices(); ++v) {
-      if ((subset >> v & 1U) != 0) members.push_back(v);
-    }
-    bool connected = members.size() > largest;
-    for (std::size_t i = 0; connected && i < members.size(); ++i) {
-      for (std::size_t j = 0; connected && j < i; ++j) {
-        connected = graph.AreConnected(members[i], members[j]);
-      }
-    }
-    if (connected) largest = members.size();
-  }
-  return largest;
-}
-
-TEST(MaximumClique, IsTheLargestOfSmallGraphs) {
-  Random random(9);
-  for (int trial = 0; trial < 60; ++trial) {
-    const double density = random.Uniform(0.1, 0.95);
-    BitGraph graph(12);
-    for (int a = 0; a < 12; ++a) {
-      for (int b = 0; b < a; ++b) {
-        const double draw = random.Uniform();
-        if (draw < density) graph.Connect(a, b);
-      }
-    }
-    const Clique clique = FindMaximumClique(graph, 1'000'000);
-    EXPECT_TRUE(clique.is_maximum);
-    EXPECT_EQ(clique.vertices.size(), LargestCliqueByBruteForce(graph));
-    for (const int a : clique.vertices) {
-      for (const int b : clique.vertices) EXPECT_TRUE(a == b || graph.AreConnected(a, b));
-    }
-  }
-}
-
-TEST(MaximumClique, OfNoEdgesIsOneVertexAndOfNothingNone) {
-  EXPECT_EQ(FindMaximumClique(BitGraph(100), 1000).vertices.size(), 1U);
-  EXPECT_TRUE(FindMaximumClique(BitGraph(0), 1000).vertices.empty());
 }
 
 TEST(CliqueSolver, StaysWithinItsNodesOnAThousandPairs) {

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/error.h"
+#include "solvers/bit_graph.h"
+#include "solvers/consensus.h"
+#include "solvers/pair_columns.h"
+#include "solvers/solver.h"
+
+namespace sextant {
+
+/// What a search among 3D-3D pairs asks of them: which agree, what poses cost, least squares on the
+/// inliers of a pose, and the answer from it. The threshold of lengths is MaxSquared of the
+/// options, that of poses their FinalMaxSquared.
+class PairJudge {
+ public:
+  virtual ~PairJudge() = default;
+
+  /// Pairs i and j are connected where their lengths from i to j in both frames differ by no more
+  /// than the threshold of its sigma.
+  virtual BitGraph Graph() const = 0;
+  /// sum_i min(r_i^2, threshold), r_i in sigmas.
+  virtual double Cost(const Rigid3d& pose) const = 0;
+  /// OptimiseOnInliers of consensus.h.
+  virtual Rigid3d Optimise(const Rigid3d& pose) const = 0;
+  /// CheckConsensus of consensus.h, by the options' MaxSquared.
+  virtual Expected<void> Check(std::span<const int> inliers, int least) const = 0;
+  /// BetterOnInliers of consensus.h.
+  virtual Expected<Estimate> Answer(const Rigid3d& pose) const = 0;
+};
+
+/// Of isotropic pairs, which are judged in columns, or of any. Refers to its arguments.
+std::unique_ptr<PairJudge> MakePairJudge(const Solver& inner, const CalibrationProblem& problem,
+                                         const InlierOptions& options);
+
+/// Whether no pair states a covariance.
+bool AreIsotropic(std::span<const Pair3d3d> pairs);
+
+/// RefitOnInliers of consensus.h on columns.
+Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem& problem,
+                                  const PairColumns& pairs, const Rigid3d& pose,
+                                  double max_squared);
+
+}  // namespace sextant
