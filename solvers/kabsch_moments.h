@@ -107,8 +107,12 @@ struct PointSpans {
   SEXTANT_INLINE Point3<double> a(std::size_t i) const { return PointAt(in_a[i]); }
   SEXTANT_INLINE Point3<double> b(std::size_t i) const { return PointAt(in_b[i]); }
   SEXTANT_INLINE double weight(std::size_t i) const { return weights[i]; }
-  SEXTANT_INLINE Point3<Lanes> EightOfA(std::size_t i) const { return LoadPoints(in_a[i].data()); }
-  SEXTANT_INLINE Point3<Lanes> EightOfB(std::size_t i) const { return LoadPoints(in_b[i].data()); }
+  SEXTANT_INLINE Point3<Lanes> EightOfA(std::size_t i, const Point3<double>& origin) const {
+    return LoadPoints(in_a[i].data(), origin);
+  }
+  SEXTANT_INLINE Point3<Lanes> EightOfB(std::size_t i, const Point3<double>& origin) const {
+    return LoadPoints(in_b[i].data(), origin);
+  }
   SEXTANT_INLINE Lanes EightWeights(std::size_t i) const {
     const Lanes w = LoadLanes(weights.data() + i);
     return __builtin_shufflevector(w, w, 0, 3, 6, 1, 4, 7, 2, 5);
@@ -126,11 +130,11 @@ struct WeighedPairs {
   SEXTANT_INLINE Point3<double> a(std::size_t i) const { return PointAt(pairs[i].point_in_lidar); }
   SEXTANT_INLINE Point3<double> b(std::size_t i) const { return PointAt(pairs[i].point_in_cam); }
   SEXTANT_INLINE double weight(std::size_t i) const { return IsotropicWeight(pairs[i]); }
-  SEXTANT_INLINE Point3<Lanes> EightOfA(std::size_t i) const {
-    return Gather(&pairs[i], &Pair3d3d::point_in_lidar);
+  SEXTANT_INLINE Point3<Lanes> EightOfA(std::size_t i, const Point3<double>& origin) const {
+    return Gather(&pairs[i], &Pair3d3d::point_in_lidar) - origin;
   }
-  SEXTANT_INLINE Point3<Lanes> EightOfB(std::size_t i) const {
-    return Gather(&pairs[i], &Pair3d3d::point_in_cam);
+  SEXTANT_INLINE Point3<Lanes> EightOfB(std::size_t i, const Point3<double>& origin) const {
+    return Gather(&pairs[i], &Pair3d3d::point_in_cam) - origin;
   }
   SEXTANT_INLINE Lanes EightWeights(std::size_t i) const {
     return Lanes{weight(i),     weight(i + 1), weight(i + 2), weight(i + 3),
@@ -160,15 +164,15 @@ SEXTANT_INLINE CentredMoments<double> ComputeMoments(const Points& points) {
     for (; i + kLanes <= count; i += kLanes) {
       Lanes weight{};
       if constexpr (kWeighted) weight = points.EightWeights(i);
-      eight.Add<kWeighted, kScatter>(points.EightOfA(i) - origin_a, points.EightOfB(i) - origin_b,
+      eight.Add<kWeighted, kScatter>(points.EightOfA(i, origin_a), points.EightOfB(i, origin_b),
                                      weight);
     }
     if (i < count) {
       // The last eight once more; those counted already stand at the origins, without weight.
       const std::size_t last = count - kLanes;
       const LaneMask is_new = points.order() >= static_cast<long long>(i - last);
-      const Point3<Lanes> a = points.EightOfA(last) - origin_a;
-      const Point3<Lanes> b = points.EightOfB(last) - origin_b;
+      const Point3<Lanes> a = points.EightOfA(last, origin_a);
+      const Point3<Lanes> b = points.EightOfB(last, origin_b);
       const Lanes none{};
       Lanes weight{};
       if constexpr (kWeighted) weight = is_new ? points.EightWeights(last) : none;

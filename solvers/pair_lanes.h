@@ -26,19 +26,21 @@ SEXTANT_INLINE Point3<Real> Rotate(const RotationMatrix<Real>& r, const Point3<R
           r.zx * p.x + r.zy * p.y + r.zz * p.z};
 }
 
-/// Eight points from x y z x y z ..., in an order of its own: kPointOrder. A position holds x of
-/// one of the three registers only, so that blends sort the coordinates; y and z then stand one
-/// and two places off.
-SEXTANT_INLINE Point3<Lanes> LoadPoints(const double* from) {
-  const Lanes p = LoadLanes(from);
-  const Lanes q = LoadLanes(from + kLanes);
-  const Lanes r = LoadLanes(from + 2 * kLanes);
-  const LaneMask is_first = {-1, 0, 0, -1, 0, 0, -1, 0};
-  const LaneMask is_second = {0, -1, 0, 0, -1, 0, 0, -1};
-  const LaneMask is_third = {0, 0, -1, 0, 0, -1, 0, 0};
-  const Lanes x = is_first ? p : (is_second ? q : r);
-  const Lanes y = is_second ? p : (is_third ? q : r);
-  const Lanes z = is_third ? p : (is_first ? q : r);
+/// Eight points from x y z x y z ..., seen from `o`, in an order of its own: kPointOrder. A position
+/// holds x of one of the three registers only, so that blends sort the coordinates; y and z then
+/// stand one and two places off.
+SEXTANT_INLINE Point3<Lanes> LoadPoints(const double* from, const Point3<double>& o) {
+  // Each register is read once: differences are never read anew, as loads are.
+  const Lanes p = LoadLanes(from) - Lanes{o.x, o.y, o.z, o.x, o.y, o.z, o.x, o.y};
+  const Lanes q = LoadLanes(from + kLanes) - Lanes{o.z, o.x, o.y, o.z, o.x, o.y, o.z, o.x};
+  const Lanes r = LoadLanes(from + 2 * kLanes) - Lanes{o.y, o.z, o.x, o.y, o.z, o.x, o.y, o.z};
+  // Choices between two by constant places: by a constant mask g++ 12 takes them apart.
+  const Lanes x = __builtin_shufflevector(__builtin_shufflevector(p, q, 0, 9, 2, 3, 12, 5, 6, 15),
+                                          r, 0, 1, 10, 3, 4, 13, 6, 7);
+  const Lanes y = __builtin_shufflevector(__builtin_shufflevector(p, q, 0, 1, 10, 3, 4, 13, 6, 7),
+                                          r, 8, 1, 2, 11, 4, 5, 14, 7);
+  const Lanes z = __builtin_shufflevector(__builtin_shufflevector(p, q, 8, 1, 2, 11, 4, 5, 14, 7),
+                                          r, 0, 9, 2, 3, 12, 5, 6, 15);
   return {x, __builtin_shufflevector(y, y, 1, 2, 3, 4, 5, 6, 7, 0),
           __builtin_shufflevector(z, z, 2, 3, 4, 5, 6, 7, 0, 1)};
 }

@@ -51,20 +51,22 @@ SEXTANT_INLINE bool FindLargestRoot(const Quartic<double>& quartic, double bound
   return false;
 }
 
-// The step of Halley's method, which cubes the error.
-SEXTANT_INLINE double HalleyStep(double value, double slope, double half_curvature) {
-  return value * slope / (slope * slope - value * half_curvature);
+// Laguerre's step towards the nearest root of a cubic of real roots, which cubes the error and
+// takes a nearly triple root from afar; it never oversteps the least root from below.
+SEXTANT_INLINE double LaguerreStep(double value, double slope, double half_curvature) {
+  const double square = 4.0 * slope * slope - 12.0 * value * half_curvature;
+  return 3.0 * value / (slope + std::sqrt(Max(square, 0.0)));
 }
 
 /// s3, the least root of x^3 - e1 x^2 + e2 x - e3, from below, to 1e-8; false where it is so nearly
-/// a multiple root that rounding moves it.
+/// a multiple root that rounding moves it. Usual data takes two steps.
 SEXTANT_INLINE bool FindLeastRoot(double e1, double e2, double e3, double& x) {
   constexpr int kMaxIterations = 4;
   constexpr double kMinSlope = 1e-5;
   for (int i = 0; i < kMaxIterations; ++i) {
     const double value = ((x - e1) * x + e2) * x - e3;
     const double slope = (3.0 * x - 2.0 * e1) * x + e2;
-    const double step = HalleyStep(value, slope, 3.0 * x - e1);
+    const double step = LaguerreStep(value, slope, 3.0 * x - e1);
     x -= step;
     // The root in the middle has a falling slope, the greatest lies above the mean.
     if (!(slope > kMinSlope * e1 * e1 && 3.0 * x < e1)) return false;
@@ -89,7 +91,7 @@ SEXTANT_INLINE std::optional<TraceMaximum> MaximizeTraceByFormula(const CrossMat
   const HornMatrix<double> horn = MakeHornMatrix(cross);
   const Invariants<double> v = ComputeInvariants(cross);
   // From zero with the bound in place of e1, for which it need not wait.
-  double s3 = HalleyStep(v.product, 0.5 * (bound * bound - v.sum_squares), bound);
+  double s3 = -LaguerreStep(-v.product, 0.5 * (bound * bound - v.sum_squares), -bound);
   double e1 = 0.0;
   double step = 0.0;
   if (!FindLargestRoot(CharacteristicPolynomial(v), bound, e1, step)) return std::nullopt;
