@@ -39,8 +39,8 @@ SEXTANT_MULTIVERSION PairSums SumResiduals(std::span<const Pair3d3d> pairs,
   std::size_t i = 0;
   for (; i + kLanes <= pairs.size(); i += kLanes) {
     const Pair3d3d* p = &pairs[i];
-    const Lanes squared = SquaredResidual(r, t, Gather(p, &Pair3d3d::point_in_lidar),
-                                          Gather(p, &Pair3d3d::point_in_cam));
+    const Lanes squared = SquaredResidual(r, t, Gather<Lanes>(p, &Pair3d3d::point_in_lidar),
+                                          Gather<Lanes>(p, &Pair3d3d::point_in_cam));
     StoreLanes(Sqrt(squared), distances + i);
     const Lanes sigma = {p[0].sigma_m, p[1].sigma_m, p[2].sigma_m, p[3].sigma_m,
                          p[4].sigma_m, p[5].sigma_m, p[6].sigma_m, p[7].sigma_m};

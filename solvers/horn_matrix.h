@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "base/lanes.h"
+#include "base/split_lanes.h"
 
 namespace sextant {
 
@@ -95,7 +95,8 @@ struct Vector4 {
 template <class Mask, class Real>
 SEXTANT_INLINE Vector4<Real> Select(const Mask& first, const Vector4<Real>& a,
                                     const Vector4<Real>& b) {
-  return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z, first ? a.w : b.w};
+  return {Select(first, a.x, b.x), Select(first, a.y, b.y), Select(first, a.z, b.z),
+          Select(first, a.w, b.w)};
 }
 
 /// A null vector of K - shift I, of rank 3: the largest column of its adjugate.
@@ -228,7 +229,7 @@ SEXTANT_INLINE Real LeastSingularValue(const RotationMatrix<Real>& r, const Cros
     root -= value * slope / (slope * slope - 3.0 * root * value);
   }
   const Real other = 0.5 * (root + Sqrt(Max(12.0 - 3.0 * root * root, Real{})));
-  return mean - p * (ratio > 0.0 ? other : root);
+  return mean - p * Select(ratio > 0.0, other, root);
 }
 
 }  // namespace sextant

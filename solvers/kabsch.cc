@@ -24,21 +24,30 @@ SEXTANT_INLINE bool FitMoments(const CentredMoments<double>& m, KernelFit& fit) 
   return true;
 }
 
-SEXTANT_MULTIVERSION bool FitByFormula(const PointSpans& points, CentredMoments<double>& moments,
-                                       KernelFit& fit) {
-  const CentredMoments<double> m = points.weights.empty() ? ComputeMoments<false, false>(points)
-                                                          : ComputeMoments<true, false>(points);
+template <class L>
+SEXTANT_INLINE bool FitByFormulaFor(const PointSpans& points, CentredMoments<double>& moments,
+                                    KernelFit& fit) {
+  const CentredMoments<double> m = points.weights.empty() ? ComputeMoments<L, false, false>(points)
+                                                          : ComputeMoments<L, true, false>(points);
   moments.squares = m.squares;
   if (FitMoments(m, fit)) return true;
   moments = m;
   return false;
 }
 
-SEXTANT_MULTIVERSION bool FitByFormula(const WeighedPairs& pairs, CentredMoments<double>& moments,
-                                       KernelFit& fit) {
-  moments = ComputeMoments<true, true>(pairs);
+template <class L>
+SEXTANT_INLINE bool FitByFormulaFor(const WeighedPairs& pairs, CentredMoments<double>& moments,
+                                    KernelFit& fit) {
+  moments = ComputeMoments<L, true, true>(pairs);
   return FitMoments(moments, fit);
 }
+
+SEXTANT_FOR_LANES(bool, FitByFormula,
+                  (const PointSpans& points, CentredMoments<double>& moments, KernelFit& fit),
+                  (points, moments, fit))
+SEXTANT_FOR_LANES(bool, FitByFormula,
+                  (const WeighedPairs& pairs, CentredMoments<double>& moments, KernelFit& fit),
+                  (pairs, moments, fit))
 
 template <class Points>
 KabschOutcome Fit(const Points& points, CentredMoments<double>& moments) {

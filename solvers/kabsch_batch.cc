@@ -42,24 +42,27 @@ struct GroupFit {
   std::array<long long, kLanes> proven;  // -1 where the formula proved itself.
 };
 
-SEXTANT_INLINE Point3<Lanes> LoadPoint(const double* from) {
-  return {LoadLanes(from), LoadLanes(from + kLanes), LoadLanes(from + 2 * kLanes)};
+template <class L>
+SEXTANT_INLINE Point3<L> LoadPoint(const double* from) {
+  return {Load<L>(from), Load<L>(from + kLanes), Load<L>(from + 2 * kLanes)};
 }
 
-SEXTANT_INLINE Point3<Lanes> operator+(const Point3<Lanes>& a, const Point3<Lanes>& b) {
+template <class L>
+SEXTANT_INLINE Point3<L> operator+(const Point3<L>& a, const Point3<L>& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 
-SEXTANT_INLINE CentredMoments<Lanes> MomentsOf(const double* group, std::size_t points) {
-  const Point3<Lanes> origin_a = LoadPoint(group);
-  const Point3<Lanes> origin_b = LoadPoint(group + 3 * kLanes);
-  PairMomentSums<Lanes> sums{};
+template <class L>
+SEXTANT_INLINE CentredMoments<L> MomentsOf(const double* group, std::size_t points) {
+  const Point3<L> origin_a = LoadPoint<L>(group);
+  const Point3<L> origin_b = LoadPoint<L>(group + 3 * kLanes);
+  PairMomentSums<L> sums{};
   for (std::size_t i = 1; i < points; ++i) {
     const double* point = group + i * 6 * kLanes;
-    sums.Add<false, false>(LoadPoint(point) - origin_a, LoadPoint(point + 3 * kLanes) - origin_b,
-                           Lanes{});
+    sums.template Add<false, false>(LoadPoint<L>(point) - origin_a,
+                                    LoadPoint<L>(point + 3 * kLanes) - origin_b, L{});
   }
-  CentredMoments<Lanes> m = Centre<false>(sums, AllLanes(static_cast<double>(points)));
+  CentredMoments<L> m = Centre<false>(sums, All<L>(static_cast<double>(points)));
   m.mean_a = m.mean_a + origin_a;
   m.mean_b = m.mean_b + origin_b;
   return m;
@@ -67,72 +70,79 @@ SEXTANT_INLINE CentredMoments<Lanes> MomentsOf(const double* group, std::size_t 
 
 // MaximizeTraceByFormula in lanes. One that is done is left alone, so that no problem notices its
 // neighbours.
-SEXTANT_INLINE LaneMask FindRoot(const Quartic<Lanes>& quartic, const Lanes& bound, Lanes& x) {
+template <class L>
+SEXTANT_INLINE MaskOf<L> FindRoot(const Quartic<L>& quartic, const L& bound, L& x) {
   constexpr int kMaxIterations = 8;
   x = bound;
-  LaneMask done{};
+  MaskOf<L> done{};
   for (int i = 0; i < kMaxIterations && AnyLane(~done); ++i) {
-    const Lanes step = HouseholderStep(quartic, x);
-    x = done ? x : x - step;
+    const L step = HouseholderStep(quartic, x);
+    x = Select(done, x, x - step);
     done |= Abs(step) <= 1e-3 * bound;
   }
   return done;
 }
 
-SEXTANT_INLINE LaneMask FindVector(const HornMatrix<Lanes>& horn, const Invariants<Lanes>& v,
-                                   const Lanes& bound, Lanes& e1, Vector4<Lanes>& q) {
+template <class L>
+SEXTANT_INLINE MaskOf<L> FindVector(const HornMatrix<L>& horn, const Invariants<L>& v,
+                                    const L& bound, L& e1, Vector4<L>& q) {
   constexpr int kMaxRounds = 4;
-  const Lanes none{};
+  const L none{};
   q = {none, none, none, none};
-  LaneMask done{};
+  MaskOf<L> done{};
   for (int round = 0; round < kMaxRounds && AnyLane(~done); ++round) {
-    Vector4<Lanes> column = NullVector(horn, e1);
+    Vector4<L> column = NullVector(horn, e1);
     for (int polish = 0; polish < 2 && AnyLane(~done); ++polish) {
-      const EigenResidual<Lanes> r = ResidualOf(horn, e1, column);
-      const Lanes scale = 1.0 / Sqrt(r.length2);
+      const EigenResidual<L> r = ResidualOf(horn, e1, column);
+      const L scale = 1.0 / Sqrt(r.length2);
       q = Select(
           done, q,
-          Vector4<Lanes>{scale * column.x, scale * column.y, scale * column.z, scale * column.w});
-      e1 = done ? e1 : e1 + r.shift;
-      done |= IsProven<LaneMask>(r, SeparationOf(v, e1), bound);
+          Vector4<L>{scale * column.x, scale * column.y, scale * column.z, scale * column.w});
+      e1 = Select(done, e1, e1 + r.shift);
+      done |= IsProven<MaskOf<L>>(r, SeparationOf(v, e1), bound);
       column = WithoutFarParts(column, r, e1);
     }
   }
   return done;
 }
 
-SEXTANT_INLINE void Store(const CentredMoments<Lanes>& m, GroupFit& fit) {
-  const Lanes all[] = {m.squares,  m.mean_a.x, m.mean_a.y, m.mean_a.z, m.mean_b.x, m.mean_b.y,
-                       m.mean_b.z, m.cross.xx, m.cross.xy, m.cross.xz, m.cross.yx, m.cross.yy,
-                       m.cross.yz, m.cross.zx, m.cross.zy, m.cross.zz};
+template <class L>
+SEXTANT_INLINE void Store(const CentredMoments<L>& m, GroupFit& fit) {
+  const L all[] = {m.squares,  m.mean_a.x, m.mean_a.y, m.mean_a.z, m.mean_b.x, m.mean_b.y,
+                   m.mean_b.z, m.cross.xx, m.cross.xy, m.cross.xz, m.cross.yx, m.cross.yy,
+                   m.cross.yz, m.cross.zx, m.cross.zy, m.cross.zz};
   for (std::size_t i = 0; i < 16; ++i) StoreLanes(all[i], fit.numbers[9 + i].data());
 }
 
-SEXTANT_MULTIVERSION void FitGroup(const double* group, std::size_t points, GroupFit& fit) {
-  const CentredMoments<Lanes> m = MomentsOf(group, points);
+template <class L>
+SEXTANT_INLINE void FitGroupFor(const double* group, std::size_t points, GroupFit& fit) {
+  const CentredMoments<L> m = MomentsOf<L>(group, points);
   Store(m, fit);
-  const Lanes bound = 0.5 * m.squares;
-  const HornMatrix<Lanes> horn = MakeHornMatrix(m.cross);
-  const Invariants<Lanes> v = ComputeInvariants(m.cross);
-  Lanes e1;
-  LaneMask proven = FindRoot(CharacteristicPolynomial(v), bound, e1);
-  Vector4<Lanes> q;
+  const L bound = 0.5 * m.squares;
+  const HornMatrix<L> horn = MakeHornMatrix(m.cross);
+  const Invariants<L> v = ComputeInvariants(m.cross);
+  L e1;
+  MaskOf<L> proven = FindRoot(CharacteristicPolynomial(v), bound, e1);
+  Vector4<L> q;
   proven &= FindVector(horn, v, bound, e1, q);
   proven &= SeparationOf(v, e1) > kMinSeparation * bound * bound * bound;
-  const RotationMatrix<Lanes> r = MakeRotationMatrix(q);
-  const Point3<Lanes> translation = m.mean_b - Rotate(r, m.mean_a);
-  const Lanes all[] = {q.x,
-                       q.y,
-                       q.z,
-                       q.w,
-                       translation.x,
-                       translation.y,
-                       translation.z,
-                       e1,
-                       e1 - 2.0 * LeastSingularValue(r, m.cross)};
+  const RotationMatrix<L> r = MakeRotationMatrix(q);
+  const Point3<L> translation = m.mean_b - Rotate(r, m.mean_a);
+  const L all[] = {q.x,
+                   q.y,
+                   q.z,
+                   q.w,
+                   translation.x,
+                   translation.y,
+                   translation.z,
+                   e1,
+                   e1 - 2.0 * LeastSingularValue(r, m.cross)};
   for (std::size_t i = 0; i < 9; ++i) StoreLanes(all[i], fit.numbers[i].data());
-  std::memcpy(fit.proven.data(), &proven, sizeof proven);
+  StoreMask(proven, fit.proven.data());
 }
+
+SEXTANT_FOR_LANES(void, FitGroup, (const double* group, std::size_t points, GroupFit& fit),
+                  (group, points, fit))
 
 KabschOutcome OutcomeOf(const GroupFit& group, std::size_t lane) {
   if (group.proven[lane] != 0) return JudgeFit(group.Kernel(lane), group.squares(lane));

@@ -51,11 +51,11 @@ struct PairMomentSums {
   }
 };
 
-template <bool kWeighted, bool kScatter>
-SEXTANT_INLINE PairMomentSums<double> SumOf(const PairMomentSums<Lanes>& s) {
-  const CrossMatrix<Lanes>& m = s.cross;
-  const Lanes first = SumEach(s.squares, s.a.x, s.a.y, s.a.z, s.b.x, s.b.y, s.b.z, m.xx);
-  const Lanes second = SumEach(m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz);
+template <bool kWeighted, bool kScatter, class L>
+SEXTANT_INLINE PairMomentSums<double> SumOf(const PairMomentSums<L>& s) {
+  const CrossMatrix<L>& m = s.cross;
+  const L first = SumEach(s.squares, s.a.x, s.a.y, s.a.z, s.b.x, s.b.y, s.b.z, m.xx);
+  const L second = SumEach(m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz);
   PairMomentSums<double> sum{};
   if constexpr (kWeighted) sum.weight = SumLanes(s.weight);
   sum.squares = first[0];
@@ -107,17 +107,7 @@ struct PointSpans {
   SEXTANT_INLINE Point3<double> a(std::size_t i) const { return PointAt(in_a[i]); }
   SEXTANT_INLINE Point3<double> b(std::size_t i) const { return PointAt(in_b[i]); }
   SEXTANT_INLINE double weight(std::size_t i) const { return weights[i]; }
-  SEXTANT_INLINE Point3<Lanes> EightOfA(std::size_t i, const Point3<double>& origin) const {
-    return LoadPoints(in_a[i].data(), origin);
-  }
-  SEXTANT_INLINE Point3<Lanes> EightOfB(std::size_t i, const Point3<double>& origin) const {
-    return LoadPoints(in_b[i].data(), origin);
-  }
-  SEXTANT_INLINE Lanes EightWeights(std::size_t i) const {
-    const Lanes w = LoadLanes(weights.data() + i);
-    return __builtin_shufflevector(w, w, 0, 3, 6, 1, 4, 7, 2, 5);
-  }
-  SEXTANT_INLINE LaneMask order() const { return kPointOrder; }
+  SEXTANT_INLINE std::size_t place(std::size_t lane) const { return kPointOrder[lane]; }
 
   std::span<const Eigen::Vector3d> in_b;
   std::span<const Eigen::Vector3d> in_a;
@@ -130,24 +120,74 @@ struct WeighedPairs {
   SEXTANT_INLINE Point3<double> a(std::size_t i) const { return PointAt(pairs[i].point_in_lidar); }
   SEXTANT_INLINE Point3<double> b(std::size_t i) const { return PointAt(pairs[i].point_in_cam); }
   SEXTANT_INLINE double weight(std::size_t i) const { return IsotropicWeight(pairs[i]); }
-  SEXTANT_INLINE Point3<Lanes> EightOfA(std::size_t i, const Point3<double>& origin) const {
-    return Gather(&pairs[i], &Pair3d3d::point_in_lidar) - origin;
-  }
-  SEXTANT_INLINE Point3<Lanes> EightOfB(std::size_t i, const Point3<double>& origin) const {
-    return Gather(&pairs[i], &Pair3d3d::point_in_cam) - origin;
-  }
-  SEXTANT_INLINE Lanes EightWeights(std::size_t i) const {
-    return Lanes{weight(i),     weight(i + 1), weight(i + 2), weight(i + 3),
-                 weight(i + 4), weight(i + 5), weight(i + 6), weight(i + 7)};
-  }
-  SEXTANT_INLINE LaneMask order() const { return LaneMask{0, 1, 2, 3, 4, 5, 6, 7}; }
+  SEXTANT_INLINE std::size_t place(std::size_t lane) const { return lane; }
 
   std::span<const Pair3d3d> pairs;
 };
 
+/// Points seen from an origin, eight at a time from the i-th on, in the order of `place`.
+template <class L>
+struct SeenFromOrigin {
+  SEXTANT_INLINE SeenFromOrigin(std::span<const Eigen::Vector3d> all, const Point3<double>& o)
+      : points(all), origin(o) {}
+  SEXTANT_INLINE Point3<L> Eight(std::size_t i) const {
+    return LoadPoints<L>(points[i].data(), origin);
+  }
+
+  std::span<const Eigen::Vector3d> points;
+  RepeatedPoint<L> origin;
+};
+
+/// A point of pairs.
+template <class L, Eigen::Vector3d Pair3d3d::*point>
+struct PairsFromOrigin {
+  SEXTANT_INLINE Point3<L> Eight(std::size_t i) const {
+    return Gather<L>(&pairs[i], point) - origin;
+  }
+
+  std::span<const Pair3d3d> pairs;
+  Point3<double> origin;
+};
+
+template <class L>
+SEXTANT_INLINE auto FromOriginOfA(const PointSpans& points, const Point3<double>& o) {
+  return SeenFromOrigin<L>(points.in_a, o);
+}
+template <class L>
+SEXTANT_INLINE auto FromOriginOfB(const PointSpans& points, const Point3<double>& o) {
+  return SeenFromOrigin<L>(points.in_b, o);
+}
+template <class L>
+SEXTANT_INLINE auto FromOriginOfA(const WeighedPairs& points, const Point3<double>& o) {
+  return PairsFromOrigin<L, &Pair3d3d::point_in_lidar>{points.pairs, o};
+}
+template <class L>
+SEXTANT_INLINE auto FromOriginOfB(const WeighedPairs& points, const Point3<double>& o) {
+  return PairsFromOrigin<L, &Pair3d3d::point_in_cam>{points.pairs, o};
+}
+
+/// Of eight points, in their order.
+template <class L, class Points>
+SEXTANT_INLINE L EightWeights(const Points& points, std::size_t i) {
+  const auto w = [&](std::size_t lane) __attribute__((always_inline)) {
+    return points.weight(i + points.place(lane));
+  };
+  return LanesOf<L>(w(0), w(1), w(2), w(3), w(4), w(5), w(6), w(7));
+}
+
+/// Which of the eight are the `place`-th or later.
+template <class L, class Points>
+SEXTANT_INLINE auto PlacesFrom(const Points& points, std::size_t place) {
+  const auto at = [&](std::size_t lane) __attribute__((always_inline)) {
+    return static_cast<long long>(points.place(lane));
+  };
+  return LanesOf<MaskOf<L>>(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)) >=
+         static_cast<long long>(place);
+}
+
 /// Moments of all points; weight is their number where unweighted. The first point as provisional
 /// origin keeps the digits of small sets far from the sensor.
-template <bool kWeighted, bool kScatter, class Points>
+template <class L, bool kWeighted, bool kScatter, class Points>
 SEXTANT_INLINE CentredMoments<double> ComputeMoments(const Points& points) {
   const Point3<double> origin_a = points.a(0);
   const Point3<double> origin_b = points.b(0);
@@ -159,26 +199,28 @@ SEXTANT_INLINE CentredMoments<double> ComputeMoments(const Points& points) {
                                     kWeighted ? points.weight(i) : 1.0);
     }
   } else {
-    PairMomentSums<Lanes> eight{};
+    const auto all_a = FromOriginOfA<L>(points, origin_a);
+    const auto all_b = FromOriginOfB<L>(points, origin_b);
+    PairMomentSums<L> eight{};
     std::size_t i = 0;
     for (; i + kLanes <= count; i += kLanes) {
-      Lanes weight{};
-      if constexpr (kWeighted) weight = points.EightWeights(i);
-      eight.Add<kWeighted, kScatter>(points.EightOfA(i, origin_a), points.EightOfB(i, origin_b),
-                                     weight);
+      L weight{};
+      if constexpr (kWeighted) weight = EightWeights<L>(points, i);
+      eight.template Add<kWeighted, kScatter>(all_a.Eight(i), all_b.Eight(i), weight);
     }
     if (i < count) {
       // The last eight once more; those counted already stand at the origins, without weight.
       const std::size_t last = count - kLanes;
-      const LaneMask is_new = points.order() >= static_cast<long long>(i - last);
-      const Point3<Lanes> a = points.EightOfA(last, origin_a);
-      const Point3<Lanes> b = points.EightOfB(last, origin_b);
-      const Lanes none{};
-      Lanes weight{};
-      if constexpr (kWeighted) weight = is_new ? points.EightWeights(last) : none;
-      eight.Add<kWeighted, kScatter>(
-          {is_new ? a.x : none, is_new ? a.y : none, is_new ? a.z : none},
-          {is_new ? b.x : none, is_new ? b.y : none, is_new ? b.z : none}, weight);
+      const auto is_new = PlacesFrom<L>(points, i - last);
+      const Point3<L> a = all_a.Eight(last);
+      const Point3<L> b = all_b.Eight(last);
+      const L none{};
+      L weight{};
+      if constexpr (kWeighted) weight = Select(is_new, EightWeights<L>(points, last), none);
+      eight.template Add<kWeighted, kScatter>(
+          {Select(is_new, a.x, none), Select(is_new, a.y, none), Select(is_new, a.z, none)},
+          {Select(is_new, b.x, none), Select(is_new, b.y, none), Select(is_new, b.z, none)},
+          weight);
     }
     sums = SumOf<kWeighted, kScatter>(eight);
   }

@@ -6,7 +6,7 @@
 
 namespace sextant {
 
-/// Points in lanes: of one pair (Real = double) or of eight (Lanes).
+/// Points in lanes: of one pair (Real = double) or of eight (L = Lanes or SplitLanes).
 
 template <class Real>
 struct Point3 {
@@ -26,33 +26,66 @@ SEXTANT_INLINE Point3<Real> Rotate(const RotationMatrix<Real>& r, const Point3<R
           r.zx * p.x + r.zy * p.y + r.zz * p.z};
 }
 
-/// Eight points from x y z x y z ..., seen from `o`, in an order of its own: kPointOrder. A position
-/// holds x of one of the three registers only, so that blends sort the coordinates; y and z then
-/// stand one and two places off.
-SEXTANT_INLINE Point3<Lanes> LoadPoints(const double* from, const Point3<double>& o) {
-  // Each register is read once: differences are never read anew, as loads are.
-  const Lanes p = LoadLanes(from) - Lanes{o.x, o.y, o.z, o.x, o.y, o.z, o.x, o.y};
-  const Lanes q = LoadLanes(from + kLanes) - Lanes{o.z, o.x, o.y, o.z, o.x, o.y, o.z, o.x};
-  const Lanes r = LoadLanes(from + 2 * kLanes) - Lanes{o.y, o.z, o.x, o.y, o.z, o.x, o.y, o.z};
-  // Choices between two by constant places: by a constant mask g++ 12 takes them apart.
-  const Lanes x = __builtin_shufflevector(__builtin_shufflevector(p, q, 0, 9, 2, 3, 12, 5, 6, 15),
-                                          r, 0, 1, 10, 3, 4, 13, 6, 7);
-  const Lanes y = __builtin_shufflevector(__builtin_shufflevector(p, q, 0, 1, 10, 3, 4, 13, 6, 7),
-                                          r, 8, 1, 2, 11, 4, 5, 14, 7);
-  const Lanes z = __builtin_shufflevector(__builtin_shufflevector(p, q, 8, 1, 2, 11, 4, 5, 14, 7),
-                                          r, 0, 9, 2, 3, 12, 5, 6, 15);
-  return {x, __builtin_shufflevector(y, y, 1, 2, 3, 4, 5, 6, 7, 0),
-          __builtin_shufflevector(z, z, 2, 3, 4, 5, 6, 7, 0, 1)};
+/// a b c a b c ..., each from its own place.
+SEXTANT_INLINE FourLanes InTurn(const FourLanes& a, const FourLanes& b, const FourLanes& c) {
+  return __builtin_shufflevector(__builtin_shufflevector(a, b, 0, 5, 2, 3), c, 0, 1, 6, 3);
 }
-inline constexpr LaneMask kPointOrder = {0, 3, 6, 1, 4, 7, 2, 5};
+SEXTANT_INLINE SplitLanes InTurn(const SplitLanes& a, const SplitLanes& b, const SplitLanes& c) {
+  return {InTurn(a.low, b.low, c.low), InTurn(b.high, c.high, a.high)};
+}
+SEXTANT_INLINE Lanes InTurn(const Lanes& a, const Lanes& b, const Lanes& c) {
+  // By a constant mask g++ 12 takes choices apart.
+  return __builtin_shufflevector(__builtin_shufflevector(a, b, 0, 9, 2, 3, 12, 5, 6, 15), c, 0, 1,
+                                 10, 3, 4, 13, 6, 7);
+}
+
+/// Every lane from so many places on, the first ones last.
+template <int kPlaces>
+SEXTANT_INLINE Lanes Turned(const Lanes& a) {
+  constexpr int k = kPlaces;
+  return __builtin_shufflevector(a, a, k, k + 1, k + 2, k + 3, k + 4, k + 5, k + 6, k + 7);
+}
+template <int kPlaces>
+SEXTANT_INLINE SplitLanes Turned(const SplitLanes& a) {
+  constexpr int k = kPlaces;
+  return {__builtin_shufflevector(a.low, a.high, k, k + 1, k + 2, k + 3),
+          __builtin_shufflevector(a.high, a.low, k, k + 1, k + 2, k + 3)};
+}
+
+/// A point as three registers of x y z x y z ...
+template <class L>
+struct RepeatedPoint {
+  SEXTANT_INLINE explicit RepeatedPoint(const Point3<double>& o)
+      : RepeatedPoint(All<L>(o.x), All<L>(o.y), All<L>(o.z)) {}
+  SEXTANT_INLINE RepeatedPoint(const L& x, const L& y, const L& z)
+      : first(InTurn(x, y, z)), second(InTurn(z, x, y)), third(InTurn(y, z, x)) {}
+
+  L first, second, third;
+};
+
+/// Eight points from x y z x y z ..., seen from an origin, in an order of its own: kPointOrder. A
+/// place holds x of one of the three registers only, so that choices sort the coordinates; y and z
+/// then stand one and two places off.
+template <class L>
+SEXTANT_INLINE Point3<L> LoadPoints(const double* from, const RepeatedPoint<L>& origin) {
+  // Each register is read once: unlike loads, differences are never made anew.
+  const L p = Load<L>(from) - origin.first;
+  const L q = Load<L>(from + kLanes) - origin.second;
+  const L r = Load<L>(from + 2 * kLanes) - origin.third;
+  return {InTurn(p, q, r), Turned<1>(InTurn(r, p, q)), Turned<2>(InTurn(q, r, p))};
+}
+inline constexpr std::size_t kPointOrder[kLanes] = {0, 3, 6, 1, 4, 7, 2, 5};
 
 /// A coordinate of eight pairs.
-SEXTANT_INLINE Lanes Gather(const Pair3d3d* p, Eigen::Vector3d Pair3d3d::*point, int axis) {
-  return Lanes{(p[0].*point)[axis], (p[1].*point)[axis], (p[2].*point)[axis], (p[3].*point)[axis],
-               (p[4].*point)[axis], (p[5].*point)[axis], (p[6].*point)[axis], (p[7].*point)[axis]};
+template <class L>
+SEXTANT_INLINE L Gather(const Pair3d3d* p, Eigen::Vector3d Pair3d3d::*point, int axis) {
+  return LanesOf<L>((p[0].*point)[axis], (p[1].*point)[axis], (p[2].*point)[axis],
+                    (p[3].*point)[axis], (p[4].*point)[axis], (p[5].*point)[axis],
+                    (p[6].*point)[axis], (p[7].*point)[axis]);
 }
-SEXTANT_INLINE Point3<Lanes> Gather(const Pair3d3d* p, Eigen::Vector3d Pair3d3d::*point) {
-  return {Gather(p, point, 0), Gather(p, point, 1), Gather(p, point, 2)};
+template <class L>
+SEXTANT_INLINE Point3<L> Gather(const Pair3d3d* p, Eigen::Vector3d Pair3d3d::*point) {
+  return {Gather<L>(p, point, 0), Gather<L>(p, point, 1), Gather<L>(p, point, 2)};
 }
 
 }  // namespace sextant
