@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "solvers/column_points.h"
+#include "solvers/column_kernel.h"
 
 namespace sextant {
 namespace {

@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "solvers/consensus.h"
+#include "solvers/gnc_columns.h"
+#include "solvers/pair_judge.h"
 #include "solvers/refine_pose.h"
 #include "solvers/registry.h"
 
@@ -21,15 +23,12 @@ struct GncOptions : InlierOptions {
 
 // Pairs of less weight are left out: their sigma would be over a thousand times the stated one.
 constexpr double kMinWeight = 1e-6;
-// The weights are settled when none is further than this from 0 or 1.
-constexpr double kBinary = 1e-3;
+constexpr double kEveryPair = std::numeric_limits<double>::max();
 
-// The weight that minimises the graduated surrogate of truncated least squares at r^2 = squared
-// (Yang et al. 2020, eq. 14).
-double Weight(double squared, double max_squared, double mu) {
-  if (squared <= mu / (mu + 1.0) * max_squared) return 1.0;
-  if (!(squared < (mu + 1.0) / mu * max_squared)) return 0.0;
-  return std::sqrt(max_squared * mu * (mu + 1.0) / squared) - mu;
+double Weight(double squared, const GncWeight& by) {
+  if (squared <= by.full) return 1.0;
+  if (!(squared < by.none)) return 0.0;
+  return std::sqrt(by.scale / squared) - by.mu;
 }
 
 Pair3d3d Weighted(Pair3d3d pair, double weight, const AssumedNoise& assumed) {
@@ -76,6 +75,43 @@ class GncSolver final : public Solver {
 
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
+    const bool in_columns =
+        kind_ == PairKind::k3d3d && spec().estimates_rotation && AreIsotropic(problem.pairs_3d3d);
+    if (in_columns) {
+      std::optional<Estimate> estimate = SolveInColumns(problem);
+      if (estimate) return std::move(*estimate);
+    }
+    return SolveInTerms(problem);
+  }
+
+  // None where that does not answer; the long way then does, or says why not.
+  std::optional<Estimate> SolveInColumns(const CalibrationProblem& problem) const {
+    const double max_squared = options_.MaxSquared(kind_);
+    const PairColumns pairs(problem.pairs_3d3d, options_.Assumed());
+    const Expected<Estimate> start = SolveWhole(*inner_, problem);
+    if (!start) return std::nullopt;
+    const InlierFit of_all = FitInliers(pairs, start->cam_from_lidar, kEveryPair);
+    if (!of_all.fitted) return std::nullopt;
+    const std::optional<GncPose> annealed = AnnealInColumns(
+        pairs, of_all.cam_from_lidar, {max_squared, options_.mu_factor, options_.max_iterations});
+    if (!annealed) return std::nullopt;
+    std::optional<Estimate> estimate =
+        RefitIfNoWorse(*inner_, problem, pairs, annealed->cam_from_lidar, max_squared);
+    const int least = LeastPairs(spec().needs);
+    if (!estimate || !CheckConsensus(pairs, max_squared, estimate->inliers, least)) {
+      return std::nullopt;
+    }
+    SetIterations(annealed->iterations, *estimate);
+    return estimate;
+  }
+
+  void SetIterations(int iterations, Estimate& estimate) const {
+    estimate.iterations = iterations;
+    estimate.termination = iterations < options_.max_iterations ? Termination::kConverged
+                                                                : Termination::kMaxIterations;
+  }
+
+  Expected<Estimate> SolveInTerms(const CalibrationProblem& problem) const {
     const PairTerms terms = MakeTerms(problem, kind_, options_.Assumed());
     const PoseScorer scorer(terms, options_.MaxSquared(kind_));
     int iterations = 0;
@@ -87,9 +123,7 @@ class GncSolver final : public Solver {
     if (Expected<void> ok = CheckConsensus(terms, scorer, estimate->inliers, least); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
-    estimate->iterations = iterations;
-    estimate->termination = iterations < options_.max_iterations ? Termination::kConverged
-                                                                 : Termination::kMaxIterations;
+    SetIterations(iterations, *estimate);
     return estimate;
   }
 
@@ -102,31 +136,30 @@ class GncSolver final : public Solver {
     for (iterations = 1; pose && iterations < options_.max_iterations; ++iterations) {
       scorer.SquaredResiduals(*pose, squared);
       if (iterations == 1) {
-        mu = FirstMu(squared, scorer.max_squared());
+        mu = FirstGncMu(LargestFinite(squared), scorer.max_squared());
         if (mu <= 0.0) break;
       }
-      if (!UpdateWeights(squared, scorer.max_squared(), mu, weights)) break;
+      if (!UpdateWeights(squared, GncWeight(scorer.max_squared(), mu), weights)) break;
       pose = SolveWeighted(problem, weights, *pose);
       mu *= options_.mu_factor;
     }
     return pose;
   }
 
-  // Where the surrogate is convex at the largest residual; none needed if that is an inlier's.
-  static double FirstMu(const std::vector<double>& squared, double max_squared) {
+  static double LargestFinite(const std::vector<double>& squared) {
     double largest = 0.0;
     for (const double s : squared) largest = std::isfinite(s) ? std::max(largest, s) : largest;
-    return largest <= max_squared ? 0.0 : max_squared / (2.0 * largest - max_squared);
+    return largest;
   }
 
   // False where every weight was, and is, 0 or 1.
-  static bool UpdateWeights(const std::vector<double>& squared, double max_squared, double mu,
+  static bool UpdateWeights(const std::vector<double>& squared, const GncWeight& by,
                             std::vector<double>& weights) {
     bool settled = true;
     for (std::size_t i = 0; i < weights.size(); ++i) {
-      const double weight = Weight(squared[i], max_squared, mu);
-      settled = settled && std::min(weight, 1.0 - weight) < kBinary &&
-                std::abs(weight - weights[i]) < kBinary;
+      const double weight = Weight(squared[i], by);
+      settled = settled && std::min(weight, 1.0 - weight) < kGncBinary &&
+                std::abs(weight - weights[i]) < kGncBinary;
       weights[i] = weight;
     }
     return !settled;
@@ -157,7 +190,7 @@ class GncSolver final : public Solver {
     std::iota(all.begin(), all.end(), 0);
     const Expected<Rigid3d> pose = PoseOfSubset(*inner_, weighted, terms, all);
     if (!pose || !spec().estimates_rotation) return pose;
-    const PoseScorer squares(terms, std::numeric_limits<double>::max());
+    const PoseScorer squares(terms, kEveryPair);
     const bool is_better = !before || squares.Cost(*pose) <= squares.Cost(*before);
     const Rigid3d& start = is_better ? *pose : *before;
     // An outlier may put points behind the camera, which least squares cannot begin with.

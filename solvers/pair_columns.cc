@@ -7,11 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/column_points.h"
+#include "solvers/column_kernel.h"
 #include "solvers/consensus.h"
-#include "solvers/kabsch_kernel.h"
 #include "solvers/shrinking_inliers.h"
-#include "solvers/trace_formula.h"
 
 namespace sextant {
 namespace {
@@ -19,28 +17,8 @@ namespace {
 constexpr int kColumns = 8;
 constexpr std::size_t kBlock = PairColumns::kBlock;
 
-struct Pose {
-  RotationMatrix<double> r;
-  Point3<double> t;
-};
-
-SEXTANT_INLINE Pose PoseOf(const Rigid3d& cam_from_lidar) {
-  const Eigen::Quaterniond& q = cam_from_lidar.rotation;
-  return {MakeRotationMatrix(Vector4<double>{q.x(), q.y(), q.z(), q.w()}),
-          PointAt(cam_from_lidar.translation)};
-}
-
-SEXTANT_INLINE Lanes SquaredSigmas(const PairColumns& pairs, const Pose& pose, std::size_t at) {
-  const Point3<Lanes> cam = PointsAt(pairs, kCamColumn, at);
-  const Point3<Lanes> p = PointsAt(pairs, kLidarColumn, at);
-  const Lanes x = cam.x - (pose.r.xx * p.x + pose.r.xy * p.y + pose.r.xz * p.z + pose.t.x);
-  const Lanes y = cam.y - (pose.r.yx * p.x + pose.r.yy * p.y + pose.r.yz * p.z + pose.t.y);
-  const Lanes z = cam.z - (pose.r.zx * p.x + pose.r.zy * p.y + pose.r.zz * p.z + pose.t.z);
-  return (x * x + y * y + z * z) * LoadLanes(pairs.Column(kInverseVarianceColumn) + at);
-}
-
 // Of the padded pairs too, whose residual is not a number and costs as an outlier's.
-SEXTANT_MULTIVERSION double SumTruncated(const PairColumns& pairs, const Pose& pose,
+SEXTANT_MULTIVERSION double SumTruncated(const PairColumns& pairs, const ColumnPose& pose,
                                          double max_squared) {
   const Lanes most = AllLanes(max_squared);
   Lanes cost{};
@@ -51,7 +29,7 @@ SEXTANT_MULTIVERSION double SumTruncated(const PairColumns& pairs, const Pose& p
   return SumLanes(cost);
 }
 
-SEXTANT_MULTIVERSION void MarkInliers(const PairColumns& pairs, const Pose& pose,
+SEXTANT_MULTIVERSION void MarkInliers(const PairColumns& pairs, const ColumnPose& pose,
                                       double max_squared, std::uint64_t* bits_of_block) {
   const LaneMask shifts = {0, 8, 16, 24, 32, 40, 48, 56};
   for (std::size_t block = 0; block < pairs.padded(); block += kBlock) {
@@ -65,20 +43,15 @@ SEXTANT_MULTIVERSION void MarkInliers(const PairColumns& pairs, const Pose& pose
   }
 }
 
-struct InlierMoments {
-  CentredMoments<double> moments;
+struct InlierSums {
   double cost = 0.0;
   double count = 0.0;
-  KernelFit fit;
-  bool fitted = false;
 };
 
-SEXTANT_MULTIVERSION void SumInliers(const PairColumns& pairs, const Pose& pose, double max_squared,
-                                     InlierMoments& result) {
+SEXTANT_MULTIVERSION void SumInliers(const PairColumns& pairs, const ColumnPose& pose,
+                                     double max_squared, InlierSums& result, ColumnFit& fit) {
   const Lanes most = AllLanes(max_squared);
   const Lanes none{};
-  const Point3<double> origin_a = PointOf(pairs, kLidarColumn, 0);
-  const Point3<double> origin_b = PointOf(pairs, kCamColumn, 0);
   PairMomentSums<Lanes> sums{};
   Lanes cost{};
   Lanes count{};
@@ -87,24 +60,11 @@ SEXTANT_MULTIVERSION void SumInliers(const PairColumns& pairs, const Pose& pose,
     const LaneMask is_inlier = squared <= most;
     cost += is_inlier ? squared : most;
     count += is_inlier ? none + 1.0 : none;
-    const Point3<Lanes> a = PointsAt(pairs, kLidarColumn, at) - origin_a;
-    const Point3<Lanes> b = PointsAt(pairs, kCamColumn, at) - origin_b;
-    sums.Add<true, false>({is_inlier ? a.x : none, is_inlier ? a.y : none, is_inlier ? a.z : none},
-                          {is_inlier ? b.x : none, is_inlier ? b.y : none, is_inlier ? b.z : none},
-                          is_inlier ? LoadLanes(pairs.Column(kInverseVarianceColumn) + at) : none);
+    fit.Add(pairs, at, is_inlier, LoadLanes(pairs.Column(kInverseVarianceColumn) + at), sums);
   }
   result.cost = SumLanes(cost);
   result.count = SumLanes(count);
-  const PairMomentSums<double> sum = SumOf<true, false>(sums);
-  CentredMoments<double>& m = result.moments;
-  m = Centre<false>(sum, sum.weight);
-  m.mean_a = {m.mean_a.x + origin_a.x, m.mean_a.y + origin_a.y, m.mean_a.z + origin_a.z};
-  m.mean_b = {m.mean_b.x + origin_b.x, m.mean_b.y + origin_b.y, m.mean_b.z + origin_b.z};
-  const std::optional<TraceMaximum> best = MaximizeTraceByFormula(m.cross, 0.5 * m.squares);
-  result.fitted = best.has_value();
-  if (!best) return;
-  result.fit = {best->q, m.mean_b - Rotate(best->matrix, m.mean_a), best->trace,
-                best->mirrored_trace};
+  fit.Finish(sums);
 }
 
 double CostOfPadding(const PairColumns& pairs, double max_squared) {
@@ -139,22 +99,21 @@ PairColumns::PairColumns(std::span<const Pair3d3d> pairs, const AssumedNoise& as
 }
 
 double TruncatedCost(const PairColumns& pairs, const Rigid3d& cam_from_lidar, double max_squared) {
-  return SumTruncated(pairs, PoseOf(cam_from_lidar), max_squared) -
+  return SumTruncated(pairs, ColumnPoseOf(cam_from_lidar), max_squared) -
          CostOfPadding(pairs, max_squared);
 }
 
 InlierFit FitInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar, double max_squared) {
-  InlierMoments sum;
-  SumInliers(pairs, PoseOf(cam_from_lidar), max_squared, sum);
+  InlierSums sum;
+  ColumnFit fit(pairs);
+  SumInliers(pairs, ColumnPoseOf(cam_from_lidar), max_squared, sum, fit);
   InlierFit result;
   result.cost = sum.cost - CostOfPadding(pairs, max_squared);
   result.inliers = static_cast<int>(sum.count);
   if (result.inliers < 3) return result;
-  if (!sum.fitted && !FitByEigensolver(sum.moments, sum.fit)) return result;
-  result.fitted = true;
-  result.cam_from_lidar.rotation = ToQuaternion(sum.fit.q);
-  result.cam_from_lidar.translation = {sum.fit.translation.x, sum.fit.translation.y,
-                                       sum.fit.translation.z};
+  const std::optional<Rigid3d> pose = fit.pose();
+  result.fitted = pose.has_value();
+  if (pose) result.cam_from_lidar = *pose;
   return result;
 }
 
@@ -174,7 +133,7 @@ Rigid3d OptimiseOnInliers(const PairColumns& pairs, const Rigid3d& cam_from_lida
 std::vector<int> InliersOf(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
                            double max_squared) {
   std::vector<std::uint64_t> bits(pairs.padded() / kBlock);
-  MarkInliers(pairs, PoseOf(cam_from_lidar), max_squared, bits.data());
+  MarkInliers(pairs, ColumnPoseOf(cam_from_lidar), max_squared, bits.data());
   std::vector<int> inliers;
   inliers.reserve(pairs.size());
   for (std::size_t block = 0; block < bits.size(); ++block) {

@@ -102,18 +102,12 @@ class ColumnsJudge final : public PairJudge {
   }
 
   Expected<void> Check(std::span<const int> inliers, int least) const override {
-    const double chance = ChanceOfAgreement(pairs_, options_.MaxSquared(PairKind::k3d3d));
-    return CheckConsensus(PairKind::k3d3d, LeastDistinct(pairs_, inliers),
-                          static_cast<int>(pairs_.size()), chance, least);
+    return CheckConsensus(pairs_, options_.MaxSquared(PairKind::k3d3d), inliers, least);
   }
 
   Expected<Estimate> Answer(const Rigid3d& pose) const override {
-    constexpr double kRounding = 1e-9;
-    Expected<Estimate> refit = RefitOnInliers(inner_, problem_, pairs_, pose, max_squared_);
-    if (!inner_.spec().estimates_rotation ||
-        (refit && Cost(refit->cam_from_lidar) <= (1.0 + kRounding) * Cost(pose))) {
-      return refit;
-    }
+    std::optional<Estimate> refit = RefitIfNoWorse(inner_, problem_, pairs_, pose, max_squared_);
+    if (refit) return std::move(*refit);
     return TermsJudge(inner_, problem_, options_).Answer(pose);
   }
 
@@ -130,6 +124,13 @@ class ColumnsJudge final : public PairJudge {
 bool AreIsotropic(std::span<const Pair3d3d> pairs) {
   return std::none_of(pairs.begin(), pairs.end(),
                       [](const Pair3d3d& pair) { return pair.covariance_in_cam.has_value(); });
+}
+
+Expected<void> CheckConsensus(const PairColumns& pairs, double max_squared,
+                              std::span<const int> inliers, int least) {
+  return CheckConsensus(PairKind::k3d3d, LeastDistinct(pairs, inliers),
+                        static_cast<int>(pairs.size()), ChanceOfAgreement(pairs, max_squared),
+                        least);
 }
 
 std::unique_ptr<PairJudge> MakePairJudge(const Solver& inner, const CalibrationProblem& problem,
@@ -154,6 +155,18 @@ Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem&
     if (next == inliers || refit + 1 == kMaxRefits) return estimate;
     inliers = std::move(next);
   }
+}
+
+std::optional<Estimate> RefitIfNoWorse(const Solver& inner, const CalibrationProblem& problem,
+                                       const PairColumns& pairs, const Rigid3d& pose,
+                                       double max_squared) {
+  constexpr double kRounding = 1e-9;
+  Expected<Estimate> refit = RefitOnInliers(inner, problem, pairs, pose, max_squared);
+  if (!refit) return std::nullopt;
+  const bool is_worse = TruncatedCost(pairs, refit->cam_from_lidar, max_squared) >
+                        (1.0 + kRounding) * TruncatedCost(pairs, pose, max_squared);
+  if (inner.spec().estimates_rotation && is_worse) return std::nullopt;
+  return std::move(*refit);
 }
 
 }  // namespace sextant

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,9 +41,18 @@ std::unique_ptr<PairJudge> MakePairJudge(const Solver& inner, const CalibrationP
 /// Whether no pair states a covariance.
 bool AreIsotropic(std::span<const Pair3d3d> pairs);
 
+/// CheckConsensus of consensus.h on columns.
+Expected<void> CheckConsensus(const PairColumns& pairs, double max_squared,
+                              std::span<const int> inliers, int least);
+
 /// RefitOnInliers of consensus.h on columns.
 Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem& problem,
                                   const PairColumns& pairs, const Rigid3d& pose,
                                   double max_squared);
+
+/// The same; none where the inner solver fits worse than `pose` does, or not at all.
+std::optional<Estimate> RefitIfNoWorse(const Solver& inner, const CalibrationProblem& problem,
+                                       const PairColumns& pairs, const Rigid3d& pose,
+                                       double max_squared);
 
 }  // namespace sextant

@@ -162,9 +162,8 @@ class RobustSolver final : public Solver {
   // follow is left to clique, which tells.
   bool IsConsensus(const CalibrationProblem& problem, const PairColumns& pairs,
                    const std::vector<int>& inliers) const {
-    const double chance = ChanceOfAgreement(pairs, options_.MaxSquared(PairKind::k3d3d));
-    if (!CheckConsensus(PairKind::k3d3d, LeastDistinct(pairs, inliers),
-                        static_cast<int>(pairs.size()), chance, spec().needs.pairs_3d3d)) {
+    const double max_squared = options_.MaxSquared(PairKind::k3d3d);
+    if (!CheckConsensus(pairs, max_squared, inliers, spec().needs.pairs_3d3d)) {
       return false;
     }
     if (2 * inliers.size() >= pairs.size()) return true;
