@@ -118,10 +118,9 @@ InlierFit FitInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar, do
 }
 
 Rigid3d OptimiseOnInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
-                          double max_squared) {
-  constexpr int kMaxRounds = 20;
+                          double max_squared, int rounds) {
   return OptimiseOnShrinkingInliers(
-      cam_from_lidar, TruncatedCost(pairs, cam_from_lidar, max_squared), kMaxRounds,
+      cam_from_lidar, TruncatedCost(pairs, cam_from_lidar, max_squared), rounds,
       [&](const Rigid3d& at, double) { return TruncatedCost(pairs, at, max_squared); },
       [&](const Rigid3d& at, double widening) -> std::optional<Rigid3d> {
         const InlierFit fit = FitInliers(pairs, at, widening * max_squared);

@@ -58,7 +58,7 @@ InlierFit FitInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar, do
 /// The cheapest pose met by alternating FitInliers with choosing the inliers, generously at first:
 /// OptimiseOnInliers of consensus.h in closed form.
 Rigid3d OptimiseOnInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
-                          double max_squared);
+                          double max_squared, int rounds = 20);
 
 /// Indices, ascending, of the pairs with r_i^2 <= max_squared.
 std::vector<int> InliersOf(const PairColumns& pairs, const Rigid3d& cam_from_lidar,

@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <optional>
 
-#include "base/random.h"
-#include "solvers/consensus.h"
 #include "solvers/p3p_consensus.h"
 #include "solvers/p3p_solver.h"
-#include "solvers/pose_scorer.h"
-#include "solvers/refine_pose.h"
+#include "solvers/pair_judge.h"
 #include "solvers/registry.h"
+#include "solvers/sample_consensus.h"
 
 namespace sextant {
 namespace {
@@ -26,97 +24,6 @@ struct RansacOptions : InlierOptions {
   Refit refit = Refit::kInliers;
   int min_inliers = 0;
   std::uint64_t seed = 1;
-};
-
-// After this many degenerate samples and no other, the data itself is degenerate.
-constexpr int kMaxDegenerateSamples = 1000;
-constexpr RefineLimits kLocalLimits{.max_iterations = 4, .step_tolerance = 1e-6};
-constexpr RefineLimits kFinalLimits{.max_iterations = 30, .step_tolerance = 1e-10};
-
-/// One search: every buffer is allocated here, none in the loop.
-class ConsensusSearch {
- public:
-  ConsensusSearch(const Solver& inner, const RansacOptions& options, int sample_size,
-                  const CalibrationProblem& problem, const PairTerms& terms,
-                  const PoseScorer& scorer)
-      : inner_(inner),
-        options_(options),
-        problem_(problem),
-        terms_(terms),
-        scorer_(scorer),
-        random_(options.seed),
-        sample_(static_cast<std::size_t>(sample_size)) {
-    poses_.reserve(8);
-    workspace_.inliers.reserve(terms.size());
-    workspace_.terms.points.reserve(terms.points.size());
-    workspace_.terms.pixels.reserve(terms.pixels.size());
-  }
-
-  void Run() {
-    double wanted = options_.max_iterations;
-    while (iterations_ < wanted && (found_ || iterations_ < kMaxDegenerateSamples)) {
-      ++iterations_;
-      random_.Sample(static_cast<int>(terms_.size()), sample_);
-      poses_.clear();
-      inner_.Hypothesize(problem_, sample_, poses_);
-      for (const Rigid3d& pose : poses_) {
-        if (!Offer(pose)) continue;
-        if (options_.local_optimisation > 0) Optimise();
-        scorer_.Inliers(best_, workspace_.inliers);
-        wanted =
-            std::min<double>(options_.max_iterations, WantedIterations(workspace_.inliers.size()));
-      }
-    }
-  }
-
-  bool found() const { return found_; }
-  const Rigid3d& best() const { return best_; }
-  int iterations() const { return iterations_; }
-  bool exhausted() const { return iterations_ >= options_.max_iterations; }
-
-  void Optimise(const RefineLimits& limits = kLocalLimits) {
-    if (!inner_.spec().estimates_rotation) return;
-    Offer(
-        OptimiseOnInliers(terms_, scorer_, best_, options_.local_optimisation, limits, workspace_));
-  }
-
- private:
-  // Takes a pose that costs less than the best.
-  bool Offer(const Rigid3d& pose) {
-    if (!pose.IsFinite()) return false;
-    const double cost = scorer_.Cost(pose, best_cost_);
-    if (found_ && !(cost < best_cost_)) return false;
-    best_cost_ = cost;
-    best_ = pose;
-    found_ = true;
-    return true;
-  }
-
-  // Samples until one of inliers only has been drawn with the wanted confidence.
-  double WantedIterations(std::size_t inlier_count) const {
-    const double n = static_cast<double>(terms_.size());
-    double all_inliers = 1.0;
-    for (std::size_t i = 0; i < sample_.size(); ++i) {
-      const double drawn = static_cast<double>(i);
-      all_inliers *= std::max(0.0, static_cast<double>(inlier_count) - drawn) / (n - drawn);
-    }
-    if (all_inliers >= 1.0) return 1.0;
-    return std::ceil(std::log1p(-options_.confidence) / std::log1p(-all_inliers));
-  }
-
-  const Solver& inner_;
-  const RansacOptions& options_;
-  const CalibrationProblem& problem_;
-  const PairTerms& terms_;
-  const PoseScorer& scorer_;
-  Random random_;
-  std::vector<int> sample_;
-  std::vector<Rigid3d> poses_;
-  InlierWorkspace workspace_;
-  Rigid3d best_;
-  double best_cost_ = std::numeric_limits<double>::infinity();
-  bool found_ = false;
-  int iterations_ = 0;
 };
 
 DataNeeds WithSample(const DataNeeds& inner, PairKind kind, int sample_size) {
@@ -148,30 +55,64 @@ class RansacSolver final : public Solver {
 
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
-    const int sample_size =
-        options_.sample_size > 0 ? options_.sample_size : LeastPairs(inner_->spec().needs);
+    const SampleOptions sampling = {.sample_size = options_.sample_size > 0
+                                                       ? options_.sample_size
+                                                       : LeastPairs(inner_->spec().needs),
+                                    .max_iterations = options_.max_iterations,
+                                    .confidence = options_.confidence,
+                                    .local_optimisation = options_.local_optimisation,
+                                    .seed = options_.seed};
+    if (kind_ == PairKind::k3d3d && spec().estimates_rotation && AreIsotropic(problem.pairs_3d3d)) {
+      return SolveInColumns(problem, sampling);
+    }
     const PairTerms terms = MakeTerms(problem, kind_, options_.Assumed());
     const PoseScorer scorer(terms, options_.MaxSquared(kind_));
-    if (sample_size == 3 && options_.local_optimisation > 0 && IsP3pOfPinhole(*inner_, problem)) {
+    if (sampling.sample_size == 3 && options_.local_optimisation > 0 &&
+        IsP3pOfPinhole(*inner_, problem)) {
       return SolveByTriples(terms, scorer);
     }
-    ConsensusSearch search(*inner_, options_, sample_size, problem, terms, scorer);
+    TermsConsensus consensus(terms, scorer);
+    SampleSearch search(*inner_, sampling, problem, consensus);
     search.Run();
-    if (!search.found()) return NoPose(search.iterations(), sample_size);
-    search.Optimise(kFinalLimits);
+    if (!search.found()) return NoPose(search.iterations(), sampling.sample_size);
     Expected<Estimate> estimate = Finish(problem, terms, scorer, search.best());
     if (!estimate) return estimate;
     if (Expected<void> ok = CheckConsensus(terms, scorer, estimate->inliers, LeastInliers()); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
-    if (2 * estimate->inliers.size() < terms.size()) {
-      if (Expected<void> ok = CheckNotMirrored(problem, terms); !ok) {
-        return tl::unexpected<Error>(std::move(ok.error()));
-      }
+    return Checked(problem, search.iterations(), std::move(*estimate));
+  }
+
+  // Isotropic 3D-3D pairs.
+  Expected<Estimate> SolveInColumns(const CalibrationProblem& problem,
+                                    const SampleOptions& sampling) const {
+    const double max_squared = options_.MaxSquared(kind_);
+    const PairColumns pairs(problem.pairs_3d3d, options_.Assumed());
+    ColumnsConsensus consensus(pairs, max_squared);
+    SampleSearch search(*inner_, sampling, problem, consensus);
+    search.Run();
+    if (!search.found()) return NoPose(search.iterations(), sampling.sample_size);
+    Expected<Estimate> estimate = FinishInColumns(problem, pairs, max_squared, search.best());
+    if (!estimate) return estimate;
+    if (Expected<void> ok = CheckConsensus(pairs, max_squared, estimate->inliers, LeastInliers());
+        !ok) {
+      return tl::unexpected<Error>(std::move(ok.error()));
     }
-    estimate->iterations = search.iterations();
-    estimate->termination =
-        search.exhausted() ? Termination::kMaxIterations : Termination::kConverged;
+    return Checked(problem, search.iterations(), std::move(*estimate));
+  }
+
+  // Of mirrored points, those near one plane agree on a pose, which is not the answer.
+  Expected<Estimate> Checked(const CalibrationProblem& problem, int iterations,
+                             Estimate estimate) const {
+    const std::size_t count =
+        kind_ == PairKind::k3d3d ? problem.pairs_3d3d.size() : problem.pairs_2d3d.size();
+    if (2 * estimate.inliers.size() < count) {
+      const Expected<Estimate> of_all = SolveWhole(*inner_, problem);
+      if (!of_all && of_all.error().code == ErrorCode::kMirrored) return of_all;
+    }
+    estimate.iterations = iterations;
+    estimate.termination = iterations < options_.max_iterations ? Termination::kConverged
+                                                                : Termination::kMaxIterations;
     return estimate;
   }
 
@@ -205,20 +146,24 @@ class RansacSolver final : public Solver {
                                  samples, sample_size));
   }
 
-  // Of mirrored points, those near one plane agree on a pose, which is not the answer.
-  Expected<void> CheckNotMirrored(const CalibrationProblem& problem, const PairTerms& terms) const {
-    std::vector<int> all(terms.size());
-    std::iota(all.begin(), all.end(), 0);
-    const Expected<Estimate> estimate = SolveSubset(*inner_, problem, all);
-    if (estimate || estimate.error().code != ErrorCode::kMirrored) return {};
-    return tl::unexpected<Error>(estimate.error());
-  }
-
   Expected<Estimate> Finish(const CalibrationProblem& problem, const PairTerms& terms,
                             const PoseScorer& scorer, const Rigid3d& pose) const {
     if (options_.refit == Refit::kNone) return LeastSquaresOnInliers(terms, scorer, pose);
     if (options_.local_optimisation == 0) return RefitOnInliers(*inner_, problem, scorer, pose);
     return BetterOnInliers(*inner_, problem, terms, scorer, pose);
+  }
+
+  Expected<Estimate> FinishInColumns(const CalibrationProblem& problem, const PairColumns& pairs,
+                                     double max_squared, const Rigid3d& pose) const {
+    if (options_.refit == Refit::kInliers) {
+      if (options_.local_optimisation == 0) {
+        return RefitOnInliers(*inner_, problem, pairs, pose, max_squared);
+      }
+      std::optional<Estimate> refit = RefitIfNoWorse(*inner_, problem, pairs, pose, max_squared);
+      if (refit) return std::move(*refit);
+    }
+    const PairTerms terms = MakeTerms(problem, kind_, options_.Assumed());
+    return Finish(problem, terms, PoseScorer(terms, max_squared), pose);
   }
 
   SolverPtr inner_;
