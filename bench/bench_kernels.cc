@@ -8,6 +8,7 @@
 #include "base/lanes.h"
 #include "base/random.h"
 #include "bench/check.h"
+#include "geometry/random_vectors.h"
 #include "geometry/so3.h"
 #include "solvers/kabsch.h"
 #include "solvers/kabsch_batch.h"
@@ -25,12 +26,6 @@ constexpr double kSigma = 0.01;
 
 // Ten sigmas of a single point: only a wrong answer is farther off.
 constexpr Tolerance kTolerance = {.rotation_rad = 0.1, .translation_m = 0.1};
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = random.Normal();
-  return v;
-}
 
 std::vector<PointPairs> MakePointPairs(const benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0));

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/random.h"
+#include "base/units.h"
 #include "bench/check.h"
 #include "eval/lidar/scan_pairs.h"
 #include "eval/mismatched_pairs.h"
@@ -20,7 +21,6 @@ namespace {
 using Problems = std::vector<PointProblem>;
 
 constexpr double kSigma = 0.01;
-constexpr double kDegree = 0.017453292519943295;
 
 PointProblem FromScene(const RandomScene& scene) {
   PointProblem problem{
@@ -60,7 +60,7 @@ Problems CornerProblems() {
   Problems problems(64);
   for (PointProblem& problem : problems) {
     Vector6d off;
-    for (double& x : off) x = 3.0 * kDegree / 1.732 * random.Normal();
+    for (double& x : off) x = 3.0 * kRadPerDeg / 1.732 * random.Normal();
     problem.cam_from_lidar = Perturb(LocalStart(), off);
     for (const double side : {-0.5, 0.5}) {
       for (const auto& [across, up] :
@@ -127,7 +127,7 @@ void Time(benchmark::State& state, const Checked& checked) {
   if (checked.wrong > 0) state.SetLabel(fmt::format("{} of {} wrong", checked.wrong, all));
   if (10 * checked.wrong > all) {
     return state.SkipWithError(fmt::format("wrong in {} of {}, by up to {:.2g} deg", checked.wrong,
-                                           all, checked.worst_rad / kDegree)
+                                           all, checked.worst_rad / kRadPerDeg)
                                    .c_str());
   }
   std::size_t next = 0;
@@ -169,7 +169,7 @@ void RegisterOutliers(const std::string& peer, const Prepare& prepare) {
       Allowed allowed;
       for (const PointProblem& problem : problems) {
         const double oracle = OracleError(problem, 0.01 * percent);
-        allowed.push_back({std::max(0.5 * kDegree, 1.5 * oracle), 0.3});
+        allowed.push_back({std::max(0.5 * kRadPerDeg, 1.5 * oracle), 0.3});
       }
       return std::pair(problems, allowed);
     });
@@ -188,7 +188,7 @@ void RegisterCorners(const std::string& peer, const Prepare& prepare) {
 void RegisterRooms(const std::string& peer, const Prepare& prepare) {
   Register("room", peer, 16, prepare, [] {
     const Problems problems = RoomProblems();
-    return std::pair(problems, Allowed(problems.size(), {0.1 * kDegree, 0.02}));
+    return std::pair(problems, Allowed(problems.size(), {0.1 * kRadPerDeg, 0.02}));
   });
 }
 

@@ -10,8 +10,8 @@
 #include <limits>
 #include <set>
 
+#include "base/units.h"
 #include "calibrate/information.h"
-#include "io/degrees.h"
 #include "solvers/board_view_check.h"
 #include "solvers/board_view_information.h"
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/units.h"
 #include "calibrate/advise.h"
-#include "io/degrees.h"
 
 namespace sextant {
 namespace {

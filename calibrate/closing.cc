@@ -6,13 +6,13 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
+
+#include "base/units.h"
 
 namespace sextant {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr int kEnoughViews = 8;
 constexpr double kTooParallel_rad = 15.0 / kDegPerRad;
 constexpr double kTooLevel = 1.3;  // Farthest range over nearest.
@@ -69,7 +69,7 @@ std::string Certainty(const SolveReport& report) {
 }
 
 // What limits it, and what to do, in the order of what helps most.
-std::string Advice(const Assembly& assembly, int views) {
+std::string ClosingAdvice(const Assembly& assembly, int views) {
   const Spread spread = SpreadOf(assembly.problem.board_views);
   std::string limits;
   std::string advice;
@@ -113,7 +113,7 @@ std::string ClosingParagraph(const Assembly& assembly, const SolveReport& report
       "rests on {} board{} in {} of {} view{}. {}{} {}",
       boards, boards == 1 ? "" : "s", views.size(), all.size(), all.size() == 1 ? "" : "s",
       Doubt(assembly.matching), Certainty(report),
-      Advice(assembly, static_cast<int>(views.size())));
+      ClosingAdvice(assembly, static_cast<int>(views.size())));
 }
 
 }  // namespace sextant

@@ -23,13 +23,13 @@ using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
 constexpr double kNoticeable = 0.02;  // Of a distance.
 constexpr double kSigmas = 4.0;
-constexpr double kOtherSize = 0.05;    // Of a side.
-constexpr double kPoorPrint_px = 1.0;  // A good lens model leaves a third of it.
-constexpr double kPoorPrint = 3.0;     // Over the stated noise.
+constexpr double kOtherPrintSize = 0.05;  // Of a side.
+constexpr double kPoorPrint_px = 1.0;     // A good lens model leaves a third of it.
+constexpr double kPoorPrint = 3.0;        // Over the stated noise.
 constexpr double kSamePlace_m = 0.05;
 constexpr double kSameTurn_rad = 5.0 * std::numbers::pi / 180.0;
 
-double MedianOf(std::vector<double> values) {
+double UpperMedian(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -120,8 +120,8 @@ void DiagnoseSizes(std::span<const SessionView> views, const Assembly& assembly,
     const Board& board = assembly.problem.boards[static_cast<std::size_t>(b)];
     for (std::size_t i = 0; i < 2; ++i) {
       const double known = board.EdgeLengths()[i];
-      const double median = MedianOf(measured[i]);
-      if (std::abs(median - known) < kOtherSize * known) continue;
+      const double median = UpperMedian(measured[i]);
+      if (std::abs(median - known) < kOtherPrintSize * known) continue;
       lines.push_back(fmt::format(
           "board file: the edge from {} of board {} is {:.3f} m in the scans, {:.3f} m in the "
           "board file: measure the board",
@@ -143,8 +143,8 @@ void DiagnosePrints(std::span<const SessionView> views, const Assembly& assembly
     over_noise.push_back(std::sqrt(pose.chi_square / (pose.residuals - 6)));
   }
   if (rms_px.empty()) return;
-  const double median_px = MedianOf(rms_px);
-  const double median_over = MedianOf(over_noise);
+  const double median_px = UpperMedian(rms_px);
+  const double median_over = UpperMedian(over_noise);
   if (median_px < kPoorPrint_px || median_over < kPoorPrint) return;
   lines.push_back(
       fmt::format("intrinsics: the prints fit the camera model only to {:.1f} px, {:.0f} times "

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <vector>
 
+#include "base/units.h"
 #include "features/lidar/board_finder.h"
 #include "geometry/board_check.h"
-#include "io/degrees.h"
 
 namespace sextant {
 namespace {

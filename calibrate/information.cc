@@ -6,7 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "io/degrees.h"
+#include "base/units.h"
 #include "solvers/board_view_check.h"
 #include "solvers/board_view_information.h"
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/units.h"
 #include "geometry/scan_marks.h"
 #include "solvers/object_match.h"
 
@@ -17,7 +18,6 @@ namespace {
 constexpr double kNumbersPerBoard = 3.0 * kCornersPerBoard;
 constexpr double kMostSigmas = 4.0;
 constexpr double kAsLikely = 9.2;  // -2 ln of 1 %.
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // A view as the matcher takes it, and what each of its pairings stands for.
 struct ViewPairings {

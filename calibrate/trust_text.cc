@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/degrees.h"
+#include "base/units.h"
 
 namespace sextant {
 namespace {

@@ -16,7 +16,7 @@ namespace {
 constexpr int kHeight_px = 620;
 constexpr int kTop_px = 620;  ///< Width of the view from above.
 constexpr int kGap_px = 16;
-const cv::Scalar kBackground(255, 255, 255);
+const cv::Scalar kPaper(255, 255, 255);
 const cv::Scalar kInk(60, 60, 60);
 const cv::Scalar kFaint(220, 220, 220);
 const cv::Scalar kSeen(170, 150, 130);
@@ -179,7 +179,7 @@ cv::Mat DrawAdvice(const CalibrationResult& result, const SensorPair& sensors,
   constexpr int kHead_px = 34;
   const int image_width = std::min(900, cvRound((kHeight_px - kHead_px) / aspect));
   const int image_height = cvRound(image_width * aspect);
-  cv::Mat canvas(kHeight_px, kTop_px + kGap_px + image_width + kGap_px, CV_8UC3, kBackground);
+  cv::Mat canvas(kHeight_px, kTop_px + kGap_px + image_width + kGap_px, CV_8UC3, kPaper);
   const std::vector<PlacedBoard> seen = SeenBoardsOf(result);
   std::vector<PlacedBoard> next;
   for (const BoardProposal& proposal : proposals) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "base/units.h"
 #include "calibrate/advise.h"
 #include "calibrate/information.h"
 #include "calibrate/photo_file.h"
@@ -13,7 +14,6 @@
 #include "cli/result_options.h"
 #include "eval/bounds.h"
 #include "eval/simulator/lidar_model.h"
-#include "io/degrees.h"
 
 namespace sextant::cli {
 namespace {

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "base/units.h"
 #include "base/version.h"
 #include "cli/commands.h"
 #include "cli/load.h"
@@ -14,9 +14,6 @@
 
 namespace sextant::cli {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kMmPerM = 1e3;
 
 Rigid3d LoggedPose(const RunningAverageAnalysis& analysis) {
   return {analysis.logged_rotation, analysis.mean.translation};
@@ -74,7 +71,7 @@ nlohmann::ordered_json ListOrNull(const std::optional<Vector6d>& values) {
   return std::vector<double>(values->begin(), values->end());
 }
 
-std::string Json(const AverageOptions& options, const RunningAverageAnalysis& analysis) {
+std::string AverageJson(const AverageOptions& options, const RunningAverageAnalysis& analysis) {
   nlohmann::ordered_json scans = nlohmann::ordered_json::array();
   for (const RecoveredScan& scan : analysis.scans) {
     scans.push_back({{"iteration", scan.iteration},
@@ -110,7 +107,7 @@ int RunAverage(const AverageOptions& options) {
     return Refuse("average",
                   {analysis.error().code, options.log_path + ": " + analysis.error().message});
   }
-  return Deliver("average", options.json_path, Text(*analysis), Json(options, *analysis),
+  return Deliver("average", options.json_path, Text(*analysis), AverageJson(options, *analysis),
                  kAnswered);
 }
 

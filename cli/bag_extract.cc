@@ -9,7 +9,7 @@
 #include <set>
 
 #include "calibrate/bag/bag_image.h"
-#include "io/camera_info.h"
+#include "io/camera_file.h"
 #include "io/pcd_file.h"
 #include "io/text_file.h"
 
@@ -73,7 +73,7 @@ class Extractor {
           return std::optional<Extracted>({"." + ExtensionOf(image), image.data});
         });
       case MessageKind::kImage:
-        return DecodeImage(message).and_then(EncodePng).map([](std::string png) {
+        return DecodeImage(message).and_then(sextant::EncodePng).map([](std::string png) {
           return std::optional<Extracted>({".png", std::move(png)});
         });
       case MessageKind::kCameraInfo:

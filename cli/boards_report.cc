@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/units.h"
 #include "base/version.h"
 #include "eval/text_table.h"
 
@@ -15,7 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMmPerM = 1e3;
 constexpr std::size_t kMostRejected = 3;  // In text; JSON has them all.
 
 std::string NameOf(const Board& board) {

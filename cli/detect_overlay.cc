@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "cli/detect_report.h"
+#include "cli/fixed_point.h"
 #include "features/camera/grey_image.h"
 
 namespace sextant::cli {
@@ -11,25 +12,18 @@ namespace {
 
 const cv::Scalar kTag(0, 200, 0);
 const cv::Scalar kStranger(160, 160, 160);
-const cv::Scalar kOutline(0, 160, 255);
+const cv::Scalar kBoardOutline(0, 160, 255);
 const cv::Scalar kFirstCorner(0, 0, 255);
-constexpr int kShift = 4;  ///< OpenCV's fixed point; it counts from pixel centres as we do.
-
-cv::Point Fixed(const Eigen::Vector2d& pixel) {
-  constexpr double kFar = 1e6;
-  const Eigen::Vector2d p = pixel.cwiseMax(-kFar).cwiseMin(kFar) * (1 << kShift);
-  return {cvRound(p.x()), cvRound(p.y())};
-}
-
 void DrawLine(cv::Mat& canvas, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
               const cv::Scalar& colour) {
-  cv::line(canvas, Fixed(a), Fixed(b), colour, 2, cv::LINE_AA, kShift);
+  cv::line(canvas, FixedPoint(a), FixedPoint(b), colour, 2, cv::LINE_AA, kFixedPointShift);
 }
 
 void DrawTag(cv::Mat& canvas, const Quad& corners, const std::string& label,
              const cv::Scalar& colour) {
   for (std::size_t k = 0; k < 4; ++k) DrawLine(canvas, corners[k], corners[(k + 1) % 4], colour);
-  cv::circle(canvas, Fixed(corners[0]), 5 << kShift, kFirstCorner, 2, cv::LINE_AA, kShift);
+  cv::circle(canvas, FixedPoint(corners[0]), 5 << kFixedPointShift, kFirstCorner, 2, cv::LINE_AA,
+             kFixedPointShift);
   const Eigen::Vector2d middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
   cv::putText(canvas, label, {cvRound(middle.x()), cvRound(middle.y())}, cv::FONT_HERSHEY_SIMPLEX,
               0.7, kFirstCorner, 2, cv::LINE_AA);
@@ -43,14 +37,15 @@ void DrawEdge(cv::Mat& canvas, const Camera& camera, const Eigen::Vector3d& a,
   for (int i = 1; i <= kPieces; ++i) {
     const double share = static_cast<double>(i) / kPieces;
     const std::optional<Eigen::Vector2d> next = Project(camera, (1.0 - share) * a + share * b);
-    if (last && next) DrawLine(canvas, *last, *next, kOutline);
+    if (last && next) DrawLine(canvas, *last, *next, kBoardOutline);
     last = next;
   }
 }
 
 void DrawChecker(cv::Mat& canvas, const CheckerDetection& checker) {
   for (const Eigen::Vector2d& corner : checker.corners_px) {
-    cv::circle(canvas, Fixed(corner), 4 << kShift, kTag, 2, cv::LINE_AA, kShift);
+    cv::circle(canvas, FixedPoint(corner), 4 << kFixedPointShift, kTag, 2, cv::LINE_AA,
+               kFixedPointShift);
   }
 }
 
@@ -61,7 +56,7 @@ void DrawBoard(cv::Mat& canvas, const Camera& camera, const SeenBoard& seen) {
     DrawEdge(canvas, camera, corners[k], corners[first_of_rectangle + (k + 1) % 4]);
     if (const auto pixel = Project(camera, corners[k])) {
       cv::putText(canvas, std::to_string(k), {cvRound(pixel->x()) + 6, cvRound(pixel->y())},
-                  cv::FONT_HERSHEY_SIMPLEX, 0.6, kOutline, 2, cv::LINE_AA);
+                  cv::FONT_HERSHEY_SIMPLEX, 0.6, kBoardOutline, 2, cv::LINE_AA);
     }
   }
 }

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/units.h"
 #include "cli/detect_report.h"
 
 namespace sextant::cli {
 namespace {
-
-constexpr double kDegPerRad = 57.29577951308232;
 
 double MeanSide(const Quad& quad) {
   double sum = 0.0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include "cli/fixed_point.h"
 #include "cli/mark_panels.h"
 
 namespace sextant::cli {
@@ -13,27 +14,19 @@ namespace {
 
 // One for each edge, from the top-left clockwise; as blue, green, red.
 const cv::Scalar kEdgeColors[] = {{120, 220, 90}, {90, 200, 255}, {230, 140, 255}, {255, 190, 100}};
-const cv::Scalar kBackground(30, 26, 24);
+const cv::Scalar kCanvas(30, 26, 24);
 const cv::Scalar kDrawing(255, 255, 255);
-const cv::Scalar kCorner(60, 60, 255);
+const cv::Scalar kMarkedCorner(60, 60, 255);
 const cv::Scalar kShadow(0, 0, 0);
 
-// OpenCV's fixed point, for positions between pixels.
-constexpr int kShift = 4;
-cv::Point Fixed(const Eigen::Vector2d& canvas) {
-  constexpr double kFar = 1e5;  // Beyond, the fixed point would overflow; it is off the canvas.
-  const Eigen::Vector2d p = canvas.cwiseMax(-kFar).cwiseMin(kFar) * (1 << kShift);
-  return {cvRound(p.x()), cvRound(p.y())};
-}
-
 void Dot(cv::Mat& canvas, const Eigen::Vector2d& at, double radius, const cv::Scalar& color) {
-  cv::circle(canvas, Fixed(at), cvRound(radius * (1 << kShift)), color, cv::FILLED, cv::LINE_AA,
-             kShift);
+  cv::circle(canvas, FixedPoint(at), cvRound(radius * (1 << kFixedPointShift)), color, cv::FILLED,
+             cv::LINE_AA, kFixedPointShift);
 }
 
 void Line(cv::Mat& canvas, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
           const cv::Scalar& color, int thickness) {
-  cv::line(canvas, Fixed(a), Fixed(b), color, thickness, cv::LINE_AA, kShift);
+  cv::line(canvas, FixedPoint(a), FixedPoint(b), color, thickness, cv::LINE_AA, kFixedPointShift);
 }
 
 void Label(cv::Mat& canvas, const Eigen::Vector2d& at, const std::string& text,
@@ -72,11 +65,13 @@ void DrawScan(const std::vector<ProjectedReturn>& returns, const MarkViewport& v
 void DrawQuadrilateral(const Quadrilateral& quadrilateral, const MarkViewport& view,
                        const cv::Scalar& color, cv::Mat& canvas) {
   std::vector<cv::Point> corners;
-  for (const Eigen::Vector2d& pixel : quadrilateral) corners.push_back(Fixed(view.ToCanvas(pixel)));
+  for (const Eigen::Vector2d& pixel : quadrilateral)
+    corners.push_back(FixedPoint(view.ToCanvas(pixel)));
   cv::Mat filled = canvas.clone();
-  cv::fillPoly(filled, std::vector<std::vector<cv::Point>>{corners}, color, cv::LINE_AA, kShift);
+  cv::fillPoly(filled, std::vector<std::vector<cv::Point>>{corners}, color, cv::LINE_AA,
+               kFixedPointShift);
   cv::addWeighted(filled, 0.22, canvas, 0.78, 0.0, canvas);
-  cv::polylines(canvas, corners, true, color, 1, cv::LINE_AA, kShift);
+  cv::polylines(canvas, corners, true, color, 1, cv::LINE_AA, kFixedPointShift);
 }
 
 // Those that an area holds, with a rim of white; rims first, for neighbours touch.
@@ -128,7 +123,7 @@ void DrawUnfinished(const MarkController& controller, cv::Mat& canvas) {
 void DrawCorners(const MarkSession& session, const MarkViewport& view, cv::Mat& canvas) {
   for (const ClickedCorner& corner : session.marks().corners) {
     const Eigen::Vector2d at = view.ToCanvas(corner.pixel);
-    for (const auto& [color, thickness] : {std::pair(kShadow, 3), std::pair(kCorner, 1)}) {
+    for (const auto& [color, thickness] : {std::pair(kShadow, 3), std::pair(kMarkedCorner, 1)}) {
       for (const Eigen::Vector2d& arm : {Eigen::Vector2d(9, 0), Eigen::Vector2d(0, 9)}) {
         Line(canvas, at - arm, at - 0.25 * arm, color, thickness);
         Line(canvas, at + 0.25 * arm, at + arm, color, thickness);
@@ -158,8 +153,8 @@ void MarkCanvas::DrawBase(const MarkController& controller) {
   if (!base_.empty() && now == base_view_ && controller.layers() == base_layers_) return;
   base_view_ = now;
   base_layers_ = controller.layers();
-  base_ = cv::Mat(cvRound(view.canvas_size().y()), cvRound(view.canvas_size().x()), CV_8UC3,
-                  kBackground);
+  base_ =
+      cv::Mat(cvRound(view.canvas_size().y()), cvRound(view.canvas_size().x()), CV_8UC3, kCanvas);
   const bool with_scan = base_layers_ != MarkLayers::kPhoto;
   if (!photo_.empty() && base_layers_ != MarkLayers::kScan) {
     DrawPhoto(photo_, view, with_scan ? 0.55 : 1.0, base_);

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "base/units.h"
 #include "calibrate/photo_file.h"
 #include "cli/pose_argument.h"
 #include "io/camera_file.h"
@@ -41,7 +41,6 @@ Expected<Camera> ChooseCamera(const MarkOptions& options, const cv::Mat& photo) 
 
 Expected<Rigid3d> ChoosePose(const MarkOptions& options) {
   if (options.cam_from_lidar.empty()) {
-    constexpr double kRadPerDeg = std::numbers::pi / 180.0;
     const Eigen::AngleAxisd turn(-kRadPerDeg * options.yaw_deg, Eigen::Vector3d::UnitZ());
     return AxesCamFromLidar() * Rigid3d{Eigen::Quaterniond(turn), Eigen::Vector3d::Zero()};
   }

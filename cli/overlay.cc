@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calibrate/photo_file.h"
+#include "cli/fixed_point.h"
 
 namespace sextant::cli {
 namespace {
@@ -46,23 +47,15 @@ std::vector<Mark> MarksOf(const CalibrationProblem& problem, const SolveReport& 
   return marks;
 }
 
-// Sub-pixel positions in OpenCV's fixed point; both count from the centre of the top-left pixel.
-constexpr int kShift = 4;
-cv::Point FixedPoint(const Eigen::Vector2d& pixel) {
-  constexpr double kFar = 1e6;  // Beyond, the fixed point would overflow; it is off the image.
-  const Eigen::Vector2d p = pixel.cwiseMax(-kFar).cwiseMin(kFar) * (1 << kShift);
-  return {cvRound(p.x()), cvRound(p.y())};
-}
-
 void DrawMark(const Mark& mark, cv::Mat& canvas) {
   const Eigen::Vector2d tip = mark.measured + kMagnification * (mark.projected - mark.measured);
   cv::line(canvas, FixedPoint(mark.measured), FixedPoint(tip), mark.used ? kResidual : kLeftOut, 2,
-           cv::LINE_AA, kShift);
-  cv::circle(canvas, FixedPoint(mark.measured), 7 << kShift, mark.used ? kMeasured : kLeftOut, 2,
-             cv::LINE_AA, kShift);
+           cv::LINE_AA, kFixedPointShift);
+  cv::circle(canvas, FixedPoint(mark.measured), 7 << kFixedPointShift,
+             mark.used ? kMeasured : kLeftOut, 2, cv::LINE_AA, kFixedPointShift);
   for (const Eigen::Vector2d& arm : {Eigen::Vector2d(5, 5), Eigen::Vector2d(5, -5)}) {
     cv::line(canvas, FixedPoint(mark.projected - arm), FixedPoint(mark.projected + arm),
-             mark.used ? kProjected : kLeftOut, 2, cv::LINE_AA, kShift);
+             mark.used ? kProjected : kLeftOut, 2, cv::LINE_AA, kFixedPointShift);
   }
 }
 

@@ -5,15 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/units.h"
 #include "eval/text_table.h"
 
 namespace sextant::cli {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kMmPerM = 1e3;
 // More residuals than a screen shows go to the JSON only.
 constexpr std::size_t kMostResiduals = 64;
 

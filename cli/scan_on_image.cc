@@ -7,20 +7,13 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "cli/fixed_point.h"
 #include "cli/hidden_returns.h"
 #include "cli/projected_scan.h"
 #include "features/lidar/scan_rings.h"
 
 namespace sextant::cli {
 namespace {
-
-constexpr int kShift = 4;  ///< OpenCV's fixed point; it counts from pixel centres as we do.
-
-cv::Point Fixed(const Eigen::Vector2d& pixel) {
-  constexpr double kFar = 1e6;
-  const Eigen::Vector2d p = pixel.cwiseMax(-kFar).cwiseMin(kFar) * (1 << kShift);
-  return {cvRound(p.x()), cvRound(p.y())};
-}
 
 bool IsWithin(const Eigen::Vector2d& pixel, const cv::Mat& canvas) {
   return pixel.x() > -0.5 && pixel.y() > -0.5 && pixel.x() < canvas.cols - 0.5 &&
@@ -113,8 +106,8 @@ ScanOnImage DrawScanOnImage(const PointCloud& scan, const Camera& camera,
       style.point_px > 0.0 ? style.point_px : std::max(3.0, canvas.cols / 320.0);
   for (const ProjectedReturn& r : shown) {
     const cv::Vec3b c = ColourOf(ShareOf(r.range_m, drawn));
-    cv::circle(canvas, Fixed(r.pixel), cvRound(0.5 * diameter * (1 << kShift)),
-               cv::Scalar(c[0], c[1], c[2]), cv::FILLED, cv::LINE_AA, kShift);
+    cv::circle(canvas, FixedPoint(r.pixel), cvRound(0.5 * diameter * (1 << kFixedPointShift)),
+               cv::Scalar(c[0], c[1], c[2]), cv::FILLED, cv::LINE_AA, kFixedPointShift);
   }
   if (!shown.empty()) DrawScale(drawn, canvas);
   return drawn;
@@ -132,7 +125,8 @@ void DrawOutline(const std::vector<Eigen::Vector3d>& corners_in_cam, const Camer
       const double share = static_cast<double>(i) / kPieces;
       const std::optional<Eigen::Vector2d> next = Project(camera, (1.0 - share) * a + share * b);
       if (last && next) {
-        cv::line(canvas, Fixed(*last), Fixed(*next), colour, thickness, cv::LINE_AA, kShift);
+        cv::line(canvas, FixedPoint(*last), FixedPoint(*next), colour, thickness, cv::LINE_AA,
+                 kFixedPointShift);
       }
       last = next;
     }

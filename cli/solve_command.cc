@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/units.h"
 #include "base/version.h"
 #include "cli/catalogue.h"
 #include "cli/commands.h"
@@ -15,8 +16,6 @@
 
 namespace sextant::cli {
 namespace {
-
-constexpr double kDegPerRad = 57.29577951308232;
 
 Expected<std::vector<SolverPtr>> MakeSolvers(const SolverRegistry& registry,
                                              const std::vector<SpecNode>& specs) {

@@ -31,7 +31,7 @@ std::array<CornerOrder, 8> EveryOrder() {
   return orders;
 }
 
-struct Fit {
+struct OrderFit {
   Rigid3d cam_from_lidar;
   double rmse_m = std::numeric_limits<double>::infinity();
 };
@@ -66,7 +66,7 @@ class OrderSearch {
     return sum / static_cast<double>(kCornersPerBoard * groups_.size());
   }
 
-  Fit FitAll(const Assignment& assignment) const {
+  OrderFit FitAll(const Assignment& assignment) const {
     std::vector<Eigen::Vector3d> in_cam;
     std::vector<Eigen::Vector3d> in_lidar;
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -94,7 +94,7 @@ class OrderSearch {
     for (const CornerOrder& order : EveryOrder()) {
       Assignment assignment = AsGiven();
       for (const BoardPairs& group : groups_) Assign(group, group, order, assignment);
-      const Fit fit = FitAll(assignment);
+      const OrderFit fit = FitAll(assignment);
       if (std::isfinite(fit.rmse_m)) options.starts.push_back(fit.cam_from_lidar);
     }
     const auto found = MatchObjects(match_views, options);
@@ -119,8 +119,8 @@ class OrderSearch {
   }
 
  private:
-  static Fit FitPoints(std::span<const Eigen::Vector3d> in_cam,
-                       std::span<const Eigen::Vector3d> in_lidar) {
+  static OrderFit FitPoints(std::span<const Eigen::Vector3d> in_cam,
+                            std::span<const Eigen::Vector3d> in_lidar) {
     const Expected<KabschFit> fit = FitKabsch(in_cam, in_lidar);
     if (!fit) return {};
     return {fit->b_from_a, std::sqrt(fit->sum_squares / static_cast<double>(in_cam.size()))};

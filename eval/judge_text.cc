@@ -3,8 +3,8 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/units.h"
 #include "eval/judge.h"
 
 namespace sextant {
@@ -42,8 +42,7 @@ std::string Describe(const EdgeFinding& edge) {
 }
 
 std::string Describe(const WeakDirection& weak) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
-  const double scale = weak.is_rotation ? 1.0 / kDegree : 1e3;
+  const double scale = weak.is_rotation ? 1.0 / kRadPerDeg : 1e3;
   return fmt::format(
       "weak: the {} {} ({:.2f}, {:.2f}, {:.2f}) in the camera frame is known to {:.3g} {}, the "
       "best "

@@ -3,14 +3,13 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <numbers>
 
+#include "base/units.h"
 #include "solvers/point_tree.h"
 
 namespace sextant {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double MeanOfFinite(std::span<const double> values) {

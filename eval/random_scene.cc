@@ -1,23 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/random_scene.h"
 
+#include "geometry/random_vectors.h"
+
 namespace sextant {
-namespace {
-
-Eigen::Vector3d UniformVector(Random& random, double half_side) {
-  Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = random.Uniform(-half_side, half_side);
-  return v;
-}
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = random.Normal();
-  return v;
-}
-
-}  // namespace
-
 RandomScene MakeRandomScene(const RandomSceneOptions& options, Random& random) {
   RandomScene scene;
   const Eigen::Vector3d axis = NormalVector(random).normalized();

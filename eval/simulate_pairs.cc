@@ -4,23 +4,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "base/random.h"
+#include "base/units.h"
 #include "eval/simulator/corner_noise.h"
 #include "eval/typical_sensors.h"
+#include "geometry/random_vectors.h"
 
 namespace sextant {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = random.Normal();
-  return v;
-}
 
 std::vector<Board> PaperBoards() {
   return {{.id = 0, .top_right_m = 0.468, .right_bottom_m = 0.484},
@@ -29,9 +22,9 @@ std::vector<Board> PaperBoards() {
 
 // Corners in the camera frame, top, right, bottom, left as the camera sees the board.
 std::vector<Eigen::Vector3d> HangBoard(const Board& board, int index, Random& random) {
-  const double turn = random.Uniform(-25.0, 25.0) * kDegree;
-  const double lean = random.Uniform(-15.0, 15.0) * kDegree;
-  const double roll = 45.0 * kDegree + random.Uniform(-5.0, 5.0) * kDegree;
+  const double turn = random.Uniform(-25.0, 25.0) * kRadPerDeg;
+  const double lean = random.Uniform(-15.0, 15.0) * kRadPerDeg;
+  const double roll = 45.0 * kRadPerDeg + random.Uniform(-5.0, 5.0) * kRadPerDeg;
   const double side = index % 2 == 0 ? -1.0 : 1.0;
   Eigen::Vector3d centre;
   centre.x() = side * 0.5 + random.Uniform(-0.08, 0.08);

@@ -10,14 +10,13 @@
 #include <optional>
 
 #include "base/random.h"
+#include "base/units.h"
 #include "eval/fit_board_pose.h"
 #include "eval/typical_sensors.h"
 #include "geometry/board_check.h"
 
 namespace sextant {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Board TheBoard(const ViewSimulation& simulation) {
   Board board{
@@ -30,12 +29,12 @@ Board TheBoard(const ViewSimulation& simulation) {
 // front to the camera.
 Rigid3d DrawBoardPose(const ViewSimulation& simulation, const Rigid3d& cam_from_lidar,
                       Random& random) {
-  const double left = random.Uniform(-25.0, 25.0) * kDegree;
-  const double up = random.Uniform(-5.0, 5.0) * kDegree;
+  const double left = random.Uniform(-25.0, 25.0) * kRadPerDeg;
+  const double up = random.Uniform(-5.0, 5.0) * kRadPerDeg;
   const double range = random.Uniform(simulation.nearest_m, simulation.farthest_m);
   const double axis = random.Uniform(0.0, 2.0 * std::numbers::pi);
-  const double tilt = random.Uniform(0.0, 45.0) * kDegree;
-  const double roll = random.Uniform(30.0, 60.0) * kDegree;
+  const double tilt = random.Uniform(0.0, 45.0) * kRadPerDeg;
+  const double roll = random.Uniform(30.0, 60.0) * kRadPerDeg;
   const Eigen::Vector3d centre_in_lidar =
       range * Eigen::Vector3d(1.0, std::tan(left), std::tan(up)).normalized();
   const Eigen::Vector3d tilted = tilt * Eigen::Vector3d(std::cos(axis), std::sin(axis), 0.0);
@@ -55,11 +54,11 @@ class RingScan {
   void AddTo(BoardView& view, Random& random) const {
     const Eigen::Vector3d centre = lidar_from_board_.translation;
     const double middle = std::atan2(centre.y(), centre.x());
-    const double reach = std::asin(std::min(1.0, half_.norm() / centre.norm())) + kDegree;
-    const double step = simulation_.azimuth_step_deg * kDegree;
+    const double reach = std::asin(std::min(1.0, half_.norm() / centre.norm())) + kRadPerDeg;
+    const double step = simulation_.azimuth_step_deg * kRadPerDeg;
     for (int ring = 0; ring < simulation_.rings; ++ring) {
       const double elevation =
-          (ring - 0.5 * (simulation_.rings - 1)) * simulation_.ring_step_deg * kDegree;
+          (ring - 0.5 * (simulation_.rings - 1)) * simulation_.ring_step_deg * kRadPerDeg;
       double before = middle - reach - step * random.Uniform();
       for (double azimuth = before + step; azimuth < middle + reach + step; azimuth += step) {
         if (IsOn(elevation, azimuth)) AddReturn(elevation, azimuth, view, random);

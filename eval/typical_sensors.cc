@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/typical_sensors.h"
 
-#include <numbers>
+#include "base/units.h"
+#include "geometry/random_vectors.h"
 
 namespace sextant {
-namespace {
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = random.Normal();
-  return v;
-}
-
-}  // namespace
-
 Camera ZedLikeCamera() {
   return {.width_px = 1280,
           .height_px = 720,
@@ -26,11 +17,10 @@ Camera ZedLikeCamera() {
 // The LiDAR's axes (x forward, y left, z up) turned into the camera's (x right, y down, z forward),
 // with a few degrees of mounting error and the paper's offset of some decimetres.
 Rigid3d DrawExtrinsic(Random& random) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   Eigen::Matrix3d axes;
   axes << 0, -1, 0, 0, 0, -1, 1, 0, 0;
   Rigid3d cam_from_lidar;
-  const Eigen::Vector3d turn = 5.0 * kDegree * NormalVector(random);
+  const Eigen::Vector3d turn = 5.0 * kRadPerDeg * NormalVector(random);
   cam_from_lidar.rotation = (ExpSo3(turn) * Eigen::Quaterniond(axes)).normalized();
   cam_from_lidar.translation = Eigen::Vector3d(-0.15, -0.25, -0.18) + 0.05 * NormalVector(random);
   return cam_from_lidar;

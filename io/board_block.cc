@@ -6,14 +6,15 @@
 #include <map>
 #include <utility>
 
+#include "base/units.h"
 #include "geometry/board_check.h"
 #include "io/degrees.h"
+#include "io/most_id.h"
 #include "io/number_text.h"
 
 namespace sextant {
 namespace {
 
-constexpr int kMostId = 1'000'000'000;
 constexpr std::size_t kMostTags = 10'000;
 
 BoardHole ReadHole(YamlFields& in, const YamlNode& node) {

@@ -6,10 +6,11 @@
 #include <limits>
 #include <span>
 
+#include "base/units.h"
 #include "io/board_block.h"
 #include "io/calibration_result.h"
 #include "io/camera_block.h"
-#include "io/degrees.h"
+#include "io/most_id.h"
 #include "io/number_text.h"
 #include "io/pose_block.h"
 #include "io/text_file.h"
@@ -20,7 +21,6 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-constexpr int kMostId = 1'000'000'000;
 constexpr std::size_t kMostNumbers = 100'000;
 
 // Null, as JSON has it, is absent.
@@ -153,7 +153,7 @@ LidarPattern ReadLidar(YamlFields& in, const YamlNode& node) {
   return lidar;
 }
 
-void ReadBoards(YamlFields& in, const YamlNode& list, std::vector<Board>& boards) {
+void ReadResultBoards(YamlFields& in, const YamlNode& list, std::vector<Board>& boards) {
   if (!in.IsSequence(list, "boards")) return;
   std::vector<const YamlNode*> nodes;
   for (const YamlNode& node : list.items) {
@@ -284,7 +284,7 @@ std::uint64_t ReadSeed(YamlFields& in, const YamlNode& root) {
   return seed;
 }
 
-void ReadHeader(YamlFields& in, const YamlNode& root) {
+void ReadResultHeader(YamlFields& in, const YamlNode& root) {
   static const Keys kKeys = {"sextant_result", "sextant",       "solver",
                              "seed",           "configuration", "configuration_hash",
                              "camera_frame",   "lidar_frame",   "cam_from_lidar",
@@ -315,7 +315,7 @@ void ReadBody(YamlFields& in, const YamlNode& root, CalibrationResult& result) {
   if (const YamlNode* node = Present(root, "trust")) result.trust = ReadTrust(in, *node);
   if (const YamlNode* node = Present(root, "camera")) result.camera = ReadCameraBlock(in, *node);
   if (const YamlNode* node = Present(root, "lidar")) result.lidar = ReadLidar(in, *node);
-  if (const YamlNode* node = Present(root, "boards")) ReadBoards(in, *node, result.boards);
+  if (const YamlNode* node = Present(root, "boards")) ReadResultBoards(in, *node, result.boards);
   if (const YamlNode* node = Present(root, "views")) ReadViews(in, *node, result.views);
 }
 
@@ -330,7 +330,7 @@ Expected<CalibrationResult> ParseCalibrationResult(std::string_view text, const 
   const Expected<YamlNode> root = ParseYaml(std::string(text), file);
   if (!root) return tl::unexpected<Error>(root.error());
   YamlFields in(file);
-  ReadHeader(in, *root);
+  ReadResultHeader(in, *root);
   if (!in.ok()) return in.TakeError();
   CalibrationResult result;
   ReadBody(in, *root, result);

@@ -12,13 +12,13 @@
 namespace sextant {
 namespace {
 
-using Column = std::size_t CloudColumns::*;
+using ColumnMember = std::size_t CloudColumns::*;
 
 constexpr double kByType = 0.0;  // Seconds of a real column, nanoseconds of an integer one.
 
 struct KnownName {
   std::string_view name;
-  Column column;
+  ColumnMember column;
   double time_unit_s = kByType;
 };
 

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
+
+#include "base/units.h"
 
 namespace sextant {
-
-inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// Degrees from which kRadPerDeg leads back to the same radians; whole ones where they do.
 inline double ExactDegrees(double angle_rad) {

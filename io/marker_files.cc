@@ -6,14 +6,13 @@
 #include <algorithm>
 
 #include "io/line_reader.h"
+#include "io/most_id.h"
 #include "io/text_file.h"
 
 namespace sextant {
 namespace {
 
 constexpr double kMetresPerCm = 1e-2;
-constexpr int kMostId = 1'000'000'000;
-
 // (u,v)
 Eigen::Vector2d ReadPixel(LineReader& in, std::string_view text, std::size_t field) {
   const std::size_t comma = text.find(',');

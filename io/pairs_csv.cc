@@ -8,12 +8,11 @@
 
 #include "base/nearest_name.h"
 #include "io/line_reader.h"
+#include "io/most_id.h"
 #include "io/text_file.h"
 
 namespace sextant {
 namespace {
-
-constexpr int kMostId = 1'000'000'000;
 
 using Names = std::vector<std::string>;
 

@@ -21,7 +21,7 @@ const std::array<std::string, 3>& EncodingNames() {
 
 constexpr std::int64_t kMostPoints = 1'000'000'000;
 constexpr std::int64_t kMostCount = 1'000'000;
-constexpr std::size_t kMostFields = 256;
+constexpr std::size_t kMostPcdFields = 256;
 constexpr std::size_t kMostHeaderBytes = std::size_t{1} << 16;
 
 // What the lines say; absent ones are empty.
@@ -49,8 +49,8 @@ std::size_t FindBody(std::string_view text) {
 }
 
 void ReadNames(LineReader& in, Lines& lines) {
-  if (in.field_count() < 2 || in.field_count() > kMostFields + 1) {
-    in.Fail(ErrorCode::kParse, fmt::format("expected FIELDS and 1 to {} names", kMostFields));
+  if (in.field_count() < 2 || in.field_count() > kMostPcdFields + 1) {
+    in.Fail(ErrorCode::kParse, fmt::format("expected FIELDS and 1 to {} names", kMostPcdFields));
     return;
   }
   for (std::size_t i = 1; i < in.field_count(); ++i) {

@@ -20,7 +20,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "PCD data is copied as it stands");
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 // The fields that a PointCloud has; null where the file lacks one.
 struct CloudFields {
@@ -71,9 +71,9 @@ float ToFloat(double value) {
 }
 
 // Gathers points and judges their values; the first error is kept by its caller.
-class CloudBuilder {
+class PcdCloudBuilder {
  public:
-  CloudBuilder(const CloudFields& fields, std::size_t points) : fields_(fields) {
+  PcdCloudBuilder(const CloudFields& fields, std::size_t points) : fields_(fields) {
     cloud_.points.reserve(points);
     if (fields.intensity != nullptr) cloud_.intensity.reserve(points);
     if (fields.ring != nullptr) cloud_.ring.reserve(points);
@@ -83,7 +83,7 @@ class CloudBuilder {
   /// Whether the values can be; ring is the only field with a range.
   bool Add(const Values& values) {
     const bool is_return = values.point.allFinite();
-    cloud_.points.push_back(is_return ? values.point : Eigen::Vector3d::Constant(kNaN));
+    cloud_.points.push_back(is_return ? values.point : Eigen::Vector3d::Constant(kNoNumber));
     if (fields_.intensity != nullptr) {
       cloud_.intensity.push_back(ToFloat(values.intensity));
     }
@@ -128,7 +128,7 @@ double AsciiValue(LineReader& in, const PcdField* field) {
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool is_whole = stop == text.data() + text.size();
   if (error == std::errc() && is_whole) {
-    if (!std::isfinite(value)) return kNaN;
+    if (!std::isfinite(value)) return kNoNumber;
     return field->type == 'F' && field->size == 4 ? ToFloat(value) : value;
   }
   return in.Real(field->position, field->name);
@@ -147,7 +147,7 @@ Expected<PointCloud> ReadAscii(const PcdHeader& header, const CloudFields& field
   LineReader in(file, text);
   while (in.Next() && in.Field(0) != "DATA") {
   }
-  CloudBuilder builder(fields, header.points);
+  PcdCloudBuilder builder(fields, header.points);
   const std::string row = fmt::format("the {} values of a point", header.point_values);
   for (std::size_t i = 0; i < header.points && in.ok(); ++i) {
     if (!in.Require(row) || !in.HasFields(header.point_values, row)) break;
@@ -202,7 +202,7 @@ Expected<PointCloud> ReadValues(const PcdHeader& header, const CloudFields& fiel
                                     : point * header.point_bytes + field->offset;
     return BinaryValue(data.data() + at, *field);
   };
-  CloudBuilder builder(fields, header.points);
+  PcdCloudBuilder builder(fields, header.points);
   for (std::size_t i = 0; i < header.points; ++i) {
     Values values;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -15,7 +15,7 @@ namespace sextant {
 namespace {
 
 // One field that is written, of a float or of two unsigned bytes.
-struct Column {
+struct PcdColumn {
   const char* name;
   bool is_ring = false;
   std::function<double(std::size_t)> value;
@@ -23,8 +23,8 @@ struct Column {
   std::size_t size() const { return is_ring ? sizeof(std::uint16_t) : sizeof(float); }
 };
 
-std::vector<Column> ColumnsOf(const PointCloud& cloud) {
-  std::vector<Column> columns;
+std::vector<PcdColumn> ColumnsOf(const PointCloud& cloud) {
+  std::vector<PcdColumn> columns;
   const char* const names[] = {"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
     columns.push_back(
@@ -45,13 +45,13 @@ std::vector<Column> ColumnsOf(const PointCloud& cloud) {
   return columns;
 }
 
-std::string Header(const std::vector<Column>& columns, std::size_t points,
+std::string Header(const std::vector<PcdColumn>& columns, std::size_t points,
                    std::string_view encoding) {
   std::string fields;
   std::string sizes;
   std::string types;
   std::string counts;
-  for (const Column& column : columns) {
+  for (const PcdColumn& column : columns) {
     fields += fmt::format(" {}", column.name);
     sizes += fmt::format(" {}", column.size());
     types += column.is_ring ? " U" : " F";
@@ -63,7 +63,7 @@ std::string Header(const std::vector<Column>& columns, std::size_t points,
       fields, sizes, types, counts, points, points, encoding);
 }
 
-void AppendAscii(const Column& column, std::size_t point, std::string& text) {
+void AppendAscii(const PcdColumn& column, std::size_t point, std::string& text) {
   const double value = column.value(point);
   if (std::isnan(value)) {
     text += "nan";
@@ -74,7 +74,7 @@ void AppendAscii(const Column& column, std::size_t point, std::string& text) {
   }
 }
 
-void AppendBytes(const Column& column, std::size_t point, std::string& data) {
+void AppendBytes(const PcdColumn& column, std::size_t point, std::string& data) {
   char bytes[sizeof(float)];
   if (column.is_ring) {
     const auto value = static_cast<std::uint16_t>(column.value(point));
@@ -105,11 +105,11 @@ std::string Compressed(const std::string& data) {
 }  // namespace
 
 std::string FormatPcd(const PointCloud& cloud, PcdEncoding encoding) {
-  const std::vector<Column> columns = ColumnsOf(cloud);
+  const std::vector<PcdColumn> columns = ColumnsOf(cloud);
   const std::size_t points = cloud.points.size();
   if (encoding == PcdEncoding::kBinaryCompressed) {
     std::string data;
-    for (const Column& column : columns) {
+    for (const PcdColumn& column : columns) {
       for (std::size_t i = 0; i < points; ++i) AppendBytes(column, i, data);
     }
     return Header(columns, points, ToString(encoding)) + Compressed(data);

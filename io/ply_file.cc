@@ -15,7 +15,7 @@
 namespace sextant {
 namespace {
 
-constexpr std::string_view kBlank = " \t\r\n\f\v";
+constexpr std::string_view kPlyBlank = " \t\r\n\f\v";
 
 // The numbers of the body one after the other, with the first error kept.
 class Body {
@@ -65,11 +65,11 @@ class Body {
   }
 
   double AsciiNumber(std::string_view property) {
-    while (at_ < bytes_.size() && kBlank.find(bytes_[at_]) != std::string_view::npos) {
+    while (at_ < bytes_.size() && kPlyBlank.find(bytes_[at_]) != std::string_view::npos) {
       line_ += bytes_[at_] == '\n' ? 1 : 0;
       ++at_;
     }
-    const std::size_t end = std::min(bytes_.find_first_of(kBlank, at_), bytes_.size());
+    const std::size_t end = std::min(bytes_.find_first_of(kPlyBlank, at_), bytes_.size());
     const std::string_view word = bytes_.substr(at_, end - at_);
     if (word.empty()) {
       Fail(ErrorCode::kParse, property, "the file ends here; it is cut short or its header lies");

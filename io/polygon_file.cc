@@ -8,6 +8,7 @@
 
 #include "geometry/board.h"
 #include "io/camera_block.h"
+#include "io/most_id.h"
 #include "io/pose_block.h"
 #include "io/text_file.h"
 #include "io/yaml_fields.h"
@@ -18,7 +19,6 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-constexpr int kMostId = 1'000'000'000;
 constexpr int kMostCorner = 7;  // 4 to 7 are those of a hollow board's opening.
 constexpr std::size_t kEdges = 4;
 
@@ -55,7 +55,7 @@ Quadrilateral ReadQuadrilateral(YamlFields& in, const YamlNode& node) {
   return corners;
 }
 
-void ReadBoards(YamlFields& in, const YamlNode& list, std::vector<MarkedBoard>& boards) {
+void ReadPolygonBoards(YamlFields& in, const YamlNode& list, std::vector<MarkedBoard>& boards) {
   static const Keys kKeys = {"id", "edges"};
   if (!in.IsSequence(list, "boards")) return;
   for (const YamlNode& node : list.items) {
@@ -92,7 +92,7 @@ void ReadCorners(YamlFields& in, const YamlNode& list, std::vector<ClickedCorner
   }
 }
 
-void ReadHeader(YamlFields& in, const YamlNode& root) {
+void ReadPolygonHeader(YamlFields& in, const YamlNode& root) {
   static const Keys kKeys = {"sextant_polygons", "camera",  "cam_from_lidar",
                              "boards",           "corners", "unfinished"};
   if (root.kind == YamlNode::Kind::kMap && root.Find("sextant_polygons") == nullptr) {
@@ -117,12 +117,12 @@ Expected<ScanMarks> ParsePolygons(std::string_view text, const std::string& file
   const Expected<YamlNode> root = ParseYaml(std::string(text), file);
   if (!root) return tl::unexpected<Error>(root.error());
   YamlFields in(file);
-  ReadHeader(in, *root);
+  ReadPolygonHeader(in, *root);
   if (!in.ok()) return in.TakeError();
   ScanMarks marks;
   marks.camera = ReadCameraBlock(in, in.Require(*root, "camera"));
   marks.cam_from_lidar = ReadPoseBlock(in, in.Require(*root, "cam_from_lidar"), "cam_from_lidar");
-  if (const YamlNode* boards = root->Find("boards")) ReadBoards(in, *boards, marks.boards);
+  if (const YamlNode* boards = root->Find("boards")) ReadPolygonBoards(in, *boards, marks.boards);
   if (const YamlNode* corners = root->Find("corners")) ReadCorners(in, *corners, marks.corners);
   const YamlNode* unfinished = root->Find("unfinished");
   if (unfinished != nullptr && IsList(in, *unfinished, "unfinished", kEdges - 1)) {

@@ -2,13 +2,13 @@
 #include "io/pose_json.h"
 
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <vector>
+
+#include "base/units.h"
 
 namespace sextant {
 
 nlohmann::ordered_json PoseJson(const Rigid3d& pose) {
-  constexpr double kDegPerRad = 180.0 / std::numbers::pi;
   const Eigen::Quaterniond& q = pose.rotation;
   const Eigen::Vector3d& t = pose.translation;
   const EulerZyx euler = ToEulerZyx(q);

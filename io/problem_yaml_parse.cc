@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "io/camera_block.h"
+#include "io/most_id.h"
 #include "io/pose_block.h"
 #include "io/problem_yaml.h"
 #include "io/text_file.h"
@@ -11,8 +12,6 @@ namespace sextant {
 namespace {
 
 using Keys = std::vector<std::string>;
-
-constexpr int kMostId = 1'000'000'000;
 
 // Board i / 4, corner i mod 4 where the pair names none, as in points.txt.
 PairId ReadId(YamlFields& in, const YamlNode& pair, std::size_t index) {
@@ -70,7 +69,7 @@ std::vector<Eigen::Vector3d> ReadPointList(YamlFields& in, const YamlNode& list,
   return points;
 }
 
-void ReadBoards(YamlFields& in, const YamlNode& list, std::vector<Board>& boards) {
+void ReadProblemBoards(YamlFields& in, const YamlNode& list, std::vector<Board>& boards) {
   static const Keys kKeys = {"id", "top_right_m", "right_bottom_m"};
   if (!in.IsSequence(list, "boards")) return;
   for (const YamlNode& node : list.items) {
@@ -85,7 +84,7 @@ void ReadBoards(YamlFields& in, const YamlNode& list, std::vector<Board>& boards
   }
 }
 
-void ReadHeader(YamlFields& in, const YamlNode& root) {
+void ReadProblemHeader(YamlFields& in, const YamlNode& root) {
   static const Keys kKeys = {"sextant_problem", "comment",    "camera",
                              "boards",          "pairs_3d3d", "pairs_2d3d",
                              "point_sets",      "truth",      "initial_cam_from_lidar"};
@@ -108,14 +107,14 @@ Expected<ProblemFile> ParseProblemYaml(std::string_view text, const std::string&
   const Expected<YamlNode> root = ParseYaml(std::string(text), file);
   if (!root) return tl::unexpected<Error>(root.error());
   YamlFields in(file);
-  ReadHeader(in, *root);
+  ReadProblemHeader(in, *root);
   if (!in.ok()) return in.TakeError();
 
   ProblemFile read;
   CalibrationProblem& problem = read.problem;
   if (root->Find("comment") != nullptr) read.comment = in.TextAt(*root, "comment");
   if (const YamlNode* node = root->Find("camera")) problem.camera = ReadCameraBlock(in, *node);
-  if (const YamlNode* node = root->Find("boards")) ReadBoards(in, *node, problem.boards);
+  if (const YamlNode* node = root->Find("boards")) ReadProblemBoards(in, *node, problem.boards);
   if (const YamlNode* node = root->Find("initial_cam_from_lidar")) {
     problem.initial_cam_from_lidar = ReadPoseBlock(in, *node, "initial_cam_from_lidar");
   }

@@ -11,7 +11,7 @@ namespace {
 // Keeps the keys in the order in which they are documented.
 using Json = nlohmann::ordered_json;
 
-Json Rows(const Matrix6d& matrix) {
+Json MatrixRows(const Matrix6d& matrix) {
   Json rows = Json::array();
   for (int i = 0; i < 6; ++i)
     rows.push_back(std::vector<double>(matrix.row(i).begin(), matrix.row(i).end()));
@@ -78,7 +78,7 @@ Json Result(const SolverResult& result) {
     return json;
   }
   json["cam_from_lidar"] = PoseJson(report->cam_from_lidar);
-  json["covariance"] = report->covariance ? Rows(*report->covariance) : Json(nullptr);
+  json["covariance"] = report->covariance ? MatrixRows(*report->covariance) : Json(nullptr);
   json["camera"] = report->camera ? CameraEstimateJson(*report->camera) : Json(nullptr);
   json["extras"] = Numbers(report->extras);
   json["warnings"] = report->warnings;

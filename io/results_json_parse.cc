@@ -15,7 +15,7 @@
 namespace sextant {
 namespace {
 
-using Json = nlohmann::json;
+using ParsedJson = nlohmann::json;
 
 // A wrong value, reported as the JSON library reports a wrong type.
 [[noreturn]] void Refuse(const std::string& message) {
@@ -24,28 +24,28 @@ using Json = nlohmann::json;
 
 // The library's own message of a wrong type does not name the key.
 template <class T>
-T Get(const Json& map, const char* key) {
-  const Json& value = map.at(key);
+T Get(const ParsedJson& map, const char* key) {
+  const ParsedJson& value = map.at(key);
   try {
     return value.get<T>();
-  } catch (const Json::type_error& error) {
+  } catch (const ParsedJson::type_error& error) {
     Refuse(fmt::format("key '{}': {}", key, error.what()));
   }
 }
 
-std::optional<double> GetOptional(const Json& map, const char* key) {
+std::optional<double> GetOptional(const ParsedJson& map, const char* key) {
   if (map.at(key).is_null()) return std::nullopt;
   return Get<double>(map, key);
 }
 
 template <int kSize>
-Eigen::Matrix<double, kSize, 1> GetVector(const Json& map, const char* key) {
+Eigen::Matrix<double, kSize, 1> GetVector(const ParsedJson& map, const char* key) {
   const auto values = Get<std::vector<double>>(map, key);
   if (values.size() != kSize) Refuse(fmt::format("key '{}': expected {} numbers", key, kSize));
   return Eigen::Map<const Eigen::Matrix<double, kSize, 1>>(values.data());
 }
 
-Rigid3d ParsePose(const Json& json) {
+Rigid3d ParsePose(const ParsedJson& json) {
   const Eigen::Vector4d wxyz = GetVector<4>(json, "quaternion_wxyz");
   if (!(std::abs(wxyz.norm() - 1.0) < 1e-5)) {
     Refuse("key 'quaternion_wxyz': expected a quaternion of length 1");
@@ -54,7 +54,7 @@ Rigid3d ParsePose(const Json& json) {
           GetVector<3>(json, "translation_m")};
 }
 
-std::optional<Matrix6d> GetCovariance(const Json& map) {
+std::optional<Matrix6d> GetCovariance(const ParsedJson& map) {
   if (map.at("covariance").is_null()) return std::nullopt;
   const auto rows = Get<std::vector<std::array<double, 6>>>(map, "covariance");
   if (rows.size() != 6) Refuse("key 'covariance': expected 6 rows");
@@ -67,25 +67,25 @@ std::optional<Matrix6d> GetCovariance(const Json& map) {
   return covariance;
 }
 
-std::vector<double> GetResiduals(const Json& map, const char* key) {
+std::vector<double> GetResiduals(const ParsedJson& map, const char* key) {
   std::vector<double> residuals;
-  for (const Json& value : Get<std::vector<Json>>(map, key)) {
+  for (const ParsedJson& value : Get<std::vector<ParsedJson>>(map, key)) {
     residuals.push_back(value.is_null() ? std::numeric_limits<double>::infinity()
                                         : value.get<double>());
   }
   return residuals;
 }
 
-std::vector<EstimatedNumber> ParseNumbers(const Json& list) {
+std::vector<EstimatedNumber> ParseNumbers(const ParsedJson& list) {
   std::vector<EstimatedNumber> numbers;
-  for (const Json& number : list) {
+  for (const ParsedJson& number : list) {
     numbers.push_back({Get<std::string>(number, "name"), Get<double>(number, "value"),
                        GetOptional(number, "sigma")});
   }
   return numbers;
 }
 
-CameraEstimate ParseCameraEstimate(const Json& json) {
+CameraEstimate ParseCameraEstimate(const ParsedJson& json) {
   CameraEstimate estimate;
   Camera& camera = estimate.camera;
   const auto name = Get<std::string>(json, "model");
@@ -103,14 +103,14 @@ CameraEstimate ParseCameraEstimate(const Json& json) {
   return estimate;
 }
 
-ObservationCount ParseCount(const Json& map, const char* key) {
+ObservationCount ParseCount(const ParsedJson& map, const char* key) {
   const auto counts = Get<std::array<int, 2>>(map, key);
   return {counts[0], counts[1]};
 }
 
-std::vector<BoardViewFit> ParseBoardViews(const Json& list) {
+std::vector<BoardViewFit> ParseBoardViews(const ParsedJson& list) {
   std::vector<BoardViewFit> fits;
-  for (const Json& json : list) {
+  for (const ParsedJson& json : list) {
     BoardViewFit fit;
     fit.view = Get<int>(json, "view");
     fit.board = Get<int>(json, "board");
@@ -126,7 +126,7 @@ std::vector<BoardViewFit> ParseBoardViews(const Json& list) {
 }
 
 template <class Enum>
-Enum GetEnum(const Json& map, const char* key, Enum last) {
+Enum GetEnum(const ParsedJson& map, const char* key, Enum last) {
   const auto name = Get<std::string>(map, key);
   for (int i = 0; i <= static_cast<int>(last); ++i) {
     if (ToString(static_cast<Enum>(i)) == name) return static_cast<Enum>(i);
@@ -134,7 +134,7 @@ Enum GetEnum(const Json& map, const char* key, Enum last) {
   Refuse(fmt::format("key '{}': unknown value {}", key, Quoted(name)));
 }
 
-SolveReport ParseReport(const Json& json) {
+SolveReport ParseReport(const ParsedJson& json) {
   SolveReport report;
   report.solver = Get<std::string>(json, "solver");
   report.cam_from_lidar = ParsePose(json.at("cam_from_lidar"));
@@ -155,14 +155,15 @@ SolveReport ParseReport(const Json& json) {
   report.evaluation.per_pair_m = GetResiduals(json, "per_pair_m");
   report.evaluation.per_pair_px = GetResiduals(json, "per_pair_px");
   report.inliers = Get<std::vector<int>>(json, "inliers");
-  for (const Json& pose : json.at("alternatives")) report.alternatives.push_back(ParsePose(pose));
+  for (const ParsedJson& pose : json.at("alternatives"))
+    report.alternatives.push_back(ParsePose(pose));
   report.iterations = Get<int>(json, "iterations");
   report.termination = GetEnum(json, "termination", Termination::kMaxIterations);
   report.wall_time_us = Get<double>(json, "wall_time_us");
   return report;
 }
 
-SolverResult ParseResult(const Json& json) {
+SolverResult ParseResult(const ParsedJson& json) {
   SolverResult result{Get<std::string>(json, "solver"), SolveReport{}};
   if (Get<bool>(json, "ok")) {
     result.report = ParseReport(json);
@@ -173,17 +174,17 @@ SolverResult ParseResult(const Json& json) {
   return result;
 }
 
-ResultFile ParseFile(const Json& json) {
+ResultFile ParseFile(const ParsedJson& json) {
   ResultFile file;
   file.version = Get<std::string>(json, "sextant");
-  const Json& input = json.at("input");
+  const ParsedJson& input = json.at("input");
   file.input = {.path = Get<std::string>(input, "path"),
                 .format = Get<std::string>(input, "format"),
                 .pairs_3d3d = Get<int>(input, "pairs_3d3d"),
                 .pairs_2d3d = Get<int>(input, "pairs_2d3d"),
                 .points_in_cam = Get<int>(input, "points_in_cam"),
                 .points_in_lidar = Get<int>(input, "points_in_lidar")};
-  for (const Json& result : json.at("results")) file.results.push_back(ParseResult(result));
+  for (const ParsedJson& result : json.at("results")) file.results.push_back(ParseResult(result));
   return file;
 }
 
@@ -195,8 +196,8 @@ Expected<ResultFile> ReadResults(const std::filesystem::path& path) {
 
 Expected<ResultFile> ParseResults(std::string_view text, const std::string& file) {
   try {
-    return ParseFile(Json::parse(text));
-  } catch (const Json::exception& error) {
+    return ParseFile(ParsedJson::parse(text));
+  } catch (const ParsedJson::exception& error) {
     return MakeError(ErrorCode::kParse,
                      fmt::format("{}: not a sextant result file: {}", ToString(Place{.file = file}),
                                  Printable(error.what(), 200)));

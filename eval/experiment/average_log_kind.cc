@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdlib>
 #include <filesystem>
-#include <numbers>
 
+#include "base/units.h"
 #include "eval/experiment/parameter_set.h"
 #include "eval/experiment/trials.h"
 #include "eval/running_average.h"
@@ -14,15 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
-struct Settings {
+struct AverageLogSettings {
   std::string log{};
 };
 
-enum Measured : int { kXM, kYM, kZM, kFromMeanMm, kFromMeanDeg, kRepeats };
+enum AverageLogMeasured : int { kXM, kYM, kZM, kFromMeanMm, kFromMeanDeg, kRepeats };
 
-const std::vector<Metric>& Metrics() {
+const std::vector<Metric>& AverageLogMetrics() {
   static const std::vector<Metric> metrics = {
       {"x_m", "averaged translation"},
       {"y_m", "averaged translation"},
@@ -34,9 +32,9 @@ const std::vector<Metric>& Metrics() {
   return metrics;
 }
 
-const ParameterSet<Settings>& Parameters() {
-  static const ParameterSet<Settings> set = ParameterSet<Settings>().Text(
-      "log", &Settings::log, "path",
+const ParameterSet<AverageLogSettings>& AverageLogParameters() {
+  static const ParameterSet<AverageLogSettings> set = ParameterSet<AverageLogSettings>().Text(
+      "log", &AverageLogSettings::log, "path",
       "avg_values.txt of the original package, in the folder of the real data");
   return set;
 }
@@ -90,8 +88,8 @@ class AverageLogTrials final : public Trials {
   RunningAverageAnalysis analysis_;
 };
 
-Expected<TrialsPtr> Make(const KindArguments& arguments) {
-  const Expected<Settings> settings = Parameters().Parse(arguments.parameters);
+Expected<TrialsPtr> MakeAverageLogTrials(const KindArguments& arguments) {
+  const Expected<AverageLogSettings> settings = AverageLogParameters().Parse(arguments.parameters);
   if (!settings) return tl::unexpected<Error>(settings.error());
   const Expected<fs::path> path = RealFile(settings->log, arguments.folder);
   if (!path) return tl::unexpected<Error>(path.error());
@@ -108,9 +106,9 @@ TrialKind AverageLogKind() {
   return {.name = "average_log",
           .summary = "the scans of a log of the original package, and how it averages them",
           .takes_solvers = false,
-          .parameters = Parameters().Describe(),
-          .metrics = Metrics(),
-          .make = Make};
+          .parameters = AverageLogParameters().Describe(),
+          .metrics = AverageLogMetrics(),
+          .make = MakeAverageLogTrials};
 }
 
 }  // namespace sextant

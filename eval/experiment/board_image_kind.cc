@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <numbers>
 
 #include "base/random.h"
+#include "base/units.h"
 #include "eval/experiment/parameter_set.h"
 #include "eval/experiment/trials.h"
 #include "eval/simulator/camera_model.h"
@@ -13,9 +13,7 @@
 namespace sextant {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-
-struct Settings {
+struct BoardImageSettings {
   std::string camera_model = "zed_left";
   double distance_m = 2.0;
   double side_m = 0.48;
@@ -23,9 +21,16 @@ struct Settings {
   double tilt_deg = 30.0;
 };
 
-enum Measured : int { kFound, kCornerMm, kDepthMm, kAcrossMm, kRotationDeg, kAmbiguous };
+enum BoardImageMeasured : int {
+  kImageFound,
+  kImageCornerMm,
+  kDepthMm,
+  kAcrossMm,
+  kImageRotationDeg,
+  kAmbiguous
+};
 
-const std::vector<Metric>& Metrics() {
+const std::vector<Metric>& BoardImageMetrics() {
   static const std::vector<Metric> metrics = {
       {"found", "whether the print was found and gave a pose"},
       {"corner_mm", "RMS distance of the board's corners from the true ones"},
@@ -37,21 +42,22 @@ const std::vector<Metric>& Metrics() {
   return metrics;
 }
 
-const ParameterSet<Settings>& Parameters() {
-  static const ParameterSet<Settings> set =
-      ParameterSet<Settings>()
-          .Text("camera_model", &Settings::camera_model, "name", "see docs/simulator.md")
-          .Real("distance_m", &Settings::distance_m, "m", 0.3, 100.0, "from camera to board")
-          .Real("side_m", &Settings::side_m, "m", 0.05, 10.0, "of the square board")
-          .Real("print_m", &Settings::print_m, "m", 0.02, 9.0,
+const ParameterSet<BoardImageSettings>& BoardImageParameters() {
+  static const ParameterSet<BoardImageSettings> set =
+      ParameterSet<BoardImageSettings>()
+          .Text("camera_model", &BoardImageSettings::camera_model, "name", "see docs/simulator.md")
+          .Real("distance_m", &BoardImageSettings::distance_m, "m", 0.3, 100.0,
+                "from camera to board")
+          .Real("side_m", &BoardImageSettings::side_m, "m", 0.05, 10.0, "of the square board")
+          .Real("print_m", &BoardImageSettings::print_m, "m", 0.02, 9.0,
                 "side of the tag, and of all the checkerboard's squares together")
-          .Real("tilt_deg", &Settings::tilt_deg, "deg", 0.0, 70.0,
+          .Real("tilt_deg", &BoardImageSettings::tilt_deg, "deg", 0.0, 70.0,
                 "the board is turned and leans by up to this");
   return set;
 }
 
 // The same area of paper, printed in three ways.
-Board PrintedBoard(const Settings& settings, std::size_t print) {
+Board PrintedBoard(const BoardImageSettings& settings, std::size_t print) {
   constexpr int kSquares = 8;
   Board board{.id = 0, .top_right_m = settings.side_m, .right_bottom_m = settings.side_m};
   if (print == 2) {
@@ -68,7 +74,7 @@ Board PrintedBoard(const Settings& settings, std::size_t print) {
 
 class BoardImageTrials final : public Trials {
  public:
-  static Expected<TrialsPtr> Make(const Settings& settings) {
+  static Expected<TrialsPtr> Make(const BoardImageSettings& settings) {
     auto trials = std::make_shared<BoardImageTrials>();
     trials->settings_ = settings;
     const Expected<Camera> camera = FindCameraModel(settings.camera_model);
@@ -114,33 +120,33 @@ class BoardImageTrials final : public Trials {
  private:
   void Measure(const Expected<cv::Mat>& image, std::size_t print, const Rigid3d& truth,
                MetricValues values) const {
-    values.Set(kFound, 0.0);
+    values.Set(kImageFound, 0.0);
     if (!image) return;
     const Expected<SeenBoards> seen = finders_[print].Find(*image);
     if (!seen || !seen->boards[0].pose || !*seen->boards[0].pose) return;
     const BoardPose& pose = **seen->boards[0].pose;
-    values.Set(kFound, 1.0);
+    values.Set(kImageFound, 1.0);
     values.Set(kAmbiguous, pose.ambiguous_with ? 1.0 : 0.0);
     double squares = 0.0;
     for (const Eigen::Vector3d& corner : BoardCorners(PrintedBoard(settings_, print))) {
       squares += 0.25 * (pose.cam_from_board * corner - truth * corner).squaredNorm();
     }
-    values.Set(kCornerMm, 1e3 * std::sqrt(squares));
+    values.Set(kImageCornerMm, 1e3 * std::sqrt(squares));
     const Eigen::Vector3d sight = truth.translation.normalized();
     const Eigen::Vector3d off = pose.cam_from_board.translation - truth.translation;
     const double along = sight.dot(off);
     values.Set(kDepthMm, 1e3 * std::abs(along));
     values.Set(kAcrossMm, 1e3 * (off - along * sight).norm());
-    values.Set(kRotationDeg,
+    values.Set(kImageRotationDeg,
                RotationDistance(pose.cam_from_board.rotation, truth.rotation) / kRadPerDeg);
   }
 
-  Settings settings_;
+  BoardImageSettings settings_;
   std::vector<BoardFinder> finders_;
 };
 
-Expected<TrialsPtr> Make(const KindArguments& arguments) {
-  const Expected<Settings> settings = Parameters().Parse(arguments.parameters);
+Expected<TrialsPtr> MakeBoardImageTrials(const KindArguments& arguments) {
+  const Expected<BoardImageSettings> settings = BoardImageParameters().Parse(arguments.parameters);
   if (!settings) return tl::unexpected<Error>(settings.error());
   return BoardImageTrials::Make(*settings);
 }
@@ -151,10 +157,10 @@ TrialKind BoardImageKind() {
   return {.name = "board_image",
           .summary = "one board in a rendered image, printed with a tag or as a checkerboard",
           .takes_solvers = false,
-          .parameters = Parameters().Describe(),
-          .metrics = Metrics(),
+          .parameters = BoardImageParameters().Describe(),
+          .metrics = BoardImageMetrics(),
           .trials_per_block = 5,
-          .make = Make};
+          .make = MakeBoardImageTrials};
 }
 
 }  // namespace sextant

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "base/random.h"
+#include "base/units.h"
 #include "eval/experiment/parameter_set.h"
 #include "eval/experiment/trials.h"
 #include "eval/simulator/lidar_model.h"
@@ -16,9 +16,7 @@
 namespace sextant {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-
-struct Settings {
+struct BoardScanSettings {
   std::string lidar_model = "vlp16";
   std::string extractor{};
   double distance_m = 2.0;
@@ -29,7 +27,7 @@ struct Settings {
   double background_m = 2.0;
 };
 
-enum Measured : int {
+enum BoardScanMeasured : int {
   kFound,
   kRings,
   kEdgePoints,
@@ -41,7 +39,7 @@ enum Measured : int {
   kWorstMm,
 };
 
-const std::vector<Metric>& Metrics() {
+const std::vector<Metric>& BoardScanMetrics() {
   static const std::vector<Metric> metrics = {
       {"found", "whether the board was found and had all four corners"},
       {"rings", "rings that hit the board"},
@@ -56,27 +54,27 @@ const std::vector<Metric>& Metrics() {
   return metrics;
 }
 
-const ParameterSet<Settings>& Parameters() {
-  static const ParameterSet<Settings> set =
-      ParameterSet<Settings>()
-          .Text("lidar_model", &Settings::lidar_model, "name", "see sextant lidars")
-          .Text("extractor", &Settings::extractor, "name", "only this one; empty: all")
-          .Real("distance_m", &Settings::distance_m, "m", 0.5, 100.0,
+const ParameterSet<BoardScanSettings>& BoardScanParameters() {
+  static const ParameterSet<BoardScanSettings> set =
+      ParameterSet<BoardScanSettings>()
+          .Text("lidar_model", &BoardScanSettings::lidar_model, "name", "see sextant lidars")
+          .Text("extractor", &BoardScanSettings::extractor, "name", "only this one; empty: all")
+          .Real("distance_m", &BoardScanSettings::distance_m, "m", 0.5, 100.0,
                 "from the LiDAR to the board's middle")
-          .Real("side_m", &Settings::side_m, "m", 0.05, 10.0, "of the square board")
-          .Real("yaw_deg", &Settings::yaw_deg, "deg", 0.0, 60.0,
+          .Real("side_m", &BoardScanSettings::side_m, "m", 0.05, 10.0, "of the square board")
+          .Real("yaw_deg", &BoardScanSettings::yaw_deg, "deg", 0.0, 60.0,
                 "the board is turned about the vertical by up to this")
-          .Real("pitch_deg", &Settings::pitch_deg, "deg", 0.0, 60.0, "leans by up to this")
-          .Real("roll_deg", &Settings::roll_deg, "deg", 0.0, 30.0,
+          .Real("pitch_deg", &BoardScanSettings::pitch_deg, "deg", 0.0, 60.0, "leans by up to this")
+          .Real("roll_deg", &BoardScanSettings::roll_deg, "deg", 0.0, 30.0,
                 "and hangs askew from its corner by up to this")
-          .Real("background_m", &Settings::background_m, "m", 0.5, 100.0,
+          .Real("background_m", &BoardScanSettings::background_m, "m", 0.5, 100.0,
                 "from the board to the wall behind it");
   return set;
 }
 
 class BoardScanTrials final : public Trials {
  public:
-  BoardScanTrials(const Settings& settings, LidarModel lidar)
+  BoardScanTrials(const BoardScanSettings& settings, LidarModel lidar)
       : settings_(settings), lidar_(std::move(lidar)) {
     for (const CornerExtractorInfo& info : CornerExtractors()) {
       if (settings.extractor.empty() || settings.extractor == info.name) {
@@ -173,13 +171,13 @@ class BoardScanTrials final : public Trials {
            Eigen::Vector3d(x * board.top_right_m, y * board.right_bottom_m, 0.0);
   }
 
-  Settings settings_;
+  BoardScanSettings settings_;
   LidarModel lidar_;
   std::vector<std::string> extractors_;
 };
 
-Expected<TrialsPtr> Make(const KindArguments& arguments) {
-  const Expected<Settings> settings = Parameters().Parse(arguments.parameters);
+Expected<TrialsPtr> MakeBoardScanTrials(const KindArguments& arguments) {
+  const Expected<BoardScanSettings> settings = BoardScanParameters().Parse(arguments.parameters);
   if (!settings) return tl::unexpected<Error>(settings.error());
   Expected<LidarModel> lidar = FindLidarModel(settings->lidar_model);
   if (!lidar) return tl::unexpected<Error>(lidar.error());
@@ -199,10 +197,10 @@ TrialKind BoardScanKind() {
       .name = "board_scan",
       .summary = "one board in a simulated scan: its edge points and corners, by each extractor",
       .takes_solvers = false,
-      .parameters = Parameters().Describe(),
-      .metrics = Metrics(),
+      .parameters = BoardScanParameters().Describe(),
+      .metrics = BoardScanMetrics(),
       .trials_per_block = 20,
-      .make = Make};
+      .make = MakeBoardScanTrials};
 }
 
 }  // namespace sextant

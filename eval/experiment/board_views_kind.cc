@@ -7,19 +7,19 @@
 namespace sextant {
 namespace {
 
-struct Settings : ViewSimulation, PoseLimits {
+struct BoardViewsSettings : ViewSimulation, PoseLimits {
   double size_error = 0.0;
 };
 
-// Members of ViewSimulation, as OptionSet<Settings> wants them.
+// Members of ViewSimulation, as OptionSet<BoardViewsSettings> wants them.
 template <class T>
-T Settings::*Of(T ViewSimulation::*member) {
+T BoardViewsSettings::*Of(T ViewSimulation::*member) {
   return member;
 }
 
-const OptionSet<Settings>& Parameters() {
-  static const OptionSet<Settings> set = AddPoseLimits(
-      OptionSet<Settings>()
+const OptionSet<BoardViewsSettings>& BoardViewsParameters() {
+  static const OptionSet<BoardViewsSettings> set = AddPoseLimits(
+      OptionSet<BoardViewsSettings>()
           .Count("views", Of(&ViewSimulation::views), 1, 1000, "times that the board is held anew")
           .Real("board_side_m", Of(&ViewSimulation::board_side_m), "m", 0.05, 10.0,
                 "side of the square board")
@@ -40,7 +40,7 @@ const OptionSet<Settings>& Parameters() {
                 "error of where a ring ends on the board")
           .Real("pixel_sigma_px", Of(&ViewSimulation::pixel_sigma_px), "px", 1e-9, 100.0,
                 "noise of a tag's corner, per axis")
-          .Real("size_error", &Settings::size_error, "1", -0.5, 0.5,
+          .Real("size_error", &BoardViewsSettings::size_error, "1", -0.5, 0.5,
                 "board and tag are stated larger by this share than they are"));
   return set;
 }
@@ -63,7 +63,8 @@ void StateWrongSize(double share, CalibrationProblem& problem) {
   for (Eigen::Vector3d& point : problem.point_sets.in_cam) point *= scale;
 }
 
-Expected<KnownProblem> MakeKnown(const Settings& settings, const TrialId& id) {
+Expected<KnownProblem> MakeBoardViewsProblem(const BoardViewsSettings& settings,
+                                             const TrialId& id) {
   ViewSimulation simulation = settings;
   simulation.seed = id.seed;
   Expected<SimulatedViews> views = SimulateViews(simulation);
@@ -77,8 +78,8 @@ Expected<KnownProblem> MakeKnown(const Settings& settings, const TrialId& id) {
   return known;
 }
 
-Expected<TrialsPtr> Make(const KindArguments& arguments) {
-  Expected<Settings> settings = Parameters().Parse(arguments.parameters);
+Expected<TrialsPtr> MakeBoardViewsTrials(const KindArguments& arguments) {
+  Expected<BoardViewsSettings> settings = BoardViewsParameters().Parse(arguments.parameters);
   if (!settings) return tl::unexpected<Error>(settings.error());
   if (settings->farthest_m < settings->nearest_m) {
     return MakeError(ErrorCode::kInvalidOption,
@@ -86,7 +87,7 @@ Expected<TrialsPtr> Make(const KindArguments& arguments) {
                                  settings->nearest_m));
   }
   return MakeProblemTrials(
-      {[s = *settings](const TrialId& id) { return MakeKnown(s, id); }, *settings},
+      {[s = *settings](const TrialId& id) { return MakeBoardViewsProblem(s, id); }, *settings},
       arguments.solvers);
 }
 
@@ -98,10 +99,10 @@ TrialKind BoardViewsKind() {
       .summary =
           "a board with a tag seen by a camera and a LiDAR of rings, as raw observations, and as "
           "the corners that extractors make of them at best",
-      .parameters = Parameters().Describe(),
+      .parameters = BoardViewsParameters().Describe(),
       .metrics = PoseMetrics(),
       .trials_per_block = 20,
-      .make = Make};
+      .make = MakeBoardViewsTrials};
 }
 
 }  // namespace sextant

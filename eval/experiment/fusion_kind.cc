@@ -3,8 +3,8 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
-#include <numbers>
 
+#include "base/units.h"
 #include "eval/cloud_fusion.h"
 #include "eval/experiment/scene_sight.h"
 #include "eval/experiment/stereo_scene.h"
@@ -17,17 +17,16 @@ namespace sextant {
 namespace {
 
 constexpr int kComparedPoints = 4000;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-struct Settings : SceneSettings {
+struct FusionSettings : SceneSettings {
   int scans = 10;
   double tape_m = 0.01;
   double tape_deg = 2.0;
 };
 
-enum Measured : int { kTranslationMm, kRotationDeg, kCloudMm, kWallMm, kCheckerMm };
+enum FusionMeasured : int { kFusedTranslationMm, kFusedRotationDeg, kCloudMm, kWallMm, kCheckerMm };
 
-const std::vector<Metric>& Metrics() {
+const std::vector<Metric>& FusionMetrics() {
   static const std::vector<Metric> metrics = {
       {"translation_mm", "of cam2_from_cam1, against the truth"},
       {"rotation_deg", "of cam2_from_cam1, against the truth"},
@@ -38,14 +37,15 @@ const std::vector<Metric>& Metrics() {
   return metrics;
 }
 
-const ParameterSet<Settings>& Parameters() {
-  static const ParameterSet<Settings> set = [] {
-    ParameterSet<Settings> options;
+const ParameterSet<FusionSettings>& FusionParameters() {
+  static const ParameterSet<FusionSettings> set = [] {
+    ParameterSet<FusionSettings> options;
     AddSceneSettings(options)
-        .Count("scans", &Settings::scans, 1, 1000, "of one placement, whose answers are averaged")
-        .Real("tape_m", &Settings::tape_m, "m", 0.0, 1.0,
+        .Count("scans", &FusionSettings::scans, 1, 1000,
+               "of one placement, whose answers are averaged")
+        .Real("tape_m", &FusionSettings::tape_m, "m", 0.0, 1.0,
               "standard error of a distance by tape, per axis of each camera's pose")
-        .Real("tape_deg", &Settings::tape_deg, "deg", 0.0, 45.0,
+        .Real("tape_deg", &FusionSettings::tape_deg, "deg", 0.0, 45.0,
               "standard error of an angle by tape and trigonometry");
     return options;
   }();
@@ -56,7 +56,7 @@ const ParameterSet<Settings>& Parameters() {
 // sensors joins them.
 class FusionTrials final : public Trials {
  public:
-  FusionTrials(SceneSight first, SceneSight second, const Settings& settings)
+  FusionTrials(SceneSight first, SceneSight second, const FusionSettings& settings)
       : sights_{std::move(first), std::move(second)}, settings_(settings) {}
 
   const std::vector<std::string>& subjects() const override {
@@ -122,8 +122,8 @@ class FusionTrials final : public Trials {
                MetricValues values) const {
     if (!cam2_from_cam1) return;
     const PoseDistance error = DistanceBetween(*cam2_from_cam1, truth);
-    values.Set(kTranslationMm, 1e3 * error.translation_m);
-    values.Set(kRotationDeg, error.rotation_rad / kRadPerDeg);
+    values.Set(kFusedTranslationMm, 1e3 * error.translation_m);
+    values.Set(kFusedRotationDeg, error.rotation_rad / kRadPerDeg);
     if (!pair_) return;
     values.Set(kCloudMm, 1e3 * CompareClouds(pair_->clouds[0], *cam2_from_cam1, pair_->clouds[1],
                                              {.most_points = kComparedPoints})
@@ -133,13 +133,13 @@ class FusionTrials final : public Trials {
   }
 
   std::array<SceneSight, 2> sights_;
-  Settings settings_;
+  FusionSettings settings_;
   mutable std::once_flag looked_;
   mutable Expected<StereoPair> pair_ = MakeError(ErrorCode::kMissingData, "not looked yet");
 };
 
-Expected<TrialsPtr> Make(const KindArguments& arguments) {
-  const Expected<Settings> settings = Parameters().Parse(arguments.parameters);
+Expected<TrialsPtr> MakeFusionTrials(const KindArguments& arguments) {
+  const Expected<FusionSettings> settings = FusionParameters().Parse(arguments.parameters);
   if (!settings) return tl::unexpected<Error>(settings.error());
   if (!settings->translation_m.empty() || !settings->rotation_deg.empty()) {
     return MakeError(ErrorCode::kInvalidOption,
@@ -161,10 +161,10 @@ TrialKind FusionKind() {
               "two stereo cameras joined through the LiDAR: their clouds fused by tape and by "
               "the pipeline",
           .takes_solvers = false,
-          .parameters = Parameters().Describe(),
-          .metrics = Metrics(),
+          .parameters = FusionParameters().Describe(),
+          .metrics = FusionMetrics(),
           .trials_per_block = 5,
-          .make = Make};
+          .make = MakeFusionTrials};
 }
 
 }  // namespace sextant

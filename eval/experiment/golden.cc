@@ -11,10 +11,10 @@
 namespace sextant {
 namespace {
 
-using Place = std::tuple<std::string, std::string, std::string>;
+using FigurePlace = std::tuple<std::string, std::string, std::string>;
 
-std::map<Place, GoldenFigure> ByPlace(const std::vector<GoldenFigure>& figures) {
-  std::map<Place, GoldenFigure> by_place;
+std::map<FigurePlace, GoldenFigure> ByPlace(const std::vector<GoldenFigure>& figures) {
+  std::map<FigurePlace, GoldenFigure> by_place;
   for (const GoldenFigure& f : figures) by_place[{f.condition, f.subject, f.statistic}] = f;
   return by_place;
 }
@@ -85,8 +85,8 @@ Expected<std::vector<GoldenFigure>> ParseGolden(const std::string& text, const s
 
 std::vector<std::string> CompareWithGolden(const std::vector<GoldenFigure>& golden,
                                            const std::vector<GoldenFigure>& now) {
-  const std::map<Place, GoldenFigure> before = ByPlace(golden);
-  const std::map<Place, GoldenFigure> after = ByPlace(now);
+  const std::map<FigurePlace, GoldenFigure> before = ByPlace(golden);
+  const std::map<FigurePlace, GoldenFigure> after = ByPlace(now);
   std::vector<std::string> lines;
   for (const GoldenFigure& figure : now) {
     const auto found = before.find({figure.condition, figure.subject, figure.statistic});

@@ -12,7 +12,7 @@ namespace {
 
 enum class Data { kPoints, kPixels, kBoth };
 
-struct Settings : PoseLimits {
+struct RandomSceneTrialSettings : PoseLimits {
   Data data = Data::kBoth;
   int pairs = 8;
   double sigma_m = 0.01;
@@ -27,35 +27,37 @@ struct Settings : PoseLimits {
   double scale_error = 0.0;
 };
 
-const OptionSet<Settings>& Parameters() {
-  static const OptionSet<Settings> set = AddPoseLimits(
-      OptionSet<Settings>()
-          .Choice("data", &Settings::data, {"points", "pixels", "both"},
+const OptionSet<RandomSceneTrialSettings>& RandomSceneTrialParameters() {
+  static const OptionSet<RandomSceneTrialSettings> set = AddPoseLimits(
+      OptionSet<RandomSceneTrialSettings>()
+          .Choice("data", &RandomSceneTrialSettings::data, {"points", "pixels", "both"},
                   "3D-3D pairs and point sets, 2D-3D pairs, or both of the same points")
-          .Count("pairs", &Settings::pairs, 3, 1'000'000, "points in the scene")
-          .Real("sigma_m", &Settings::sigma_m, "m", 1e-9, 10.0, "noise of 3D-3D pairs, per axis")
-          .Real("sigma_px", &Settings::sigma_px, "px", 1e-9, 1e3, "noise of pixels, per axis")
-          .Choice("planar", &Settings::planar, {"false", "true"},
+          .Count("pairs", &RandomSceneTrialSettings::pairs, 3, 1'000'000, "points in the scene")
+          .Real("sigma_m", &RandomSceneTrialSettings::sigma_m, "m", 1e-9, 10.0,
+                "noise of 3D-3D pairs, per axis")
+          .Real("sigma_px", &RandomSceneTrialSettings::sigma_px, "px", 1e-9, 1e3,
+                "noise of pixels, per axis")
+          .Choice("planar", &RandomSceneTrialSettings::planar, {"false", "true"},
                   "all points on one plane of random tilt")
-          .Real("depth_m", &Settings::depth_m, "m", 0.01, 1e4,
+          .Real("depth_m", &RandomSceneTrialSettings::depth_m, "m", 0.01, 1e4,
                 "distance of the points' centre from the camera")
-          .Real("extent_m", &Settings::extent_m, "m", 1e-3, 1e4,
+          .Real("extent_m", &RandomSceneTrialSettings::extent_m, "m", 1e-3, 1e4,
                 "half the side of the cube that holds the points")
-          .Real("max_rotation_deg", &Settings::max_rotation_deg, "deg", 0.0, 180.0,
+          .Real("max_rotation_deg", &RandomSceneTrialSettings::max_rotation_deg, "deg", 0.0, 180.0,
                 "the true rotation is by at most this")
-          .Real("outliers", &Settings::outliers, "1", 0.0, 0.99,
+          .Real("outliers", &RandomSceneTrialSettings::outliers, "1", 0.0, 0.99,
                 "share of the pairs that join different points")
-          .Choice("known_inliers", &Settings::known_inliers, {"false", "true"},
+          .Choice("known_inliers", &RandomSceneTrialSettings::known_inliers, {"false", "true"},
                   "solvers get the pairs that join the same points only: what noise alone allows")
-          .Real("focal_error", &Settings::focal_error, "1", -0.5, 0.5,
+          .Real("focal_error", &RandomSceneTrialSettings::focal_error, "1", -0.5, 0.5,
                 "focal lengths told to the solver are too long by this share")
-          .Real("scale_error", &Settings::scale_error, "1", -0.5, 0.5,
+          .Real("scale_error", &RandomSceneTrialSettings::scale_error, "1", -0.5, 0.5,
                 "points in the camera frame are too far by this share: a wrong board size"));
   return set;
 }
 
 // Errors that the solver is not told of, by how much they are stated wrongly.
-void Distort(const Settings& settings, CalibrationProblem& problem) {
+void Distort(const RandomSceneTrialSettings& settings, CalibrationProblem& problem) {
   problem.camera->fx_px *= 1.0 + settings.focal_error;
   problem.camera->fy_px *= 1.0 + settings.focal_error;
   for (Pair3d3d& pair : problem.pairs_3d3d) pair.point_in_cam *= 1.0 + settings.scale_error;
@@ -94,7 +96,8 @@ CalibrationProblem HeldOut(const RandomSceneOptions& scene, const Rigid3d& cam_f
   return held_out;
 }
 
-KnownProblem MakeKnown(const Settings& settings, const TrialId& id) {
+KnownProblem MakeRandomSceneTrialProblem(const RandomSceneTrialSettings& settings,
+                                         const TrialId& id) {
   Random random(id.seed);
   const RandomSceneOptions options{
       .pairs = settings.pairs,
@@ -119,8 +122,9 @@ KnownProblem MakeKnown(const Settings& settings, const TrialId& id) {
   return known;
 }
 
-Expected<TrialsPtr> Make(const KindArguments& arguments) {
-  Expected<Settings> settings = Parameters().Parse(arguments.parameters);
+Expected<TrialsPtr> MakeRandomSceneTrialTrials(const KindArguments& arguments) {
+  Expected<RandomSceneTrialSettings> settings =
+      RandomSceneTrialParameters().Parse(arguments.parameters);
   if (!settings) return tl::unexpected<Error>(settings.error());
   if (settings->depth_m < 1.8 * settings->extent_m) {
     return MakeError(ErrorCode::kInvalidOption,
@@ -128,10 +132,11 @@ Expected<TrialsPtr> Make(const KindArguments& arguments) {
                                  "expected depth_m of at least 1.8 extent_m",
                                  settings->extent_m, settings->depth_m));
   }
-  return MakeProblemTrials(
-      {[s = *settings](const TrialId& id) -> Expected<KnownProblem> { return MakeKnown(s, id); },
-       *settings},
-      arguments.solvers);
+  return MakeProblemTrials({[s = *settings](const TrialId& id) -> Expected<KnownProblem> {
+                              return MakeRandomSceneTrialProblem(s, id);
+                            },
+                            *settings},
+                           arguments.solvers);
 }
 
 }  // namespace
@@ -139,9 +144,9 @@ Expected<TrialsPtr> Make(const KindArguments& arguments) {
 TrialKind RandomSceneKind() {
   return {.name = "random_scene",
           .summary = "random pose and points in front of a camera of 1280x720 and f = 700 px",
-          .parameters = Parameters().Describe(),
+          .parameters = RandomSceneTrialParameters().Describe(),
           .metrics = PoseMetrics(),
-          .make = Make};
+          .make = MakeRandomSceneTrialTrials};
 }
 
 }  // namespace sextant

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <memory>
-#include <numbers>
 
+#include "base/units.h"
 #include "eval/experiment/scene_sight.h"
 #include "eval/experiment/trials.h"
 #include "solvers/average.h"
@@ -11,16 +11,20 @@
 namespace sextant {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
-struct Settings : SceneSettings {
+struct SceneAverageSettings : SceneSettings {
   int scans = 100;
   double interval_s = 0.1;
 };
 
-enum Measured : int { kTranslationMm, kRotationDeg, kXM, kYM, kZM };
+enum SceneAverageMeasured : int {
+  kAverageTranslationMm,
+  kAverageRotationDeg,
+  kAverageXM,
+  kAverageYM,
+  kAverageZM
+};
 
-const std::vector<Metric>& Metrics() {
+const std::vector<Metric>& SceneAverageMetrics() {
   static const std::vector<Metric> metrics = {
       {"translation_mm", "distance of the averaged translation from the truth"},
       {"rotation_deg", "angle of the averaged rotation against the truth"},
@@ -31,12 +35,14 @@ const std::vector<Metric>& Metrics() {
   return metrics;
 }
 
-const ParameterSet<Settings>& Parameters() {
-  static const ParameterSet<Settings> set = [] {
-    ParameterSet<Settings> options;
+const ParameterSet<SceneAverageSettings>& SceneAverageParameters() {
+  static const ParameterSet<SceneAverageSettings> set = [] {
+    ParameterSet<SceneAverageSettings> options;
     AddSceneSettings(options)
-        .Count("scans", &Settings::scans, 1, 10'000, "averaged; a row after 1, 2, 3, 5, 7, 10 ...")
-        .Real("interval_s", &Settings::interval_s, "s", 0.0, 1e6, "from one scan to the next");
+        .Count("scans", &SceneAverageSettings::scans, 1, 10'000,
+               "averaged; a row after 1, 2, 3, 5, 7, 10 ...")
+        .Real("interval_s", &SceneAverageSettings::interval_s, "s", 0.0, 1e6,
+              "from one scan to the next");
     return options;
   }();
   return set;
@@ -54,7 +60,7 @@ bool IsReported(int scans) {
 
 class AverageTrials final : public Trials {
  public:
-  AverageTrials(SceneSight sight, const Settings& settings)
+  AverageTrials(SceneSight sight, const SceneAverageSettings& settings)
       : sight_(std::move(sight)), scans_(settings.scans), interval_s_(settings.interval_s) {}
 
   const std::vector<std::string>& subjects() const override {
@@ -96,18 +102,18 @@ class AverageTrials final : public Trials {
   // What is left of the first scan's error where all of it is noise.
   void MeasureIdeal(const Rigid3d& first, int scans, MetricValues values) const {
     const PoseDistance error = DistanceBetween(first, sight_.cam_from_lidar());
-    values.Set(kTranslationMm, 1e3 * error.translation_m / std::sqrt(scans));
-    values.Set(kRotationDeg, kDegPerRad * error.rotation_rad / std::sqrt(scans));
+    values.Set(kAverageTranslationMm, 1e3 * error.translation_m / std::sqrt(scans));
+    values.Set(kAverageRotationDeg, kDegPerRad * error.rotation_rad / std::sqrt(scans));
   }
 
   void Measure(const Expected<Rigid3d>& pose, MetricValues values) const {
     if (!pose) return;
     const PoseDistance error = DistanceBetween(*pose, sight_.cam_from_lidar());
-    values.Set(kTranslationMm, 1e3 * error.translation_m);
-    values.Set(kRotationDeg, kDegPerRad * error.rotation_rad);
-    values.Set(kXM, pose->translation.x());
-    values.Set(kYM, pose->translation.y());
-    values.Set(kZM, pose->translation.z());
+    values.Set(kAverageTranslationMm, 1e3 * error.translation_m);
+    values.Set(kAverageRotationDeg, kDegPerRad * error.rotation_rad);
+    values.Set(kAverageXM, pose->translation.x());
+    values.Set(kAverageYM, pose->translation.y());
+    values.Set(kAverageZM, pose->translation.z());
   }
 
   SceneSight sight_;
@@ -115,8 +121,9 @@ class AverageTrials final : public Trials {
   double interval_s_;
 };
 
-Expected<TrialsPtr> Make(const KindArguments& arguments) {
-  const Expected<Settings> settings = Parameters().Parse(arguments.parameters);
+Expected<TrialsPtr> MakeSceneAverageTrials(const KindArguments& arguments) {
+  const Expected<SceneAverageSettings> settings =
+      SceneAverageParameters().Parse(arguments.parameters);
   if (!settings) return tl::unexpected<Error>(settings.error());
   Expected<SceneSight> sight = SceneSight::Make(*settings, arguments.folder);
   if (!sight) return tl::unexpected<Error>(sight.error());
@@ -129,10 +136,10 @@ TrialKind SceneAverageKind() {
   return {.name = "scene_average",
           .summary = "answers of many scans of one session, averaged in four ways",
           .takes_solvers = false,
-          .parameters = Parameters().Describe(),
-          .metrics = Metrics(),
+          .parameters = SceneAverageParameters().Describe(),
+          .metrics = SceneAverageMetrics(),
           .trials_per_block = 1,
-          .make = Make};
+          .make = MakeSceneAverageTrials};
 }
 
 }  // namespace sextant

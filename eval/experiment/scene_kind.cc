@@ -11,24 +11,24 @@
 namespace sextant {
 namespace {
 
-struct Settings : SceneSettings, PoseLimits {
+struct SceneViewsSettings : SceneSettings, PoseLimits {
   int views = 1;
 };
 
 // Beside PoseMetrics(), in this order.
 enum Extra : int { kKeptPx = kPoseMetricCount, kPairsMm, kMeanMm, kWithoutWorstMm, kBelowKabsch };
 
-const ParameterSet<Settings>& Parameters() {
-  static const ParameterSet<Settings> set = [] {
-    ParameterSet<Settings> options;
-    AddPoseLimits(AddSceneSettings(options).Count("views", &Settings::views, 1, 1000,
+const ParameterSet<SceneViewsSettings>& SceneViewsParameters() {
+  static const ParameterSet<SceneViewsSettings> set = [] {
+    ParameterSet<SceneViewsSettings> options;
+    AddPoseLimits(AddSceneSettings(options).Count("views", &SceneViewsSettings::views, 1, 1000,
                                                   "moments, with the boards hung anew for each"));
     return options;
   }();
   return set;
 }
 
-std::vector<Metric> Metrics() {
+std::vector<Metric> SceneViewsMetrics() {
   std::vector<Metric> metrics = PoseMetrics();
   metrics.push_back({"kept_px", "mean reprojection error of the pairs that the answer rests on"});
   metrics.push_back({"pairs_mm", "RMSE of the 3D-3D pairs, also of solvers that did not get them"});
@@ -98,8 +98,8 @@ Expected<KnownProblem> MakeKnown(const SceneSight& sight, int views, const Trial
   return known;
 }
 
-Expected<TrialsPtr> Make(const KindArguments& arguments) {
-  const Expected<Settings> settings = Parameters().Parse(arguments.parameters);
+Expected<TrialsPtr> MakeSceneViewsTrials(const KindArguments& arguments) {
+  const Expected<SceneViewsSettings> settings = SceneViewsParameters().Parse(arguments.parameters);
   if (!settings) return tl::unexpected<Error>(settings.error());
   Expected<SceneSight> made = SceneSight::Make(*settings, arguments.folder);
   if (!made) return tl::unexpected<Error>(made.error());
@@ -121,10 +121,10 @@ Expected<TrialsPtr> Make(const KindArguments& arguments) {
 TrialKind SceneKind() {
   return {.name = "scene",
           .summary = "boards of a scene file, seen by a simulated LiDAR and camera",
-          .parameters = Parameters().Describe(),
-          .metrics = Metrics(),
+          .parameters = SceneViewsParameters().Describe(),
+          .metrics = SceneViewsMetrics(),
           .trials_per_block = 10,
-          .make = Make};
+          .make = MakeSceneViewsTrials};
 }
 
 }  // namespace sextant

@@ -6,9 +6,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
+#include "base/units.h"
 #include "eval/simulator/camera_model.h"
 #include "eval/simulator/scene_file.h"
 #include "eval/simulator/scene_truth.h"
@@ -19,8 +19,6 @@
 
 namespace sextant {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 void Enlarge(double scale, Board& board) {
   board.top_right_m *= scale;

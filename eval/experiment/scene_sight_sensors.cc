@@ -8,16 +8,11 @@
 #include "features/camera/board_pose.h"
 #include "features/lidar/corner_extractor.h"
 #include "geometry/board_check.h"
+#include "geometry/random_vectors.h"
 
 // What each sensor makes of a scene's boards.
 namespace sextant {
 namespace {
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = random.Normal();
-  return v;
-}
 
 std::uint64_t Of(int number) { return static_cast<std::uint64_t>(number); }
 

@@ -51,7 +51,7 @@ bool IsOn(const SceneWall& wall, const Rigid3d& wall_from_cam, const Eigen::Vect
          std::abs(in_wall.y()) < 0.5 * wall.height_m - kMargin_m;
 }
 
-Eigen::Vector3d MeanOf(const std::vector<Eigen::Vector3d>& points) {
+Eigen::Vector3d CentreOf(const std::vector<Eigen::Vector3d>& points) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : points) mean += point;
   return mean / static_cast<double>(points.size());
@@ -95,7 +95,7 @@ Expected<StereoPair> LookInStereo(const Scene& full_scene) {
 double WallOffset(const StereoPair& pair, const Rigid3d& cam2_from_cam1) {
   double squares = 0.0;
   for (const auto& [first, second] : pair.walls) {
-    const Eigen::Vector3d middle = MeanOf(second);
+    const Eigen::Vector3d middle = CentreOf(second);
     Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
     for (const Eigen::Vector3d& point : second) {
       scatter += (point - middle) * (point - middle).transpose();
@@ -113,7 +113,7 @@ double WallOffset(const StereoPair& pair, const Rigid3d& cam2_from_cam1) {
 
 double CheckerOffset(const StereoPair& pair, const Rigid3d& cam2_from_cam1) {
   if (pair.checker[0].empty()) return kNan;
-  return (cam2_from_cam1 * MeanOf(pair.checker[0]) - MeanOf(pair.checker[1])).norm();
+  return (cam2_from_cam1 * CentreOf(pair.checker[0]) - CentreOf(pair.checker[1])).norm();
 }
 
 }  // namespace sextant

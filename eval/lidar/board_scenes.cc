@@ -6,10 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/units.h"
+
 namespace sextant {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kFloor_m = -1.0;
 
 // Seen squarely from the origin at an azimuth: z away, y down.

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "base/random.h"
+#include "base/units.h"
 #include "eval/lidar/board_scenes.h"
 #include "eval/simulator/lidar_model.h"
 #include "eval/simulator/scan.h"
@@ -23,7 +24,6 @@ constexpr const char* kExperiment = "extractors";
 constexpr double kNearest_m = 1.2;
 constexpr double kFurthest_m = 4.2;  // The rooms' walls are 5 m away.
 constexpr double kMostOff = 1.0 / 3.0;
-constexpr double kMmPerM = 1e3;
 enum Part : std::uint64_t { kAccuracy, kPlacement, kRoom };
 
 struct Trial {

@@ -10,13 +10,13 @@
 namespace sextant {
 namespace {
 
-struct Entry {
+struct CameraEntry {
   const char* name;
   Camera camera;
 };
 
-const std::array<Entry, 4>& Models() {
-  static const std::array<Entry, 4> models = {{
+const std::array<CameraEntry, 4>& Models() {
+  static const std::array<CameraEntry, 4> models = {{
       {"pinhole",
        {.model = CameraModel::kPinhole,
         .width_px = 1280,
@@ -78,14 +78,14 @@ Expected<Camera> Checked(const SceneCamera& scene_camera, const Camera& camera) 
 const std::vector<std::string>& CameraModelNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> list;
-    for (const Entry& entry : Models()) list.emplace_back(entry.name);
+    for (const CameraEntry& entry : Models()) list.emplace_back(entry.name);
     return list;
   }();
   return names;
 }
 
 Expected<Camera> FindCameraModel(std::string_view name) {
-  for (const Entry& entry : Models()) {
+  for (const CameraEntry& entry : Models()) {
     if (name == entry.name) return entry.camera;
   }
   return MakeError(ErrorCode::kUnknownName, fmt::format("no camera model '{}'; {}", name,

@@ -3,14 +3,10 @@
 
 #include <cmath>
 
+#include "geometry/random_vectors.h"
+
 namespace sextant {
 namespace {
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = random.Normal();
-  return v;
-}
 
 Eigen::Matrix3d CameraCovariance(const CornerNoise& noise, const Eigen::Vector3d& ray) {
   const double lateral = noise.camera_lateral_sigma_m * noise.camera_lateral_sigma_m;

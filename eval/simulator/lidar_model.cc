@@ -13,19 +13,19 @@
 namespace sextant {
 namespace {
 
-struct Entry {
+struct LidarModelEntry {
   const char* name;
   LidarModel (*make)();
 };
 
 constexpr std::array kEntries = {
-    Entry{"vlp16", Vlp16},
-    Entry{"hdl32e", Hdl32e},
-    Entry{"hdl64e", Hdl64e},
-    Entry{"os1_64", Os1With64Rings},
-    Entry{"os1_128", Os1With128Rings},
-    Entry{"pandar40p", Pandar40p},
-    Entry{"livox", LivoxMid40},
+    LidarModelEntry{"vlp16", Vlp16},
+    LidarModelEntry{"hdl32e", Hdl32e},
+    LidarModelEntry{"hdl64e", Hdl64e},
+    LidarModelEntry{"os1_64", Os1With64Rings},
+    LidarModelEntry{"os1_128", Os1With128Rings},
+    LidarModelEntry{"pandar40p", Pandar40p},
+    LidarModelEntry{"livox", LivoxMid40},
 };
 
 }  // namespace
@@ -41,14 +41,14 @@ int ColumnCount(const LidarModel& model) {
 const std::vector<std::string>& LidarModelNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const Entry& entry : kEntries) all.emplace_back(entry.name);
+    for (const LidarModelEntry& entry : kEntries) all.emplace_back(entry.name);
     return all;
   }();
   return names;
 }
 
 Expected<LidarModel> FindLidarModel(std::string_view name) {
-  for (const Entry& entry : kEntries) {
+  for (const LidarModelEntry& entry : kEntries) {
     if (name != entry.name) continue;
     LidarModel model = entry.make();
     model.name = entry.name;

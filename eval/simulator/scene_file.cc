@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
+#include "base/units.h"
 #include "eval/simulator/camera_model.h"
 #include "eval/simulator/scene_pose.h"
 #include "io/board_block.h"
@@ -16,8 +15,6 @@ namespace sextant {
 namespace {
 
 using Keys = std::vector<std::string>;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::string NameAt(YamlFields& in, const YamlNode& node, std::string otherwise = {}) {
   return node.Find("name") != nullptr ? in.TextAt(node, "name") : otherwise;
@@ -74,9 +71,9 @@ Swing ReadSwing(YamlFields& in, const YamlNode& node) {
   Swing swing;
   if (!in.IsMap(node, "swing", kKeys)) return swing;
   swing.axis_in_world = in.PointAt(node, "axis_in_world");
-  swing.amplitude_rad = kDegree * in.RealAt(node, "amplitude_deg");
+  swing.amplitude_rad = kRadPerDeg * in.RealAt(node, "amplitude_deg");
   swing.period_s = in.RealAt(node, "period_s");
-  swing.phase_rad = kDegree * in.RealAt(node, "phase_deg", 0.0);
+  swing.phase_rad = kRadPerDeg * in.RealAt(node, "phase_deg", 0.0);
   return swing;
 }
 

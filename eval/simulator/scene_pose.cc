@@ -2,12 +2,11 @@
 #include "eval/simulator/scene_pose.h"
 
 #include <cmath>
-#include <numbers>
+
+#include "base/units.h"
 
 namespace sextant {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // The attitude whose forward axis is along `direction`, upright.
 EulerZyx Along(const Eigen::Vector3d& direction) {
@@ -68,10 +67,10 @@ Rigid3d ReadScenePose(YamlFields& in, const YamlNode& node, SceneAxes axes,
     }
     euler = Along(front_is_backward ? -toward : toward);
   } else {
-    euler.yaw = kDegree * in.RealAt(node, "yaw_deg", 0.0);
-    euler.pitch = kDegree * in.RealAt(node, "pitch_deg", 0.0);
+    euler.yaw = kRadPerDeg * in.RealAt(node, "yaw_deg", 0.0);
+    euler.pitch = kRadPerDeg * in.RealAt(node, "pitch_deg", 0.0);
   }
-  euler.roll = kDegree * in.RealAt(node, "roll_deg", 0.0);
+  euler.roll = kRadPerDeg * in.RealAt(node, "roll_deg", 0.0);
   pose.rotation = SceneRotation(axes, euler);
   return pose;
 }

@@ -18,14 +18,14 @@ extern "C" {
 namespace sextant {
 namespace {
 
-struct Entry {
+struct FamilyEntry {
   const char* name;
   apriltag_family_t* (*create)();
   void (*destroy)(apriltag_family_t*);
 };
 
 #define SEXTANT_FAMILY(name) \
-  Entry { #name, name##_create, name##_destroy }
+  FamilyEntry { #name, name##_create, name##_destroy }
 constexpr std::array kFamilies = {
     SEXTANT_FAMILY(tag36h11),         SEXTANT_FAMILY(tag36h10),
     SEXTANT_FAMILY(tag25h9),          SEXTANT_FAMILY(tag16h5),
@@ -40,14 +40,14 @@ constexpr std::array kFamilies = {
 const std::vector<std::string>& AprilTagFamilyNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> list;
-    for (const Entry& entry : kFamilies) list.emplace_back(entry.name);
+    for (const FamilyEntry& entry : kFamilies) list.emplace_back(entry.name);
     return list;
   }();
   return names;
 }
 
 AprilTagFamily MakeAprilTagFamily(std::string_view name) {
-  for (const Entry& entry : kFamilies) {
+  for (const FamilyEntry& entry : kFamilies) {
     if (name == entry.name) return {entry.create(), entry.destroy};
   }
   return {nullptr, [](apriltag_family_t*) {}};

@@ -40,7 +40,7 @@ struct ArucoOptions {
   int decimate = 1;
 };
 
-OptionSet<ArucoOptions> Options() {
+OptionSet<ArucoOptions> ArucoOptionSet() {
   OptionSet<ArucoOptions> options;
   options.Choice("dictionary", &ArucoOptions::dictionary, DictionaryChoices(), "what is looked for")
       .Choice("refine", &ArucoOptions::refine, {"none", "subpix", "contour", "apriltag"},
@@ -154,7 +154,7 @@ class ArucoDetector final : public TagDetector {
 };
 
 Expected<TagDetectorPtr> Make(const std::string& name, const OptionValues& values) {
-  const Expected<ArucoOptions> options = Options().Parse(values);
+  const Expected<ArucoOptions> options = ArucoOptionSet().Parse(values);
   if (!options) return tl::unexpected<Error>(options.error());
   bool names_dictionary = false;
   std::string file;
@@ -179,7 +179,7 @@ Expected<TagDetectorPtr> Make(const std::string& name, const OptionValues& value
 }  // namespace
 
 TagDetectorEntry ArucoDetectorEntry() {
-  std::vector<OptionDoc> options = Options().Describe();
+  std::vector<OptionDoc> options = ArucoOptionSet().Describe();
   options.front().default_value = "none: to be given";
   options.push_back({.name = kFileOption,
                      .default_value = "none",

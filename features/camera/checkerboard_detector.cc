@@ -17,7 +17,7 @@ struct CheckerOptions {
   bool subpix = true;
 };
 
-OptionSet<CheckerOptions> Options() {
+OptionSet<CheckerOptions> CheckerOptionSet() {
   OptionSet<CheckerOptions> options;
   options.Count("columns", &CheckerOptions::columns, 3, 1000, "inner corners along x")
       .Count("rows", &CheckerOptions::rows, 3, 1000, "inner corners along y")
@@ -107,9 +107,9 @@ TagDetectorEntry CheckerboardDetectorEntry() {
       .name = "checkerboard",
       .summary = "OpenCV's sector-based detector of checkerboards",
       .example = "checkerboard(columns=7,rows=5)",
-      .options = Options().Describe(),
+      .options = CheckerOptionSet().Describe(),
       .make = [](const std::string& name, const OptionValues& values) -> Expected<TagDetectorPtr> {
-        const Expected<CheckerOptions> options = Options().Parse(values);
+        const Expected<CheckerOptions> options = CheckerOptionSet().Parse(values);
         if (!options) return tl::unexpected<Error>(options.error());
         return std::make_shared<CheckerboardDetector>(name, *options);
       }};

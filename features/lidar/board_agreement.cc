@@ -21,7 +21,7 @@ constexpr double kLeastDensity = 0.3;
 constexpr int kFewestSides = 3;
 constexpr int kFewestEdgePoints = 8;
 constexpr int kFewestEdgePointsOnFewestRings = 12;  // Furniture there has up to 11 by chance.
-constexpr int kFewestPoints = 16;
+constexpr int kFewestPointsOfBoard = 16;
 
 // How far a point is beyond the rectangle's nearest side; negative inside.
 double Beyond(const Eigen::Vector2d& point, double width, double height) {
@@ -110,8 +110,9 @@ std::optional<std::string> WhyNot(const BoardPatch& patch, const Board& board) {
     return fmt::format("only {} edge points on {} rings, {} are needed", patch.edges.size(),
                        agreement.rings, fewest_edge_points);
   }
-  if (agreement.points < kFewestPoints) {
-    return fmt::format("only {} returns on it, {} are needed", agreement.points, kFewestPoints);
+  if (agreement.points < kFewestPointsOfBoard) {
+    return fmt::format("only {} returns on it, {} are needed", agreement.points,
+                       kFewestPointsOfBoard);
   }
   if (agreement.density < kLeastDensity) {
     return fmt::format("only {:.0f} % of the returns that a board there would give",

@@ -10,6 +10,7 @@
 
 #include "features/lidar/board_agreement.h"
 #include "features/lidar/ring_clusters.h"
+#include "features/lidar/scan_limits.h"
 
 namespace sextant {
 namespace {
@@ -21,8 +22,6 @@ constexpr double kAround_m = 0.05;
 constexpr double kNearlyAll = 0.97;  // Of a patch; the rest may be what holds the board.
 constexpr double kLeastJump_m = 0.06;
 constexpr double kJumpSigmas = 4.5;  // Two returns differ by sqrt 2 sigma; three of these.
-constexpr double kLeastThreshold_m = 0.03;
-constexpr double kPlaneSigmas = 2.5;
 // Of the board's diagonal, that the box round a patch's points may span: half where the last rings
 // miss its corners, sqrt 2 where it hangs from a corner, more with a hand or a stand.
 constexpr double kSmallestShare = 0.4;

@@ -9,13 +9,13 @@
 namespace sextant {
 namespace {
 
-struct Entry {
+struct ExtractorEntry {
   CornerExtractorInfo info;
   Expected<LidarCorners> (*extract)(const BoardPatch&, const Board&);
 };
 
-const std::vector<Entry>& Entries() {
-  static const std::vector<Entry> entries = {
+const std::vector<ExtractorEntry>& ExtractorEntries() {
+  static const std::vector<ExtractorEntry> entries = {
       {{"rectangle", "the known size placed on the edge points within the board's plane"},
        CornersByRectangle},
       {{"plane_lines", "edge lines within the board's plane, intersected"}, CornersByPlaneLines},
@@ -36,7 +36,7 @@ const std::vector<Entry>& Entries() {
 const std::vector<CornerExtractorInfo>& CornerExtractors() {
   static const std::vector<CornerExtractorInfo> infos = [] {
     std::vector<CornerExtractorInfo> list;
-    for (const Entry& entry : Entries()) list.push_back(entry.info);
+    for (const ExtractorEntry& entry : ExtractorEntries()) list.push_back(entry.info);
     return list;
   }();
   return infos;
@@ -45,7 +45,7 @@ const std::vector<CornerExtractorInfo>& CornerExtractors() {
 Expected<LidarCorners> ExtractCorners(std::string_view extractor, const BoardPatch& patch,
                                       const Board& board) {
   std::vector<std::string> names;
-  for (const Entry& entry : Entries()) {
+  for (const ExtractorEntry& entry : ExtractorEntries()) {
     if (extractor == entry.info.name) return entry.extract(patch, board);
     names.emplace_back(entry.info.name);
   }

@@ -8,11 +8,10 @@
 
 #include "features/lidar/azimuth.h"
 #include "features/lidar/edge_pairs.h"
+#include "features/lidar/scan_limits.h"
 
 namespace sextant {
 namespace {
-
-constexpr double kMostGapSteps = 2.5;  // Within an interval: one drop-out.
 
 class EdgeFinder {
  public:

@@ -4,17 +4,17 @@
 #include <fmt/format.h>
 
 #include "base/nearest_name.h"
+#include "base/units.h"
 
 namespace sextant {
 namespace {
 
-constexpr double kRadPerDeg = 0.017453292519943295;
 // Of a receiver that gives the strongest echo, however little of the spot is on the board; the
 // VLP-16 loses the weakest.
 constexpr double kGrowth = 0.31;
 constexpr double kEdgeSigma = 0.05;
 
-struct Entry {
+struct BeamEntry {
   const char* name;
   LidarBeam beam;
 };
@@ -31,8 +31,8 @@ LidarBeam Beam(double aperture_h_m, double aperture_v_m, double divergence_h_rad
   return beam;
 }
 
-const std::vector<Entry>& Entries() {
-  static const std::vector<Entry> entries = {
+const std::vector<BeamEntry>& BeamEntries() {
+  static const std::vector<BeamEntry> entries = {
       {"vlp16", {}},
       {"hdl32e", Beam(0.0127, 0.0095, 0.003, 0.0015)},
       {"hdl64e", Beam(0.0127, 0.0095, 0.002, 0.002)},
@@ -49,14 +49,14 @@ const std::vector<Entry>& Entries() {
 const std::vector<std::string>& LidarBeamNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> list;
-    for (const Entry& entry : Entries()) list.emplace_back(entry.name);
+    for (const BeamEntry& entry : BeamEntries()) list.emplace_back(entry.name);
     return list;
   }();
   return names;
 }
 
 Expected<LidarBeam> FindLidarBeam(std::string_view name) {
-  for (const Entry& entry : Entries()) {
+  for (const BeamEntry& entry : BeamEntries()) {
     if (name == entry.name) return entry.beam;
   }
   return MakeError(ErrorCode::kUnknownName, fmt::format("no LiDAR '{}' whose beam is known; {}",

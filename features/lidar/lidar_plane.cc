@@ -11,7 +11,7 @@
 namespace sextant {
 namespace {
 
-constexpr int kFewestPoints = 6;
+constexpr int kFewestPointsOfPlane = 6;
 constexpr std::size_t kMostCounted = 300;  // Enough to tell which of two planes holds more.
 constexpr double kLeastSigma_m = 1e-6;     // Noise-free scans.
 constexpr double kLeastIncidence = 0.139;  // sin 8 deg: closer to edge-on the edges mean nothing.
@@ -92,7 +92,7 @@ std::optional<Eigen::Vector2d> LidarPlane::Meet(const Eigen::Vector3d& direction
 std::optional<FoundPlane> FindPlane(std::span<const Eigen::Vector3d> points,
                                     const PlaneSearch& search, Random& random) {
   const int count = static_cast<int>(points.size());
-  if (count < kFewestPoints) return std::nullopt;
+  if (count < kFewestPointsOfPlane) return std::nullopt;
   std::optional<HalfSpace> best;
   std::size_t most = 0;
   std::array<int, 3> sample{};
@@ -115,7 +115,7 @@ std::optional<FoundPlane> FindPlane(std::span<const Eigen::Vector3d> points,
   FoundPlane found;
   found.inliers = Within(points, *best, search.threshold_m);
   for (int round = 0; round < 4; ++round) {
-    if (static_cast<int>(found.inliers.size()) < kFewestPoints) return std::nullopt;
+    if (static_cast<int>(found.inliers.size()) < kFewestPointsOfPlane) return std::nullopt;
     const std::optional<LidarPlane> plane = FitPlane(points, found.inliers);
     if (!plane) return std::nullopt;
     found.plane = *plane;

@@ -13,6 +13,7 @@
 
 #include "features/lidar/azimuth.h"
 #include "features/lidar/board_agreement.h"
+#include "features/lidar/scan_limits.h"
 
 namespace sextant {
 namespace {
@@ -21,9 +22,6 @@ constexpr std::array<const char*, 4> kEdgeNames = {"top-left", "top-right", "bot
                                                    "bottom-left"};
 constexpr int kMostPlanes = 4;         // Board, what is behind it, and what is behind that.
 constexpr double kLeastOutward = 0.1;  // Cosine; a ring along an edge does not leave the board.
-constexpr double kMostGapSteps = 2.5;  // As in edge_points.cc: one drop-out.
-constexpr double kLeastThreshold_m = 0.03;  // As in board_finder.cc, with the next.
-constexpr double kPlaneSigmas = 2.5;
 constexpr double kSquare_m = 0.005;
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {

@@ -5,13 +5,13 @@
 
 #include <cmath>
 #include <fstream>
-#include <numbers>
 #include <set>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/units.h"
 #include "calibrate/assemble.h"
 #include "calibrate/diagnose.h"
 #include "calibrate/observe_files.h"
@@ -21,8 +21,6 @@
 
 namespace sextant::test {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 Board AcfrBoard() {
   Board board{.id = 0, .top_right_m = 0.61, .right_bottom_m = 0.85};

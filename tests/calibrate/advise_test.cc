@@ -7,10 +7,10 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "base/units.h"
 #include "calibrate/information.h"
 #include "eval/bounds.h"
 #include "eval/simulate_views.h"
-#include "io/degrees.h"
 #include "solvers/board_view_information.h"
 
 namespace sextant {

@@ -12,10 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const Rigid3d kCamFromLidar =
-    Rigid3d{ExpSo3({0.05, -0.1, 0.08}), {0.06, -0.1, -0.15}} * AxesCamFromLidar();
-
-struct Faked {
+struct FakedSession {
   std::vector<SessionView> views;
   std::vector<Board> boards = {SquareBoard(0)};
   Camera camera = AssumedCamera(1280, 720);
@@ -23,13 +20,13 @@ struct Faked {
 
 // What the camera sees is moved from where the board is by `disturb`.
 template <class Disturb>
-Faked Fake(int views, Disturb disturb) {
+FakedSession FakeSession(int views, Disturb disturb) {
   Random random(DeriveSeed(1, "diagnose", 0, 0));
-  Faked faked;
+  FakedSession faked;
   for (int i = 0; i < views; ++i) {
     const std::vector<Rigid3d> poses = {HungByChance(random)};
     SessionView view{.name = std::to_string(i)};
-    view.seen = FakeObservation(faked.boards, poses, kCamFromLidar, random);
+    view.seen = FakeObservation(faked.boards, poses, kFakeCamFromLidar, random);
     CameraSighting& sighting = view.seen->in_image[0];
     disturb(sighting.pose.cam_from_board.translation);
     sighting.corners.points.clear();
@@ -41,18 +38,18 @@ Faked Fake(int views, Disturb disturb) {
   return faked;
 }
 
-std::vector<std::string> DiagnoseIt(const Faked& faked) {
+std::vector<std::string> DiagnoseIt(const FakedSession& faked) {
   const Expected<Assembly> assembly = Assemble(faked.views, faked.boards, faked.camera);
   EXPECT_TRUE(assembly) << assembly.error().message;
   return Diagnose(faked.views, *assembly, assembly->matching.cam_from_lidar);
 }
 
 TEST(Diagnose, GoodDataIsNotBlamed) {
-  EXPECT_THAT(DiagnoseIt(Fake(8, [](Eigen::Vector3d&) {})), IsEmpty());
+  EXPECT_THAT(DiagnoseIt(FakeSession(8, [](Eigen::Vector3d&) {})), IsEmpty());
 }
 
 TEST(Diagnose, APrintThatIsSmallerThanTheFileSays) {
-  const Faked faked = Fake(8, [](Eigen::Vector3d& place) { place *= 1.06; });
+  const FakedSession faked = FakeSession(8, [](Eigen::Vector3d& place) { place *= 1.06; });
   const std::vector<std::string> lines = DiagnoseIt(faked);
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_THAT(lines[0], HasSubstr("board file"));
@@ -60,7 +57,7 @@ TEST(Diagnose, APrintThatIsSmallerThanTheFileSays) {
 }
 
 TEST(Diagnose, AFocalLengthThatIsTooShort) {
-  const Faked faked = Fake(8, [](Eigen::Vector3d& place) { place.z() *= 0.92; });
+  const FakedSession faked = FakeSession(8, [](Eigen::Vector3d& place) { place.z() *= 0.92; });
   const std::vector<std::string> lines = DiagnoseIt(faked);
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_THAT(lines[0], HasSubstr("intrinsics"));
@@ -68,7 +65,7 @@ TEST(Diagnose, AFocalLengthThatIsTooShort) {
 }
 
 TEST(Diagnose, TheShareOfBothIsRight) {
-  const Faked faked = Fake(12, [](Eigen::Vector3d& place) { place *= 1.05; });
+  const FakedSession faked = FakeSession(12, [](Eigen::Vector3d& place) { place *= 1.05; });
   const Expected<Assembly> assembly = Assemble(faked.views, faked.boards, faked.camera);
   ASSERT_TRUE(assembly);
   const auto fits = FitScales(assembly->problem, assembly->matching.cam_from_lidar);
@@ -79,7 +76,7 @@ TEST(Diagnose, TheShareOfBothIsRight) {
 }
 
 TEST(Diagnose, ABoardOfAnotherSizeInTheScans) {
-  Faked faked = Fake(4, [](Eigen::Vector3d&) {});
+  FakedSession faked = FakeSession(4, [](Eigen::Vector3d&) {});
   for (SessionView& view : faked.views) {
     view.seen->in_scan[0].measured_sides_m = {0.55, 0.5, 0.56, 0.5};
   }
@@ -89,7 +86,7 @@ TEST(Diagnose, ABoardOfAnotherSizeInTheScans) {
 }
 
 TEST(Diagnose, PrintsThatTheLensDoesNotFit) {
-  Faked faked = Fake(4, [](Eigen::Vector3d&) {});
+  FakedSession faked = FakeSession(4, [](Eigen::Vector3d&) {});
   for (SessionView& view : faked.views) {
     BoardPose& pose = view.seen->in_image[0].pose;
     pose.rms_px = 2.5;
@@ -102,14 +99,14 @@ TEST(Diagnose, PrintsThatTheLensDoesNotFit) {
 }
 
 TEST(Diagnose, OneViewAndViewsThatRepeatEachOther) {
-  EXPECT_THAT(DiagnoseIt(Fake(1, [](Eigen::Vector3d&) {})),
+  EXPECT_THAT(DiagnoseIt(FakeSession(1, [](Eigen::Vector3d&) {})),
               testing::ElementsAre(HasSubstr("one view only")));
   Random random(3);
-  Faked same;
+  FakedSession same;
   const std::vector<Rigid3d> poses = {HungByChance(random)};
   for (int i = 0; i < 3; ++i) {
     SessionView view{.name = "same"};
-    view.seen = FakeObservation(same.boards, poses, kCamFromLidar, random);
+    view.seen = FakeObservation(same.boards, poses, kFakeCamFromLidar, random);
     same.views.push_back(std::move(view));
   }
   EXPECT_THAT(DiagnoseIt(same), testing::Contains(HasSubstr("all 3 views are the same")));

@@ -5,15 +5,11 @@
 
 #include <numbers>
 
-#include "geometry/scan_marks.h"
 #include "geometry/so3.h"
 #include "support/fake_observation.h"
 
 namespace sextant::test {
 namespace {
-
-const Rigid3d kCamFromLidar =
-    Rigid3d{ExpSo3({0.05, -0.1, 0.08}), {0.06, -0.1, -0.15}} * AxesCamFromLidar();
 
 std::vector<Board> Squares(int count) {
   std::vector<Board> boards;
@@ -42,7 +38,7 @@ Faked Fake(int views, int boards, std::uint64_t seed) {
   Faked faked{.views = {}, .boards = Squares(boards)};
   for (int i = 0; i < views; ++i) {
     const std::vector<Rigid3d> poses = Apart(faked.boards.size(), random);
-    faked.views.push_back(FakeObservation(faked.boards, poses, kCamFromLidar, random));
+    faked.views.push_back(FakeObservation(faked.boards, poses, kFakeCamFromLidar, random));
   }
   return faked;
 }
@@ -67,7 +63,7 @@ TEST(Match, EveryBoardOfManyViewsWhateverItsPlaceAndTurn) {
     EXPECT_EQ(matching->kept.size(), 8U) << seed;
     ExpectTrueMatches(faked, *matching);
     EXPECT_TRUE(matching->as_likely.empty());
-    const PoseDistance off = DistanceBetween(matching->cam_from_lidar, kCamFromLidar);
+    const PoseDistance off = DistanceBetween(matching->cam_from_lidar, kFakeCamFromLidar);
     // Eight boards of 28 mrad each: one sigma of 10 mrad, and 20 mm at 2 m.
     EXPECT_LT(off.rotation_rad, 0.05);
     EXPECT_LT(off.translation_m, 0.1);
@@ -82,7 +78,7 @@ TEST(Match, AnImageOfAnotherMomentIsDroppedWithHowFarItIsOff) {
   Rigid3d after = before;
   after.translation.x() += 0.2;
   const Observation moved =
-      FakeObservation(faked.boards, std::vector<Rigid3d>{after}, kCamFromLidar, random);
+      FakeObservation(faked.boards, std::vector<Rigid3d>{after}, kFakeCamFromLidar, random);
   faked.views[2].in_image = moved.in_image;
   const Expected<Matching> matching = MatchViews(faked.views);
   ASSERT_TRUE(matching) << matching.error().message;
@@ -97,7 +93,7 @@ TEST(Match, OneSquareBoardOnceIsAmbiguousAndTheAxesDecide) {
   const Expected<Matching> matching = MatchViews(faked.views);
   ASSERT_TRUE(matching) << matching.error().message;
   EXPECT_EQ(matching->as_likely.size(), 3U);
-  EXPECT_LT(RotationDistance(matching->cam_from_lidar.rotation, kCamFromLidar.rotation), 0.1);
+  EXPECT_LT(RotationDistance(matching->cam_from_lidar.rotation, kFakeCamFromLidar.rotation), 0.1);
   const std::vector<std::string> lines = DescribeAmbiguity(*matching, {});
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_THAT(lines[0], testing::HasSubstr("ambiguous: 4 poses"));
@@ -107,12 +103,12 @@ TEST(Match, OneSquareBoardOnceIsAmbiguousAndTheAxesDecide) {
 TEST(Match, AnInitialRotationDecidesOtherwise) {
   const Faked faked = Fake(1, 1, 7);
   const Rigid3d rolled =
-      Rigid3d{ExpSo3({0.0, 0.0, std::numbers::pi}), Eigen::Vector3d::Zero()} * kCamFromLidar;
+      Rigid3d{ExpSo3({0.0, 0.0, std::numbers::pi}), Eigen::Vector3d::Zero()} * kFakeCamFromLidar;
   const MatchSettings settings{.initial = rolled};
   const Expected<Matching> matching = MatchViews(faked.views, settings);
   ASSERT_TRUE(matching) << matching.error().message;
   // Half a turn about the board's normal, which leans against the camera's axis.
-  EXPECT_GT(RotationDistance(matching->cam_from_lidar.rotation, kCamFromLidar.rotation), 3.0);
+  EXPECT_GT(RotationDistance(matching->cam_from_lidar.rotation, kFakeCamFromLidar.rotation), 3.0);
   EXPECT_THAT(DescribeAmbiguity(*matching, settings)[1],
               testing::HasSubstr("the rotation of --initial"));
 }
@@ -123,11 +119,12 @@ TEST(Match, TwoEqualBoardsInOnePlaneAreAmbiguous) {
   const std::vector<Board> boards = Squares(2);
   const Eigen::Quaterniond hung = ExpSo3({0.0, 0.0, 0.25 * std::numbers::pi});
   const std::vector<Rigid3d> poses = {{hung, {-0.5, 0.0, 2.0}}, {hung, {0.5, 0.0, 2.0}}};
-  const std::vector<Observation> views = {FakeObservation(boards, poses, kCamFromLidar, random)};
+  const std::vector<Observation> views = {
+      FakeObservation(boards, poses, kFakeCamFromLidar, random)};
   const Expected<Matching> matching = MatchViews(views);
   ASSERT_TRUE(matching) << matching.error().message;
   EXPECT_FALSE(matching->as_likely.empty());
-  EXPECT_LT(RotationDistance(matching->cam_from_lidar.rotation, kCamFromLidar.rotation), 0.1);
+  EXPECT_LT(RotationDistance(matching->cam_from_lidar.rotation, kFakeCamFromLidar.rotation), 0.1);
 }
 
 TEST(Match, ARectangleLeavesHalfATurnOnly) {
@@ -136,7 +133,8 @@ TEST(Match, ARectangleLeavesHalfATurnOnly) {
   board.right_bottom_m = 0.8;
   const std::vector<Board> boards = {board};
   const std::vector<Rigid3d> poses = {HungByChance(random)};
-  const std::vector<Observation> views = {FakeObservation(boards, poses, kCamFromLidar, random)};
+  const std::vector<Observation> views = {
+      FakeObservation(boards, poses, kFakeCamFromLidar, random)};
   const Expected<Matching> matching = MatchViews(views);
   ASSERT_TRUE(matching) << matching.error().message;
   EXPECT_EQ(matching->as_likely.size(), 1U);
@@ -169,7 +167,8 @@ TEST(Match, TwoViewsThatContradictEachOtherLeaveOneOut) {
   Rigid3d after = faked.views[1].in_image[0].pose.cam_from_board;
   after.translation.x() += 0.4;
   faked.views[1].in_image =
-      FakeObservation(faked.boards, std::vector<Rigid3d>{after}, kCamFromLidar, random).in_image;
+      FakeObservation(faked.boards, std::vector<Rigid3d>{after}, kFakeCamFromLidar, random)
+          .in_image;
   const Expected<Matching> matching = MatchViews(faked.views);
   ASSERT_TRUE(matching) << matching.error().message;
   EXPECT_EQ(matching->kept.size(), 1U);

@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "calibrate/outlier_views.h"
 #include "calibrate/select_views.h"
+#include "geometry/random_vectors.h"
 #include "io/acfr_poses.h"
 #include "solvers/registry.h"
 #include "support/real_data.h"
@@ -22,12 +23,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr double kSigma = 0.01;
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = random.Normal();
-  return v;
-}
 
 const Rigid3d kTruth = {ExpSo3({1.2, -1.2, 1.2}), {0.1, -0.2, -0.1}};
 

@@ -11,8 +11,8 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kWidth = 1280;
-constexpr int kHeight = 800;
+constexpr int kWindowWidth = 1280;
+constexpr int kWindowHeight = 800;
 constexpr double kFitScale = (800.0 - 2.0 * kMarkBar_px) / 1200.0;
 
 MarkController NewController(bool has_photo = true) {
@@ -21,7 +21,8 @@ MarkController NewController(bool has_photo = true) {
     returns.push_back({.pixel = {u, 600}, .range_m = 1.0 + u / 200.0, .ring = 0});
   }
   return MarkController(MarkSession(returns, {.camera = AssumedCamera(1920, 1200)}),
-                        MarkViewport(kWidth, kHeight, kMarkBar_px, 1920, 1200), has_photo);
+                        MarkViewport(kWindowWidth, kWindowHeight, kMarkBar_px, 1920, 1200),
+                        has_photo);
 }
 
 void Click(MarkController& controller, const Eigen::Vector2d& at) {
@@ -31,17 +32,17 @@ void Click(MarkController& controller, const Eigen::Vector2d& at) {
 }
 
 TEST(MarkViewport, ShowsTheWholePictureBetweenTheBars) {
-  const MarkViewport view(kWidth, kHeight, kMarkBar_px, 1920, 1200);
+  const MarkViewport view(kWindowWidth, kWindowHeight, kMarkBar_px, 1920, 1200);
   EXPECT_DOUBLE_EQ(view.scale(), kFitScale);
   const Eigen::Vector2d top_left = view.ToCanvas({-0.5, -0.5});
   const Eigen::Vector2d bottom_right = view.ToCanvas({1919.5, 1199.5});
   EXPECT_NEAR(top_left.y(), kMarkBar_px - 0.5, 1e-9);
-  EXPECT_NEAR(bottom_right.y(), kHeight - kMarkBar_px - 0.5, 1e-9);
-  EXPECT_NEAR(top_left.x() + bottom_right.x(), kWidth - 1.0, 1e-9);
+  EXPECT_NEAR(bottom_right.y(), kWindowHeight - kMarkBar_px - 0.5, 1e-9);
+  EXPECT_NEAR(top_left.x() + bottom_right.x(), kWindowWidth - 1.0, 1e-9);
 }
 
 TEST(MarkViewport, ZoomKeepsWhatIsUnderThePointer) {
-  MarkViewport view(kWidth, kHeight, kMarkBar_px, 1920, 1200);
+  MarkViewport view(kWindowWidth, kWindowHeight, kMarkBar_px, 1920, 1200);
   const Eigen::Vector2d at(900.0, 300.0);
   const Eigen::Vector2d pixel = view.ToPixel(at);
   for (int i = 0; i < 40; ++i) {
@@ -54,10 +55,10 @@ TEST(MarkViewport, ZoomKeepsWhatIsUnderThePointer) {
 }
 
 TEST(MarkViewport, SomeOfThePictureStaysInView) {
-  MarkViewport view(kWidth, kHeight, kMarkBar_px, 1920, 1200);
+  MarkViewport view(kWindowWidth, kWindowHeight, kMarkBar_px, 1920, 1200);
   view.Pan({1e6, -1e6});
   const Eigen::Vector2d left_bottom = view.ToCanvas({-0.5, 1199.5});
-  EXPECT_LT(left_bottom.x(), kWidth);
+  EXPECT_LT(left_bottom.x(), kWindowWidth);
   EXPECT_GT(left_bottom.y(), 0.0);
 }
 
@@ -155,7 +156,7 @@ TEST(MarkCanvas, ReturnsAreDrawnWhereTheViewportPutsThem) {
   for (const bool zoomed : {false, true}) {
     if (zoomed) controller.Wheel({800.0, 400.0}, true);
     const cv::Mat drawn = canvas.Draw(controller);
-    ASSERT_EQ(drawn.size(), cv::Size(kWidth, kHeight));
+    ASSERT_EQ(drawn.size(), cv::Size(kWindowWidth, kWindowHeight));
     EXPECT_TRUE(IsDrawnAt(drawn, controller.viewport().ToCanvas({960.0, 600.0})));
     EXPECT_FALSE(IsDrawnAt(drawn, controller.viewport().ToCanvas({960.0, 500.0})));
   }

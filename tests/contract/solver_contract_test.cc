@@ -19,7 +19,7 @@ namespace {
 
 using test::MakeBoardScene;
 using test::MakeScene;
-using test::Scene;
+using test::PairScene;
 using test::SceneOptions;
 
 class SolverContract : public testing::TestWithParam<std::string> {
@@ -36,11 +36,11 @@ class SolverContract : public testing::TestWithParam<std::string> {
   const SolverSpec& spec() const { return solver_->spec(); }
 
   // A scene that holds only the kind of data that the solver says it needs.
-  Scene SceneFor(SceneOptions options, Random& random) const {
+  PairScene SceneFor(SceneOptions options, Random& random) const {
     if (!spec().is_global) options.max_rotation_rad = 0.1;
     if (!spec().estimates_rotation) options.max_rotation_rad = 0.0;
     options.planar = spec().needs.points_on_plane;
-    Scene scene =
+    PairScene scene =
         spec().needs.board_views > 0 ? MakeBoardScene(options, random) : MakeScene(options, random);
     if (!spec().is_global) scene.problem.initial_cam_from_lidar = scene.cam_from_lidar;
     Restrict(scene.problem);
@@ -141,7 +141,7 @@ TEST_P(SolverContract, CanonicalNameMakesTheSameSolver) {
 TEST_P(SolverContract, RecoversExactData) {
   Random random(1);
   for (int trial = 0; trial < 20; ++trial) {
-    const Scene scene = SceneFor({.pairs = 12}, random);
+    const PairScene scene = SceneFor({.pairs = 12}, random);
     const Expected<SolveReport> report = solver_->Solve(scene.problem);
     ASSERT_TRUE(report) << report.error().message;
     ExpectSamePose(report->cam_from_lidar, scene.cam_from_lidar, 1e-7);
@@ -151,7 +151,7 @@ TEST_P(SolverContract, RecoversExactData) {
 
 TEST_P(SolverContract, AnswerMovesWithTheLidarFrame) {
   Random random(2);
-  const Scene scene = SceneFor(Noisy(), random);
+  const PairScene scene = SceneFor(Noisy(), random);
   const Rigid3d other_from_lidar = OtherFromLidar();
   const Expected<SolveReport> here = solver_->Solve(scene.problem);
   const Expected<SolveReport> there = solver_->Solve(MoveLidar(scene.problem, other_from_lidar));
@@ -162,7 +162,7 @@ TEST_P(SolverContract, AnswerMovesWithTheLidarFrame) {
 
 TEST_P(GlobalPointPairContract, AnswerMovesWithTheCameraFrame) {
   Random random(3);
-  const Scene scene = SceneFor(Noisy(), random);
+  const PairScene scene = SceneFor(Noisy(), random);
   CalibrationProblem moved = scene.problem;
   Rigid3d other_from_cam{ExpSo3({0.4, -1.1, 0.7}), {0.3, -0.2, 0.1}};
   if (spec().needs.board_views > 0) other_from_cam = RollCamera(1.1, moved);
@@ -175,7 +175,7 @@ TEST_P(GlobalPointPairContract, AnswerMovesWithTheCameraFrame) {
 
 TEST_P(SolverContract, OrderOfThePairsDoesNotMatter) {
   Random random(4);
-  const Scene scene = SceneFor(Noisy(), random);
+  const PairScene scene = SceneFor(Noisy(), random);
   CalibrationProblem reversed = scene.problem;
   std::reverse(reversed.pairs_3d3d.begin(), reversed.pairs_3d3d.end());
   std::reverse(reversed.pairs_2d3d.begin(), reversed.pairs_2d3d.end());
@@ -193,7 +193,7 @@ TEST_P(SolverContract, OrderOfThePairsDoesNotMatter) {
 
 TEST_P(SolverContract, SameProblemSameBits) {
   Random random(5);
-  const Scene scene = SceneFor(Noisy(), random);
+  const PairScene scene = SceneFor(Noisy(), random);
   const Expected<SolveReport> first = solver_->Solve(scene.problem);
   const Expected<SolveReport> second = solver_->Solve(scene.problem);
   ASSERT_TRUE(first && second);
@@ -202,7 +202,7 @@ TEST_P(SolverContract, SameProblemSameBits) {
 
 TEST_P(SolverContract, FourThreadsGetTheSameBits) {
   Random random(6);
-  const Scene scene = SceneFor(Noisy(), random);
+  const PairScene scene = SceneFor(Noisy(), random);
   const Expected<SolveReport> alone = solver_->Solve(scene.problem);
   ASSERT_TRUE(alone) << alone.error().message;
   std::vector<Expected<SolveReport>> reports(4, Expected<SolveReport>(SolveReport{}));
@@ -220,7 +220,7 @@ TEST_P(SolverContract, FourThreadsGetTheSameBits) {
 
 TEST_P(SolverContract, CovarianceIsSymmetricAndPositive) {
   Random random(7);
-  const Scene scene = SceneFor(Noisy(), random);
+  const PairScene scene = SceneFor(Noisy(), random);
   const Expected<SolveReport> report = solver_->Solve(scene.problem);
   ASSERT_TRUE(report) << report.error().message;
   ASSERT_TRUE(report->covariance);
@@ -238,7 +238,7 @@ TEST_P(PairNoiseContract, CovarianceIsHonest) {
   double sum = 0.0;
   for (int trial = 0; trial < kTrials; ++trial) {
     Random random(DeriveSeed(8, spec().name, 0, static_cast<std::uint64_t>(trial)));
-    const Scene scene = SceneFor({.pairs = 20, .sigma_m = 0.005, .sigma_px = 0.5}, random);
+    const PairScene scene = SceneFor({.pairs = 20, .sigma_m = 0.005, .sigma_px = 0.5}, random);
     const Expected<SolveReport> report = solver_->Solve(scene.problem);
     ASSERT_TRUE(report) << report.error().message;
     ASSERT_TRUE(report->covariance);
@@ -259,7 +259,7 @@ TEST_P(MinimumContract, SaysHowManyItNeeds) {
   const DataNeeds& needs = spec().needs;
   const int least = std::max({needs.pairs_3d3d, needs.pairs_2d3d, needs.points_per_set});
   Random random(9);
-  const Scene scene = SceneFor({.pairs = least - 1}, random);
+  const PairScene scene = SceneFor({.pairs = least - 1}, random);
   const Expected<SolveReport> report = solver_->Solve(scene.problem);
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::kTooFewPairs);
@@ -269,7 +269,7 @@ TEST_P(SolverContract, RefusesNumbersThatAreNotFinite) {
   Random random(10);
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    Scene scene = SceneFor({.pairs = 12}, random);
+    PairScene scene = SceneFor({.pairs = 12}, random);
     CalibrationProblem& problem = scene.problem;
     if (!problem.pairs_3d3d.empty()) problem.pairs_3d3d[5].point_in_cam.y() = bad;
     if (!problem.pairs_2d3d.empty()) problem.pairs_2d3d[5].pixel.y() = bad;
@@ -283,7 +283,7 @@ TEST_P(SolverContract, RefusesNumbersThatAreNotFinite) {
 
 TEST_P(PairContract, RefusesNegativeSigmas) {
   Random random(11);
-  Scene scene = SceneFor({.pairs = 12}, random);
+  PairScene scene = SceneFor({.pairs = 12}, random);
   for (Pair3d3d& pair : scene.problem.pairs_3d3d) pair.sigma_m = -0.1;
   for (Pair2d3d& pair : scene.problem.pairs_2d3d) pair.sigma_px = -0.1;
   const Expected<SolveReport> report = solver_->Solve(scene.problem);
@@ -294,7 +294,7 @@ TEST_P(PairContract, RefusesNegativeSigmas) {
 TEST_P(RotationContract, RefusesPointsOnALineOrAllAlike) {
   Random random(12);
   for (const double length : {1.0, 0.0}) {
-    Scene scene = SceneFor({.pairs = 12}, random);
+    PairScene scene = SceneFor({.pairs = 12}, random);
     CalibrationProblem& problem = scene.problem;
     const Rigid3d lidar_from_cam = scene.cam_from_lidar.Inverse();
     const auto on_line = [length](std::size_t i) {
@@ -323,7 +323,7 @@ TEST_P(RotationContract, RefusesPointsOnALineOrAllAlike) {
 TEST_P(SolverContract, NeverAnswersWithNumbersThatAreNotFinite) {
   Random random(13);
   for (const double scale : {1e-200, 1e-12, 1e12, 1e150, 1e300}) {
-    Scene scene = SceneFor({.pairs = 12}, random);
+    PairScene scene = SceneFor({.pairs = 12}, random);
     for (Pair3d3d& pair : scene.problem.pairs_3d3d) {
       pair.point_in_cam *= scale;
       pair.point_in_lidar *= scale;

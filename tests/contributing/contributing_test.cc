@@ -17,7 +17,7 @@ TEST(Contributing, TheSolverOnThePageFindsThePose) {
   const Expected<SolverPtr> solver = registry.Make("my_solver");
   ASSERT_TRUE(solver) << solver.error().message;
   Random random(1);
-  const test::Scene scene = test::MakeScene({}, random);
+  const test::PairScene scene = test::MakeScene({}, random);
   const Expected<SolveReport> report = (*solver)->Solve(scene.problem);
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_LT(DistanceBetween(report->cam_from_lidar, scene.cam_from_lidar).translation_m, 1e-9);

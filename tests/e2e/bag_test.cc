@@ -7,6 +7,7 @@
 #include "e2e/run_sextant.h"
 #include "io/camera_file.h"
 #include "io/cloud_file.h"
+#include "support/bag_built.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 #include "support/source_tree.h"
@@ -14,6 +15,7 @@
 namespace sextant {
 namespace {
 
+using test::kBagIsBuilt;
 using test::ProgramRun;
 using test::TestFolder;
 using testing::HasSubstr;
@@ -23,15 +25,6 @@ ProgramRun RunBag(const std::string& arguments) { return test::RunSextant("bag "
 std::string Seed(const std::string& name) {
   return (test::SourceFolder() / "tests/fuzz/corpus" / name).string();
 }
-
-#ifdef SEXTANT_WITH_BAG
-constexpr bool kIsBuilt = true;
-#else
-constexpr bool kIsBuilt = false;
-#endif
-
-#define SKIP_WHERE_NOT_BUILT() \
-  if (!kIsBuilt) GTEST_SKIP() << "built without recordings of ROS (SEXTANT_BAG)"
 
 // The seed has a scan, an image of 2 x 2 and an encoded one, all of one moment.
 TEST(BagCommand, ListsTopicsAndPairs) {
@@ -88,7 +81,7 @@ TEST(BagCommand, RefusesWhatIsNoRecordingOrSaysHowToReadIt) {
   const ProgramRun run = RunBag(Seed("ply/ascii"));
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err,
-              HasSubstr(kIsBuilt ? "byte 0: expected a recording" : "with -DSEXTANT_BAG=ON"));
+              HasSubstr(kBagIsBuilt ? "byte 0: expected a recording" : "with -DSEXTANT_BAG=ON"));
   EXPECT_EQ(RunBag("/none.bag").exit_code, 2);
 }
 

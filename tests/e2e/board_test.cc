@@ -35,7 +35,7 @@ ProgramRun PrintBoard(const std::string& yaml, const std::string& out,
                           " " + more);
 }
 
-json Detect(const std::string& image) {
+json DetectBoard(const std::string& image) {
   const ProgramRun run =
       test::RunSextant("detect " + (TestFolder() / image).string() + " --board " +
                        (TestFolder() / "board.yaml").string() + " --json -");
@@ -47,7 +47,7 @@ TEST(Board, PictureIsFoundAgainAtTrueScale) {
   constexpr double kDpi = 120.0;
   const ProgramRun run = PrintBoard(kHollow, "target.png", "--dpi 120");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const json board = Detect("target.png");
+  const json board = DetectBoard("target.png");
   ASSERT_EQ(board.at("tags").size(), 2U);
   const auto pixel_of = [&](double x_m, double y_m) {
     constexpr double kBorder_m = 0.02;
@@ -69,7 +69,7 @@ TEST(Board, CheckerboardIsFoundAgain) {
       "checker: {inner_columns: 5, inner_rows: 4, square_m: 0.03}\n",
       "target.png", "--dpi 100");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const json corners = Detect("target.png").at("checker_px");
+  const json corners = DetectBoard("target.png").at("checker_px");
   ASSERT_EQ(corners.size(), 20U);
   // Inner corner (0, 0) is two squares from the middle in x and one and a half in y.
   EXPECT_NEAR(corners.at(0).at(0).get<double>(), (0.17 - 0.06) * 100.0 / 0.0254 - 0.5, 0.1);

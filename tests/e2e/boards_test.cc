@@ -23,7 +23,7 @@ using test::WriteText;
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr const char* kScene = R"(sextant_scene: 1
+constexpr const char* kSceneOfBoards = R"(sextant_scene: 1
 name: two boards
 lidar: {model: vlp16, pose: {position_m: [0, 0, 1]}}
 cameras:
@@ -40,7 +40,7 @@ boards:
 // Two scans of two boards, with the file of the boards beside them.
 fs::path SimulatedScans() {
   const fs::path folder = TestFolder() / "session";
-  WriteText(TestFolder() / "scene.yaml", kScene);
+  WriteText(TestFolder() / "scene.yaml", kSceneOfBoards);
   const ProgramRun run = RunSextant("simulate " + (TestFolder() / "scene.yaml").string() +
                                     " --scans 2 --out " + folder.string());
   EXPECT_EQ(run.exit_code, 0) << run.err;

@@ -24,7 +24,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 // Two boards that swing slowly and far, so that each of a session's scans has them elsewhere.
-constexpr const char* kScene = R"(sextant_scene: 1
+constexpr const char* kSceneToCalibrate = R"(sextant_scene: 1
 name: calibrate
 lidar: {model: vlp16, pose: {position_m: [0, 0, 1]}}
 cameras:
@@ -52,7 +52,7 @@ walls:
 
 fs::path Simulated(const std::string& options) {
   const fs::path folder = TestFolder() / "session";
-  WriteText(TestFolder() / "scene.yaml", kScene);
+  WriteText(TestFolder() / "scene.yaml", kSceneToCalibrate);
   const ProgramRun run = RunSextant("simulate " + (TestFolder() / "scene.yaml").string() +
                                     " --interval 60 --out " + folder.string() + " " + options);
   EXPECT_EQ(run.exit_code, 0) << run.err;

@@ -17,15 +17,13 @@ namespace {
 using nlohmann::json;
 using test::ProgramRun;
 using test::ReadText;
-using test::TestFolder;
+using test::TestPath;
 using test::WriteText;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
 ProgramRun Detect(const std::string& arguments) { return test::RunSextant("detect " + arguments); }
-
-std::string PathOf(const std::string& name) { return (TestFolder() / name).string(); }
 
 // A board with one tag and its photo: photo.png, board.yaml and camera.yaml.
 TagPicture MakePhoto() {
@@ -34,8 +32,8 @@ TagPicture MakePhoto() {
                         .tilt_rad = 0.6,
                         .image = {.blur_sigma_px = 0.7, .noise_sigma_grey = 3.0}});
   EXPECT_TRUE(picture) << picture.error().message;
-  EXPECT_TRUE(cv::imwrite(PathOf("photo.png"), picture->image));
-  WriteText(PathOf("board.yaml"), FormatBoards({&picture->board, 1}));
+  EXPECT_TRUE(cv::imwrite(TestPath("photo.png"), picture->image));
+  WriteText(TestPath("board.yaml"), FormatBoards({&picture->board, 1}));
   const Camera& camera = picture->camera;
   std::string text = "distortion_model: " +
                      std::string(camera.distortion[5] == 0.0 ? "plumb_bob" : "rational_polynomial");
@@ -46,19 +44,19 @@ TagPicture MakePhoto() {
   for (std::size_t i = 0; i < 5; ++i) {
     text += (i > 0 ? ", " : "") + std::to_string(camera.distortion[i]);
   }
-  WriteText(PathOf("camera.yaml"), text + "]\n");
+  WriteText(TestPath("camera.yaml"), text + "]\n");
   return *picture;
 }
 
 TEST(Detect, BoardPoseCornersAndOverlay) {
   const TagPicture picture = MakePhoto();
-  const std::string arguments = PathOf("photo.png") + " --board " + PathOf("board.yaml") +
-                                " --camera " + PathOf("camera.yaml");
-  const ProgramRun run = Detect(arguments + " --overlay " + PathOf("overlay.png"));
+  const std::string arguments = TestPath("photo.png") + " --board " + TestPath("board.yaml") +
+                                " --camera " + TestPath("camera.yaml");
+  const ProgramRun run = Detect(arguments + " --overlay " + TestPath("overlay.png"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out,
               AllOf(HasSubstr("1 of 1 tags"), HasSubstr("cam_from_board"), HasSubstr("corner 3")));
-  const cv::Mat overlay = cv::imread(PathOf("overlay.png"));
+  const cv::Mat overlay = cv::imread(TestPath("overlay.png"));
   EXPECT_EQ(overlay.size(), picture.image.size());
 
   const ProgramRun machine = Detect(arguments + " --json -");
@@ -75,11 +73,11 @@ TEST(Detect, BoardPoseCornersAndOverlay) {
 
 TEST(Detect, WithoutABoardListsTheTagsOfAFamily) {
   MakePhoto();
-  const ProgramRun run = Detect(PathOf("photo.png") + " --detector 'aruco(dictionary=original)'");
+  const ProgramRun run = Detect(TestPath("photo.png") + " --detector 'aruco(dictionary=original)'");
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("tag 26 of aruco_original"));
   // Nothing of the usual family: it says what there is.
-  const ProgramRun other = Detect(PathOf("photo.png"));
+  const ProgramRun other = Detect(TestPath("photo.png"));
   EXPECT_EQ(other.exit_code, 1);
   EXPECT_THAT(other.out, AllOf(HasSubstr("no tag"), HasSubstr("aruco_original would find: 26")));
 }
@@ -98,38 +96,38 @@ TEST(Detect, WithoutABoardListsTheCornersOfACheckerboard) {
   EXPECT_EQ(people.exit_code, 0) << people.err;
   EXPECT_THAT(people.out,
               AllOf(HasSubstr("checkerboard of 7 x 5 inner corners"), Not(HasSubstr("no tag"))));
-  ASSERT_TRUE(cv::imwrite(PathOf("none.png"), cv::Mat(60, 80, CV_8U, cv::Scalar(90))));
-  const ProgramRun none = Detect(PathOf("none.png") + " --quick --detector checkerboard");
+  ASSERT_TRUE(cv::imwrite(TestPath("none.png"), cv::Mat(60, 80, CV_8U, cv::Scalar(90))));
+  const ProgramRun none = Detect(TestPath("none.png") + " --quick --detector checkerboard");
   EXPECT_EQ(none.exit_code, 1);
   EXPECT_THAT(none.out, HasSubstr("no checkerboard"));
 }
 
 TEST(Detect, BadImagesAreNamedAndTheOthersStillRead) {
   MakePhoto();
-  const cv::Mat photo = cv::imread(PathOf("photo.png"), cv::IMREAD_GRAYSCALE);
-  const std::string whole = ReadText(PathOf("photo.png"));
-  WriteText(PathOf("cut.png"), whole.substr(0, whole.size() / 2));
-  WriteText(PathOf("empty.png"), "");
-  WriteText(PathOf("words.png"), "this is not an image");
-  ASSERT_TRUE(cv::imwrite(PathOf("one.png"), cv::Mat(1, 1, CV_8U, cv::Scalar(0))));
+  const cv::Mat photo = cv::imread(TestPath("photo.png"), cv::IMREAD_GRAYSCALE);
+  const std::string whole = ReadText(TestPath("photo.png"));
+  WriteText(TestPath("cut.png"), whole.substr(0, whole.size() / 2));
+  WriteText(TestPath("empty.png"), "");
+  WriteText(TestPath("words.png"), "this is not an image");
+  ASSERT_TRUE(cv::imwrite(TestPath("one.png"), cv::Mat(1, 1, CV_8U, cv::Scalar(0))));
   cv::Mat deep;
   photo.convertTo(deep, CV_16U, 257.0);
-  ASSERT_TRUE(cv::imwrite(PathOf("deep.png"), deep));
+  ASSERT_TRUE(cv::imwrite(TestPath("deep.png"), deep));
   cv::Mat layers[] = {photo, photo, photo, cv::Mat(photo.size(), CV_8U, cv::Scalar(9))};
   cv::Mat alpha;
   cv::merge(layers, 4, alpha);
-  ASSERT_TRUE(cv::imwrite(PathOf("alpha.png"), alpha));
+  ASSERT_TRUE(cv::imwrite(TestPath("alpha.png"), alpha));
   const std::string detector = " --detector 'aruco(dictionary=original)'";
   for (const char* good : {"deep.png", "alpha.png"}) {
-    EXPECT_EQ(Detect(PathOf(good) + detector).exit_code, 0) << good;
+    EXPECT_EQ(Detect(TestPath(good) + detector).exit_code, 0) << good;
   }
   for (const char* bad : {"cut.png", "empty.png", "words.png", "one.png", "absent.png"}) {
-    const ProgramRun run = Detect(PathOf(bad) + detector);
+    const ProgramRun run = Detect(TestPath(bad) + detector);
     EXPECT_EQ(run.exit_code, 2) << bad;
     EXPECT_THAT(run.err, HasSubstr(bad));
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
   }
-  const ProgramRun both = Detect(PathOf("cut.png") + " " + PathOf("photo.png") + detector);
+  const ProgramRun both = Detect(TestPath("cut.png") + " " + TestPath("photo.png") + detector);
   EXPECT_EQ(both.exit_code, 2);
   EXPECT_THAT(both.out, HasSubstr("tag 26"));
   EXPECT_THAT(both.err, HasSubstr("cut off"));
@@ -137,12 +135,12 @@ TEST(Detect, BadImagesAreNamedAndTheOthersStillRead) {
 
 TEST(Detect, BadBoardsAndDetectorsAreRefused) {
   MakePhoto();
-  const std::string photo = PathOf("photo.png");
-  WriteText(PathOf("bad.yaml"),
+  const std::string photo = TestPath("photo.png");
+  WriteText(TestPath("bad.yaml"),
             "id: 0\ntop_right_m: 0.3\nright_bottom_m: 0.3\ntags:\n"
             "  - {family: aruco_original, id: 1, edge_m: 0.2}\n"
             "  - {family: aruco_original, id: 2, edge_m: 0.2}\n");
-  const ProgramRun overlapping = Detect(photo + " --board " + PathOf("bad.yaml"));
+  const ProgramRun overlapping = Detect(photo + " --board " + TestPath("bad.yaml"));
   EXPECT_EQ(overlapping.exit_code, 2);
   EXPECT_THAT(overlapping.err, HasSubstr("bad.yaml"));
   EXPECT_EQ(Detect(photo + " --detector arucoo").exit_code, 2);
@@ -155,10 +153,10 @@ TEST(Detect, AWrongDictionaryIsToldFromARealPhoto) {
   const ProgramRun listed = Detect(photo.string() + " --detector 'aruco(dictionary=6x6_250)'");
   EXPECT_EQ(listed.exit_code, 1);
   EXPECT_THAT(listed.out, HasSubstr("aruco_original would find: 26, 582"));
-  WriteText(PathOf("board.yaml"),
+  WriteText(TestPath("board.yaml"),
             "id: 0\ntop_right_m: 0.4\nright_bottom_m: 0.4\ntags:\n"
             "  - {family: aruco_6x6_1000, id: 26, edge_m: 0.2}\n");
-  const ProgramRun missing = Detect(photo.string() + " --board " + PathOf("board.yaml"));
+  const ProgramRun missing = Detect(photo.string() + " --board " + TestPath("board.yaml"));
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_THAT(missing.out, HasSubstr("no tag of aruco_6x6_1000, but of aruco_original: 26, 582"));
 }

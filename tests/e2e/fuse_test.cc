@@ -17,11 +17,9 @@ namespace {
 
 using test::ProgramRun;
 using test::RunSextant;
-using test::TestFolder;
+using test::TestPath;
 using test::WriteText;
 using testing::HasSubstr;
-
-std::string Path(const char* name) { return (TestFolder() / name).string(); }
 
 // cam1 stands 1 m to the left of cam2 (x to the right), both turned alike against the LiDAR.
 constexpr const char* kFirst = "0 -1 0 0\n0 0 -1 0\n1 0 0 0\n0 0 0 1\n";
@@ -30,30 +28,30 @@ constexpr const char* kSecond = "0 -1 0 -1\n0 0 -1 0\n1 0 0 0\n0 0 0 1\n";
 void WriteCloud(const char* name, const std::vector<Eigen::Vector3d>& points) {
   PointCloud cloud;
   cloud.points = points;
-  WriteText(Path(name), FormatPcd(cloud));
+  WriteText(TestPath(name), FormatPcd(cloud));
 }
 
 void WriteClouds() {
   WriteCloud("a.pcd", {{0.0, 0.0, 2.0}, {0.5, 0.25, 3.0}});
   WriteCloud("b.pcd", {{4.0, 0.0, 2.0}});
-  WriteText(Path("rts.txt"), std::string(kFirst) + kSecond);
-  WriteText(Path("one.txt"), kFirst);
-  WriteText(Path("two.yaml"),
+  WriteText(TestPath("rts.txt"), std::string(kFirst) + kSecond);
+  WriteText(TestPath("one.txt"), kFirst);
+  WriteText(TestPath("two.yaml"),
             "version: 9\ncam_from_lidar:\n  translation_m: [-1, 0, 0]\n"
             "  quaternion_wxyz: [0.5, 0.5, -0.5, 0.5]\n  later: 1\n");
 }
 
 TEST(Fuse, MovesEveryCloudToTheFrameOfTheLast) {
   WriteClouds();
-  const std::string clouds = "fuse " + Path("a.pcd") + " " + Path("b.pcd");
-  const std::string poses[] = {" --rts " + Path("rts.txt"),
-                               " --from " + Path("one.txt") + " --to " + Path("two.yaml")};
+  const std::string clouds = "fuse " + TestPath("a.pcd") + " " + TestPath("b.pcd");
+  const std::string poses[] = {" --rts " + TestPath("rts.txt"),
+                               " --from " + TestPath("one.txt") + " --to " + TestPath("two.yaml")};
   for (const std::string& pose : poses) {
     for (const char* out : {"out.pcd", "out.ply"}) {
-      const ProgramRun run = RunSextant(clouds + pose + " --out " + Path(out));
+      const ProgramRun run = RunSextant(clouds + pose + " --out " + TestPath(out));
       ASSERT_EQ(run.exit_code, 0) << run.err;
-      EXPECT_THAT(run.out, HasSubstr("3 points of 2 clouds in the frame of " + Path("b.pcd")));
-      const Expected<PointCloud> fused = ReadCloud(Path(out));
+      EXPECT_THAT(run.out, HasSubstr("3 points of 2 clouds in the frame of " + TestPath("b.pcd")));
+      const Expected<PointCloud> fused = ReadCloud(TestPath(out));
       ASSERT_TRUE(fused) << fused.error().message;
       ASSERT_EQ(fused->points.size(), 3U);
       EXPECT_LT((fused->points[0] - Eigen::Vector3d(-1.0, 0.0, 2.0)).norm(), 1e-6);
@@ -65,20 +63,20 @@ TEST(Fuse, MovesEveryCloudToTheFrameOfTheLast) {
 
 TEST(Fuse, SaysWhatIsMissing) {
   WriteClouds();
-  const std::string a = Path("a.pcd") + " ";
-  const std::string b = Path("b.pcd") + " ";
+  const std::string a = TestPath("a.pcd") + " ";
+  const std::string b = TestPath("b.pcd") + " ";
   const struct {
     std::string arguments;
     std::string message;
   } cases[] = {
       {a, "expected two clouds"},
       {a + b, "expected a transform for each of the 2 clouds"},
-      {a + b + "--from " + Path("one.txt"), "expected a transform for each of the 2 clouds"},
-      {a + b + a + "--rts " + Path("rts.txt"), "expected a transform for each of the 3 clouds"},
-      {a + b + "--rts " + Path("rts.txt") + " --to " + Path("one.txt"), "leave out --from"},
-      {a + b + "--rts " + Path("rts.txt") + " --out x.xyz", "expected a name in .ply or .pcd"},
-      {a + b + "--rts " + Path("nowhere.txt"), "nowhere.txt"},
-      {a + Path("nowhere.pcd") + " --rts " + Path("rts.txt"), "nowhere.pcd"},
+      {a + b + "--from " + TestPath("one.txt"), "expected a transform for each of the 2 clouds"},
+      {a + b + a + "--rts " + TestPath("rts.txt"), "expected a transform for each of the 3 clouds"},
+      {a + b + "--rts " + TestPath("rts.txt") + " --to " + TestPath("one.txt"), "leave out --from"},
+      {a + b + "--rts " + TestPath("rts.txt") + " --out x.xyz", "expected a name in .ply or .pcd"},
+      {a + b + "--rts " + TestPath("nowhere.txt"), "nowhere.txt"},
+      {a + TestPath("nowhere.pcd") + " --rts " + TestPath("rts.txt"), "nowhere.pcd"},
   };
   for (const auto& [arguments, message] : cases) {
     const ProgramRun run = RunSextant("fuse " + arguments);
@@ -91,7 +89,7 @@ TEST(Fuse, SaysWhatIsMissing) {
 // scans have the ground at the same height below the sensor, whatever the pose.)
 TEST(Fuse, RealScansAgreeUnderTheirPublishedPose) {
   SEXTANT_REAL_DATA(folder, "gicp");
-  WriteText(Path("same.txt"), "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  WriteText(TestPath("same.txt"), "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   const std::string clouds =
       "fuse " + (folder / "source.ply").string() + " " + (folder / "target.ply").string();
   struct Said {
@@ -99,8 +97,8 @@ TEST(Fuse, RealScansAgreeUnderTheirPublishedPose) {
     double rms_mm = 0.0;
   };
   const auto fuse = [&](const std::string& to) {
-    const ProgramRun run = RunSextant(clouds + " --from " + Path("same.txt") + " --to " + to +
-                                      " --out " + Path("out.ply"));
+    const ProgramRun run = RunSextant(clouds + " --from " + TestPath("same.txt") + " --to " + to +
+                                      " --out " + TestPath("out.ply"));
     EXPECT_EQ(run.exit_code, 0) << run.err;
     const auto number_after = [&run](const std::string& text) {
       const std::size_t at = run.out.find(text);
@@ -109,7 +107,7 @@ TEST(Fuse, RealScansAgreeUnderTheirPublishedPose) {
     return Said{number_after("sees too ("), number_after("rms ")};
   };
   const Said published = fuse((folder / "T_target_source.txt").string());
-  const Said none = fuse(Path("same.txt"));
+  const Said none = fuse(TestPath("same.txt"));
   EXPECT_GT(none.rms_mm, 0.0);
   EXPECT_GT(published.overlap, none.overlap);
   EXPECT_LT(published.rms_mm, none.rms_mm);
@@ -118,8 +116,9 @@ TEST(Fuse, RealScansAgreeUnderTheirPublishedPose) {
 TEST(Fuse, ReadsTheTransformsOfTheOriginal) {
   SEXTANT_REAL_DATA(folder, "dhall");
   WriteClouds();
-  const ProgramRun run = RunSextant("fuse " + Path("a.pcd") + " " + Path("b.pcd") + " --rts " +
-                                    (folder / "rts.txt").string() + " --out " + Path("out.ply"));
+  const ProgramRun run =
+      RunSextant("fuse " + TestPath("a.pcd") + " " + TestPath("b.pcd") + " --rts " +
+                 (folder / "rts.txt").string() + " --out " + TestPath("out.ply"));
   EXPECT_EQ(run.exit_code, 0) << run.err;
 }
 

@@ -26,14 +26,13 @@ using cli::MarkViewport;
 using test::BackgroundProgram;
 using test::Eventually;
 using test::TestFolder;
+using test::TestPath;
 using test::VirtualDisplay;
 using testing::HasSubstr;
 
 constexpr int kWidth = 1280;
 constexpr int kHeight = 800;
 constexpr double kSeconds = 20.0;  // For what takes a fraction of one on an idle machine.
-
-std::string InFolder(const char* name) { return (TestFolder() / name).string(); }
 
 // A scan of the paper's board, and the projection in which it is shown.
 struct Drawing {
@@ -45,14 +44,14 @@ struct Drawing {
 
 void WriteScan(const Scene& scene) {
   const SimulatedScan scan = test::Scan(scene, test::Model("vlp16"), {.seed = 5});
-  test::WriteText(InFolder("scan.pcd"), FormatPcd(scan.cloud));
+  test::WriteText(TestPath("scan.pcd"), FormatPcd(scan.cloud));
 }
 
 // Of the scan in the file, chosen by the marks. The medians of these extractors are 2.2, 4.7 and
 // 12 mm; `most_m` is four times as much.
 void ExpectCornersNear(const SceneBoard& board, const ScanMarks& marks, const char* extractor,
                        double most_m) {
-  const Expected<PointCloud> cloud = ReadPcd(InFolder("scan.pcd"));
+  const Expected<PointCloud> cloud = ReadPcd(TestPath("scan.pcd"));
   ASSERT_TRUE(cloud) << cloud.error().message;
   const auto patches =
       PatchesFromPolygons(*ScanRings::Build(*cloud), marks, std::vector<Board>{board.board});
@@ -69,9 +68,9 @@ void ExpectCornersNear(const SceneBoard& board, const ScanMarks& marks, const ch
 class OpenWindow {
  public:
   OpenWindow(const VirtualDisplay& display, const std::vector<std::string>& more = {})
-      : display_(display), program_(Command(more), {display.variable()}, InFolder("log")) {
+      : display_(display), program_(Command(more), {display.variable()}, TestPath("log")) {
     id_ = FindWindow("--sync");
-    EXPECT_NE(id_, "") << test::ReadText(InFolder("log"));
+    EXPECT_NE(id_, "") << test::ReadText(TestPath("log"));
   }
 
   int Wait() { return program_.Wait(kSeconds); }
@@ -100,7 +99,7 @@ class OpenWindow {
  private:
   static std::vector<std::string> Command(const std::vector<std::string>& more) {
     std::vector<std::string> command = {SEXTANT_BINARY,       "mark",  "--cloud",
-                                        InFolder("scan.pcd"), "--out", InFolder("polygons.yaml")};
+                                        TestPath("scan.pcd"), "--out", TestPath("polygons.yaml")};
     command.insert(command.end(), more.begin(), more.end());
     return command;
   }
@@ -123,7 +122,7 @@ std::vector<Eigen::Vector2d> OnCanvas(const MarkViewport& view, const Quadrilate
 // What the autosave file holds once it holds as many edges and clicks.
 bool IsKept(std::size_t edges, std::size_t clicks) {
   return Eventually(kSeconds, [&] {
-    const Expected<ScanMarks> kept = ReadPolygons(InFolder("polygons.yaml.autosave"));
+    const Expected<ScanMarks> kept = ReadPolygons(TestPath("polygons.yaml.autosave"));
     if (!kept) return false;
     const std::size_t found = kept->boards.empty() ? 0 : kept->boards[0].edges.size();
     return found == edges && kept->unfinished.size() == clicks;
@@ -155,14 +154,14 @@ TEST(Mark, ABoardDrawnByClicksIsSaved) {
   ASSERT_TRUE(IsKept(4, 0));
   window.Press("s");
   ASSERT_TRUE(Eventually(kSeconds, [] {
-    return std::filesystem::exists(InFolder("polygons.yaml")) &&
-           !std::filesystem::exists(InFolder("polygons.yaml.autosave"));
+    return std::filesystem::exists(TestPath("polygons.yaml")) &&
+           !std::filesystem::exists(TestPath("polygons.yaml.autosave"));
   }));
   window.Press("q");
   EXPECT_EQ(window.Wait(), 0);
-  EXPECT_THAT(test::ReadText(InFolder("log")), HasSubstr("1 board with 4 edges, 0 corners"));
+  EXPECT_THAT(test::ReadText(TestPath("log")), HasSubstr("1 board with 4 edges, 0 corners"));
 
-  const Expected<ScanMarks> marks = ReadPolygons(InFolder("polygons.yaml"));
+  const Expected<ScanMarks> marks = ReadPolygons(TestPath("polygons.yaml"));
   ASSERT_TRUE(marks) << marks.error().message;
   ASSERT_EQ(marks->boards.size(), 1U);
   ASSERT_EQ(marks->boards[0].edges.size(), 4U);
@@ -182,7 +181,7 @@ TEST(Mark, WhatIsNotSavedIsThereAtTheNextStart) {
   if (!VirtualDisplay::IsInstalled()) GTEST_SKIP() << VirtualDisplay::kAbsent;
   const Drawing drawing;
   WriteScan(drawing.scene);
-  cv::imwrite(InFolder("photo.png"), cv::Mat(720, 1280, CV_8UC3, cv::Scalar(90, 120, 90)));
+  cv::imwrite(TestPath("photo.png"), cv::Mat(720, 1280, CV_8UC3, cv::Scalar(90, 120, 90)));
   const VirtualDisplay display(TestFolder().string());
   {
     OpenWindow window(display);
@@ -192,18 +191,18 @@ TEST(Mark, WhatIsNotSavedIsThereAtTheNextStart) {
     window.Press("q");
     window.Press("q");  // The first asks.
     EXPECT_EQ(window.Wait(), 1);
-    EXPECT_THAT(test::ReadText(InFolder("log")), HasSubstr("polygons.yaml.autosave"));
+    EXPECT_THAT(test::ReadText(TestPath("log")), HasSubstr("polygons.yaml.autosave"));
   }
-  EXPECT_FALSE(std::filesystem::exists(InFolder("polygons.yaml")));
-  OpenWindow window(display, {"--image", InFolder("photo.png")});
+  EXPECT_FALSE(std::filesystem::exists(TestPath("polygons.yaml")));
+  OpenWindow window(display, {"--image", TestPath("photo.png")});
   window.Click({{340, 300}, {340, 340}, {300, 340}});
   ASSERT_TRUE(IsKept(2, 0));
   window.Press("c");
   window.Click({{600, 200}, {700, 300}});
   window.Press("s");
   window.Press("q");
-  EXPECT_EQ(window.Wait(), 0) << test::ReadText(InFolder("log"));
-  const Expected<ScanMarks> marks = ReadPolygons(InFolder("polygons.yaml"));
+  EXPECT_EQ(window.Wait(), 0) << test::ReadText(TestPath("log"));
+  const Expected<ScanMarks> marks = ReadPolygons(TestPath("polygons.yaml"));
   ASSERT_TRUE(marks) << marks.error().message;
   EXPECT_EQ(marks->boards[0].edges.size(), 2U);
   ASSERT_EQ(marks->corners.size(), 2U);
@@ -232,24 +231,24 @@ TEST(Mark, ItsPictureCanBeHadWithoutADisplay) {
   WriteScan(drawing.scene);
   ScanMarks marks = drawing.projection;
   marks.boards = {drawing.board};
-  test::WriteText(InFolder("polygons.yaml"), FormatPolygons(marks));
+  test::WriteText(TestPath("polygons.yaml"), FormatPolygons(marks));
   const std::string files =
-      "--cloud " + InFolder("scan.pcd") + " --out " + InFolder("polygons.yaml");
-  const test::ProgramRun run = Mark(files + " --render " + InFolder("window.png"));
+      "--cloud " + TestPath("scan.pcd") + " --out " + TestPath("polygons.yaml");
+  const test::ProgramRun run = Mark(files + " --render " + TestPath("window.png"));
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  const cv::Mat picture = cv::imread(InFolder("window.png"));
+  const cv::Mat picture = cv::imread(TestPath("window.png"));
   EXPECT_EQ(picture.size(), cv::Size(kWidth, kHeight));
   EXPECT_EQ(Mark(files + " --render window.bmp").exit_code, 2);
 }
 
 // How many pixels of the window's picture two ways of starting it differ in.
 int DifferingPixels(const std::string& a, const std::string& b) {
-  const std::string files = "--cloud " + InFolder("scan.pcd") + " --out " + InFolder("none.yaml");
+  const std::string files = "--cloud " + TestPath("scan.pcd") + " --out " + TestPath("none.yaml");
   std::vector<cv::Mat> pictures;
   for (const std::string& options : {a, b}) {
-    const test::ProgramRun run = Mark(files + " --render " + InFolder("w.png") + " " + options);
+    const test::ProgramRun run = Mark(files + " --render " + TestPath("w.png") + " " + options);
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    pictures.push_back(cv::imread(InFolder("w.png"), cv::IMREAD_GRAYSCALE));
+    pictures.push_back(cv::imread(TestPath("w.png"), cv::IMREAD_GRAYSCALE));
   }
   return cv::countNonZero(pictures[0] != pictures[1]);
 }
@@ -269,25 +268,25 @@ TEST(Mark, APoseMayComeAsNumbersFromFilesOrAsAYaw) {
   for (int i = 0; i < 4; ++i) {
     rows += fmt::format("{} {} {} {}\n", m(i, 0), m(i, 1), m(i, 2), m(i, 3));
   }
-  test::WriteText(InFolder("rts.txt"), rows);
+  test::WriteText(TestPath("rts.txt"), rows);
   SolveReport report;
   report.cam_from_lidar = pose;
   ResultFile results;
   results.results.push_back({"p3p", MakeError(ErrorCode::kDegenerate, "on a line")});
   results.results.push_back({"kabsch", report});
-  test::WriteText(InFolder("results.json"), FormatResults(results));
+  test::WriteText(TestPath("results.json"), FormatResults(results));
   EXPECT_GT(DifferingPixels(numbers, ""), 1000);
   EXPECT_EQ(DifferingPixels(numbers, "--yaw 45"), 0);
-  EXPECT_EQ(DifferingPixels(numbers, "--cam-from-lidar " + InFolder("rts.txt")), 0);
-  EXPECT_EQ(DifferingPixels(numbers, "--cam-from-lidar " + InFolder("results.json")), 0);
+  EXPECT_EQ(DifferingPixels(numbers, "--cam-from-lidar " + TestPath("rts.txt")), 0);
+  EXPECT_EQ(DifferingPixels(numbers, "--cam-from-lidar " + TestPath("results.json")), 0);
 }
 
 TEST(Mark, RefusesWhatItCannotUse) {
   const Drawing drawing;
   WriteScan(drawing.scene);
-  const std::string scan = "--cloud " + InFolder("scan.pcd") + " --out " + InFolder("p.yaml") +
-                           " --render " + InFolder("w.png") + " ";
-  EXPECT_THAT(Mark(scan + "--image " + InFolder("scan.pcd")).err, HasSubstr("expected an image"));
+  const std::string scan = "--cloud " + TestPath("scan.pcd") + " --out " + TestPath("p.yaml") +
+                           " --render " + TestPath("w.png") + " ";
+  EXPECT_THAT(Mark(scan + "--image " + TestPath("scan.pcd")).err, HasSubstr("expected an image"));
   EXPECT_EQ(Mark(scan + "--cam-from-lidar a.json --yaw 5").exit_code, 2);
   EXPECT_THAT(Mark(scan + "--cam-from-lidar 0 0 0 1").err, HasSubstr("X Y Z QW QX QY QZ"));
   EXPECT_THAT(Mark(scan + "--cam-from-lidar 0 0 0 1 1 0 0").err, HasSubstr("length 1"));
@@ -295,7 +294,7 @@ TEST(Mark, RefusesWhatItCannotUse) {
   EXPECT_THAT(Mark(scan + "--cam-from-lidar 0 0 -9 1 0 0 0").err, HasSubstr("is in view"));
   ScanMarks other = drawing.projection;
   other.camera.fx_px = 500.0;
-  test::WriteText(InFolder("p.yaml"), FormatPolygons(other));
+  test::WriteText(TestPath("p.yaml"), FormatPolygons(other));
   EXPECT_THAT(Mark(scan + "--cam-from-lidar 0 0 0 0.5 0.5 -0.5 0.5").err,
               HasSubstr("another projection"));
 }

@@ -17,10 +17,9 @@ using test::ProgramRun;
 using test::ReadText;
 using test::RunSextant;
 using test::TestFolder;
+using test::TestPath;
 using test::WriteText;
 using testing::HasSubstr;
-
-std::string Path(const char* name) { return (TestFolder() / name).string(); }
 
 constexpr const char* kExperiment = R"(title: Points
 kind: random_scene
@@ -56,9 +55,9 @@ std::string Arguments(const char* out) {
   std::filesystem::create_directories(TestFolder() / "experiments");
   WriteText(TestFolder() / "experiments" / "points.yaml", kExperiment);
   WriteText(TestFolder() / "experiments" / "log.yaml", kLog);
-  WriteText(Path("claims.yaml"), kClaims);
-  return "reproduce --experiments " + Path("experiments") + " --claims " + Path("claims.yaml") +
-         " --out " + Path(out);
+  WriteText(TestPath("claims.yaml"), kClaims);
+  return "reproduce --experiments " + TestPath("experiments") + " --claims " +
+         TestPath("claims.yaml") + " --out " + TestPath(out);
 }
 
 TEST(Reproduce, JudgesEveryClaimOnOnePage) {
@@ -99,12 +98,12 @@ TEST(Reproduce, SaysWhatIsWrong) {
   const std::string arguments = Arguments("paper");
   std::string claims = kClaims;
   claims.replace(claims.find("subject: kabsch"), 15, "subject: kabsh ");
-  WriteText(Path("claims.yaml"), claims);
+  WriteText(TestPath("claims.yaml"), claims);
   const ProgramRun unknown = RunSextant(arguments + " --quick");
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_THAT(unknown.err, HasSubstr("exact: points has no subject 'kabsh'"));
   const ProgramRun absent =
-      RunSextant("reproduce --claims " + Path("nowhere.yaml") + " --out " + Path("paper"));
+      RunSextant("reproduce --claims " + TestPath("nowhere.yaml") + " --out " + TestPath("paper"));
   EXPECT_EQ(absent.exit_code, 2);
   EXPECT_THAT(absent.err, HasSubstr("nowhere.yaml"));
 }
@@ -129,7 +128,7 @@ TEST(Reproduce, QuicklyAgreesWithThePageOfTheFullRun) {
   const std::filesystem::path root = test::SourceRoot();
   const ProgramRun run = RunSextant(
       "reproduce --quick --experiments " + (root / "experiments").string() + " --claims " +
-      (root / "paper" / "claims.yaml").string() + " --out " + Path("paper"));
+      (root / "paper" / "claims.yaml").string() + " --out " + TestPath("paper"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto full = VerdictsOf(root / "paper" / "REPRODUCTION.md");
   const auto quick = VerdictsOf(TestFolder() / "paper" / "REPRODUCTION.md");

@@ -29,7 +29,7 @@ using test::WriteText;
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr const char* kScene = R"(sextant_scene: 1
+constexpr const char* kSceneOfResult = R"(sextant_scene: 1
 name: one board
 lidar: {model: vlp16, pose: {position_m: [0, 0, 1]}}
 cameras:
@@ -47,7 +47,7 @@ walls:
 class ResultCommands : public testing::Test {
  protected:
   void SetUp() override {
-    WriteText(TestFolder() / "scene.yaml", kScene);
+    WriteText(TestFolder() / "scene.yaml", kSceneOfResult);
     const ProgramRun run =
         RunSextant("simulate " + (TestFolder() / "scene.yaml").string() + " --out " + Session());
     ASSERT_EQ(run.exit_code, 0) << run.err;

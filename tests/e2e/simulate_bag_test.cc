@@ -14,6 +14,7 @@
 #ifdef SEXTANT_WITH_BAG
 #include "io/bag/bag.h"
 #include "io/bag/messages.h"
+#include "support/bag_built.h"
 #endif
 
 namespace sextant {
@@ -21,23 +22,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using test::kBagIsBuilt;
 using test::ProgramRun;
 using test::ReadText;
 using test::RunSextant;
 using test::TestFolder;
 using testing::HasSubstr;
 
-#ifdef SEXTANT_WITH_BAG
-constexpr bool kIsBuilt = true;
-#else
-constexpr bool kIsBuilt = false;
-#endif
-
-#define SKIP_WHERE_NOT_BUILT() \
-  if (!kIsBuilt) GTEST_SKIP() << "built without recordings of ROS (SEXTANT_BAG)"
-
 // Two small cameras that differ, so that a topic with the other's messages is seen.
-constexpr const char* kScene = R"(sextant_scene: 1
+constexpr const char* kSceneOfTwoCameras = R"(sextant_scene: 1
 name: small
 lidar: {model: vlp16, pose: {position_m: [0, 0, 1]}}
 cameras:
@@ -56,7 +49,7 @@ boards:
 
 ProgramRun Simulate(const fs::path& out, const std::string& options) {
   const fs::path scene = TestFolder() / "scene.yaml";
-  test::WriteText(scene, kScene);
+  test::WriteText(scene, kSceneOfTwoCameras);
   return RunSextant("simulate " + scene.string() + " --out " + out.string() + " " + options);
 }
 
@@ -167,7 +160,7 @@ TEST(SimulateBag, WhatCannotBeRecordedIsRefusedBeforeAnythingIsWritten) {
     EXPECT_FALSE(fs::exists(out)) << options;
     return run.err;
   };
-  if (!kIsBuilt) {
+  if (!kBagIsBuilt) {
     EXPECT_THAT(refusal(""), HasSubstr("configure with -DSEXTANT_BAG=ON"));
     return;
   }

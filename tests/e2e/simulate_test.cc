@@ -24,7 +24,7 @@ using testing::Key;
 using testing::UnorderedElementsAre;
 
 // A small image, so that a session takes no time.
-constexpr const char* kScene = R"(sextant_scene: 1
+constexpr const char* kSceneToSimulate = R"(sextant_scene: 1
 name: small
 lidar: {model: vlp16, pose: {position_m: [0, 0, 1]}}
 cameras:
@@ -40,7 +40,7 @@ boards:
     pose: {position_m: [2.2, -0.5, 1.1], yaw_deg: -10, pitch_deg: -5, roll_deg: 40}
 )";
 
-std::string SceneFile(const std::string& text = kScene) {
+std::string SceneFile(const std::string& text = kSceneToSimulate) {
   const fs::path path = TestFolder() / "scene.yaml";
   WriteText(path, text);
   return path.string();
@@ -152,7 +152,7 @@ TEST(Simulate, TheFastLevelsAreProblemFiles) {
 
 TEST(Simulate, BadScenesEndInOneLineBeforeAnythingIsWritten) {
   const auto refusal = [](const std::string& from, const std::string& to) {
-    std::string text = kScene;
+    std::string text = kSceneToSimulate;
     const std::string scene = SceneFile(text.replace(text.find(from), from.size(), to));
     const std::string out = (TestFolder() / "session").string();
     const ProgramRun run = RunSextant("simulate " + scene + " --out " + out);

@@ -36,7 +36,7 @@ TEST(CramerRaoBound, OfOnePointClusterAtTheOriginIsTheMeanOfItsNoise) {
 
 TEST(CramerRaoBound, EqualsThePropagatedCovarianceWithoutNoiseInTheData) {
   Random random(1);
-  test::Scene scene = test::MakeScene({.pairs = 10}, random);
+  test::PairScene scene = test::MakeScene({.pairs = 10}, random);
   for (Pair3d3d& pair : scene.problem.pairs_3d3d) pair.sigma_m = 0.01;
   scene.problem.pairs_2d3d.clear();
   const auto bound = CramerRaoBound(scene.problem, scene.cam_from_lidar);
@@ -48,7 +48,7 @@ TEST(CramerRaoBound, EqualsThePropagatedCovarianceWithoutNoiseInTheData) {
 
 TEST(CramerRaoBound, BothKindsOfPairsAddTheirInformation) {
   Random random(2);
-  const test::Scene scene =
+  const test::PairScene scene =
       test::MakeScene({.pairs = 10, .sigma_m = 0.01, .sigma_px = 1.0}, random);
   CalibrationProblem points = scene.problem;
   points.pairs_2d3d.clear();
@@ -123,10 +123,10 @@ TEST(CramerRaoBound, IsWhatCeresAndRefinePoseSayAtTheTruth) {
 TEST(CramerRaoBound, SaysWhatIsMissing) {
   Random random(3);
   EXPECT_EQ(CramerRaoBound({}, {}).error().code, ErrorCode::kMissingData);
-  const test::Scene silent = test::MakeScene({.pairs = 5}, random);
+  const test::PairScene silent = test::MakeScene({.pairs = 5}, random);
   EXPECT_EQ(CramerRaoBound(silent.problem, silent.cam_from_lidar).error().code,
             ErrorCode::kMissingData);
-  test::Scene two = test::MakeScene({.pairs = 2, .sigma_m = 0.1}, random);
+  test::PairScene two = test::MakeScene({.pairs = 2, .sigma_m = 0.1}, random);
   two.problem.pairs_2d3d.clear();
   EXPECT_EQ(CramerRaoBound(two.problem, two.cam_from_lidar).error().code, ErrorCode::kDegenerate);
 }

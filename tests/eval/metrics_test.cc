@@ -4,15 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include "base/random.h"
+#include "base/units.h"
 
 namespace sextant {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::vector<double> Measure(const KnownProblem& known, const Expected<SolveReport>& report) {
   std::vector<double> values(PoseMetrics().size(), std::nan(""));
@@ -54,7 +52,7 @@ TEST(PoseMetrics, HaveDistinctNamesInTheOrderOfTheirIndices) {
 TEST(MeasurePose, KnowsEachErrorByItsDefinition) {
   const KnownProblem known = TwoPoints();
   SolveReport report;
-  report.cam_from_lidar = {ExpSo3({0.0, 0.0, kDegree}), {0.003, 0.0, -0.004}};
+  report.cam_from_lidar = {ExpSo3({0.0, 0.0, kRadPerDeg}), {0.003, 0.0, -0.004}};
   report.evaluation = Evaluate(known.problem, report.cam_from_lidar);
   report.inliers = {0, 1};
   report.covariance = Matrix6d(Matrix6d::Identity() * 1e-4);
@@ -66,10 +64,10 @@ TEST(MeasurePose, KnowsEachErrorByItsDefinition) {
   EXPECT_NEAR(values[kTranslationMm], 5.0, 1e-12);
   EXPECT_NEAR(values[kXMm], 3.0, 1e-12);
   EXPECT_NEAR(values[kZMm], -4.0, 1e-12);
-  EXPECT_NEAR(values[kNees], (kDegree * kDegree + 25e-6) / 1e-4, 1e-9);
+  EXPECT_NEAR(values[kNees], (kRadPerDeg * kRadPerDeg + 25e-6) / 1e-4, 1e-9);
   EXPECT_NEAR(values[kEstimatedYawDeg], 1.0, 1e-12);
   // Each point is moved by half a metre's turn of a degree, and by the shift.
-  const double chord = 2.0 * 0.5 * std::sin(0.5 * kDegree);
+  const double chord = 2.0 * 0.5 * std::sin(0.5 * kRadPerDeg);
   EXPECT_NEAR(values[kRmseMm] * values[kRmseMm], 1e6 * (chord * chord + 25e-6), 1e-3);
   EXPECT_EQ(values[kHeldOutMm], values[kRmseMm]);
   EXPECT_EQ(values[kHeldOutPx], values[kRmsePx]);

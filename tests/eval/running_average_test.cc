@@ -6,9 +6,10 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <numbers>
 
 #include "base/random.h"
+#include "base/units.h"
+#include "geometry/random_vectors.h"
 #include "solvers/evaluation.h"
 #include "solvers/kabsch.h"
 #include "solvers/rotation_average.h"
@@ -16,14 +17,6 @@
 
 namespace sextant {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int k = 0; k < 3; ++k) v[k] = random.Normal();
-  return v;
-}
 
 std::vector<Rigid3d> ScansAround(const Rigid3d& pose, int count, Random& random) {
   std::vector<Rigid3d> scans;

@@ -16,7 +16,7 @@ namespace {
 using test::BadText;
 using testing::HasSubstr;
 
-constexpr ErrorCode kParse = ErrorCode::kParse;
+using ErrorCode::kParse;
 
 constexpr const char* kHollow = R"(boards:
   - id: 3
@@ -88,7 +88,7 @@ TEST_P(BadBoardTest, EndsInOneLineThatSaysWhereAndWhat) {
 }
 
 // A board of 0.6 x 0.8 m with these lines more.
-std::string With(const std::string& lines) {
+std::string BoardWith(const std::string& lines) {
   return "boards:\n  - id: 0\n    top_right_m: 0.6\n    right_bottom_m: 0.8\n" + lines;
 }
 
@@ -102,9 +102,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadText{"Empty", "", kParse, "b:1: the file is empty"},
         BadText{"NoBoards", "boards: []", kParse, "b:1: boards: expected at least one board"},
-        BadText{"UnknownKey", With("    hol: {}\n"), kParse,
+        BadText{"UnknownKey", BoardWith("    hol: {}\n"), kParse,
                 "b:5: board: unknown key 'hol'; did you mean 'hole'?"},
-        BadText{"UnknownTagKey", With("    tags:\n      - {familie: x}\n"), kParse,
+        BadText{"UnknownTagKey", BoardWith("    tags:\n      - {familie: x}\n"), kParse,
                 "b:6: tag: unknown key 'familie'; did you mean 'family'?"},
         BadText{"NoId", "boards:\n  - {top_right_m: 1, right_bottom_m: 1}\n", kParse,
                 "b:2: id: expected this key"},
@@ -114,42 +114,47 @@ INSTANTIATE_TEST_SUITE_P(
                 "b:3: board: right_bottom_m: expected more than zero"},
         BadText{"NotANumber", "id: 0\ntop_right_m: .nan\nright_bottom_m: 1\n",
                 ErrorCode::kNonFinite, "b:2: top_right_m"},
-        BadText{"Thickness", With("    thickness_m: -1\n"), kParse, "b:5: board: thickness_m"},
-        BadText{"HoleWithoutSize", With("    hole: {width_m: 0.0, height_m: 0.1}\n"), kParse,
+        BadText{"Thickness", BoardWith("    thickness_m: -1\n"), kParse, "b:5: board: thickness_m"},
+        BadText{"HoleWithoutSize", BoardWith("    hole: {width_m: 0.0, height_m: 0.1}\n"), kParse,
                 "b:5: hole: width_m: expected more than zero"},
-        BadText{"HoleTooLarge", With("    hole: {width_m: 0.6, height_m: 0.1}\n"), kParse,
+        BadText{"HoleTooLarge", BoardWith("    hole: {width_m: 0.6, height_m: 0.1}\n"), kParse,
                 "b:5: hole: expected the opening to lie within the board"},
         BadText{"HoleShifted",
-                With("    hole: {width_m: 0.3, height_m: 0.1, center_in_board_m: [0.2, 0]}\n"),
+                BoardWith("    hole: {width_m: 0.3, height_m: 0.1, center_in_board_m: [0.2, 0]}\n"),
                 kParse, "within the board"},
-        BadText{"TagWithoutSize", With("    tags:\n" + Tag(1, "[0, 0]", "0")), kParse,
+        BadText{"TagWithoutSize", BoardWith("    tags:\n" + Tag(1, "[0, 0]", "0")), kParse,
                 "b:6: tag 0: edge_m: expected more than zero"},
-        BadText{"TagOffTheBoard", With("    tags:\n" + Tag(1, "[0, 0]") + Tag(2, "[0.26, 0.2]")),
-                kParse, "b:7: tag 1: center_in_board_m: it reaches over the board's edge"},
-        BadText{"TurnedTagOffTheBoard",
-                With("    tags:\n      - {family: a, id: 1, edge_m: 0.59, rotation_deg: 45}\n"),
-                kParse, "over the board's edge"},
-        BadText{"TagInTheHole",
-                With("    hole: {width_m: 0.3, height_m: 0.3}\n    tags:\n" + Tag(1, "[0.1, 0]")),
-                kParse, "b:7: tag 0: center_in_board_m: it reaches into the board's hole"},
-        BadText{"TagsOverlap", With("    tags:\n" + Tag(1, "[0, 0]") + Tag(2, "[0.099, 0.09]")),
-                kParse, "b:7: tag 1: center_in_board_m: it overlaps the tag 1 of tag36h11"},
-        BadText{"TagTwice", With("    tags:\n" + Tag(1, "[0, 0]") + Tag(1, "[0, 0.2]")), kParse,
-                "b:7: tag 1: id: the id 1 of tag36h11 is on this board a second time"},
-        BadText{"TagOverChecker",
-                With("    checker: {inner_columns: 3, inner_rows: 3, square_m: 0.1}\n    tags:\n" +
-                     Tag(1, "[0, 0.2]")),
-                kParse, "it overlaps the checkerboard"},
+        BadText{"TagOffTheBoard",
+                BoardWith("    tags:\n" + Tag(1, "[0, 0]") + Tag(2, "[0.26, 0.2]")), kParse,
+                "b:7: tag 1: center_in_board_m: it reaches over the board's edge"},
+        BadText{
+            "TurnedTagOffTheBoard",
+            BoardWith("    tags:\n      - {family: a, id: 1, edge_m: 0.59, rotation_deg: 45}\n"),
+            kParse, "over the board's edge"},
+        BadText{
+            "TagInTheHole",
+            BoardWith("    hole: {width_m: 0.3, height_m: 0.3}\n    tags:\n" + Tag(1, "[0.1, 0]")),
+            kParse, "b:7: tag 0: center_in_board_m: it reaches into the board's hole"},
+        BadText{"TagsOverlap",
+                BoardWith("    tags:\n" + Tag(1, "[0, 0]") + Tag(2, "[0.099, 0.09]")), kParse,
+                "b:7: tag 1: center_in_board_m: it overlaps the tag 1 of tag36h11"},
+        BadText{"TagTwice", BoardWith("    tags:\n" + Tag(1, "[0, 0]") + Tag(1, "[0, 0.2]")),
+                kParse, "b:7: tag 1: id: the id 1 of tag36h11 is on this board a second time"},
+        BadText{
+            "TagOverChecker",
+            BoardWith("    checker: {inner_columns: 3, inner_rows: 3, square_m: 0.1}\n    tags:\n" +
+                      Tag(1, "[0, 0.2]")),
+            kParse, "it overlaps the checkerboard"},
         BadText{"CheckerTooLarge",
-                With("    checker: {inner_columns: 6, inner_rows: 3, square_m: 0.1}\n"), kParse,
-                "b:5: checker: center_in_board_m: it reaches over the board's edge"},
+                BoardWith("    checker: {inner_columns: 6, inner_rows: 3, square_m: 0.1}\n"),
+                kParse, "b:5: checker: center_in_board_m: it reaches over the board's edge"},
         BadText{"CheckerOfNothing",
-                With("    checker: {inner_columns: 1, inner_rows: 3, square_m: 0.1}\n"), kParse,
-                "b:5: checker: inner_columns: expected 2 to 1000"},
-        BadText{"BoardTwice", With("  - {id: 0, top_right_m: 1, right_bottom_m: 1}\n"), kParse,
+                BoardWith("    checker: {inner_columns: 1, inner_rows: 3, square_m: 0.1}\n"),
+                kParse, "b:5: checker: inner_columns: expected 2 to 1000"},
+        BadText{"BoardTwice", BoardWith("  - {id: 0, top_right_m: 1, right_bottom_m: 1}\n"), kParse,
                 "b:5: id: the board of line 2 has the id 0 already"},
         BadText{"TagOnTwoBoards",
-                With("    tags:\n" + Tag(1, "[0, 0]")) +
+                BoardWith("    tags:\n" + Tag(1, "[0, 0]")) +
                     "  - id: 1\n    top_right_m: 1\n    right_bottom_m: 1\n    tags:\n" +
                     Tag(1, "[0, 0]"),
                 kParse, "b:11: tag 0: id: the id 1 of 'tag36h11' is on board 0 already"},
@@ -161,9 +166,9 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& bad) { return bad.param.name; });
 
 TEST(BoardFile, TagsMayTouchEachOtherAndTheEdge) {
-  const auto boards = ParseBoards(
-      With("    tags:\n" + Tag(1, "[-0.25, 0]") + Tag(2, "[-0.15, 0]") + Tag(3, "[-0.25, 0.1]")),
-      "b");
+  const auto boards = ParseBoards(BoardWith("    tags:\n" + Tag(1, "[-0.25, 0]") +
+                                            Tag(2, "[-0.15, 0]") + Tag(3, "[-0.25, 0.1]")),
+                                  "b");
   EXPECT_TRUE(boards) << boards.error().message;
 }
 

@@ -104,7 +104,7 @@ std::string Result(const std::string& rest) {
          rest;
 }
 
-constexpr ErrorCode kParse = ErrorCode::kParse;
+using ErrorCode::kParse;
 
 INSTANTIATE_TEST_SUITE_P(
     Inputs, BadResultTest,

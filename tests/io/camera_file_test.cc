@@ -12,7 +12,7 @@ namespace {
 
 using test::BadText;
 
-constexpr ErrorCode kParse = ErrorCode::kParse;
+using ErrorCode::kParse;
 constexpr ErrorCode kInvalid = ErrorCode::kInvalidInput;
 
 TEST(CameraFile, ReadsRosCalibrationYaml) {

@@ -20,7 +20,7 @@ namespace {
 using test::BadText;
 using testing::ElementsAre;
 
-constexpr ErrorCode kParse = ErrorCode::kParse;
+using ErrorCode::kParse;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string Floats(const std::vector<float>& values) {

@@ -22,11 +22,14 @@
 #include "io/read_problem.h"
 #include "io/results_json.h"
 #include "io/transform_list.h"
+#include "support/bad_text.h"
 #include "support/calibration_result.h"
 #include "support/scenes.h"
 
 namespace sextant {
 namespace {
+
+using test::Repeated;
 
 /// The message of the error; empty where the text is read.
 using Refusal = std::function<std::string(const std::string&)>;
@@ -61,12 +64,6 @@ PointCloud SomeCloud() {
     cloud.ring.push_back(static_cast<std::uint16_t>(i));
   }
   return cloud;
-}
-
-std::string Repeated(const std::string& piece, int times) {
-  std::string text;
-  for (int i = 0; i < times; ++i) text += piece;
-  return text;
 }
 
 std::vector<Reader> Readers() {

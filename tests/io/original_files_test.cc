@@ -16,7 +16,7 @@ namespace {
 
 using test::BadText;
 
-constexpr ErrorCode kParse = ErrorCode::kParse;
+using ErrorCode::kParse;
 
 const std::string kConfig =
     "1280 720\n-2.5 2.5\n-4.0 4.0\n0.0 2.5\n0.05\n2\n0\n"

@@ -12,7 +12,7 @@ namespace {
 
 using test::BadText;
 
-constexpr ErrorCode kParse = ErrorCode::kParse;
+using ErrorCode::kParse;
 
 TEST(PairsCsv, RoundTripsBothKindsToTheBit) {
   Random random(1);

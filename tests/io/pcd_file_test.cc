@@ -19,7 +19,7 @@ namespace {
 using test::BadText;
 using testing::ElementsAre;
 
-constexpr ErrorCode kParse = ErrorCode::kParse;
+using ErrorCode::kParse;
 constexpr PcdEncoding kEncodings[] = {PcdEncoding::kAscii, PcdEncoding::kBinary,
                                       PcdEncoding::kBinaryCompressed};
 

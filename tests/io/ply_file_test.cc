@@ -15,7 +15,7 @@ namespace {
 
 using test::BadText;
 
-constexpr ErrorCode kParse = ErrorCode::kParse;
+using ErrorCode::kParse;
 
 template <class Number>
 std::string Bytes(Number value, bool big_endian) {

@@ -14,7 +14,7 @@ namespace {
 
 using test::BadText;
 
-constexpr ErrorCode kParse = ErrorCode::kParse;
+using ErrorCode::kParse;
 
 constexpr const char* kHeader = R"(sextant_polygons: 1
 camera: {model: pinhole, width_px: 640, height_px: 480, fx_px: 320, fy_px: 320, cx_px: 319.5, cy_px: 239.5}
@@ -97,7 +97,7 @@ TEST_P(BadPolygonsTest, EndsInOneLineThatSaysWhereAndWhat) {
   ExpectRefused(ParsePolygons(GetParam().text, "p"), GetParam());
 }
 
-std::string With(const std::string& lines) { return kHeader + lines; }
+std::string PolygonsWith(const std::string& lines) { return kHeader + lines; }
 
 INSTANTIATE_TEST_SUITE_P(
     Inputs, BadPolygonsTest,
@@ -107,32 +107,42 @@ INSTANTIATE_TEST_SUITE_P(
                 "expected polygons that sextant mark wrote"},
         BadText{"LaterVersion", "sextant_polygons: 2\n", kParse, "p:1: sextant_polygons"},
         BadText{"NoCamera", "sextant_polygons: 1\n", kParse, "camera: expected this key"},
-        BadText{"UnknownKey", With("board: []\n"), kParse, "did you mean 'boards'?"},
-        BadText{"BoardsAreAMap", With("boards: {}\n"), kParse, "p:4: boards: expected a list"},
-        BadText{"NoId", With("boards:\n  - edges: []\n"), kParse, "p:5: id: expected this key"},
-        BadText{"NegativeId", With("boards:\n  - {id: -1, edges: []}\n"), kParse, "p:5: id"},
-        BadText{"NoEdges", With("boards:\n  - id: 0\n"), kParse, "edges: expected this key"},
-        BadText{"FiveEdges", With("boards:\n  - {id: 0, edges: [[], [], [], [], []]}\n"), kParse,
-                "p:5: edges: expected at most 4, got 5"},
-        BadText{"Triangle", With("boards:\n  - {id: 0, edges: [[[0, 0], [1, 0], [0, 1]]]}\n"),
-                kParse, "p:5: edges: expected four corners [u, v] of a quadrilateral, got 3"},
-        BadText{"NotAPixel", With("boards:\n  - {id: 0, edges: [[[0, 0], [1, 0], [1], [0, 1]]]}\n"),
+        BadText{"UnknownKey", PolygonsWith("board: []\n"), kParse, "did you mean 'boards'?"},
+        BadText{"BoardsAreAMap", PolygonsWith("boards: {}\n"), kParse,
+                "p:4: boards: expected a list"},
+        BadText{"NoId", PolygonsWith("boards:\n  - edges: []\n"), kParse,
+                "p:5: id: expected this key"},
+        BadText{"NegativeId", PolygonsWith("boards:\n  - {id: -1, edges: []}\n"), kParse,
+                "p:5: id"},
+        BadText{"NoEdges", PolygonsWith("boards:\n  - id: 0\n"), kParse,
+                "edges: expected this key"},
+        BadText{"FiveEdges", PolygonsWith("boards:\n  - {id: 0, edges: [[], [], [], [], []]}\n"),
+                kParse, "p:5: edges: expected at most 4, got 5"},
+        BadText{"Triangle",
+                PolygonsWith("boards:\n  - {id: 0, edges: [[[0, 0], [1, 0], [0, 1]]]}\n"), kParse,
+                "p:5: edges: expected four corners [u, v] of a quadrilateral, got 3"},
+        BadText{"NotAPixel",
+                PolygonsWith("boards:\n  - {id: 0, edges: [[[0, 0], [1, 0], [1], [0, 1]]]}\n"),
                 kParse, "p:5: edges: expected 2 numbers, got 1"},
-        BadText{"NaN", With("boards:\n  - {id: 0, edges: [[[0, .nan], [1, 0], [1, 1], [0, 1]]]}\n"),
-                ErrorCode::kNonFinite, "p:5: edges"},
+        BadText{
+            "NaN",
+            PolygonsWith("boards:\n  - {id: 0, edges: [[[0, .nan], [1, 0], [1, 1], [0, 1]]]}\n"),
+            ErrorCode::kNonFinite, "p:5: edges"},
         BadText{"CrossesItself",
-                With("boards:\n  - {id: 0, edges: [[[0, 0], [1, 1], [1, 0], [0, 1]]]}\n"), kParse,
-                "p:5: edges: the quadrilateral crosses itself"},
-        BadText{"BoardTwice", With("boards:\n  - {id: 7, edges: []}\n  - {id: 7, edges: []}\n"),
-                kParse, "p:6: id: board 7 is there twice"},
-        BadText{"CornerOutOfRange", With("corners:\n  - {board: 0, corner: 8, pixel: [1, 2]}\n"),
-                kParse, "p:5: corner"},
+                PolygonsWith("boards:\n  - {id: 0, edges: [[[0, 0], [1, 1], [1, 0], [0, 1]]]}\n"),
+                kParse, "p:5: edges: the quadrilateral crosses itself"},
+        BadText{"BoardTwice",
+                PolygonsWith("boards:\n  - {id: 7, edges: []}\n  - {id: 7, edges: []}\n"), kParse,
+                "p:6: id: board 7 is there twice"},
+        BadText{"CornerOutOfRange",
+                PolygonsWith("corners:\n  - {board: 0, corner: 8, pixel: [1, 2]}\n"), kParse,
+                "p:5: corner"},
         BadText{"CornerTwice",
-                With("corners:\n  - {board: 0, corner: 1, pixel: [1, 2]}\n"
-                     "  - {board: 0, corner: 1, pixel: [3, 4]}\n"),
+                PolygonsWith("corners:\n  - {board: 0, corner: 1, pixel: [1, 2]}\n"
+                             "  - {board: 0, corner: 1, pixel: [3, 4]}\n"),
                 kParse, "p:6: corner: corner 1 of board 0 is there twice"},
-        BadText{"FourUnfinished", With("unfinished: [[0, 0], [0, 1], [1, 1], [1, 0]]\n"), kParse,
-                "p:4: unfinished: expected at most 3, got 4"}),
+        BadText{"FourUnfinished", PolygonsWith("unfinished: [[0, 0], [0, 1], [1, 1], [1, 0]]\n"),
+                kParse, "p:4: unfinished: expected at most 3, got 4"}),
     [](const auto& bad) { return bad.param.name; });
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "geometry/random_vectors.h"
 #include "geometry/so3.h"
 #include "support/bad_text.h"
 #include "support/scenes.h"
@@ -13,13 +14,8 @@ namespace sextant {
 namespace {
 
 using test::BadText;
+using test::Repeated;
 using testing::HasSubstr;
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = random.Normal();
-  return v;
-}
 
 Rigid3d RandomPose(Random& random) {
   const Eigen::Quaterniond rotation = ExpSo3(NormalVector(random));
@@ -112,19 +108,13 @@ TEST_P(BadYamlTest, EndsInOneLineThatSaysWhereAndWhat) {
 
 std::string Problem(const std::string& rest) { return "sextant_problem: 1\n" + rest; }
 
-std::string Repeated(const std::string& piece, int times) {
-  std::string text;
-  for (int i = 0; i < times; ++i) text += piece;
-  return text;
-}
-
 std::string BillionLaughs() {
   std::string text = "a0: &a0 [x]\n";
   for (int i = 1; i < 40; ++i) text += fmt::format("a{0}: &a{0} [*a{1}, *a{1}]\n", i, i - 1);
   return text;
 }
 
-constexpr ErrorCode kParse = ErrorCode::kParse;
+using ErrorCode::kParse;
 
 INSTANTIATE_TEST_SUITE_P(
     Inputs, BadYamlTest,

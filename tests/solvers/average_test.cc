@@ -7,25 +7,23 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "geometry/random_vectors.h"
 #include "solvers/registry.h"
+#include "support/poses.h"
 
 namespace sextant {
 namespace {
 
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int k = 0; k < 3; ++k) v[k] = random.Normal();
-  return v;
-}
+using test::ExpectSamePose;
 
-struct Session {
+struct AveragedSession {
   CalibrationProblem problem;
   Rigid3d cam_from_lidar;
 };
 
 // Eight points a view; the views alternate from pair to pair, as nothing promises that they do not.
-Session MakeSession(int views, double sigma_m, Random& random) {
-  Session session;
+AveragedSession MakeAveragedSession(int views, double sigma_m, Random& random) {
+  AveragedSession session;
   session.cam_from_lidar = {ExpSo3(NormalVector(random)), NormalVector(random)};
   for (int i = 0; i < 8 * views; ++i) {
     Pair3d3d pair;
@@ -44,15 +42,9 @@ Expected<SolveReport> SolveWith(const char* spec, const CalibrationProblem& prob
   return (*solver)->Solve(problem);
 }
 
-void ExpectSamePose(const Rigid3d& a, const Rigid3d& b, double tolerance) {
-  const PoseDistance distance = DistanceBetween(a, b);
-  EXPECT_LT(distance.rotation_rad, tolerance);
-  EXPECT_LT(distance.translation_m, tolerance);
-}
-
 TEST(Average, AveragesTheAnswersOfTheViews) {
   Random random(1);
-  const Session session = MakeSession(4, 0.01, random);
+  const AveragedSession session = MakeAveragedSession(4, 0.01, random);
   std::vector<Rigid3d> poses;
   for (int view = 0; view < 40; view += 10) {
     CalibrationProblem one = session.problem;
@@ -76,7 +68,7 @@ TEST(Average, AveragesTheAnswersOfTheViews) {
 
 TEST(Average, OfOneViewIsTheInnerSolver) {
   Random random(2);
-  const Session session = MakeSession(1, 0.01, random);
+  const AveragedSession session = MakeAveragedSession(1, 0.01, random);
   const Expected<SolveReport> average = SolveWith("average(kabsch)", session.problem);
   const Expected<SolveReport> kabsch = SolveWith("kabsch", session.problem);
   ASSERT_TRUE(average && kabsch);
@@ -86,7 +78,7 @@ TEST(Average, OfOneViewIsTheInnerSolver) {
 
 TEST(Average, LeavesOutViewsThatFail) {
   Random random(3);
-  Session session = MakeSession(3, 0.0, random);
+  AveragedSession session = MakeAveragedSession(3, 0.0, random);
   for (Pair3d3d& pair : session.problem.pairs_3d3d) {
     if (pair.id.view == 10) pair.point_in_lidar = pair.point_in_cam = {1.0, 2.0, 3.0};
   }
@@ -100,7 +92,7 @@ TEST(Average, LeavesOutViewsThatFail) {
 
 TEST(Average, NamesEveryViewWhereNoneCanBeSolved) {
   Random random(4);
-  Session session = MakeSession(2, 0.0, random);
+  AveragedSession session = MakeAveragedSession(2, 0.0, random);
   for (Pair3d3d& pair : session.problem.pairs_3d3d) pair.point_in_lidar.setZero();
   const Expected<SolveReport> report = SolveWith("average(kabsch)", session.problem);
   ASSERT_FALSE(report);
@@ -125,7 +117,7 @@ TEST(Average, StandardErrorFromTheScatterIsHonest) {
     double sum_squares = 0.0;
     for (int trial = 0; trial < kTrials; ++trial) {
       Random random(DeriveSeed(5, "average", 0, static_cast<std::uint64_t>(trial)));
-      const Session session = MakeSession(kViews, 0.005, random);
+      const AveragedSession session = MakeAveragedSession(kViews, 0.005, random);
       const Expected<SolveReport> report = SolveWith(spec, session.problem);
       ASSERT_TRUE(report && report->covariance);
       const Vector6d error = PoseDifference(report->cam_from_lidar, session.cam_from_lidar);
@@ -148,7 +140,7 @@ TEST(Average, StandardErrorFromTheScatterIsHonest) {
 TEST(Average, FewViewsGiveVariancesAndTwoPropagate) {
   Random random(6);
   const Expected<SolveReport> five =
-      SolveWith("average(kabsch)", MakeSession(5, 0.01, random).problem);
+      SolveWith("average(kabsch)", MakeAveragedSession(5, 0.01, random).problem);
   ASSERT_TRUE(five && five->covariance);
   EXPECT_TRUE(five->covariance->isDiagonal(0.0));
   EXPECT_GT(five->covariance->diagonal().minCoeff(), 0.0);

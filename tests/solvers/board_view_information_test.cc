@@ -15,7 +15,7 @@
 namespace sextant {
 namespace {
 
-SimulatedViews Views(const ViewSimulation& simulation) {
+SimulatedViews CheckedViews(const ViewSimulation& simulation) {
   Expected<SimulatedViews> views = SimulateViews(simulation);
   EXPECT_TRUE(views) << views.error().message;
   return *std::move(views);
@@ -31,7 +31,7 @@ Matrix6d InformationAtTruth(const SimulatedViews& session, const BoardView& view
 }
 
 TEST(BoardViewResiduals, AreZeroForExactData) {
-  const SimulatedViews session = Views({.views = 3, .exact = true});
+  const SimulatedViews session = CheckedViews({.views = 3, .exact = true});
   for (std::size_t i = 0; i < session.problem.board_views.size(); ++i) {
     const BoardView& view = session.problem.board_views[i];
     const BoardViewResiduals residuals =
@@ -49,7 +49,7 @@ TEST(BoardViewResiduals, AreZeroForExactData) {
 // 300 returns and more a view: the mean square of what is stated as 1 has a standard error of
 // sqrt(2 / n) for normal errors and sqrt(0.8 / n) for uniform ones.
 TEST(BoardViewResiduals, HaveTheVarianceThatIsStated) {
-  const SimulatedViews session = Views({.views = 40});
+  const SimulatedViews session = CheckedViews({.views = 40});
   double face = 0.0;
   double edges = 0.0;
   double printed = 0.0;
@@ -71,7 +71,7 @@ TEST(BoardViewResiduals, HaveTheVarianceThatIsStated) {
 }
 
 TEST(BoardViewInformation, GradientIsThatOfTheCost) {
-  const SimulatedViews session = Views({.seed = 3, .views = 2});
+  const SimulatedViews session = CheckedViews({.seed = 3, .views = 2});
   const BoardView& view = session.problem.board_views[1];
   const auto at = [&](const Vector12d& delta) {
     return InformationOfPoses(view, session.problem.boards.front(), *session.problem.camera,
@@ -90,7 +90,7 @@ TEST(BoardViewInformation, GradientIsThatOfTheCost) {
 
 // Where the data is exact the second derivatives of the residuals do not count.
 TEST(BoardViewInformation, NormalMatrixIsTheHessianOfTheCostForExactData) {
-  const SimulatedViews session = Views({.seed = 4, .views = 1, .exact = true});
+  const SimulatedViews session = CheckedViews({.seed = 4, .views = 1, .exact = true});
   const BoardView& view = session.problem.board_views[0];
   const auto at = [&](const Vector12d& delta) {
     return *InformationOfPoses(view, session.problem.boards.front(), *session.problem.camera,
@@ -108,7 +108,7 @@ TEST(BoardViewInformation, NormalMatrixIsTheHessianOfTheCostForExactData) {
 }
 
 TEST(BoardViewInformation, EliminationIsTheMarginalOfTheInverse) {
-  const SimulatedViews session = Views({.seed = 5, .views = 1});
+  const SimulatedViews session = CheckedViews({.seed = 5, .views = 1});
   const auto information = InformationOfPoses(
       session.problem.board_views[0], session.problem.boards.front(), *session.problem.camera,
       session.true_cam_from_lidar, session.true_cam_from_board[0]);
@@ -119,7 +119,7 @@ TEST(BoardViewInformation, EliminationIsTheMarginalOfTheInverse) {
 }
 
 TEST(BoardViewInformation, OfOneSensorIsNone) {
-  const SimulatedViews session = Views({.seed = 6, .views = 1});
+  const SimulatedViews session = CheckedViews({.seed = 6, .views = 1});
   BoardView of_camera = session.problem.board_views[0];
   of_camera.face_in_lidar.clear();
   of_camera.edges.clear();
@@ -131,7 +131,7 @@ TEST(BoardViewInformation, OfOneSensorIsNone) {
 }
 
 TEST(CramerRaoBoundOfViews, FallsWithTheNumberOfViews) {
-  const SimulatedViews session = Views({.seed = 7, .views = 8});
+  const SimulatedViews session = CheckedViews({.seed = 7, .views = 8});
   SimulatedViews half = session;
   half.problem.board_views.resize(4);
   half.true_cam_from_board.resize(4);
@@ -192,7 +192,7 @@ TEST(CheckBoardViews, SaysWhatIsWrong) {
       {"pose", [nan](auto& p) { p.board_views[0].cam_from_board.translation.x() = nan; },
        ErrorCode::kNonFinite, "a pose"},
   };
-  const SimulatedViews session = Views({.views = 2});
+  const SimulatedViews session = CheckedViews({.views = 2});
   const SolverSpec spec{.name = "joint", .needs = {.board_views = 1}};
   ASSERT_TRUE(CheckProblem(session.problem, spec));
   for (const Fault& fault : faults) {

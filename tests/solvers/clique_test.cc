@@ -18,7 +18,7 @@ namespace {
 using test::AddOutliers;
 using test::MakeScene;
 using test::Only;
-using test::Scene;
+using test::PairScene;
 using test::SceneOptions;
 
 BitGraph RandomGraph(int vertices, double density, Random& random) {
@@ -145,7 +145,7 @@ TEST_P(AmongNineteenOfTwenty, FindsWhatTheTruePairsTell) {
   double oracle_squares = 0.0;
   for (std::uint64_t trial = 0; trial < 300; ++trial) {
     Random random(DeriveSeed(1, "nineteen of twenty", 100, trial));
-    Scene scene = MakeScene(options, random);
+    PairScene scene = MakeScene(options, random);
     const std::vector<int> inliers = AddOutliers(0.95, options, random, scene);
     const Expected<SolveReport> report = (*solver)->Solve(scene.problem);
     const Expected<SolveReport> truth = (*oracle)->Solve(Only(scene.problem, inliers));

@@ -12,7 +12,7 @@ namespace {
 
 using test::AddOutliers;
 using test::MakeScene;
-using test::Scene;
+using test::PairScene;
 using test::SceneOptions;
 
 Expected<SolveReport> Solve(const std::string& spec, const CalibrationProblem& problem) {
@@ -21,16 +21,16 @@ Expected<SolveReport> Solve(const std::string& spec, const CalibrationProblem& p
   return (*solver)->Solve(problem);
 }
 
-Scene SceneWithOutliers(std::uint64_t seed, int pairs, double share) {
+PairScene SceneWithOutliers(std::uint64_t seed, int pairs, double share) {
   Random random(seed);
   const SceneOptions options{.pairs = pairs, .sigma_m = 0.01, .sigma_px = 1.0};
-  Scene scene = MakeScene(options, random);
+  PairScene scene = MakeScene(options, random);
   AddOutliers(share, options, random, scene);
   return scene;
 }
 
 TEST(Ransac, AnotherSeedFindsTheSamePose) {
-  const Scene scene = SceneWithOutliers(1, 40, 0.5);
+  const PairScene scene = SceneWithOutliers(1, 40, 0.5);
   const Expected<SolveReport> first = Solve("ransac(kabsch,seed=1)", scene.problem);
   const Expected<SolveReport> again = Solve("ransac(kabsch,seed=1)", scene.problem);
   const Expected<SolveReport> other = Solve("ransac(kabsch,seed=2)", scene.problem);
@@ -54,7 +54,7 @@ TEST(Ransac, StopsEarlyOnCleanDataAndAtItsLimitOnPoor) {
 }
 
 TEST(Ransac, SaysThatTheSampleIsTooLargeOrTooSmall) {
-  const Scene scene = SceneWithOutliers(4, 10, 0.0);
+  const PairScene scene = SceneWithOutliers(4, 10, 0.0);
   const Expected<SolveReport> large = Solve("ransac(kabsch,sample_size=15)", scene.problem);
   ASSERT_FALSE(large);
   EXPECT_EQ(large.error().code, ErrorCode::kTooFewPairs);
@@ -64,7 +64,7 @@ TEST(Ransac, SaysThatTheSampleIsTooLargeOrTooSmall) {
 }
 
 TEST(Ransac, KeepsToItsThresholdAndLeastInliers) {
-  const Scene scene = SceneWithOutliers(5, 30, 0.3);
+  const PairScene scene = SceneWithOutliers(5, 30, 0.3);
   const Expected<SolveReport> strict = Solve("ransac(kabsch,min_inliers=25)", scene.problem);
   ASSERT_FALSE(strict);
   EXPECT_EQ(strict.error().code, ErrorCode::kNoConsensus);
@@ -77,7 +77,7 @@ TEST(Ransac, KeepsToItsThresholdAndLeastInliers) {
 }
 
 TEST(Ransac, CountsAPairGivenSeveralTimesOnce) {
-  Scene scene = SceneWithOutliers(12, 21, 0.0);
+  PairScene scene = SceneWithOutliers(12, 21, 0.0);
   for (std::size_t i = 3; i < 21; ++i) {
     scene.problem.pairs_3d3d[i] = scene.problem.pairs_3d3d[i % 3];
     scene.problem.pairs_2d3d[i] = scene.problem.pairs_2d3d[i % 3];
@@ -90,7 +90,7 @@ TEST(Ransac, CountsAPairGivenSeveralTimesOnce) {
 }
 
 TEST(Ransac, SaysThatThePointsAreMirrored) {
-  Scene scene = SceneWithOutliers(13, 20, 0.0);
+  PairScene scene = SceneWithOutliers(13, 20, 0.0);
   for (Pair3d3d& pair : scene.problem.pairs_3d3d) pair.point_in_lidar.x() *= -1.0;
   for (const char* spec : {"ransac(kabsch)", "gnc(kabsch)", "clique(kabsch)", "robust(kabsch)"}) {
     const Expected<SolveReport> report = Solve(spec, scene.problem);
@@ -100,7 +100,7 @@ TEST(Ransac, SaysThatThePointsAreMirrored) {
 }
 
 TEST(Ransac, WithoutRefitReturnsTheBestSample) {
-  const Scene scene = SceneWithOutliers(6, 30, 0.3);
+  const PairScene scene = SceneWithOutliers(6, 30, 0.3);
   const Expected<SolveReport> report =
       Solve("ransac(kabsch,refit=none,local_optimisation=0)", scene.problem);
   ASSERT_TRUE(report);
@@ -111,7 +111,7 @@ TEST(Ransac, WithoutRefitReturnsTheBestSample) {
 TEST(DropWorst, KeepsAsManyAsAskedAndDropsTheOutliersFirst) {
   Random random(7);
   const SceneOptions options{.pairs = 20, .sigma_m = 0.01};
-  Scene scene = MakeScene(options, random);
+  PairScene scene = MakeScene(options, random);
   const std::vector<int> inliers = AddOutliers(0.2, options, random, scene);
   for (const std::size_t keep : {16U, 11U, 8U}) {
     const Expected<SolveReport> report =
@@ -129,7 +129,7 @@ TEST(DropWorst, KeepsAsManyAsAskedAndDropsTheOutliersFirst) {
 }
 
 TEST(Gnc, LeavesCleanDataAlone) {
-  const Scene scene = SceneWithOutliers(8, 8, 0.0);
+  const PairScene scene = SceneWithOutliers(8, 8, 0.0);
   const Expected<SolveReport> plain = Solve("kabsch", scene.problem);
   const Expected<SolveReport> gnc = Solve("gnc(kabsch,threshold=6)", scene.problem);
   ASSERT_TRUE(plain && gnc);
@@ -144,7 +144,7 @@ TEST(IsotropicPairs, AreAnsweredAlikeInColumnsAndByCovariances) {
                            "ransac(kabsch,local_optimisation=0)"}) {
     for (const int pairs : {12, 64, 100}) {
       for (const double share : {0.0, 0.2, 0.5}) {
-        Scene scene = SceneWithOutliers(static_cast<std::uint64_t>(pairs), pairs, share);
+        PairScene scene = SceneWithOutliers(static_cast<std::uint64_t>(pairs), pairs, share);
         const Expected<SolveReport> in_columns = Solve(spec, scene.problem);
         for (Pair3d3d& pair : scene.problem.pairs_3d3d) {
           pair.covariance_in_cam = pair.sigma_m * pair.sigma_m * Eigen::Matrix3d::Identity();
@@ -164,7 +164,7 @@ TEST(IsotropicPairs, AreAnsweredAlikeInColumnsAndByCovariances) {
 
 TEST(CliqueSolver, StaysWithinItsNodesOnAThousandPairs) {
   for (const double share : {0.0, 0.5}) {
-    const Scene scene = SceneWithOutliers(10, 1000, share);
+    const PairScene scene = SceneWithOutliers(10, 1000, share);
     const Expected<SolveReport> report = Solve("clique(kabsch,max_nodes=2000)", scene.problem);
     ASSERT_TRUE(report) << report.error().message;
     EXPECT_LE(report->iterations, 2000);

@@ -4,16 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "geometry/random_vectors.h"
 #include "geometry/so3.h"
 
 namespace sextant {
 namespace {
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = random.Normal();
-  return v;
-}
 
 // Boards of 0.6 x 0.85 m about 3 m away; the corners of a are listed in `orders`.
 std::vector<CornerGroup> Boards(const Rigid3d& b_from_a, std::span<const CornerOrder> orders,

@@ -9,31 +9,25 @@
 #include <cstring>
 #include <fstream>
 #include <map>
-#include <numbers>
 #include <string>
 
 #include "base/random.h"
+#include "base/units.h"
+#include "geometry/random_vectors.h"
 #include "solvers/kabsch.h"
 #include "solvers/registry.h"
+#include "support/points.h"
+#include "support/poses.h"
 #include "support/real_data.h"
 
 namespace sextant {
 namespace {
 
+using test::ExpectSamePose;
+using test::Moved;
+using test::NormalPoints;
+
 using Points = std::vector<Eigen::Vector3d>;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int k = 0; k < 3; ++k) v[k] = random.Normal();
-  return v;
-}
-
-Points RandomPoints(int count, Random& random) {
-  Points points;
-  for (int i = 0; i < count; ++i) points.push_back(NormalVector(random));
-  return points;
-}
 
 // Points of three faces of a cube of side 2, which leave no motion free.
 Points Corner(int count, Random& random) {
@@ -46,28 +40,16 @@ Points Corner(int count, Random& random) {
   return points;
 }
 
-Points Moved(const Rigid3d& b_from_a, const Points& points) {
-  Points moved;
-  for (const Eigen::Vector3d& p : points) moved.push_back(b_from_a * p);
-  return moved;
-}
-
 Rigid3d SmallMotion(Random& random, double rotation_rad, double translation_m) {
   const Eigen::Vector3d axis = NormalVector(random).normalized();
   const Eigen::Vector3d direction = NormalVector(random).normalized();
   return {ExpSo3(rotation_rad * axis), translation_m * direction};
 }
 
-void ExpectSamePose(const Rigid3d& a, const Rigid3d& b, double tolerance) {
-  const PoseDistance distance = DistanceBetween(a, b);
-  EXPECT_LT(distance.rotation_rad, tolerance);
-  EXPECT_LT(distance.translation_m, tolerance);
-}
-
 TEST(Icp, RecoversSmallMotionsOfCornersExactly) {
   for (int trial = 0; trial < 100; ++trial) {
     Random random(DeriveSeed(1, "icp", 0, static_cast<std::uint64_t>(trial)));
-    const Points source = RandomPoints(8, random);
+    const Points source = NormalPoints(8, random);
     const Rigid3d truth = SmallMotion(random, 0.02, 0.02);
     const Expected<IcpFit> fit = FitIcp(Moved(truth, source), source, Rigid3d{}, {});
     ASSERT_TRUE(fit) << fit.error().message;
@@ -89,7 +71,7 @@ TEST(Icp, RecoversSmallMotionsAlongPlanesExactly) {
 
 TEST(Icp, AgreesWithKabschOnTheMatchesItReports) {
   Random random(3);
-  const Points source = RandomPoints(30, random);
+  const Points source = NormalPoints(30, random);
   const Rigid3d truth = SmallMotion(random, 0.05, 0.05);
   Points target = Moved(truth, source);
   for (Eigen::Vector3d& p : target) p += 0.01 * NormalVector(random);
@@ -110,7 +92,7 @@ TEST(Icp, AgreesWithKabschOnTheMatchesItReports) {
 // A tenth of the source has no counterpart and lies far off: it pulls the plain fit by decimetres.
 TEST(Icp, TrimmingAndMaxDistanceEachSurviveOutliers) {
   Random random(4);
-  Points source = RandomPoints(200, random);
+  Points source = NormalPoints(200, random);
   const Rigid3d truth = SmallMotion(random, 0.01, 0.01);
   const Points target = Moved(truth, source);
   for (std::size_t i = 0; i < 20; ++i) source[i] += Eigen::Vector3d(8.0, 0.0, 0.0);
@@ -132,7 +114,7 @@ TEST(Icp, TrimmingAndMaxDistanceEachSurviveOutliers) {
 
 TEST(Icp, MatchesAHundredThousandPoints) {
   Random random(5);
-  const Points source = RandomPoints(100000, random);
+  const Points source = NormalPoints(100000, random);
   const Rigid3d truth = SmallMotion(random, 0.001, 0.001);
   const Expected<IcpFit> fit = FitIcp(Moved(truth, source), source, Rigid3d{}, {});
   ASSERT_TRUE(fit) << fit.error().message;
@@ -142,7 +124,7 @@ TEST(Icp, MatchesAHundredThousandPoints) {
 
 TEST(Icp, SaysThatTheIterationsRanOut) {
   Random random(6);
-  const Points source = RandomPoints(500, random);
+  const Points source = NormalPoints(500, random);
   const Points target = Moved(SmallMotion(random, 0.2, 0.2), source);
   const Expected<IcpFit> fit = FitIcp(target, source, Rigid3d{}, {.max_iterations = 2});
   ASSERT_TRUE(fit) << fit.error().message;
@@ -152,7 +134,7 @@ TEST(Icp, SaysThatTheIterationsRanOut) {
 
 TEST(Icp, RefusesWhatItCannotAnswer) {
   Random random(7);
-  const Points source = RandomPoints(8, random);
+  const Points source = NormalPoints(8, random);
   const auto code = [](const Points& target, const Points& from, const IcpSettings& settings) {
     return FitIcp(target, from, Rigid3d{}, settings).error().code;
   };
@@ -168,7 +150,7 @@ TEST(Icp, RefusesWhatItCannotAnswer) {
   for (int i = 0; i < 8; ++i) line.push_back(Eigen::Vector3d(0.3, 0.2, 0.1) * i);
   EXPECT_EQ(code(line, line, {}), ErrorCode::kDegenerate);
 
-  Points plane = RandomPoints(50, random);
+  Points plane = NormalPoints(50, random);
   for (Eigen::Vector3d& p : plane) p.z() = 2.0;
   EXPECT_EQ(code(plane, plane, {.metric = IcpMetric::kPlane}), ErrorCode::kDegenerate);
 
@@ -183,7 +165,7 @@ TEST(Icp, CovarianceIsHonestWhereTheMatchesAreRight) {
   double sum = 0.0;
   for (int trial = 0; trial < kTrials; ++trial) {
     Random random(DeriveSeed(8, "icp", 0, static_cast<std::uint64_t>(trial)));
-    const Points source = RandomPoints(40, random);
+    const Points source = NormalPoints(40, random);
     const Rigid3d truth = SmallMotion(random, 1.0, 1.0);
     Points target = Moved(truth, source);
     for (Eigen::Vector3d& p : target) p += 1e-4 * NormalVector(random);
@@ -217,7 +199,7 @@ TEST(Icp, CovarianceOfPlanesIsHonest) {
 TEST(IcpSolver, StartsWhereItIsTold) {
   Random random(10);
   CalibrationProblem problem;
-  problem.point_sets.in_lidar = RandomPoints(8, random);
+  problem.point_sets.in_lidar = NormalPoints(8, random);
   const Rigid3d truth = SmallMotion(random, 2.0, 5.0);
   problem.point_sets.in_cam = Moved(truth, problem.point_sets.in_lidar);
   const SolverRegistry registry = BuiltinSolvers();

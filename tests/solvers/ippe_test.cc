@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/random.h"
+#include "geometry/random_vectors.h"
 #include "geometry/so3.h"
 #include "solvers/registry.h"
 #include "support/scenes.h"
@@ -14,34 +15,28 @@
 namespace sextant {
 namespace {
 
-struct View {
+struct PlanarView {
   std::vector<Eigen::Vector2d> image_points;
   std::vector<Eigen::Vector3d> points;
   Rigid3d cam_from_lidar;
 };
 
-struct ViewOptions {
+struct PlanarViewOptions {
   int count = 4;
   double depth = 3.0;
   double max_tilt_rad = 0.8;  // About each axis; 0 faces the camera.
   double sigma = 0.0;         // Of the image points on the plane z = 1.
 };
 
-Eigen::Vector3d UniformVector(double half, Random& random) {
-  Eigen::Vector3d v;
-  for (int k = 0; k < 3; ++k) v[k] = random.Uniform(-half, half);
-  return v;
-}
-
-View MakeView(const ViewOptions& options, Random& random) {
-  View view;
-  view.cam_from_lidar.rotation = ExpSo3(UniformVector(2.0, random));
-  view.cam_from_lidar.translation = UniformVector(0.5, random);
-  const Eigen::Quaterniond tilt = ExpSo3(UniformVector(options.max_tilt_rad, random));
-  const Eigen::Vector3d aside = 0.2 * UniformVector(options.depth, random);
+PlanarView MakePlanarView(const PlanarViewOptions& options, Random& random) {
+  PlanarView view;
+  view.cam_from_lidar.rotation = ExpSo3(UniformVector(random, 2.0));
+  view.cam_from_lidar.translation = UniformVector(random, 0.5);
+  const Eigen::Quaterniond tilt = ExpSo3(UniformVector(random, options.max_tilt_rad));
+  const Eigen::Vector3d aside = 0.2 * UniformVector(random, options.depth);
   const Eigen::Vector3d centre(aside.x(), aside.y(), options.depth);
   for (int i = 0; i < options.count; ++i) {
-    Eigen::Vector3d offset = UniformVector(0.8, random);
+    Eigen::Vector3d offset = UniformVector(random, 0.8);
     // Four random points may be close to three on a line: a board's corners instead.
     if (options.count == 4) offset = {i == 0 || i == 3 ? -0.5 : 0.5, i < 2 ? -0.4 : 0.4, 0.0};
     offset.z() = 0.0;
@@ -55,7 +50,7 @@ View MakeView(const ViewOptions& options, Random& random) {
 }
 
 // The larger of rotation [rad] and translation over depth to the nearest of both answers.
-double ErrorOfBest(const View& view, const IppeFit& fit, double depth) {
+double ErrorOfBest(const PlanarView& view, const IppeFit& fit, double depth) {
   double best = std::numeric_limits<double>::infinity();
   for (int i = 0; i < fit.count; ++i) {
     const PoseDistance d =
@@ -72,7 +67,7 @@ TEST_P(IppeCounts, TruePoseIsAmongBoth) {
   const int trials = GetParam() < 100 ? 1000 : 50;
   for (const double depth : {1.5, 3.0, 30.0, 1000.0}) {
     for (int trial = 0; trial < trials; ++trial) {
-      const View view = MakeView({.count = GetParam(), .depth = depth}, random);
+      const PlanarView view = MakePlanarView({.count = GetParam(), .depth = depth}, random);
       const Expected<IppeFit> fit = SolveIppe(view.image_points, view.points);
       ASSERT_TRUE(fit) << fit.error().message;
       EXPECT_LT(ErrorOfBest(view, *fit, depth), 1e-8) << "depth " << depth << " trial " << trial;
@@ -84,7 +79,7 @@ TEST_P(IppeCounts, FindsPlanesThatFaceTheCamera) {
   Random random(2);
   for (const double tilt : {0.0, 1e-9, 1e-6, 1e-3}) {
     for (int trial = 0; trial < 50; ++trial) {
-      const View view = MakeView({.count = GetParam(), .max_tilt_rad = tilt}, random);
+      const PlanarView view = MakePlanarView({.count = GetParam(), .max_tilt_rad = tilt}, random);
       const Expected<IppeFit> fit = SolveIppe(view.image_points, view.points);
       ASSERT_TRUE(fit) << fit.error().message;
       EXPECT_LT(ErrorOfBest(view, *fit, 3.0), 1e-8) << "tilt " << tilt << " trial " << trial;
@@ -97,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(FewToMany, IppeCounts, testing::Values(4, 5, 6, 8, 20, 
 TEST(Ippe, FirstAnswerFitsBetter) {
   Random random(3);
   for (int trial = 0; trial < 500; ++trial) {
-    const View view = MakeView({.count = 8, .sigma = 1.0 / 700.0}, random);
+    const PlanarView view = MakePlanarView({.count = 8, .sigma = 1.0 / 700.0}, random);
     const Expected<IppeFit> fit = SolveIppe(view.image_points, view.points);
     ASSERT_TRUE(fit) << fit.error().message;
     for (int k = 0; k < fit->count; ++k) {
@@ -120,7 +115,8 @@ TEST(Ippe, ReportsBothLeaningsOfADistantBoard) {
   int both = 0;
   int first_wrong = 0;
   for (int trial = 0; trial < 200; ++trial) {
-    const View view = MakeView({.count = 4, .depth = 30.0, .sigma = 0.2 / 700.0}, random);
+    const PlanarView view =
+        MakePlanarView({.count = 4, .depth = 30.0, .sigma = 0.2 / 700.0}, random);
     const Expected<IppeFit> fit = SolveIppe(view.image_points, view.points);
     ASSERT_TRUE(fit) << fit.error().message;
     if (fit->count == 2) ++both;
@@ -135,7 +131,7 @@ TEST(Ippe, ReportsBothLeaningsOfADistantBoard) {
 
 TEST(Ippe, TakesLidarNoiseAndRefusesPointsOffThePlane) {
   Random random(5);
-  View view = MakeView({.count = 20}, random);
+  PlanarView view = MakePlanarView({.count = 20}, random);
   const Eigen::Vector3d normal =
       (view.points[1] - view.points[0]).cross(view.points[2] - view.points[0]).normalized();
   for (Eigen::Vector3d& point : view.points) point += 0.01 * random.Normal() * normal;
@@ -149,28 +145,28 @@ TEST(Ippe, TakesLidarNoiseAndRefusesPointsOffThePlane) {
 
 TEST(Ippe, RefusesDegenerateSets) {
   Random random(6);
-  const View view = MakeView({.count = 4}, random);
-  const auto code = [](const View& spoilt) {
+  const PlanarView view = MakePlanarView({.count = 4}, random);
+  const auto code = [](const PlanarView& spoilt) {
     const Expected<IppeFit> fit = SolveIppe(spoilt.image_points, spoilt.points);
     return fit ? ErrorCode::kIo : fit.error().code;
   };
-  View few = view;
+  PlanarView few = view;
   few.points.pop_back();
   few.image_points.pop_back();
   EXPECT_EQ(code(few), ErrorCode::kTooFewPairs);
-  View twice = view;
+  PlanarView twice = view;
   twice.points[3] = twice.points[2];
   twice.image_points[3] = twice.image_points[2];
   EXPECT_EQ(code(twice), ErrorCode::kDegenerate);
-  View three_on_a_line = view;
+  PlanarView three_on_a_line = view;
   three_on_a_line.points[2] = 0.5 * (view.points[0] + view.points[1]);
   three_on_a_line.image_points[2] = (view.cam_from_lidar * three_on_a_line.points[2]).hnormalized();
   EXPECT_EQ(code(three_on_a_line), ErrorCode::kDegenerate);
-  for (View* noisy : {&twice, &three_on_a_line}) {
+  for (PlanarView* noisy : {&twice, &three_on_a_line}) {
     for (Eigen::Vector2d& point : noisy->image_points) point.x() += 1e-3 * random.Normal();
     EXPECT_EQ(code(*noisy), ErrorCode::kDegenerate);
   }
-  View one_pixel = view;
+  PlanarView one_pixel = view;
   for (Eigen::Vector2d& point : one_pixel.image_points) point = {0.1, 0.2};
   EXPECT_EQ(code(one_pixel), ErrorCode::kDegenerate);
 }
@@ -178,7 +174,7 @@ TEST(Ippe, RefusesDegenerateSets) {
 TEST(IppeSolver, ReportsTheOtherPoseAsAlternative) {
   const SolverPtr ippe = *BuiltinSolvers().Make("ippe");
   Random random(7);
-  const test::Scene scene =
+  const test::PairScene scene =
       test::MakeScene({.pairs = 8, .sigma_px = 0.3, .planar = true, .depth_m = 40.0}, random);
   const Expected<SolveReport> report = ippe->Solve(scene.problem);
   ASSERT_TRUE(report) << report.error().message;

@@ -6,6 +6,7 @@
 #include <Eigen/SVD>
 
 #include "base/random.h"
+#include "geometry/random_vectors.h"
 #include "geometry/so3.h"
 
 namespace sextant {
@@ -17,12 +18,6 @@ struct Problem {
   Points in_b;
   Points in_a;
 };
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = random.Normal();
-  return v;
-}
 
 // Points of the given extent along three axes about a place far away, moved and disturbed.
 Problem MakeProblem(std::size_t points, const Eigen::Vector3d& extent, double noise,

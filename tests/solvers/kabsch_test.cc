@@ -7,35 +7,24 @@
 #include "geometry/so3.h"
 #include "solvers/pair_noise.h"
 #include "solvers/registry.h"
+#include "support/points.h"
 #include "support/scenes.h"
 
 namespace sextant {
 namespace {
 
 using test::MakeScene;
-using test::Scene;
+using test::Moved;
+using test::NormalPoints;
+using test::PairScene;
 using Points = std::vector<Eigen::Vector3d>;
-
-Points RandomPoints(int count, Random& random) {
-  Points points(static_cast<std::size_t>(count));
-  for (Eigen::Vector3d& p : points) {
-    for (int k = 0; k < 3; ++k) p[k] = random.Normal();
-  }
-  return points;
-}
-
-Points Moved(const Rigid3d& b_from_a, const Points& points) {
-  Points moved;
-  for (const Eigen::Vector3d& p : points) moved.push_back(b_from_a * p);
-  return moved;
-}
 
 TEST(Kabsch, RecoversExactPosesFarFromTheOrigin) {
   Random random(1);
   for (int trial = 0; trial < 200; ++trial) {
     const Rigid3d truth{ExpSo3({random.Normal(), random.Normal(), random.Normal()}),
                         {100.0, -200.0, 300.0}};
-    const Points a = RandomPoints(3 + trial % 20, random);
+    const Points a = NormalPoints(3 + trial % 20, random);
     const Expected<KabschFit> fit = FitKabsch(Moved(truth, a), a);
     ASSERT_TRUE(fit) << fit.error().message;
     EXPECT_LT(RotationDistance(fit->b_from_a.rotation, truth.rotation), 1e-8);
@@ -50,7 +39,7 @@ TEST(Kabsch, RecoversExactPosesOfEveryShapeAndScale) {
       for (int trial = 0; trial < 40; ++trial) {
         const Rigid3d truth{ExpSo3({random.Normal(), random.Normal(), random.Normal()}),
                             scale_m * Eigen::Vector3d(1, -2, 3)};
-        Points a = RandomPoints(4 + trial % 20, random);
+        Points a = NormalPoints(4 + trial % 20, random);
         for (Eigen::Vector3d& p : a) p = scale_m * p.cwiseProduct(Eigen::Vector3d(1, 1, flatness));
         const Expected<KabschFit> fit = FitKabsch(Moved(truth, a), a);
         ASSERT_TRUE(fit) << fit.error().message;
@@ -67,7 +56,7 @@ TEST(Kabsch, KeepsItsDigitsAKilometreFromBothOrigins) {
   for (int trial = 0; trial < 200; ++trial) {
     const Rigid3d truth{ExpSo3({random.Normal(), random.Normal(), random.Normal()}),
                         {1000.0, 2000.0, -1000.0}};
-    Points a = RandomPoints(8, random);
+    Points a = NormalPoints(8, random);
     for (Eigen::Vector3d& p : a) p += Eigen::Vector3d(1000.0, -1000.0, 1000.0);
     const Expected<KabschFit> fit = FitKabsch(Moved(truth, a), a);
     ASSERT_TRUE(fit) << fit.error().message;
@@ -80,7 +69,7 @@ TEST(Kabsch, KeepsItsDigitsAKilometreFromBothOrigins) {
 TEST(Kabsch, ReportsTheSumsOfSquaresOfBothKinds) {
   Random random(6);
   for (int trial = 0; trial < 300; ++trial) {
-    const Points a = RandomPoints(3 + trial % 12, random);
+    const Points a = NormalPoints(3 + trial % 12, random);
     Points b = a;
     for (Eigen::Vector3d& p : b) {
       for (int k = 0; k < 3; ++k) p[k] += 0.3 * random.Normal();
@@ -107,7 +96,7 @@ TEST(Kabsch, StatesTheCovarianceOfThePropagation) {
   const SolverPtr solver = *BuiltinSolvers().Make("kabsch");
   for (const int pairs : {3, 4, 8, 13, 100}) {
     for (const bool known : {true, false}) {
-      Scene scene = MakeScene({.pairs = pairs, .sigma_m = 0.05}, random);
+      PairScene scene = MakeScene({.pairs = pairs, .sigma_m = 0.05}, random);
       for (Pair3d3d& pair : scene.problem.pairs_3d3d) {
         pair.sigma_m = known ? 0.05 * random.Uniform(0.5, 2.0) : 0.0;
       }
@@ -126,7 +115,7 @@ TEST(Kabsch, StatesTheCovarianceOfThePropagation) {
 
 TEST(Kabsch, RefusesCollinearCoincidentAndMirroredSets) {
   Random random(2);
-  const Points a = RandomPoints(8, random);
+  const Points a = NormalPoints(8, random);
   Points line = a;
   for (Eigen::Vector3d& p : line) p = Eigen::Vector3d(1, 2, 3) + p.x() * Eigen::Vector3d(1, 1, 0);
   EXPECT_EQ(FitKabsch(a, line).error().code, ErrorCode::kDegenerate);
@@ -143,7 +132,7 @@ TEST(Kabsch, RefusesCollinearCoincidentAndMirroredSets) {
 
 TEST(Kabsch, HypothesizesFromSamplesOfEverySize) {
   Random random(7);
-  const Scene scene = MakeScene({.pairs = 200}, random);
+  const PairScene scene = MakeScene({.pairs = 200}, random);
   const SolverPtr solver = *BuiltinSolvers().Make("kabsch");
   std::vector<Rigid3d> poses;
   for (const int size : {3, 64, 65, 200}) {
@@ -160,8 +149,8 @@ TEST(Kabsch, HypothesizesFromSamplesOfEverySize) {
 
 TEST(Kabsch, WeightsCountAsRepetitions) {
   Random random(3);
-  Points a = RandomPoints(6, random);
-  Points b = RandomPoints(6, random);
+  Points a = NormalPoints(6, random);
+  Points b = NormalPoints(6, random);
   const std::vector<double> weights = {1, 1, 2, 1, 3, 1};
   const Expected<KabschFit> weighted = FitKabsch(b, a, weights);
   for (const int i : {2, 4, 4}) {

@@ -19,12 +19,12 @@ Eigen::Quaterniond RandomRotation(Random& random) {
 }
 
 // cross = U diag(s) V^T, whose maximiser is V U^T by construction.
-struct Case {
+struct RotationCase {
   Eigen::Matrix3d cross;
   Eigen::Quaterniond rotation;
 };
 
-Case WithSingularValues(const Eigen::Vector3d& s, Random& random) {
+RotationCase WithSingularValues(const Eigen::Vector3d& s, Random& random) {
   const Eigen::Quaterniond u = RandomRotation(random);
   const Eigen::Quaterniond v = RandomRotation(random);
   return {u.toRotationMatrix() * s.asDiagonal() * v.toRotationMatrix().transpose(),
@@ -48,7 +48,7 @@ TEST(MaxTraceRotation, FindsTheMaximiserForEverySpectrum) {
       for (const double scale : {1e-12, 1.0, 1e14}) {
         for (int trial = 0; trial < 10; ++trial) {
           const Eigen::Vector3d s = scale * shape;
-          const Case expected = WithSingularValues(s, random);
+          const RotationCase expected = WithSingularValues(s, random);
           const double bound = slack * s.sum() + 1e-3 * scale;
           const auto best = MaximizeTrace(expected.cross, bound);
           ASSERT_TRUE(best) << s.transpose() << " slack " << slack;
@@ -71,7 +71,7 @@ TEST(MaxTraceRotation, FindsTheMaximiserOfRandomSpectra) {
     s[0] = 1.0;
     s[1] = random.Uniform();
     s[2] = s[1] * random.Uniform(-1.0, 1.0);
-    const Case expected = WithSingularValues(s, random);
+    const RotationCase expected = WithSingularValues(s, random);
     const double bound = s.sum() * random.Uniform(1.0, 2.0);
     const auto best = MaximizeTrace(expected.cross, bound);
     ASSERT_TRUE(best) << s.transpose();
@@ -87,7 +87,7 @@ TEST(MaxTraceRotation, RefusesWhatLeavesATurnFree) {
   const std::vector<Eigen::Vector3d> spectra = {
       {0, 0, 0}, {1, 0, 0}, {1, 1e-11, 0}, {1, 1, -1}, {1, 0.5, -0.5}};
   for (const Eigen::Vector3d& s : spectra) {
-    const Case undetermined = WithSingularValues(s, random);
+    const RotationCase undetermined = WithSingularValues(s, random);
     EXPECT_FALSE(MaximizeTrace(undetermined.cross, 1.0 + s.sum())) << s.transpose();
   }
   const double nan = std::nan("");

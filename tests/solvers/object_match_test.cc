@@ -56,7 +56,7 @@ Points From(const Points& corners, int first) {
   return turned;
 }
 
-struct Session {
+struct MatchedSession {
   Rigid3d b_from_a;
   std::vector<MatchView> views;
   std::vector<std::set<std::size_t>> truth;  // Of each view, its true pairings.
@@ -79,8 +79,8 @@ MatchView ViewOf(const std::vector<Points>& in_b, const std::vector<Points>& in_
   return view;
 }
 
-Session MakeSession(int views, std::size_t boards, Random& random) {
-  Session session;
+MatchedSession MakeMatchedSession(int views, std::size_t boards, Random& random) {
+  MatchedSession session;
   const Eigen::Vector3d turn = Noise(random, 1.5);
   session.b_from_a = {ExpSo3(turn), Noise(random, 0.3)};
   for (int v = 0; v < views; ++v) {
@@ -102,7 +102,8 @@ Session MakeSession(int views, std::size_t boards, Random& random) {
 }
 
 // How many of the true pairings the explanation takes as fitting, and whether it takes any other.
-void ExpectTruth(const Session& session, const MatchExplanation& found, std::size_t wrong_views) {
+void ExpectTruth(const MatchedSession& session, const MatchExplanation& found,
+                 std::size_t wrong_views) {
   std::vector<std::set<std::size_t>> fits(session.views.size());
   for (const TakenPairing& taken : found.taken) {
     if (taken.fits) fits[taken.view].insert(taken.pairing);
@@ -126,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, ManySessions, testing::Range(0, 20));
 
 TEST_P(ManySessions, OneSquareBoardAView) {
   Random random = MakeRandom("one square");
-  const Session session = MakeSession(4, 1, random);
+  const MatchedSession session = MakeMatchedSession(4, 1, random);
   const auto found = MatchObjects(session.views, {.cap = kCap});
   ASSERT_TRUE(found) << found.error().message;
   ExpectTruth(session, found->front(), 0);
@@ -138,7 +139,7 @@ TEST_P(ManySessions, OneSquareBoardAView) {
 
 TEST_P(ManySessions, ThreeEqualBoardsInAnyOrder) {
   Random random = MakeRandom("three squares");
-  const Session session = MakeSession(2, 3, random);
+  const MatchedSession session = MakeMatchedSession(2, 3, random);
   const auto found = MatchObjects(session.views, {.cap = kCap});
   ASSERT_TRUE(found) << found.error().message;
   ExpectTruth(session, found->front(), 0);
@@ -146,7 +147,7 @@ TEST_P(ManySessions, ThreeEqualBoardsInAnyOrder) {
 
 TEST_P(ManySessions, AThirdOfTheViewsWrong) {
   Random random = MakeRandom("wrong views");
-  Session session = MakeSession(9, 1, random);
+  MatchedSession session = MakeMatchedSession(9, 1, random);
   for (std::size_t v = 0; v < 3; ++v) {
     const Points moved = Square(random);
     for (ObjectPairing& pairing : session.views[v].pairings) {
@@ -161,7 +162,7 @@ TEST_P(ManySessions, AThirdOfTheViewsWrong) {
 
 TEST(ObjectMatch, OneSquareBoardHasFourExplanations) {
   Random random(2);
-  const Session session = MakeSession(1, 1, random);
+  const MatchedSession session = MakeMatchedSession(1, 1, random);
   const auto found = MatchObjects(session.views, {.cap = kCap});
   ASSERT_TRUE(found) << found.error().message;
   ASSERT_EQ(found->size(), 4U);
@@ -177,7 +178,7 @@ TEST(ObjectMatch, OneSquareBoardHasFourExplanations) {
 
 TEST(ObjectMatch, WhatSpeaksAgainstAPairingCounts) {
   Random random(3);
-  Session session = MakeSession(1, 1, random);
+  MatchedSession session = MakeMatchedSession(1, 1, random);
   for (std::size_t i = 0; i < 4; ++i) session.views[0].pairings[i].penalty = i == 2 ? 0.0 : 30.0;
   const auto found = MatchObjects(session.views, {.cap = kCap});
   ASSERT_TRUE(found) << found.error().message;
@@ -187,7 +188,7 @@ TEST(ObjectMatch, WhatSpeaksAgainstAPairingCounts) {
 
 TEST(ObjectMatch, ManyViewsAreNotAllTriedAndStillFound) {
   Random random(4);
-  const Session session = MakeSession(100, 2, random);
+  const MatchedSession session = MakeMatchedSession(100, 2, random);
   const auto found = MatchObjects(session.views, {.cap = kCap, .most_starts = 64});
   ASSERT_TRUE(found) << found.error().message;
   ExpectTruth(session, found->front(), 0);

@@ -17,7 +17,7 @@ namespace {
 using test::AddOutliers;
 using test::MakeScene;
 using test::Only;
-using test::Scene;
+using test::PairScene;
 using test::SceneOptions;
 
 struct OutlierCase {
@@ -52,7 +52,7 @@ TEST_P(Outliers, AnswersNearlyAsWellAsOnTheTrueInliers) {
   for (int trial = 0; trial < c.trials; ++trial) {
     Random random(DeriveSeed(1, "outliers", static_cast<std::uint64_t>(c.pairs),
                              static_cast<std::uint64_t>(trial)));
-    Scene scene = MakeScene(options, random);
+    PairScene scene = MakeScene(options, random);
     const std::vector<int> inliers = AddOutliers(c.share, options, random, scene);
     const Expected<SolveReport> report = (*solver)->Solve(scene.problem);
     ASSERT_TRUE(report) << "trial " << trial << ": " << report.error().message;
@@ -112,7 +112,7 @@ std::vector<OutlierCase> OutlierCases() {
   };
 }
 
-std::string CaseName(const testing::TestParamInfo<OutlierCase>& info) {
+std::string OutlierCaseName(const testing::TestParamInfo<OutlierCase>& info) {
   std::string name = std::to_string(info.index) + "_" + info.param.spec + "_" +
                      std::to_string(info.param.pairs) + "_" +
                      std::to_string(std::lround(100.0 * info.param.share));
@@ -122,7 +122,7 @@ std::string CaseName(const testing::TestParamInfo<OutlierCase>& info) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, Outliers, testing::ValuesIn(OutlierCases()), CaseName);
+INSTANTIATE_TEST_SUITE_P(Every, Outliers, testing::ValuesIn(OutlierCases()), OutlierCaseName);
 
 class Elimination : public testing::TestWithParam<std::string> {};
 
@@ -133,7 +133,7 @@ TEST_P(Elimination, KeepsTruePairsOnly) {
   ASSERT_TRUE(solver) << solver.error().message;
   for (std::uint64_t trial = 0; trial < 100; ++trial) {
     Random random(DeriveSeed(3, "elimination", 0, trial));
-    Scene scene = MakeScene(options, random);
+    PairScene scene = MakeScene(options, random);
     const std::vector<int> inliers = AddOutliers(0.2, options, random, scene);
     const Expected<SolveReport> report = (*solver)->Solve(scene.problem);
     ASSERT_TRUE(report) << "trial " << trial << ": " << report.error().message;
@@ -164,7 +164,7 @@ TEST_P(NoConsensus, IsSaidWhereEveryPairIsAnOutlier) {
     const SceneOptions options{.pairs = pairs, .sigma_m = 0.01, .sigma_px = 1.0};
     for (std::uint64_t trial = 0; trial < 10; ++trial) {
       Random random(DeriveSeed(2, "no consensus", static_cast<std::uint64_t>(pairs), trial));
-      Scene scene = MakeScene(options, random);
+      PairScene scene = MakeScene(options, random);
       AddOutliers(1.0, options, random, scene);
       const Expected<SolveReport> report = (*solver)->Solve(scene.problem);
       if (report) {

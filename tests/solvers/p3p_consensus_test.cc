@@ -19,7 +19,7 @@ namespace sextant {
 namespace {
 
 using test::MakeScene;
-using test::Scene;
+using test::PairScene;
 using test::SceneOptions;
 
 // A chi-square number of 6 degrees of freedom is larger once in 10^9: a wrong answer.
@@ -31,7 +31,7 @@ struct Score {
   int right = 0;
   double squares = 0.0;
 
-  void Add(const Expected<SolveReport>& report, const Scene& scene, const Matrix6d& bound) {
+  void Add(const Expected<SolveReport>& report, const PairScene& scene, const Matrix6d& bound) {
     const Vector6d error =
         report ? PoseDifference(report->cam_from_lidar, scene.cam_from_lidar) : Vector6d();
     const double squared = report ? error.dot(bound.ldlt().solve(error)) : kWrong;
@@ -46,7 +46,7 @@ struct Score {
 };
 
 // Of the first so many pixels.
-Matrix6d BoundOf(const Scene& scene, int pairs) {
+Matrix6d BoundOf(const PairScene& scene, int pairs) {
   CalibrationProblem pixels = scene.problem;
   pixels.pairs_3d3d.clear();
   pixels.pairs_2d3d.resize(static_cast<std::size_t>(pairs));
@@ -61,7 +61,7 @@ TEST(RefinedP3p, IsAtTheBound) {
     for (int trial = 0; trial < trials; ++trial) {
       Random random(DeriveSeed(1, "refined_p3p", static_cast<std::uint64_t>(pairs),
                                static_cast<std::uint64_t>(trial)));
-      const Scene scene = MakeScene({.pairs = pairs, .sigma_px = 1.0}, random);
+      const PairScene scene = MakeScene({.pairs = pairs, .sigma_px = 1.0}, random);
       score.Add(solver->Solve(scene.problem), scene, BoundOf(scene, pairs));
     }
     // One in a thousand. The goal is 1.02, 4 standard errors of the ratio where trials are many.
@@ -76,7 +76,7 @@ TEST(RefinedP3p, FindsTheMinimumThatRefinementOfOthersFinds) {
   const SolverPtr other = *BuiltinSolvers().Make("refine(sqpnp)");
   Random random(2);
   for (int trial = 0; trial < 200; ++trial) {
-    Scene scene = MakeScene({.pairs = 12, .sigma_px = 1.0}, random);
+    PairScene scene = MakeScene({.pairs = 12, .sigma_px = 1.0}, random);
     if (trial % 2 == 0) {
       for (Pair2d3d& pair : scene.problem.pairs_2d3d) pair.sigma_px = 0.0;
     } else {
@@ -102,10 +102,10 @@ TEST(StartFromTriples, HasNoPoseForPointsOnALine) {
   EXPECT_FALSE(FindP3pConsensus(terms.View(), camera, {}).found);
 }
 
-Scene Mismatched(int pairs, double outliers, std::uint64_t trial) {
+PairScene Mismatched(int pairs, double outliers, std::uint64_t trial) {
   Random random(DeriveSeed(3, "mismatched", static_cast<std::uint64_t>(100.0 * outliers), trial));
   const SceneOptions options{.pairs = pairs, .sigma_px = 1.0};
-  Scene scene = MakeScene(options, random);
+  PairScene scene = MakeScene(options, random);
   MismatchPairs(options, InlierCount(pairs, outliers), random, scene);
   return scene;
 }
@@ -116,7 +116,7 @@ TEST(RansacOfP3p, IsAtTheBoundOfTheTruePairs) {
     constexpr int kTrials = 500;
     Score score;
     for (int trial = 0; trial < kTrials; ++trial) {
-      const Scene scene = Mismatched(100, outliers, static_cast<std::uint64_t>(trial));
+      const PairScene scene = Mismatched(100, outliers, static_cast<std::uint64_t>(trial));
       score.Add(solver->Solve(scene.problem), scene, BoundOf(scene, InlierCount(100, outliers)));
     }
     EXPECT_EQ(score.wrong, 0) << outliers;
@@ -126,7 +126,7 @@ TEST(RansacOfP3p, IsAtTheBoundOfTheTruePairs) {
 }
 
 TEST(P3pConsensus, IsTheSameForTheSameSeedAndDrawsNoMoreThanAllowed) {
-  const Scene scene = Mismatched(60, 0.5, 0);
+  const PairScene scene = Mismatched(60, 0.5, 0);
   const PairTerms terms = MakeTerms(scene.problem, PairKind::k2d3d, {});
   const auto find = [&](std::uint64_t seed, int max_samples) {
     return FindP3pConsensus(terms.pixels.View(), terms.camera,

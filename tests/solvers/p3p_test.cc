@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "base/random.h"
+#include "geometry/random_vectors.h"
 #include "geometry/so3.h"
 #include "solvers/registry.h"
 #include "support/scenes.h"
@@ -19,20 +20,14 @@ namespace {
 
 using Triple = std::array<Eigen::Vector3d, 3>;
 
-struct View {
+struct TripleView {
   Triple rays;
   Triple points;
   Rigid3d cam_from_lidar;
 };
 
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int k = 0; k < 3; ++k) v[k] = random.Normal();
-  return v;
-}
-
-View SeenFrom(const Triple& in_cam, Random& random) {
-  View view;
+TripleView SeenFrom(const Triple& in_cam, Random& random) {
+  TripleView view;
   view.cam_from_lidar.rotation = ExpSo3(NormalVector(random));
   view.cam_from_lidar.translation = 0.3 * NormalVector(random);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -52,7 +47,7 @@ Triple RandomTriple(double depth, Random& random) {
 }
 
 // The larger of rotation [rad] and translation over depth to the nearest solution.
-double ErrorOfBest(const View& view, double depth) {
+double ErrorOfBest(const TripleView& view, double depth) {
   std::array<Rigid3d, kMaxP3pPoses> poses;
   const int count = SolveP3p(view.rays, view.points, poses);
   double best = std::numeric_limits<double>::infinity();
@@ -68,7 +63,7 @@ class P3pAtDepth : public testing::TestWithParam<double> {};
 TEST_P(P3pAtDepth, TruePoseIsAmongTheSolutions) {
   Random random(1);
   for (int trial = 0; trial < 5000; ++trial) {
-    const View view = SeenFrom(RandomTriple(GetParam(), random), random);
+    const TripleView view = SeenFrom(RandomTriple(GetParam(), random), random);
     EXPECT_LT(ErrorOfBest(view, GetParam()), 1e-8) << trial;
   }
 }
@@ -76,7 +71,7 @@ TEST_P(P3pAtDepth, TruePoseIsAmongTheSolutions) {
 TEST_P(P3pAtDepth, EverySolutionSeesThePointsOnTheRays) {
   Random random(2);
   for (int trial = 0; trial < 1000; ++trial) {
-    const View view = SeenFrom(RandomTriple(GetParam(), random), random);
+    const TripleView view = SeenFrom(RandomTriple(GetParam(), random), random);
     std::array<Rigid3d, kMaxP3pPoses> poses;
     const int count = SolveP3p(view.rays, view.points, poses);
     for (int k = 0; k < count; ++k) {
@@ -151,7 +146,7 @@ TEST(P3p, HasNoPoseForDegenerateTriples) {
   const Eigen::Vector3d b(1.0, -0.3, 2.0);
   std::array<Rigid3d, kMaxP3pPoses> poses;
   const auto count = [&](const Triple& in_cam) {
-    const View view = SeenFrom(in_cam, random);
+    const TripleView view = SeenFrom(in_cam, random);
     return SolveP3p(view.rays, view.points, poses);
   };
   EXPECT_EQ(count({a, b, 0.3 * a + 0.7 * b}), 0);
@@ -180,7 +175,7 @@ double DifferenceOf(std::span<const Rigid3d> alone, const P3pPoses& together, st
 TEST_P(P3pAtDepth, EightTriplesSideBySideHaveThePosesOfEach) {
   Random random(10);
   for (int batch = 0; batch < 500; ++batch) {
-    std::array<View, kLanes> views;
+    std::array<TripleView, kLanes> views;
     P3pTriples triples;
     for (std::size_t k = 0; k < kLanes; ++k) {
       Triple in_cam = RandomTriple(GetParam(), random);
@@ -209,7 +204,7 @@ TEST(P3pSolver, ThreePairsGiveEverySolutionAndMoreChooseAmongThem) {
   const SolverPtr p3p = *BuiltinSolvers().Make("p3p");
   Random random(7);
   for (int trial = 0; trial < 200; ++trial) {
-    test::Scene scene = test::MakeScene({.pairs = 12}, random);
+    test::PairScene scene = test::MakeScene({.pairs = 12}, random);
     const Expected<SolveReport> chosen = p3p->Solve(scene.problem);
     ASSERT_TRUE(chosen) << chosen.error().message;
     EXPECT_TRUE(chosen->alternatives.empty());
@@ -233,7 +228,7 @@ TEST(P3pSolver, ThreePairsGiveEverySolutionAndMoreChooseAmongThem) {
 TEST(P3pSolver, SaysWhyThereIsNoPose) {
   const SolverPtr p3p = *BuiltinSolvers().Make("p3p");
   Random random(8);
-  test::Scene scene = test::MakeScene({.pairs = 3}, random);
+  test::PairScene scene = test::MakeScene({.pairs = 3}, random);
   std::vector<Pair2d3d>& pairs = scene.problem.pairs_2d3d;
   const std::vector<Pair2d3d> kept = pairs;
   pairs[2] = pairs[1];
@@ -256,7 +251,7 @@ TEST(P3pSolver, CovarianceIsHonestWhereTheNoiseIsNotStated) {
   double sum = 0.0;
   for (int trial = 0; trial < kTrials; ++trial) {
     Random random(DeriveSeed(9, "p3p", 0, static_cast<std::uint64_t>(trial)));
-    test::Scene scene = test::MakeScene({.pairs = 40, .sigma_px = 0.3}, random);
+    test::PairScene scene = test::MakeScene({.pairs = 40, .sigma_px = 0.3}, random);
     const Expected<SolveReport> known = p3p->Solve(scene.problem);
     for (Pair2d3d& pair : scene.problem.pairs_2d3d) pair.sigma_px = 0.0;
     const Expected<SolveReport> unknown = p3p->Solve(scene.problem);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kMaxSquared = 4.0;
 
-struct Case {
+struct SumsCase {
   PairTerms terms;
   Rigid3d pose;
 
@@ -26,28 +26,28 @@ struct Case {
 };
 
 // Focal lengths that differ, sigmas that differ; residuals of a few sigmas.
-Case MakeCase(int pairs, Random& random) {
-  test::Scene scene = test::MakeScene({.pairs = pairs, .sigma_px = 1.0}, random);
+SumsCase MakeCase(int pairs, Random& random) {
+  test::PairScene scene = test::MakeScene({.pairs = pairs, .sigma_px = 1.0}, random);
   scene.problem.camera->fy_px = 690.0;
   for (Pair2d3d& pair : scene.problem.pairs_2d3d) {
     pair.pixel = *Project(*scene.problem.camera, scene.cam_from_lidar * pair.point_in_lidar);
     pair.sigma_px = random.Uniform(0.5, 2.0);
     for (int axis = 0; axis < 2; ++axis) pair.pixel[axis] += 1.5 * pair.sigma_px * random.Normal();
   }
-  Case made;
+  SumsCase made;
   made.terms.Add(scene.problem.pairs_2d3d, *scene.problem.camera, {});
   made.pose = scene.cam_from_lidar;
   return made;
 }
 
-double SquaredOf(const PixelTerm& term, const Case& c) {
+double SquaredOf(const PixelTerm& term, const SumsCase& c) {
   const auto projected = Project(c.terms.camera, c.pose * term.in_lidar);
   if (!projected) return std::numeric_limits<double>::infinity();
   return (term.inverse_sigma * (term.pixel - *projected)).squaredNorm();
 }
 
 // Over the terms with r^2 <= max_squared.
-PixelSums OneByOne(const Case& c, double max_squared) {
+PixelSums OneByOne(const SumsCase& c, double max_squared) {
   PixelSums sums;
   sums.information.setZero();
   sums.gradient.setZero();
@@ -70,7 +70,7 @@ void ExpectSameSlopes(const PixelSums& sums, const PixelSums& wanted) {
   EXPECT_LE((sums.gradient - wanted.gradient).norm(), 1e-11 * std::sqrt(scale));
 }
 
-double TruncatedOneByOne(const Case& c) {
+double TruncatedOneByOne(const SumsCase& c) {
   double cost = 0.0;
   for (const PixelTerm term : c.terms.pixels) cost += std::min(kMaxSquared, SquaredOf(term, c));
   return cost;
@@ -79,7 +79,7 @@ double TruncatedOneByOne(const Case& c) {
 TEST(PixelSums, AreThoseOfEveryTerm) {
   Random random(1);
   for (int pairs = 1; pairs <= 26; ++pairs) {
-    const Case c = MakeCase(pairs, random);
+    const SumsCase c = MakeCase(pairs, random);
     PixelSums sums;
     ASSERT_TRUE(SumPixels(c.terms.pixels.blocks(), c.Pose(), sums));
     const PixelSums wanted = OneByOne(c, std::numeric_limits<double>::infinity());
@@ -91,7 +91,7 @@ TEST(PixelSums, AreThoseOfEveryTerm) {
 TEST(PixelSums, LeaveOutWhatIsNotWithin) {
   Random random(2);
   for (int pairs = 1; pairs <= 26; ++pairs) {
-    Case c = MakeCase(pairs, random);
+    SumsCase c = MakeCase(pairs, random);
     // In some cases half of the points are behind the camera.
     if (pairs % 3 == 0) c.pose.translation.z() -= 3.0;
     PixelSums sums;
@@ -108,7 +108,7 @@ TEST(PixelSums, LeaveOutWhatIsNotWithin) {
 TEST(PixelSums, SquaresAndCostAreThoseOfEveryTerm) {
   Random random(3);
   for (int pairs = 1; pairs <= 26; ++pairs) {
-    Case c = MakeCase(pairs, random);
+    SumsCase c = MakeCase(pairs, random);
     if (pairs % 3 == 0) c.pose.translation.z() -= 3.0;
     const auto blocks = c.terms.pixels.blocks();
     std::vector<double> squared(kLanes * blocks.size());
@@ -132,7 +132,7 @@ TEST(PixelSums, SquaresAndCostAreThoseOfEveryTerm) {
 
 TEST(PixelSums, AreRefusedForAPointBehindTheCamera) {
   Random random(4);
-  Case c = MakeCase(20, random);
+  SumsCase c = MakeCase(20, random);
   c.pose.translation.z() -= 3.0;
   PixelSums sums;
   EXPECT_FALSE(SumPixels(c.terms.pixels.blocks(), c.Pose(), sums));
@@ -144,7 +144,7 @@ TEST(PixelScreen, GivesUpPosesOfFewInliersAndKeepsGoodOnes) {
   const PixelScreen screen(0.5);
   int given_up = 0;
   for (int trial = 0; trial < 200; ++trial) {
-    Case c = MakeCase(100, random);
+    SumsCase c = MakeCase(100, random);
     const auto cost = [&] {
       return ScreenedPixelCost(c.terms.pixels.blocks(), c.Pose(), 9.0, kNever, screen);
     };

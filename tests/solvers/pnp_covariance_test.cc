@@ -16,7 +16,7 @@ namespace {
 
 using test::CovarianceByPixelDifferences;
 using test::MakeScene;
-using test::Scene;
+using test::PairScene;
 using test::WhitenedDifference;
 
 struct CovarianceCase {
@@ -30,15 +30,15 @@ void PrintTo(const CovarianceCase& c, std::ostream* out) { *out << c.spec << ' '
 class PnpCovarianceOf : public testing::TestWithParam<CovarianceCase> {
  protected:
   // Sigmas that differ from pair to pair, so that each must find its own.
-  static Scene NoisyScene(const CovarianceCase& c, Random& random) {
-    Scene scene = MakeScene({.pairs = c.pairs, .sigma_px = 0.5, .planar = c.planar}, random);
+  static PairScene NoisyScene(const CovarianceCase& c, Random& random) {
+    PairScene scene = MakeScene({.pairs = c.pairs, .sigma_px = 0.5, .planar = c.planar}, random);
     for (Pair2d3d& pair : scene.problem.pairs_2d3d) pair.sigma_px = random.Uniform(0.2, 1.0);
     return scene;
   }
 
   // False where the answer has no derivative. Differences truncate at 1e-10 and are rounded at
   // 1e-8; the estimators stop up to 1e-9 short of their limit, 1e-4 of the displacements.
-  static bool DifferencesAgree(const Scene& scene) {
+  static bool DifferencesAgree(const PairScene& scene) {
     const Expected<SolverPtr> solver = BuiltinSolvers().Make(GetParam().spec);
     const Expected<SolveReport> report = (*solver)->Solve(scene.problem);
     EXPECT_TRUE(report && report->covariance);
@@ -66,7 +66,7 @@ TEST_P(PnpCovarianceOf, HeedsTheLens) {
   Random random(2);
   int compared = 0;
   for (int trial = 0; trial < 3; ++trial) {
-    Scene scene = NoisyScene(GetParam(), random);
+    PairScene scene = NoisyScene(GetParam(), random);
     Camera& camera = *scene.problem.camera;
     camera.model = CameraModel::kBrownConrady;
     camera.distortion = {-0.1, 0.02, 1e-3, -1e-3, 0.0, 0.0, 0.0, 0.0};
@@ -85,7 +85,7 @@ TEST(PnpCovarianceOfAFisheye, TurnsWithTheView) {
   Random random(3);
   const Rigid3d turned{ExpSo3({0.0, 1.36, 0.0}), Eigen::Vector3d::Zero()};
   for (const char* spec : {"epnp", "sqpnp"}) {
-    Scene scene = MakeScene({.pairs = 20, .sigma_px = 0.1, .extent_m = 0.5}, random);
+    PairScene scene = MakeScene({.pairs = 20, .sigma_px = 0.1, .extent_m = 0.5}, random);
     Camera& camera = *scene.problem.camera;
     camera.model = CameraModel::kEquidistant;
     camera.width_px = camera.height_px = 0;

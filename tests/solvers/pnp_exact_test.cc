@@ -53,11 +53,11 @@ TEST_P(ExactPixels, AreExplainedByTheTruePose) {
     int wrong = 0;
     for (int trial = 0; trial < scenes; ++trial) {
       // Near the camera a smaller cube, which stays in front of it.
-      const test::Scene scene = test::MakeScene({.pairs = pairs,
-                                                 .planar = c.planar,
-                                                 .depth_m = c.depth_m,
-                                                 .extent_m = std::min(1.0, 0.5 * c.depth_m)},
-                                                random);
+      const test::PairScene scene = test::MakeScene({.pairs = pairs,
+                                                     .planar = c.planar,
+                                                     .depth_m = c.depth_m,
+                                                     .extent_m = std::min(1.0, 0.5 * c.depth_m)},
+                                                    random);
       const double error = Error((*solver)->Solve(scene.problem), scene.cam_from_lidar);
       worst = std::max(worst, error);
       if (!(error < 1e-8)) ++wrong;
@@ -79,7 +79,7 @@ std::vector<ExactCase> ExactCases() {
   return cases;
 }
 
-std::string CaseName(const testing::TestParamInfo<ExactCase>& info) {
+std::string ExactCaseName(const testing::TestParamInfo<ExactCase>& info) {
   const ExactCase& c = info.param;
   std::string name =
       c.spec + (c.planar ? "_planar_" : "_") + std::to_string(static_cast<int>(c.depth_m)) + "m";
@@ -88,7 +88,7 @@ std::string CaseName(const testing::TestParamInfo<ExactCase>& info) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, ExactPixels, testing::ValuesIn(ExactCases()), CaseName);
+INSTANTIATE_TEST_SUITE_P(Every, ExactPixels, testing::ValuesIn(ExactCases()), ExactCaseName);
 
 }  // namespace
 }  // namespace sextant

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/random.h"
+#include "geometry/random_vectors.h"
 #include "geometry/so3.h"
 #include "solvers/epnp.h"
 #include "solvers/sqpnp.h"
@@ -16,7 +17,7 @@
 namespace sextant {
 namespace {
 
-struct Scene {
+struct PointScene {
   std::vector<Eigen::Vector2d> image_points;
   std::vector<Eigen::Vector3d> points;
   Rigid3d cam_from_lidar;
@@ -28,15 +29,9 @@ struct Shape {
   double depth_m = 3.0;
 };
 
-Eigen::Vector3d UniformVector(Random& random, double half_side) {
-  Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = random.Uniform(-half_side, half_side);
-  return v;
-}
-
 // Points in a cube of side 2 m, or on a plane through it, `depth_m` before the camera.
-Scene MakeScene(const Shape& shape, int count, double sigma, Random& random) {
-  Scene scene;
+PointScene MakePointScene(const Shape& shape, int count, double sigma, Random& random) {
+  PointScene scene;
   const Eigen::Vector3d turn = UniformVector(random, 1.0);
   scene.cam_from_lidar.rotation =
       ExpSo3(turn * (std::numbers::pi / turn.norm()) * random.Uniform());
@@ -57,7 +52,7 @@ Scene MakeScene(const Shape& shape, int count, double sigma, Random& random) {
 }
 
 // The inverse of the information that the image points hold on (dphi, dt).
-Matrix6d CramerRaoBound(const Scene& scene, double sigma) {
+Matrix6d CramerRaoBound(const PointScene& scene, double sigma) {
   Matrix6d information = Matrix6d::Zero();
   for (const Eigen::Vector3d& point : scene.points) {
     const Eigen::Vector3d arm = scene.cam_from_lidar.rotation * point;
@@ -74,20 +69,20 @@ Matrix6d CramerRaoBound(const Scene& scene, double sigma) {
 
 struct Kernel {
   std::string name;
-  Expected<Rigid3d> (*solve)(const Scene&);
+  Expected<Rigid3d> (*solve)(const PointScene&);
   double max_rms_ratio;  // To the Cramer-Rao bound, 1 px at f = 700 and 3 m.
 };
 
 const Kernel kKernels[] = {
     {"epnp",
-     [](const Scene& s) -> Expected<Rigid3d> {
+     [](const PointScene& s) -> Expected<Rigid3d> {
        return SolveEpnp(s.image_points, s.points).map([](const EpnpFit& f) {
          return f.cam_from_lidar;
        });
      },
      1.25},
     {"sqpnp",
-     [](const Scene& s) -> Expected<Rigid3d> {
+     [](const PointScene& s) -> Expected<Rigid3d> {
        return SolveSqpnp(s.image_points, s.points).map([](const SqpnpFit& f) {
          return f.cam_from_lidar[0];
        });
@@ -110,7 +105,7 @@ TEST_P(PnpKernelOnShape, RecoversEveryExactPose) {
     Random random(DeriveSeed(1, shape.name, static_cast<std::uint64_t>(count), 0));
     int wrong = 0;
     for (int trial = 0; trial < 1000; ++trial) {
-      const Scene scene = MakeScene(shape, count, 0.0, random);
+      const PointScene scene = MakePointScene(shape, count, 0.0, random);
       const Expected<Rigid3d> pose = kernel.solve(scene);
       const double scale = std::max(1.0, shape.depth_m);
       if (!pose) {
@@ -138,7 +133,7 @@ TEST_P(PnpKernel, ErrorIsNearTheCramerRaoBound) {
     Eigen::Vector2d squares = Eigen::Vector2d::Zero();
     Eigen::Vector2d bound = Eigen::Vector2d::Zero();
     for (int trial = 0; trial < kTrials; ++trial) {
-      const Scene scene = MakeScene({.name = "cube"}, count, kSigma, random);
+      const PointScene scene = MakePointScene({.name = "cube"}, count, kSigma, random);
       const Expected<Rigid3d> pose = GetParam().solve(scene);
       ASSERT_TRUE(pose) << pose.error().message;
       const Matrix6d limit = CramerRaoBound(scene, kSigma);
@@ -157,23 +152,23 @@ TEST_P(PnpKernel, ErrorIsNearTheCramerRaoBound) {
 
 TEST_P(PnpKernel, RefusesWhatLeavesThePoseOpen) {
   Random random(3);
-  const auto code = [](const Scene& scene) {
+  const auto code = [](const PointScene& scene) {
     const Expected<Rigid3d> pose = GetParam().solve(scene);
     return pose ? "answered" : std::string(ToString(pose.error().code));
   };
-  const Scene good = MakeScene({.name = "cube"}, 8, 0.0, random);
+  const PointScene good = MakePointScene({.name = "cube"}, 8, 0.0, random);
   EXPECT_EQ(code(good), "answered");
 
-  Scene few = good;
+  PointScene few = good;
   few.points.resize(2);
   few.image_points.resize(2);
   EXPECT_EQ(code(few), "too_few_pairs");
 
-  Scene line = good;
-  Scene same_pixel = good;
-  Scene repeated = good;
-  Scene far = good;
-  Scene behind = good;
+  PointScene line = good;
+  PointScene same_pixel = good;
+  PointScene repeated = good;
+  PointScene far = good;
+  PointScene behind = good;
   for (std::size_t i = 0; i < good.points.size(); ++i) {
     const double along = static_cast<double>(i) * 0.1;
     line.points[i] = good.points[0] + along * (good.points[1] - good.points[0]);
@@ -195,7 +190,7 @@ TEST_P(PnpKernel, RefusesWhatLeavesThePoseOpen) {
 TEST_P(PnpKernel, RefusesPointsBehindTheCameraWhateverTheirNumber) {
   Random random(4);
   for (int trial = 0; trial < 200; ++trial) {
-    Scene scene = MakeScene({.name = "cube"}, 6 + trial % 20, 0.0, random);
+    PointScene scene = MakePointScene({.name = "cube"}, 6 + trial % 20, 0.0, random);
     const Rigid3d lidar_from_cam = scene.cam_from_lidar.Inverse();
     for (Eigen::Vector3d& point : scene.points) {
       point = lidar_from_cam * Eigen::Vector3d(-(scene.cam_from_lidar * point));
@@ -211,7 +206,7 @@ TEST_P(PnpKernel, TakesNoNoiseForAMirrorImage) {
   int mirrored = 0;
   for (int trial = 0; trial < 2000; ++trial) {
     const Shape shape{.name = "far_cube", .depth_m = 20.0};
-    const Scene scene = MakeScene(shape, 4 + trial % 4, 1.0 / 700.0, random);
+    const PointScene scene = MakePointScene(shape, 4 + trial % 4, 1.0 / 700.0, random);
     const Expected<Rigid3d> pose = GetParam().solve(scene);
     if (!pose && pose.error().code == ErrorCode::kMirrored) ++mirrored;
   }
@@ -222,7 +217,7 @@ TEST_P(PnpKernel, TakesNoNoiseForAMirrorImage) {
 TEST_P(PnpKernel, DuplicatedPairsChangeNothingThatIsExact) {
   Random random(5);
   for (int trial = 0; trial < 200; ++trial) {
-    Scene scene = MakeScene({.name = "cube"}, 4 + trial % 3, 0.0, random);
+    PointScene scene = MakePointScene({.name = "cube"}, 4 + trial % 3, 0.0, random);
     for (const std::size_t i : {0U, 1U, 1U, 2U}) {
       scene.points.push_back(scene.points[i]);
       scene.image_points.push_back(scene.image_points[i]);
@@ -241,7 +236,7 @@ INSTANTIATE_TEST_SUITE_P(All, PnpKernel, testing::ValuesIn(kKernels),
 TEST(Sqpnp, GivesTheTruthAmongTheSolutionsOfThreePoints) {
   Random random(6);
   for (int trial = 0; trial < 1000; ++trial) {
-    const Scene scene = MakeScene({.name = "cube"}, 3, 0.0, random);
+    const PointScene scene = MakePointScene({.name = "cube"}, 3, 0.0, random);
     const Expected<SqpnpFit> fit = SolveSqpnp(scene.image_points, scene.points);
     ASSERT_TRUE(fit) << fit.error().message;
     double nearest = 1.0;

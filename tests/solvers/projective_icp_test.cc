@@ -5,18 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/random.h"
+#include "base/units.h"
 #include "eval/lidar/board_scenes.h"
 #include "eval/lidar/scan_pairs.h"
 #include "solvers/registry.h"
+#include "support/poses.h"
 
 namespace sextant {
 namespace {
 
+using test::ExpectSamePose;
+
 using Points = std::vector<Eigen::Vector3d>;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kNoise = 5e-5;  ///< Of a room's pose [rad], about: what is below is the same pose.
 
 LidarModel ModelOf(const char* name) {
@@ -34,12 +36,6 @@ ScanPair RoomTwice(const char* model, int room, const ScanPairOptions& options =
 
 Expected<ProjectiveIcpFit> Fit(const ScanPair& pair, const ProjectiveIcpSettings& settings = {}) {
   return FitProjectiveIcp(pair.in_target, pair.in_source, {}, settings);
-}
-
-void ExpectSamePose(const Rigid3d& a, const Rigid3d& b, double tolerance) {
-  const PoseDistance distance = DistanceBetween(a, b);
-  EXPECT_LT(distance.rotation_rad, tolerance);
-  EXPECT_LT(distance.translation_m, tolerance);
 }
 
 struct Errors {

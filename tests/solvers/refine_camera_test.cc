@@ -10,17 +10,13 @@
 
 #include "eval/random_scene.h"
 #include "solvers/registry.h"
+#include "support/make_solver.h"
 
 namespace sextant {
 namespace {
 
+using test::MakeSolver;
 using testing::HasSubstr;
-
-SolverPtr Make(const std::string& spec) {
-  const Expected<SolverPtr> solver = BuiltinSolvers().Make(spec);
-  EXPECT_TRUE(solver) << solver.error().message;
-  return *solver;
-}
 
 // A scene whose problem states other intrinsics than those that made the pixels.
 RandomScene WronglyCalibrated(RandomSceneOptions options, Random& random) {
@@ -51,8 +47,8 @@ TEST_P(RefineCamera, RecoversTheTruthWithinItsSigmas) {
   constexpr int kTrials = 500;
   constexpr int kPairs = 40;
   const CameraCase& c = GetParam();
-  const SolverPtr solver =
-      Make(std::string("refine(epnp,intrinsics=") + c.intrinsics + (c.both ? ",on=both)" : ")"));
+  const SolverPtr solver = MakeSolver(std::string("refine(epnp,intrinsics=") + c.intrinsics +
+                                      (c.both ? ",on=both)" : ")"));
   double nees = 0.0;
   double focal = 0.0;
   double unknowns = 6.0;
@@ -95,8 +91,8 @@ INSTANTIATE_TEST_SUITE_P(Every, RefineCamera,
                                          CameraCase{"focal+center+distortion", false, true}));
 
 TEST(RefineCamera, WrongFocalLengthsSpoilThePoseThatKeepsThem) {
-  const SolverPtr keeps = Make("refine(epnp)");
-  const SolverPtr frees = Make("refine(epnp,intrinsics=focal)");
+  const SolverPtr keeps = MakeSolver("refine(epnp)");
+  const SolverPtr frees = MakeSolver("refine(epnp,intrinsics=focal)");
   double kept = 0.0;
   double freed = 0.0;
   Random random(2);
@@ -119,7 +115,8 @@ TEST(RefineCamera, RobustLossesApply) {
   RandomScene scene = WronglyCalibrated({.pairs = 60, .sigma_px = 0.5}, random);
   for (std::size_t i = 0; i < 6; ++i) scene.problem.pairs_2d3d[10 * i].pixel.x() += 30.0;
   const auto error = [&](const std::string& options) {
-    const auto report = Make("refine(epnp,intrinsics=focal" + options + ")")->Solve(scene.problem);
+    const auto report =
+        MakeSolver("refine(epnp,intrinsics=focal" + options + ")")->Solve(scene.problem);
     EXPECT_TRUE(report) << report.error().message;
     return DistanceBetween(report->cam_from_lidar, scene.cam_from_lidar).translation_m;
   };
@@ -141,7 +138,7 @@ TEST(RefineCamera, RefusesWhatTheDataDoesNotTell) {
       pair.pixel.x() += random.Normal();
       pair.pixel.y() += random.Normal();
     }
-    const auto report = Make("refine(epnp,intrinsics=focal)")->Solve(scene.problem);
+    const auto report = MakeSolver("refine(epnp,intrinsics=focal)")->Solve(scene.problem);
     if (report) continue;
     ++refused;
     EXPECT_EQ(report.error().code, ErrorCode::kDegenerate) << report.error().message;
@@ -150,23 +147,23 @@ TEST(RefineCamera, RefusesWhatTheDataDoesNotTell) {
   EXPECT_GE(refused, 19);
 
   RandomScene plane = MakeRandomScene({.pairs = 20, .sigma_px = 1.0, .planar = true}, random);
-  const auto all = Make("refine(epnp,intrinsics=focal+center)")->Solve(plane.problem);
+  const auto all = MakeSolver("refine(epnp,intrinsics=focal+center)")->Solve(plane.problem);
   ASSERT_FALSE(all);
   EXPECT_EQ(all.error().code, ErrorCode::kDegenerate) << all.error().message;
   // Points in both frames tell where the plane is, and so the camera.
   RandomScene both =
       MakeRandomScene({.pairs = 40, .sigma_m = 0.01, .sigma_px = 1.0, .planar = true}, random);
-  EXPECT_TRUE(Make("refine(kabsch,on=both,intrinsics=focal)")->Solve(both.problem));
+  EXPECT_TRUE(MakeSolver("refine(kabsch,on=both,intrinsics=focal)")->Solve(both.problem));
 }
 
 TEST(RefineCamera, NeedsAsManyResidualsAsUnknowns) {
   Random random(5);
   RandomScene scene = MakeRandomScene({.pairs = 4, .sigma_px = 0.1}, random);
-  const auto report = Make("refine(epnp,intrinsics=focal+center)")->Solve(scene.problem);
+  const auto report = MakeSolver("refine(epnp,intrinsics=focal+center)")->Solve(scene.problem);
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::kTooFewPairs);
   EXPECT_THAT(report.error().message, HasSubstr("10 unknowns"));
-  const auto pinhole = Make("refine(epnp,intrinsics=distortion)")->Solve(scene.problem);
+  const auto pinhole = MakeSolver("refine(epnp,intrinsics=distortion)")->Solve(scene.problem);
   ASSERT_FALSE(pinhole);
   EXPECT_EQ(pinhole.error().code, ErrorCode::kInvalidInput);
 }

@@ -14,16 +14,16 @@ namespace sextant {
 namespace {
 
 using test::MakeScene;
-using test::Scene;
+using test::PairScene;
 
-Vector6d NormalVector(Random& random, double sigma) {
+Vector6d NormalTwist(Random& random, double sigma) {
   Vector6d v;
   for (int i = 0; i < 6; ++i) v[i] = sigma * random.Normal();
   return v;
 }
 
 // Noise along the viewing ray ten times that across it, as of a tag's depth, stated as such.
-void MakeDepthUncertain(Random& random, Scene& scene) {
+void MakeDepthUncertain(Random& random, PairScene& scene) {
   for (Pair3d3d& pair : scene.problem.pairs_3d3d) {
     const Eigen::Vector3d ray = pair.point_in_cam.normalized();
     const double across = 0.003;
@@ -83,12 +83,12 @@ void ExpectDerivativesOf(const Term& term, const Camera* camera, const Rigid3d& 
 
 TEST(TermDerivatives, AreThoseOfTheResidual) {
   Random random(1);
-  Scene scene = MakeScene({.pairs = 10, .sigma_m = 0.01, .sigma_px = 1.0}, random);
+  PairScene scene = MakeScene({.pairs = 10, .sigma_m = 0.01, .sigma_px = 1.0}, random);
   MakeDepthUncertain(random, scene);
   for (const Camera& camera : Cameras()) {
     scene.problem.camera = camera;
     const PairTerms terms = TermsOf(scene.problem, Kinds::kBoth);
-    const Rigid3d pose = Perturb(scene.cam_from_lidar, NormalVector(random, 0.02));
+    const Rigid3d pose = Perturb(scene.cam_from_lidar, NormalTwist(random, 0.02));
     for (const PointTerm& term : terms.points) ExpectDerivativesOf<3>(term, nullptr, pose);
     for (const PixelTerm term : terms.pixels) ExpectDerivativesOf<2>(term, &camera, pose);
   }
@@ -98,7 +98,7 @@ TEST(RefinePose, AgreesWithCeresOnEveryKindAndCamera) {
   Random random(2);
   for (const Camera& camera : Cameras()) {
     for (const Kinds kinds : {Kinds::kPoints, Kinds::kPixels, Kinds::kBoth}) {
-      Scene scene = MakeScene({.pairs = 20, .sigma_px = 1.0}, random);
+      PairScene scene = MakeScene({.pairs = 20, .sigma_px = 1.0}, random);
       scene.problem.camera = camera;
       for (Pair2d3d& pair : scene.problem.pairs_2d3d) {
         pair.pixel = *Project(camera, scene.cam_from_lidar * pair.point_in_lidar);
@@ -106,7 +106,7 @@ TEST(RefinePose, AgreesWithCeresOnEveryKindAndCamera) {
       }
       MakeDepthUncertain(random, scene);
       const PairTerms terms = TermsOf(scene.problem, kinds);
-      const Rigid3d start = Perturb(scene.cam_from_lidar, NormalVector(random, 0.05));
+      const Rigid3d start = Perturb(scene.cam_from_lidar, NormalTwist(random, 0.05));
       const RefinedPose ours = RefinePose(terms.View(), start, {});
       const RefinedPose theirs = RefinePoseWithCeres(terms.View(), start, {}, {});
       ASSERT_EQ(ours.outcome, RefineOutcome::kConverged);
@@ -129,9 +129,9 @@ TEST(RefinePose, EndsNowhereWorseThanItStarted) {
   Random random(3);
   int converged = 0;
   for (int trial = 0; trial < 500; ++trial) {
-    const Scene scene = MakeScene({.pairs = 8, .sigma_m = 0.01, .sigma_px = 1.0}, random);
+    const PairScene scene = MakeScene({.pairs = 8, .sigma_m = 0.01, .sigma_px = 1.0}, random);
     const PairTerms terms = TermsOf(scene.problem, Kinds::kPixels);
-    const Rigid3d start = Perturb(scene.cam_from_lidar, NormalVector(random, 0.3));
+    const Rigid3d start = Perturb(scene.cam_from_lidar, NormalTwist(random, 0.3));
     const RefinedPose there = RefinePose(terms.View(), start, {.max_iterations = 1});
     const RefinedPose refined = RefinePose(terms.View(), start, {});
     if (there.outcome == RefineOutcome::kNotProjected) {
@@ -146,7 +146,7 @@ TEST(RefinePose, EndsNowhereWorseThanItStarted) {
 
 TEST(RefinePose, RefusesAStartThatDoesNotProject) {
   Random random(4);
-  const Scene scene = MakeScene({.pairs = 8}, random);
+  const PairScene scene = MakeScene({.pairs = 8}, random);
   const PairTerms terms = TermsOf(scene.problem, Kinds::kPixels);
   Rigid3d behind = scene.cam_from_lidar;
   behind.translation.z() -= 10.0;
@@ -157,7 +157,7 @@ TEST(RefinePose, RefusesAStartThatDoesNotProject) {
 
 TEST(InvertInformation, DoesNotDependOnTheUnits) {
   Random random(5);
-  const Scene scene = MakeScene({.pairs = 8, .sigma_m = 0.01}, random);
+  const PairScene scene = MakeScene({.pairs = 8, .sigma_m = 0.01}, random);
   const PairTerms terms = TermsOf(scene.problem, Kinds::kPoints);
   const Matrix6d information = RefinePose(terms.View(), scene.cam_from_lidar, {}).information;
   Vector6d units;
@@ -191,7 +191,7 @@ TEST_P(RefinePoseNees, IsThatOfAnHonestCovariance) {
   double freedom = 0.0;
   Random random(6);
   for (int trial = 0; trial < kTrials; ++trial) {
-    Scene scene = MakeScene({.pairs = 20, .sigma_px = 0.5}, random);
+    PairScene scene = MakeScene({.pairs = 20, .sigma_px = 0.5}, random);
     if (kinds != Kinds::kPixels && state_noise) MakeDepthUncertain(random, scene);
     if (!state_noise) {
       for (Pair3d3d& pair : scene.problem.pairs_3d3d) {

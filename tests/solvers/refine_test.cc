@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "solvers/registry.h"
+#include "support/make_solver.h"
 #include "support/outliers.h"
 #include "support/real_data.h"
 
@@ -14,14 +15,9 @@ namespace {
 
 using test::AddOutliers;
 using test::MakeScene;
-using test::Scene;
+using test::MakeSolver;
+using test::PairScene;
 using test::SceneOptions;
-
-SolverPtr Make(const std::string& spec) {
-  const Expected<SolverPtr> solver = BuiltinSolvers().Make(spec);
-  EXPECT_TRUE(solver) << solver.error().message;
-  return *solver;
-}
 
 std::vector<Pair3d3d> ReadPoints(const std::filesystem::path& path) {
   std::ifstream file(path);
@@ -41,12 +37,12 @@ TEST(Refine, AgreesWithKabschOnRealData) {
   SEXTANT_REAL_DATA(path, "dhall/points_head.txt");
   CalibrationProblem problem;
   problem.pairs_3d3d = ReadPoints(path);
-  const Expected<SolveReport> kabsch = Make("kabsch")->Solve(problem);
+  const Expected<SolveReport> kabsch = MakeSolver("kabsch")->Solve(problem);
   ASSERT_TRUE(kabsch);
   for (const char* spec : {"refine(kabsch)", "refine(mean_offset)",
                            "refine(kabsch,loss=barron,"
                            "loss_shape=2)"}) {
-    const Expected<SolveReport> refined = Make(spec)->Solve(problem);
+    const Expected<SolveReport> refined = MakeSolver(spec)->Solve(problem);
     ASSERT_TRUE(refined) << spec << ": " << refined.error().message;
     const PoseDistance distance = DistanceBetween(refined->cam_from_lidar, kabsch->cam_from_lidar);
     EXPECT_LT(distance.rotation_rad, 1e-9) << spec;
@@ -63,10 +59,10 @@ TEST(Refine, AgreesWithKabschOnRealData) {
 TEST(Refine, BothKindsTogetherAreMorePreciseThanEither) {
   const auto rms_error = [](const std::string& on) {
     double sum = 0.0;
-    const SolverPtr solver = Make("refine(kabsch,on=" + on + ")");
+    const SolverPtr solver = MakeSolver("refine(kabsch,on=" + on + ")");
     for (std::uint64_t trial = 0; trial < 200; ++trial) {
       Random random(DeriveSeed(1, "refine both", 0, trial));
-      const Scene scene = MakeScene({.pairs = 10, .sigma_m = 0.01, .sigma_px = 2.0}, random);
+      const PairScene scene = MakeScene({.pairs = 10, .sigma_m = 0.01, .sigma_px = 2.0}, random);
       const Expected<SolveReport> report = solver->Solve(scene.problem);
       EXPECT_TRUE(report) << report.error().message;
       const double error =
@@ -91,10 +87,10 @@ TEST(Refine, LossesResistOutliersThatLeastSquaresFollows) {
   double robust[4] = {};
   for (std::uint64_t trial = 0; trial < 20; ++trial) {
     Random random(DeriveSeed(2, "refine losses", 0, trial));
-    Scene scene = MakeScene(options, random);
+    PairScene scene = MakeScene(options, random);
     AddOutliers(0.1, options, random, scene);
     const auto error = [&](const std::string& spec) {
-      const Expected<SolveReport> report = Make(spec)->Solve(scene.problem);
+      const Expected<SolveReport> report = MakeSolver(spec)->Solve(scene.problem);
       EXPECT_TRUE(report) << spec << ": " << report.error().message;
       return report ? DistanceBetween(report->cam_from_lidar, scene.cam_from_lidar).translation_m
                     : 1.0;
@@ -108,10 +104,10 @@ TEST(Refine, LossesResistOutliersThatLeastSquaresFollows) {
 TEST(Refine, RestsOnTheInliersOfTheInnerSolver) {
   Random random(3);
   const SceneOptions options{.pairs = 30, .sigma_m = 0.01};
-  Scene scene = MakeScene(options, random);
+  PairScene scene = MakeScene(options, random);
   const std::vector<int> inliers = AddOutliers(0.4, options, random, scene);
-  const Expected<SolveReport> inner = Make("ransac(kabsch)")->Solve(scene.problem);
-  const Expected<SolveReport> refined = Make("refine(ransac(kabsch))")->Solve(scene.problem);
+  const Expected<SolveReport> inner = MakeSolver("ransac(kabsch)")->Solve(scene.problem);
+  const Expected<SolveReport> refined = MakeSolver("refine(ransac(kabsch))")->Solve(scene.problem);
   ASSERT_TRUE(inner && refined);
   EXPECT_EQ(refined->inliers, inner->inliers);
   ASSERT_EQ(refined->stages.size(), 2U);
@@ -123,11 +119,11 @@ TEST(Refine, RestsOnTheInliersOfTheInnerSolver) {
 TEST(Refine, LeavesOutTheSameCornersOfBothKinds) {
   Random random(6);
   const SceneOptions options{.pairs = 30, .sigma_m = 0.01, .sigma_px = 1.0};
-  Scene scene = MakeScene(options, random);
+  PairScene scene = MakeScene(options, random);
   const std::vector<int> inliers = AddOutliers(0.4, options, random, scene);
   for (const char* inner : {"ransac(kabsch)", "ransac(p3p)", "refine(ransac(p3p),on=both)"}) {
     const std::string spec = std::string("refine(") + inner + ",on=both)";
-    const Expected<SolveReport> report = Make(spec)->Solve(scene.problem);
+    const Expected<SolveReport> report = MakeSolver(spec)->Solve(scene.problem);
     ASSERT_TRUE(report) << spec << ": " << report.error().message;
     EXPECT_LT(DistanceBetween(report->cam_from_lidar, scene.cam_from_lidar).translation_m, 0.03);
     EXPECT_GT(report->inliers.size() + 3, inliers.size()) << spec;
@@ -139,9 +135,9 @@ TEST(Refine, LeavesOutTheSameCornersOfBothKinds) {
 
 TEST(Refine, SaysWhenItDoesNotConverge) {
   Random random(4);
-  const Scene scene = MakeScene({.pairs = 10, .sigma_m = 0.05}, random);
+  const PairScene scene = MakeScene({.pairs = 10, .sigma_m = 0.05}, random);
   const Expected<SolveReport> report =
-      Make("refine(mean_offset,max_iterations=2)")->Solve(scene.problem);
+      MakeSolver("refine(mean_offset,max_iterations=2)")->Solve(scene.problem);
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::kNoConvergence);
 }
@@ -154,9 +150,9 @@ TEST(Refine, RefusesWhatItCannotWorkOn) {
   EXPECT_EQ(registry.Make("gnc(refine(kabsch,on=both))").error().code, ErrorCode::kInvalidOption);
   EXPECT_EQ(registry.Make("refine(kabsch,loss=hubert)").error().code, ErrorCode::kInvalidOption);
   Random random(5);
-  Scene scene = MakeScene({.pairs = 10}, random);
+  PairScene scene = MakeScene({.pairs = 10}, random);
   scene.problem.pairs_2d3d.clear();
-  const Expected<SolveReport> report = Make("refine(kabsch,on=both)")->Solve(scene.problem);
+  const Expected<SolveReport> report = MakeSolver("refine(kabsch,on=both)")->Solve(scene.problem);
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::kMissingData);
 }

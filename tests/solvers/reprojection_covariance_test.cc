@@ -12,11 +12,11 @@ namespace sextant {
 namespace {
 
 using test::MakeScene;
-using test::Scene;
+using test::PairScene;
 
 TEST(ReprojectionJacobian, IsTheDerivativeByThePose) {
   Random random(1);
-  const Scene scene = MakeScene({.pairs = 20}, random);
+  const PairScene scene = MakeScene({.pairs = 20}, random);
   const Camera& camera = *scene.problem.camera;
   for (const Pair2d3d& pair : scene.problem.pairs_2d3d) {
     const auto analytic = ReprojectionJacobian(camera, scene.cam_from_lidar, pair);
@@ -35,7 +35,7 @@ TEST(ReprojectionJacobian, IsTheDerivativeByThePose) {
 
 TEST(ReprojectionCovariance, TakesUnstatedNoiseFromTheResiduals) {
   Random random(3);
-  Scene scene = MakeScene({.pairs = 500, .sigma_px = 0.7}, random);
+  PairScene scene = MakeScene({.pairs = 500, .sigma_px = 0.7}, random);
   std::vector<Pair2d3d>& pairs = scene.problem.pairs_2d3d;
   const Camera& camera = *scene.problem.camera;
   const auto stated = ReprojectionCovariance(camera, pairs, scene.cam_from_lidar);
@@ -49,7 +49,7 @@ TEST(ReprojectionCovariance, TakesUnstatedNoiseFromTheResiduals) {
 
 TEST(ReprojectionCovariance, IsNoneWhereNothingCanBeSaid) {
   Random random(4);
-  Scene scene = MakeScene({.pairs = 3}, random);
+  PairScene scene = MakeScene({.pairs = 3}, random);
   std::vector<Pair2d3d>& pairs = scene.problem.pairs_2d3d;
   const Camera& camera = *scene.problem.camera;
   const Rigid3d& pose = scene.cam_from_lidar;

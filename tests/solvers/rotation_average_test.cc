@@ -8,18 +8,13 @@
 #include <vector>
 
 #include "base/random.h"
+#include "geometry/random_vectors.h"
 #include "geometry/so3.h"
 
 namespace sextant {
 namespace {
 
 using Rotations = std::vector<Eigen::Quaterniond>;
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int k = 0; k < 3; ++k) v[k] = random.Normal();
-  return v;
-}
 
 // Turns by `spread` rad per axis about a common one, with signs of the quaternions at random.
 Rotations Around(const Eigen::Quaterniond& centre, int count, double spread, Random& random) {

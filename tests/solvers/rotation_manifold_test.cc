@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "geometry/random_vectors.h"
 #include "geometry/so3.h"
 
 namespace sextant {
@@ -11,12 +12,6 @@ namespace {
 
 using Matrix43 = Eigen::Matrix<double, 4, 3, Eigen::RowMajor>;
 using Matrix34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
-
-Eigen::Vector3d NormalVector(Random& random) {
-  Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = random.Normal();
-  return v;
-}
 
 TEST(RotationManifold, PlusTakesFullAnglesAndMinusUndoesIt) {
   const RotationManifold manifold;

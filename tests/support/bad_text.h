@@ -20,6 +20,12 @@ struct BadText {
 
 inline void PrintTo(const BadText& bad, std::ostream* out) { *out << bad.name; }
 
+inline std::string Repeated(const std::string& piece, int times) {
+  std::string text;
+  for (int i = 0; i < times; ++i) text += piece;
+  return text;
+}
+
 /// The error is one short line that names the place.
 template <class T>
 void ExpectRefused(const Expected<T>& read, const BadText& bad) {

@@ -9,11 +9,15 @@
 #include "base/random.h"
 #include "calibrate/observe.h"
 #include "features/camera/board_pose.h"
+#include "geometry/scan_marks.h"
 #include "geometry/so3.h"
 
 namespace sextant::test {
 
 inline constexpr double kFakeSigma_m = 0.005;
+
+inline const Rigid3d kFakeCamFromLidar =
+    Rigid3d{ExpSo3({0.05, -0.1, 0.08}), {0.06, -0.1, -0.15}} * AxesCamFromLidar();
 
 /// A square board of 0.5 m with a tag.
 inline Board SquareBoard(int id) {

@@ -7,7 +7,7 @@
 namespace sextant::test {
 
 std::vector<int> AddOutliers(double share, const SceneOptions& options, Random& random,
-                             Scene& scene) {
+                             PairScene& scene) {
   CalibrationProblem& problem = scene.problem;
   const int count = static_cast<int>(problem.pairs_3d3d.size());
   std::vector<int> outliers(static_cast<std::size_t>(std::lround(share * count)));

@@ -11,7 +11,7 @@ namespace sextant::test {
 /// nothing to do with the LiDAR point: camera points anywhere in the scene's cube, pixels anywhere
 /// in the image. Returns the indices, ascending, of the pairs left true.
 std::vector<int> AddOutliers(double share, const SceneOptions& options, Random& random,
-                             Scene& scene);
+                             PairScene& scene);
 
 /// The scene with only the pairs at `indices`.
 CalibrationProblem Only(const CalibrationProblem& problem, const std::vector<int>& indices);

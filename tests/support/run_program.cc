@@ -24,6 +24,8 @@ std::filesystem::path TestFolder() {
   return folder->path();
 }
 
+std::string TestPath(const std::string& name) { return (TestFolder() / name).string(); }
+
 void WriteText(const std::filesystem::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }

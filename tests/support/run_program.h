@@ -19,6 +19,9 @@ ProgramRun RunProgram(const std::string& program, const std::string& arguments);
 /// A folder of the running test's own; the next test gets another.
 std::filesystem::path TestFolder();
 
+/// Of a file there.
+std::string TestPath(const std::string& name);
+
 void WriteText(const std::filesystem::path& path, const std::string& text);
 std::string ReadText(const std::filesystem::path& path);
 

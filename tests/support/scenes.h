@@ -8,16 +8,16 @@
 
 namespace sextant::test {
 
-using Scene = RandomScene;
+using PairScene = RandomScene;
 using SceneOptions = RandomSceneOptions;
 
-inline Scene MakeScene(const SceneOptions& options, Random& random) {
+inline PairScene MakeScene(const SceneOptions& options, Random& random) {
   return MakeRandomScene(options, random);
 }
 
 /// The same kind of scene of raw board views, four pairs each: exact where no noise is asked for,
 /// else with the noise that SimulateViews states.
-inline Scene MakeBoardScene(const SceneOptions& options, Random& random) {
+inline PairScene MakeBoardScene(const SceneOptions& options, Random& random) {
   const bool exact = options.sigma_m == 0.0 && options.sigma_px == 0.0;
   const int views = (options.pairs + kCornersPerBoard - 1) / kCornersPerBoard;
   SimulatedViews session =

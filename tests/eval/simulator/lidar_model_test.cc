@@ -7,13 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
+
+#include "base/units.h"
 
 namespace sextant {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 LidarModel Find(const char* name) {
   const Expected<LidarModel> model = FindLidarModel(name);
@@ -58,8 +57,10 @@ TEST(LidarModel, FansAreThoseOfTheDataSheets) {
     const LidarModel model = Find(sheet.name);
     ASSERT_EQ(model.rings.size(), sheet.rings) << sheet.name;
     EXPECT_EQ(ColumnCount(model), sheet.columns) << sheet.name;
-    EXPECT_NEAR(model.rings.front().elevation_rad, sheet.lowest_deg * kDegree, 1e-4) << sheet.name;
-    EXPECT_NEAR(model.rings.back().elevation_rad, sheet.highest_deg * kDegree, 1e-4) << sheet.name;
+    EXPECT_NEAR(model.rings.front().elevation_rad, sheet.lowest_deg * kRadPerDeg, 1e-4)
+        << sheet.name;
+    EXPECT_NEAR(model.rings.back().elevation_rad, sheet.highest_deg * kRadPerDeg, 1e-4)
+        << sheet.name;
     for (const LidarRing& ring : model.rings) {
       EXPECT_LT(ring.firing_time_s, model.column_period_s) << sheet.name;
     }
@@ -69,20 +70,20 @@ TEST(LidarModel, FansAreThoseOfTheDataSheets) {
 // Rows of the tables in the VLP-16's, the HDL-32E's and the Pandar40P's manuals.
 TEST(LidarModel, SingleLasersAreWhereTheManualsPutThem) {
   const LidarModel vlp = Find("vlp16");
-  EXPECT_NEAR(vlp.rings[8].elevation_rad, 1.0 * kDegree, 1e-12);  // Laser 1, fired second.
+  EXPECT_NEAR(vlp.rings[8].elevation_rad, 1.0 * kRadPerDeg, 1e-12);  // Laser 1, fired second.
   EXPECT_NEAR(vlp.rings[8].firing_time_s, 2.304e-6, 1e-12);
   EXPECT_NEAR(vlp.rings[0].origin_height_m, 0.0112, 5e-5);
   EXPECT_NEAR(vlp.rings[15].origin_height_m, -0.0112, 5e-5);
   EXPECT_NEAR(vlp.rings[5].origin_height_m, 0.0037, 5e-5);
   const LidarModel hdl = Find("hdl32e");
-  EXPECT_NEAR(hdl.rings[16].elevation_rad, -9.33 * kDegree, 1e-4);  // Laser 1, fired second.
+  EXPECT_NEAR(hdl.rings[16].elevation_rad, -9.33 * kRadPerDeg, 1e-4);  // Laser 1, fired second.
   EXPECT_NEAR(hdl.rings[16].firing_time_s, 1.152e-6, 1e-12);
   const LidarModel pandar = Find("pandar40p");
   EXPECT_NEAR(pandar.rings[40 - 12].elevation_rad, 0.0, 1e-12);  // Channel 12.
-  EXPECT_NEAR(pandar.rings[40 - 12].azimuth_offset_rad, 1.042 * kDegree, 1e-12);
-  EXPECT_NEAR(pandar.rings[40 - 7].azimuth_offset_rad, -3.125 * kDegree, 1e-12);
-  EXPECT_NEAR(pandar.rings[40 - 8].azimuth_offset_rad, 5.208 * kDegree, 1e-12);
-  EXPECT_NEAR(pandar.rings[40 - 6].elevation_rad, 2.0 * kDegree, 1e-12);
+  EXPECT_NEAR(pandar.rings[40 - 12].azimuth_offset_rad, 1.042 * kRadPerDeg, 1e-12);
+  EXPECT_NEAR(pandar.rings[40 - 7].azimuth_offset_rad, -3.125 * kRadPerDeg, 1e-12);
+  EXPECT_NEAR(pandar.rings[40 - 8].azimuth_offset_rad, 5.208 * kRadPerDeg, 1e-12);
+  EXPECT_NEAR(pandar.rings[40 - 6].elevation_rad, 2.0 * kRadPerDeg, 1e-12);
 }
 
 TEST(LidarModel, NoTwoLasersOfATurningHeadOfVelodyneFireTogetherExceptInTwoBlocks) {

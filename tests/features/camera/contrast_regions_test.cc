@@ -10,25 +10,18 @@
 #include "base/random.h"
 #include "features/camera/tag_detector.h"
 #include "features/camera/tag_pattern.h"
+#include "support/grey_noise.h"
 
 namespace sextant {
 namespace {
+
+using test::AddNoise;
 
 constexpr int kWidth = 1280;
 constexpr int kHeight = 720;
 constexpr int kWall_grey = 150;
 
 cv::Mat Wall() { return {kHeight, kWidth, CV_8U, cv::Scalar(kWall_grey)}; }
-
-void AddNoise(cv::Mat& image, double sigma_grey, std::uint64_t seed) {
-  Random random(seed);
-  for (int y = 0; y < image.rows; ++y) {
-    for (int x = 0; x < image.cols; ++x) {
-      auto& grey = image.at<std::uint8_t>(y, x);
-      grey = cv::saturate_cast<std::uint8_t>(grey + sigma_grey * random.Normal());
-    }
-  }
-}
 
 // A printed tag with a white margin of one cell, its upper left corner at `at`.
 void Paste(const std::string& family, int id, int cell_px, const cv::Point& at, cv::Mat& image,

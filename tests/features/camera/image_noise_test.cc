@@ -6,20 +6,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/random.h"
+#include "support/grey_noise.h"
 
 namespace sextant {
 namespace {
 
-// Noise of `sigma_grey` over what is in the image.
-void AddNoise(cv::Mat& image, double sigma_grey, std::uint64_t seed) {
-  Random random(seed);
-  for (int y = 0; y < image.rows; ++y) {
-    for (int x = 0; x < image.cols; ++x) {
-      auto& grey = image.at<std::uint8_t>(y, x);
-      grey = cv::saturate_cast<std::uint8_t>(grey + sigma_grey * random.Normal());
-    }
-  }
-}
+using test::AddNoise;
 
 // A slope of light, and squares of a print in half of the image.
 cv::Mat Scene() {

@@ -18,15 +18,15 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // One board straight ahead, so that the edge of the field of view can be put through it.
-struct Seen {
+struct SeenBoard {
   Scene scene;
   std::vector<Board> boards;
   PointCloud cloud;
 };
 
-Seen OneBoard(const std::vector<SceneCylinder>& obstacles = {}) {
+SeenBoard OneBoard(const std::vector<SceneCylinder>& obstacles = {}) {
   Random random(1);
-  Seen seen;
+  SeenBoard seen;
   seen.scene = TwoBoardsInRoom({}, random);
   seen.scene.boards = {Hang(seen.scene.boards[0].board, {.turn_deg = 40.0, .yaw_deg = 10.0})};
   seen.scene.cylinders = obstacles;
@@ -43,7 +43,7 @@ BoardSearch Search(const PointCloud& cloud, const std::vector<Board>& boards) {
   return *FindBoards(*rings, boards, {});
 }
 
-double WorstCorner(const Seen& seen, const BoardSearch& search) {
+double WorstCorner(const SeenBoard& seen, const BoardSearch& search) {
   if (search.found.empty()) return std::numeric_limits<double>::infinity();
   const Expected<LidarCorners> corners =
       ExtractCorners("rectangle", search.found[0], seen.boards[0]);
@@ -65,7 +65,7 @@ void Keep(PointCloud& cloud, const std::vector<std::size_t>& places) {
 }
 
 TEST(BadScans, OrderOfThePointsDoesNotMatter) {
-  const Seen seen = OneBoard();
+  const SeenBoard seen = OneBoard();
   const BoardSearch swept = Search(seen.cloud, seen.boards);
   for (const bool with_rings : {true, false}) {
     PointCloud shuffled = seen.cloud;
@@ -84,7 +84,7 @@ TEST(BadScans, OrderOfThePointsDoesNotMatter) {
 }
 
 TEST(BadScans, ReturnsThatAreNoneAreLeftOut) {
-  Seen seen = OneBoard();
+  SeenBoard seen = OneBoard();
   const double whole = WorstCorner(seen, Search(seen.cloud, seen.boards));
   const double infinity = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector3d& bad :
@@ -99,7 +99,7 @@ TEST(BadScans, ReturnsThatAreNoneAreLeftOut) {
 }
 
 TEST(BadScans, OneRingHoldsNoBoard) {
-  Seen seen = OneBoard();
+  SeenBoard seen = OneBoard();
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < seen.cloud.points.size(); ++i) {
     if (seen.cloud.ring[i] == 30) places.push_back(i);
@@ -113,7 +113,7 @@ TEST(BadScans, OneRingHoldsNoBoard) {
 }
 
 TEST(BadScans, FewPointsHoldNoBoard) {
-  const Seen seen = OneBoard();
+  const SeenBoard seen = OneBoard();
   for (const std::size_t count : {1U, 2U, 7U, 40U}) {
     PointCloud few;
     few.points.assign(seen.cloud.points.begin(),
@@ -126,14 +126,14 @@ TEST(BadScans, FewPointsHoldNoBoard) {
 
 // A pole 0.6 m before the board hides a stripe of it and with it some of its edges.
 TEST(BadScans, BoardBehindAPoleIsFound) {
-  const Seen seen = OneBoard(
+  const SeenBoard seen = OneBoard(
       {{.name = "pole", .base_in_world = {1.2, 0.08, -1.0}, .radius_m = 0.02, .height_m = 2.5}});
   EXPECT_LT(WorstCorner(seen, Search(seen.cloud, seen.boards)), 0.015);
 }
 
 // Behind a person little of it is left.
 TEST(BadScans, BoardBehindAPersonIsNot) {
-  const Seen seen = OneBoard(
+  const SeenBoard seen = OneBoard(
       {{.name = "person", .base_in_world = {1.2, 0.0, -1.0}, .radius_m = 0.25, .height_m = 1.75}});
   EXPECT_TRUE(Search(seen.cloud, seen.boards).found.empty());
 }
@@ -142,7 +142,7 @@ TEST(BadScans, BoardBehindAPersonIsNot) {
 // was got lies where it should; a board that is cut in half is refused.
 TEST(BadScans, BoardCutByTheFieldOfViewIsPlacedByTheRest) {
   for (const double cut_m : {-0.25, -0.2, 0.0}) {
-    Seen seen = OneBoard();
+    SeenBoard seen = OneBoard();
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < seen.cloud.points.size(); ++i) {
       const Eigen::Vector3d& p = seen.cloud.points[i];
@@ -161,7 +161,7 @@ TEST(BadScans, BoardCutByTheFieldOfViewIsPlacedByTheRest) {
 
 // A mirror on the wall shows the board again behind it, of the right size.
 TEST(BadScans, TheReflectionOfABoardIsNotTakenForIt) {
-  Seen seen = OneBoard();
+  SeenBoard seen = OneBoard();
   const double mirror_x = 5.0;
   const Eigen::Vector3d center = seen.scene.boards[0].world_from_board.translation;
   const std::size_t count = seen.cloud.points.size();
@@ -178,7 +178,7 @@ TEST(BadScans, TheReflectionOfABoardIsNotTakenForIt) {
 
 // Six lines of a rosette, numbered, are not six rings.
 TEST(BadScans, NumbersThatAreNoRingsAreNotTakenForThem) {
-  Seen seen = OneBoard();
+  SeenBoard seen = OneBoard();
   Expected<SimulatedScan> scan = SimulateScan(seen.scene, *FindLidarModel("livox"), {.seed = 1});
   ASSERT_TRUE(scan);
   for (std::size_t i = 0; i < scan->cloud.points.size(); ++i) {

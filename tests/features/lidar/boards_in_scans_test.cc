@@ -12,6 +12,7 @@
 #include "eval/simulator/lidar_model.h"
 #include "eval/simulator/scan.h"
 #include "features/lidar/corner_extractor.h"
+#include "support/median.h"
 
 namespace sextant::test {
 namespace {
@@ -20,11 +21,6 @@ struct Errors {
   std::vector<double> distances_m;
   std::vector<double> nees;  // Of each board, per degree of freedom.
 };
-
-double Median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
 
 double Mean(const std::vector<double>& values) {
   double sum = 0.0;

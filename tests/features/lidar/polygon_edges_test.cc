@@ -16,6 +16,7 @@
 #include "io/pcd_file.h"
 #include "support/acfr_boards.h"
 #include "support/drawn_board.h"
+#include "support/median.h"
 #include "support/real_data.h"
 
 namespace sextant::test {
@@ -24,11 +25,6 @@ namespace {
 using testing::HasSubstr;
 
 constexpr double kMargin_m = 0.05;
-
-double Median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
 
 ScanMarks Projection() {
   return {.camera = AssumedCamera(1280, 720), .cam_from_lidar = AxesCamFromLidar()};

@@ -9,15 +9,11 @@
 #include "features/lidar/corner_extractor.h"
 #include "io/acfr_poses.h"
 #include "io/pcd_file.h"
+#include "support/median.h"
 #include "support/real_data.h"
 
 namespace sextant::test {
 namespace {
-
-double Median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
 
 // Each corner to the nearest stored one: the file's order is not ours, and corners of one board are
 // ten times further apart than anything allowed here.

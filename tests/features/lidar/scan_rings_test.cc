@@ -5,7 +5,8 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "base/units.h"
 
 namespace sextant::test {
 namespace {
@@ -44,7 +45,6 @@ TEST(ScanRings, OnePointIsOneRing) {
 
 // Numbers that count downwards, with gaps, in shuffled order.
 TEST(ScanRings, SortsByElevationAndAzimuth) {
-  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
   PointCloud cloud;
   for (int azimuth = 0; azimuth < 360; azimuth += 3) {
     for (int ring = 0; ring < 5; ++ring) {

@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, SeedTest,
                                          "rosbag2/zstd"));
 
 // The first error of opening and of decoding all; empty where there is none.
-std::string ReadAll(const Expected<std::unique_ptr<Bag>>& bag) {
+std::string FirstError(const Expected<std::unique_ptr<Bag>>& bag) {
   if (!bag) return bag.error().message;
   std::vector<std::size_t> all((*bag)->topics().size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -86,10 +86,10 @@ TEST(Ros2, EveryDamageIsReadOrRefusedInOneLine) {
       if (random.Below(4) == 0) bytes.resize(random.Below(bytes.size()));
       std::string message;
       if (std::string(name).starts_with("mcap")) {
-        message = ReadAll(OpenMcap(bytes, "f", nullptr));
+        message = FirstError(OpenMcap(bytes, "f", nullptr));
       } else {
         test::WriteText(damaged, bytes);
-        message = ReadAll(OpenRosbag2Sqlite(damaged));
+        message = FirstError(OpenRosbag2Sqlite(damaged));
       }
       refused += message.empty() ? 0 : 1;
       EXPECT_EQ(message.find('\n'), std::string::npos) << message;

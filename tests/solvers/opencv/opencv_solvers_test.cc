@@ -26,7 +26,7 @@ TEST_P(OpenCvSolver, RecoversExactPosesThroughALens) {
   const SolverPtr solver = MakeSolver(GetParam());
   Random random(1);
   for (int trial = 0; trial < 20; ++trial) {
-    test::Scene scene = test::MakeScene({.pairs = 12, .planar = planar()}, random);
+    test::PairScene scene = test::MakeScene({.pairs = 12, .planar = planar()}, random);
     Camera& camera = *scene.problem.camera;
     camera.model = CameraModel::kBrownConrady;
     camera.distortion = {-0.1, 0.02, 1e-3, -1e-3, 0.0, 0.0, 0.0, 0.0};
@@ -45,7 +45,8 @@ TEST_P(OpenCvSolver, RecoversExactPosesThroughALens) {
 TEST_P(OpenCvSolver, GivesTheSameBitsTwice) {
   const SolverPtr solver = MakeSolver(GetParam());
   Random random(2);
-  test::Scene scene = test::MakeScene({.pairs = 40, .sigma_px = 1.0, .planar = planar()}, random);
+  test::PairScene scene =
+      test::MakeScene({.pairs = 40, .sigma_px = 1.0, .planar = planar()}, random);
   const std::size_t outliers = solver->spec().name.ends_with("iterative") ? 0 : 10;
   for (std::size_t i = 0; i < outliers; ++i) scene.problem.pairs_2d3d[i].pixel.x() += 50.0;
   const Expected<SolveReport> first = solver->Solve(scene.problem);
@@ -59,7 +60,7 @@ TEST_P(OpenCvSolver, GivesTheSameBitsTwice) {
 TEST_P(OpenCvSolver, RefusesPointsOnALine) {
   const SolverPtr solver = MakeSolver(GetParam());
   Random random(3);
-  test::Scene scene = test::MakeScene({.pairs = 8}, random);
+  test::PairScene scene = test::MakeScene({.pairs = 8}, random);
   for (std::size_t i = 2; i < 8; ++i) {
     std::vector<Pair2d3d>& pairs = scene.problem.pairs_2d3d;
     const Eigen::Vector3d direction = pairs[1].point_in_lidar - pairs[0].point_in_lidar;
@@ -82,7 +83,7 @@ TEST(OpenCvRansac, LeavesOutliersOut) {
     const SolverPtr solver = MakeSolver(spec);
     ASSERT_TRUE(solver);
     Random random(4);
-    test::Scene scene = test::MakeScene({.pairs = 40, .sigma_px = 1.0}, random);
+    test::PairScene scene = test::MakeScene({.pairs = 40, .sigma_px = 1.0}, random);
     for (std::size_t i = 0; i < 10; ++i) scene.problem.pairs_2d3d[i].pixel.y() -= 100.0;
     const Expected<SolveReport> report = solver->Solve(scene.problem);
     ASSERT_TRUE(report) << report.error().message;
