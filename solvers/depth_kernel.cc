@@ -8,27 +8,33 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/lanes.h"
 #include "solvers/max_trace_rotation.h"
 
 namespace sextant {
 
 template <int kAxes>
 DepthKernel<kAxes>::DepthKernel(const Correspondences& data, const Rigid3d* near)
-    : data_(data),
-      near_(near),
-      deviation_(data.frame.deviation.head<kAxes>()),
-      mean_(data.moments.mean) {
+    : data_(data), near_(near), deviation_(data.frame.deviation.head<kAxes>()) {
+  SetMoments(data.moments);
+  const Eigen::SelfAdjointEigenSolver<Square> eigen(reduced_);
+  eigenvectors_ = eigen.eigenvectors();
+  eigenvalues_ = eigen.eigenvalues();
+}
+
+template <int kAxes>
+void DepthKernel<kAxes>::SetMoments(const ImageMoments& moments) {
+  mean_ = moments.mean;
   Depths whiten;
   whiten << 1.0, deviation_.cwiseInverse();
   const auto whitened = [&whiten](const Eigen::Matrix4d& moment) -> Square {
     return whiten.asDiagonal() * moment.topLeftCorner<kDepths, kDepths>() * whiten.asDiagonal();
   };
-  about_u_ = whitened(data.moments.u);
-  about_v_ = whitened(data.moments.v);
+  about_u_ = whitened(moments.u);
+  about_v_ = whitened(moments.v);
   x_by_depth_ = about_u_ + mean_.x() * Square::Identity();
   y_by_depth_ = about_v_ + mean_.y() * Square::Identity();
-  const Square reduced = whitened(data.moments.w) - about_u_ * about_u_ - about_v_ * about_v_;
-  eigenvectors_ = Eigen::SelfAdjointEigenSolver<Square>(reduced).eigenvectors();
+  reduced_ = whitened(moments.w) - about_u_ * about_u_ - about_v_ * about_v_;
 }
 
 template <int kAxes>
@@ -83,13 +89,13 @@ auto DepthKernel<kAxes>::FromTwoEigenvectors() const -> Depths {
   return z(0) < 0.0 ? Depths(-z) : z;
 }
 
-/// One step on d_j . d_k = delta_jk deviation_j^2; whether it was worth another.
 template <int kAxes>
-bool DepthKernel<kAxes>::GaussNewtonStep(Depths& z) const {
+SEXTANT_INLINE void DepthKernel<kAxes>::SumLengthEquations(const Depths& z, Depths& gradient,
+                                                           Square& normal) const {
   const Depths x = x_by_depth_ * z;
   const Depths y = y_by_depth_ * z;
-  Square normal = Square::Zero();
-  Depths right = Depths::Zero();
+  normal.setZero();
+  gradient.setZero();
   for (int j = 1; j < kDepths; ++j) {
     for (int k = j; k < kDepths; ++k) {
       const double wanted = j == k ? deviation_(j - 1) * deviation_(j - 1) : 0.0;
@@ -99,9 +105,17 @@ bool DepthKernel<kAxes>::GaussNewtonStep(Depths& z) const {
       row(j) += z(k);
       row(k) += z(j);
       normal.noalias() += row * row.transpose();
-      right += residual * row;
+      gradient += residual * row;
     }
   }
+}
+
+/// One step on d_j . d_k = delta_jk deviation_j^2; whether it was worth another.
+template <int kAxes>
+bool DepthKernel<kAxes>::GaussNewtonStep(Depths& z) const {
+  Square normal;
+  Depths right;
+  SumLengthEquations(z, right, normal);
   normal.diagonal() *= 1.0 + 1e-12;
   const Eigen::LLT<Square> factor(normal);
   if (factor.info() != Eigen::Success) return false;

@@ -46,15 +46,18 @@ class DepthKernel {
   /// is a proper one.
   double MirroredSumSquares() const;
 
- private:
+ protected:
   using Square = Eigen::Matrix<double, kDepths, kDepths>;
   using Columns = Eigen::Matrix<double, 3, kDepths>;
 
+  void SetMoments(const ImageMoments& moments);
   Depths DepthsOf(const Rigid3d& cam_from_lidar) const;
   Columns InCamera(const Depths& z) const;
   Depths Scaled(const Depths& z) const;
   Depths FromTwoEigenvectors() const;
   Depths Refined(Depths z) const;
+  /// The length equations at z: sum of r J over them, and of J J^T.
+  void SumLengthEquations(const Depths& z, Depths& gradient, Square& normal) const;
   bool GaussNewtonStep(Depths& z) const;
   std::optional<EpnpCandidate> PoseOf(const Depths& z, bool mirrored) const;
   ImageFit Judge(const EpnpCandidate& candidate) const;
@@ -70,7 +73,9 @@ class DepthKernel {
   // x = x_by_depth_ z and y = y_by_depth_ z, of the centroid and of each d_k.
   Square x_by_depth_;
   Square y_by_depth_;
+  Square reduced_;
   Square eigenvectors_;
+  Depths eigenvalues_;
   static constexpr std::size_t kMaxStarts = 5 + 2 * kMaxP3pPoses;
   std::array<Depths, kMaxStarts> considered_;
   int considered_count_ = 0;

@@ -23,34 +23,27 @@ constexpr double kMinThickness = 1e-5;
 // Two null directions closer than this cannot be told apart.
 constexpr double kMinRelativeGap = 1e-13;
 
-Expected<Rigid3d> PoseOf(const Correspondences& data) {
-  const PointCloudFrame& frame = data.frame;
-  const double thickness = frame.deviation.z() / frame.deviation.x();
-  if (!(thickness > kMinThickness)) {
-    return MakeError(ErrorCode::kDegenerate,
-                     fmt::format("the points lie on one plane (deviation from it {:.1g} of their "
-                                 "extent), which leaves the linear projection undetermined; use "
-                                 "ippe, epnp or sqpnp, or points off the plane",
-                                 thickness));
+/// The moments in coordinates (1, p) of unit covariance, and the problem that the depths solve.
+struct UnitMoments {
+  UnitMoments(const PointCloudFrame& frame, const ImageMoments& moments) {
+    Eigen::Vector4d to_unit;
+    to_unit << 1.0, frame.deviation.cwiseInverse();
+    u = to_unit.asDiagonal() * moments.u * to_unit.asDiagonal();
+    v = to_unit.asDiagonal() * moments.v * to_unit.asDiagonal();
+    reduced = to_unit.asDiagonal() * moments.w * to_unit.asDiagonal();
+    reduced -= u * u + v * v;
   }
-  // To coordinates (1, p) of unit covariance.
-  Eigen::Vector4d to_unit;
-  to_unit << 1.0, frame.deviation.cwiseInverse();
-  const Eigen::Matrix4d u = to_unit.asDiagonal() * data.moments.u * to_unit.asDiagonal();
-  const Eigen::Matrix4d v = to_unit.asDiagonal() * data.moments.v * to_unit.asDiagonal();
-  const Eigen::Matrix4d w = to_unit.asDiagonal() * data.moments.w * to_unit.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(w - u * u - v * v);
-  const Eigen::Vector4d& lambda = eigen.eigenvalues();
-  if (!(lambda(1) - lambda(0) > kMinRelativeGap * lambda(3))) {
-    return MakeError(ErrorCode::kDegenerate,
-                     "the points and the camera lie on a surface that leaves the linear "
-                     "projection undetermined; add points, or use epnp or sqpnp");
-  }
-  Eigen::Vector4d depth = eigen.eigenvectors().col(0);
+
+  Eigen::Matrix4d u, v, reduced;
+};
+
+/// The nearest pose to the projection with these depths of (1, p).
+Expected<Rigid3d> PoseOf(const PointCloudFrame& frame, const ImageMoments& moments,
+                         const UnitMoments& unit, Eigen::Vector4d depth) {
   if (depth(0) < 0.0) depth = -depth;
   Eigen::Matrix<double, 3, 4> model;
-  model.row(0) = u * depth + data.moments.mean.x() * depth;
-  model.row(1) = v * depth + data.moments.mean.y() * depth;
+  model.row(0) = unit.u * depth + moments.mean.x() * depth;
+  model.row(1) = unit.v * depth + moments.mean.y() * depth;
   model.row(2) = depth;
   const Eigen::Matrix3d linear =
       model.rightCols<3>() * frame.deviation.cwiseInverse().asDiagonal() * frame.axes.transpose();
@@ -65,6 +58,49 @@ Expected<Rigid3d> PoseOf(const Correspondences& data) {
   }
   const double scale = nearest->trace / 3.0;
   return Rigid3d{nearest->rotation, model.col(0) / scale - nearest->rotation * frame.centroid};
+}
+
+using DepthSolver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>;
+
+Expected<Rigid3d> PoseOf(const Correspondences& data) {
+  const PointCloudFrame& frame = data.frame;
+  const double thickness = frame.deviation.z() / frame.deviation.x();
+  if (!(thickness > kMinThickness)) {
+    return MakeError(ErrorCode::kDegenerate,
+                     fmt::format("the points lie on one plane (deviation from it {:.1g} of their "
+                                 "extent), which leaves the linear projection undetermined; use "
+                                 "ippe, epnp or sqpnp, or points off the plane",
+                                 thickness));
+  }
+  const UnitMoments unit(frame, data.moments);
+  const DepthSolver eigen(unit.reduced);
+  const Eigen::Vector4d& lambda = eigen.eigenvalues();
+  if (!(lambda(1) - lambda(0) > kMinRelativeGap * lambda(3))) {
+    return MakeError(ErrorCode::kDegenerate,
+                     "the points and the camera lie on a surface that leaves the linear "
+                     "projection undetermined; add points, or use epnp or sqpnp");
+  }
+  return PoseOf(frame, data.moments, unit, eigen.eigenvectors().col(0));
+}
+
+/// PoseOf with the depths' first perturbation, reduced z = lambda z, in place of another
+/// decomposition.
+PoseOfMoments DltOfMoments(const Correspondences& data, const Rigid3d&) {
+  const UnitMoments unit(data.frame, data.moments);
+  const DepthSolver eigen(unit.reduced);
+  return [&data, unit, eigen](const ImageMoments& moments) -> std::optional<Rigid3d> {
+    const UnitMoments displaced(data.frame, moments);
+    const Eigen::Matrix4d& vectors = eigen.eigenvectors();
+    Eigen::Vector4d depth = vectors.col(0);
+    const Eigen::Vector4d moved =
+        vectors.transpose() * ((displaced.reduced - unit.reduced) * depth);
+    for (int k = 1; k < 4; ++k) {
+      depth += moved(k) / (eigen.eigenvalues()(0) - eigen.eigenvalues()(k)) * vectors.col(k);
+    }
+    const Expected<Rigid3d> pose = PoseOf(data.frame, moments, displaced, depth);
+    if (!pose) return std::nullopt;
+    return *pose;
+  };
 }
 
 }  // namespace
@@ -92,11 +128,7 @@ SolverEntry DltEntry() {
         };
         return std::make_shared<PnpSolver>(
             SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = kMinPoints}}, kernel,
-            [](const Correspondences& data, const Rigid3d&) -> std::optional<Rigid3d> {
-              const Expected<Rigid3d> pose = PoseOf(data);
-              if (!pose) return std::nullopt;
-              return *pose;
-            });
+            DltOfMoments);
       },
   };
 }

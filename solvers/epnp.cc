@@ -6,6 +6,7 @@
 
 #include "solvers/correspondences.h"
 #include "solvers/depth_kernel.h"
+#include "solvers/nearest_depths.h"
 
 namespace sextant {
 namespace {
@@ -85,11 +86,22 @@ Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
   return fit;
 }
 
-std::optional<Rigid3d> EpnpNear(const Correspondences& data, const Rigid3d& near) {
-  EpnpCandidate best;
-  Search(data, &near, best);
-  if (best.fit.behind == std::numeric_limits<std::size_t>::max()) return std::nullopt;
-  return PoseOf(data, best);
+PoseOfMoments EpnpOfMoments(const Correspondences& data, const Rigid3d& near) {
+  std::optional<NearestDepths<3>> of_space;
+  std::optional<NearestDepths<2>> of_plane;
+  if (!data.frame.IsPlanar()) of_space.emplace(data, near);
+  if (data.frame.deviation.z() < kThin * data.frame.deviation.x()) of_plane.emplace(data, near);
+  const bool is_plane =
+      of_plane && (!of_space || of_plane->candidate().IsBetterThan(of_space->candidate()));
+  const auto pose_by = [&data](const auto& depths) -> PoseOfMoments {
+    if (!depths.found()) return {};
+    return [&data, depths](const ImageMoments& moments) -> std::optional<Rigid3d> {
+      const std::optional<EpnpCandidate> candidate = depths.At(moments);
+      if (!candidate) return std::nullopt;
+      return PoseOf(data, *candidate);
+    };
+  };
+  return is_plane ? pose_by(*of_plane) : pose_by(*of_space);
 }
 
 }  // namespace sextant

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "geometry/rigid3d.h"
 #include "solvers/correspondences.h"
+#include "solvers/moment_slopes.h"
 
 namespace sextant {
 
@@ -42,9 +43,8 @@ Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
                             std::span<const Eigen::Vector3d> points_in_lidar,
                             const PnpChoice& choice = {});
 
-/// The candidate nearest to `near` for data whose moments may have been displaced: SolveEpnp with
-/// that choice, but for the last step that only exact data takes. Looks at no image point where
-/// there are more than four different points. None where no candidate is found.
-std::optional<Rigid3d> EpnpNear(const Correspondences& data, const Rigid3d& near);
+/// The answer `near` of SolveEpnp as a function of the moments: the candidate that it was, its
+/// depths to first order and their pose in full. Empty where no candidate is found.
+PoseOfMoments EpnpOfMoments(const Correspondences& data, const Rigid3d& near);
 
 }  // namespace sextant

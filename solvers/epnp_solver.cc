@@ -21,7 +21,7 @@ SolverEntry EpnpEntry() {
               if (!fit) return tl::unexpected<Error>(fit.error());
               return PnpPoses{.poses = {fit->cam_from_lidar}, .count = 1};
             },
-            EpnpNear);
+            EpnpOfMoments);
       },
   };
 }

@@ -18,9 +18,6 @@ namespace {
 // Rays more than 84 deg off the view's axis would dwarf the others on its image plane.
 constexpr double kMinRayZ = 0.1;
 
-// With more than so many points the 30 moments are fewer numbers than their image coordinates.
-constexpr std::size_t kFewPoints = 15;
-
 /// Unit rays onto the image plane of a view that sees them all; how the camera is turned to it.
 Expected<Eigen::Quaterniond> ProjectRays(std::span<const Eigen::Vector3d> rays,
                                          std::span<Eigen::Vector2d> image_points) {
@@ -79,16 +76,18 @@ Rigid3d Turned(const Eigen::Quaterniond& turn, const Rigid3d& pose) {
 
 double FocalLength_px(const Camera& camera) { return 0.5 * (camera.fx_px + camera.fy_px); }
 
-/// The covariance through the moments; few points are as fast displaced one by one, and of four
-/// different ones the kernel also looks at the pixels.
-std::optional<Matrix6d> ThroughChain(const PoseOfMoments& of_moments, const View& view,
+/// The covariance through the moments; none of four different points, of which the kernel also
+/// looks at the pixels.
+std::optional<Matrix6d> ThroughChain(const MomentsKernel& of_moments, const View& view,
                                      std::span<const Eigen::Matrix2d> image_covariances,
                                      const Rigid3d& view_from_lidar) {
   constexpr std::size_t kMinDifferent = 5;
   const Expected<Correspondences> data =
       PrepareCorrespondences(view.image_points, view.points, kMinDifferent);
   if (!data) return std::nullopt;
-  return ChainedMomentCovariance(*data, image_covariances, of_moments, view_from_lidar);
+  const PoseOfMoments estimate = of_moments(*data, view_from_lidar);
+  if (!estimate) return std::nullopt;
+  return ChainedMomentCovariance(*data, image_covariances, estimate);
 }
 
 /// The covariance through the kernel, whose answer `view_from_lidar` is.
@@ -113,7 +112,7 @@ std::optional<Matrix6d> ThroughMoments(const PnpKernel& kernel, double focal_len
 
 /// In the camera's frame; the view that the kernel worked in is taken as given.
 std::optional<Matrix6d> KernelCovariance(const PnpKernel& kernel, PnpCovariance kind,
-                                         const PoseOfMoments& of_moments, const Camera& camera,
+                                         const MomentsKernel& of_moments, const Camera& camera,
                                          std::span<const Pair2d3d> pairs, const View& view,
                                          const Rigid3d& cam_from_lidar) {
   const auto unstated = UnstatedVariance(camera, pairs, cam_from_lidar);
@@ -126,7 +125,7 @@ std::optional<Matrix6d> KernelCovariance(const PnpKernel& kernel, PnpCovariance 
   if (kind == PnpCovariance::kObjectSpace) {
     in_view =
         ObjectSpaceCovariance(view.image_points, *image_covariances, view.points, view_from_lidar);
-  } else if (of_moments && pairs.size() > kFewPoints) {
+  } else if (of_moments) {
     in_view = ThroughChain(of_moments, view, *image_covariances, view_from_lidar);
   }
   if (!in_view && kind == PnpCovariance::kMoments) {
@@ -145,7 +144,7 @@ std::optional<Matrix6d> KernelCovariance(const PnpKernel& kernel, PnpCovariance 
 PnpSolver::PnpSolver(SolverSpec spec, PnpKernel kernel, PnpCovariance covariance)
     : Solver(std::move(spec)), kernel_(std::move(kernel)), covariance_(covariance) {}
 
-PnpSolver::PnpSolver(SolverSpec spec, PnpKernel kernel, PoseOfMoments of_moments)
+PnpSolver::PnpSolver(SolverSpec spec, PnpKernel kernel, MomentsKernel of_moments)
     : Solver(std::move(spec)),
       kernel_(std::move(kernel)),
       covariance_(PnpCovariance::kMoments),

@@ -48,7 +48,7 @@ class PnpSolver final : public Solver {
  public:
   PnpSolver(SolverSpec spec, PnpKernel kernel, PnpCovariance covariance);
   /// Of kind kMoments, for a kernel that can be given displaced moments.
-  PnpSolver(SolverSpec spec, PnpKernel kernel, PoseOfMoments of_moments);
+  PnpSolver(SolverSpec spec, PnpKernel kernel, MomentsKernel of_moments);
 
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override;
@@ -58,7 +58,7 @@ class PnpSolver final : public Solver {
 
   PnpKernel kernel_;
   PnpCovariance covariance_;
-  PoseOfMoments of_moments_ = {};
+  MomentsKernel of_moments_ = {};
 };
 
 }  // namespace sextant

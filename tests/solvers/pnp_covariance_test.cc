@@ -111,7 +111,7 @@ TEST(PnpCovarianceOfAFisheye, TurnsWithTheView) {
 
 std::vector<CovarianceCase> CovarianceCases() {
   std::vector<CovarianceCase> cases;
-  for (const int pairs : {6, 20, 200}) {
+  for (const int pairs : {6, 9, 20, 200}) {
     for (const char* spec : {"epnp", "sqpnp"}) {
       cases.push_back({spec, false, pairs});
       cases.push_back({spec, true, pairs});
