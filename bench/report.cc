@@ -94,6 +94,7 @@ constexpr Limit kLimits[] = {
     {"pairs_80", 1000, "sextant", 2000.0},
     {"pairs_95", 1000, "sextant", 2000.0},
     {"rooms", 16, "sextant", 5000.0},
+    {"rooms", 16, "sextant_biased_rings", 5000.0},
     {"rooms", 64, "sextant", 10000.0},
     {"tags_1280x720", 4, "sextant_aruco", 8000.0},
     {"tags_1280x720", 4, "sextant_apriltag", 8000.0},

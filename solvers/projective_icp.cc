@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/ring_offsets.h"
 #include "solvers/scan_match.h"
 
 namespace sextant {
@@ -74,20 +75,36 @@ class BothWays {
   ScanMatch backward_;
 };
 
-Expected<ScanSurfaces> SurfacesOf(std::span<const Eigen::Vector3d> points, const char* frame,
-                                  double cell_rad) {
+Expected<ScanWindows> WindowsOf(std::span<const Eigen::Vector3d> points, const char* frame,
+                                double cell_rad) {
   if (points.empty()) {
     return MakeError(ErrorCode::kTooFewPairs,
                      fmt::format("projective icp got no points in the {} frame", frame));
   }
-  ScanSurfaces surfaces(points, cell_rad);
+  return ScanWindows(points, cell_rad);
+}
+
+// Offsets that are large against the noise are told roughly at first.
+void TakeOffRingOffsets(ScanWindows& target, ScanWindows& source) {
+  constexpr int kPasses = 2;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const RingOffsets offsets = EstimateRingOffsets(target, source);
+    if (offsets.target_m.empty() && offsets.source_m.empty()) return;
+    if (!offsets.target_m.empty()) target.TakeOff(offsets.target_m);
+    if (!offsets.source_m.empty()) source.TakeOff(offsets.source_m);
+  }
+}
+
+Expected<ScanSurfaces> SurfacesOf(const ScanWindows& windows, std::size_t points,
+                                  const char* frame) {
+  ScanSurfaces surfaces(windows);
   if (surfaces.patch_count() < kLeastPatches) {
     return MakeError(
         ErrorCode::kDegenerate,
         fmt::format("projective icp finds {} flat cells among the {} points in the {} frame, "
                     "expected {} or more: it needs whole scans, seen from the frame's origin; "
                     "match=nearest takes any points",
-                    surfaces.patch_count(), points.size(), frame, kLeastPatches));
+                    surfaces.patch_count(), points, frame, kLeastPatches));
   }
   return surfaces;
 }
@@ -109,9 +126,14 @@ Expected<ProjectiveIcpFit> FitProjectiveIcp(std::span<const Eigen::Vector3d> tar
                                             std::span<const Eigen::Vector3d> source,
                                             const Rigid3d& start,
                                             const ProjectiveIcpSettings& settings) {
-  const Expected<ScanSurfaces> in_target = SurfacesOf(target, "camera", settings.cell_rad);
+  Expected<ScanWindows> of_target = WindowsOf(target, "camera", settings.cell_rad);
+  if (!of_target) return tl::unexpected<Error>(of_target.error());
+  Expected<ScanWindows> of_source = WindowsOf(source, "LiDAR", settings.cell_rad);
+  if (!of_source) return tl::unexpected<Error>(of_source.error());
+  TakeOffRingOffsets(*of_target, *of_source);
+  const Expected<ScanSurfaces> in_target = SurfacesOf(*of_target, target.size(), "camera");
   if (!in_target) return tl::unexpected<Error>(in_target.error());
-  const Expected<ScanSurfaces> in_source = SurfacesOf(source, "LiDAR", settings.cell_rad);
+  const Expected<ScanSurfaces> in_source = SurfacesOf(*of_source, source.size(), "LiDAR");
   if (!in_source) return tl::unexpected<Error>(in_source.error());
   const double sigma_m = std::max(in_target->range_sigma_m(), in_source->range_sigma_m());
 

@@ -85,7 +85,7 @@ void ScanCells::FindBearings(Points points, double* slopes, std::int32_t* column
   }
 }
 
-ScanCells::ScanCells(Points points, double cell_rad) {
+ScanCells::ScanCells(Points points, double cell_rad) : cell_rad_(cell_rad) {
   ChooseAxes(points);
   columns_ = std::max(kLeastColumns, static_cast<int>(2.0 * std::numbers::pi / cell_rad));
   std::vector<double> slopes(points.size() + kLanes);
@@ -143,6 +143,34 @@ void ScanCells::ChooseRows(std::span<const double> slopes, double cell_rad) {
   }
   row_of_bin_.front() = -1;
   row_of_bin_.back() = -1;
+}
+
+double ScanCells::SlopeOf(int row) const {
+  constexpr std::array<std::size_t, 3> kSquares = {CellSums::kSecond, CellSums::kSecond + 3,
+                                                   CellSums::kSecond + 5};
+  double height = 0.0;
+  double up2 = 0.0;
+  double level2 = 0.0;
+  for (int column = 0; column < columns_; ++column) {
+    const CellSums& sums = sums_[static_cast<std::size_t>(row * columns_ + column)];
+    height += sums.of[CellSums::kFirst + axes_[2]];
+    up2 += sums.of[kSquares[axes_[2]]];
+    level2 += sums.of[kSquares[axes_[0]]] + sums.of[kSquares[axes_[1]]];
+  }
+  return level2 > 0.0 ? std::copysign(std::sqrt(up2 / level2), height) : 0.0;
+}
+
+void ScanCells::TakeOff(std::span<const double> offsets_m) {
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    std::array<double, CellSums::kSize>& of = sums_[i].of;
+    if (of[CellSums::kCount] == 0.0) continue;
+    const double squares =
+        of[CellSums::kSecond] + of[CellSums::kSecond + 3] + of[CellSums::kSecond + 5];
+    const double offset_m = offsets_m[i / static_cast<std::size_t>(columns_)];
+    const double scale = 1.0 - offset_m * std::sqrt(of[CellSums::kCount] / squares);
+    for (std::size_t k = CellSums::kFirst; k < CellSums::kSecond; ++k) of[k] *= scale;
+    for (std::size_t k = CellSums::kSecond; k < CellSums::kSize; ++k) of[k] *= scale * scale;
+  }
 }
 
 }  // namespace sextant

@@ -36,10 +36,18 @@ class ScanCells {
   /// Points [m] seen from their frame's origin, finite. Requires at least one.
   ScanCells(std::span<const Eigen::Vector3d> points, double cell_rad);
 
+  double cell_rad() const { return cell_rad_; }
   int rows() const { return rows_; }
   int columns() const { return columns_; }
   /// Row by row.
   const std::vector<CellSums>& sums() const { return sums_; }
+
+  /// Tangent of the elevation of a row, 0 level; the root mean square where it holds several rings.
+  double SlopeOf(int row) const;
+
+  /// Takes these [m] off the ranges of each row, as if they were measured too long. Within a cell
+  /// all points are taken to be as far as its root mean square.
+  void TakeOff(std::span<const double> offsets_m);
 
   /// Where eight points fall: cell numbers, or `outside` where there is no row.
   SEXTANT_INLINE void CellsOf(const std::array<Lanes, 3>& points, std::int32_t outside,
@@ -96,6 +104,7 @@ class ScanCells {
   void ChooseRows(std::span<const double> slopes, double cell_rad);
 
   std::array<std::size_t, 3> axes_{0, 1, 2};
+  double cell_rad_;
   int rows_ = 0;
   int columns_ = 0;
   double first_slope_ = 0.0;

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "solvers/scan_cells.h"
+#include "solvers/scan_windows.h"
 
 namespace sextant {
 
@@ -24,15 +22,12 @@ struct ScanPlane {
 /// What a scan shows of surfaces: planes by cell, and the middle of the points of each cell that is
 /// on one.
 ///
-/// A window of 3 x 3 cells gets the plane m . p = 1 with m = (sum p p^T)^-1 sum p. That is least
-/// squares in ranges, whose noise it is, as directions are exact: residual m . p - 1 is range noise
-/// by m . direction. A cell takes the plane of the window round it where that is flat to the noise,
-/// else of the flattest window with the cell in it (Kuwahara et al. 1976): so planes reach up to
-/// edges and not across. The noise is the scan's own: a quantile of the windows' residuals.
+/// A cell takes the plane of the window round it where that is flat to the noise, else of the
+/// flattest window with the cell in it (Kuwahara et al. 1976): so planes reach up to edges and not
+/// across. The noise is the scan's own: a quantile of the windows' residuals.
 class ScanSurfaces {
  public:
-  /// Points [m] seen from their frame's origin, finite. Requires at least one.
-  ScanSurfaces(std::span<const Eigen::Vector3d> points, double cell_rad);
+  explicit ScanSurfaces(const ScanWindows& windows);
 
   const ScanCells& cells() const { return cells_; }
 
@@ -55,7 +50,7 @@ class ScanSurfaces {
   std::size_t patch_count() const { return patch_count_; }
 
  private:
-  void ChoosePlanes();
+  void ChoosePlanes(const ScanWindows& windows);
   void AddPatch(std::size_t cell);
   void FillUp();
 

@@ -73,6 +73,27 @@ TEST(ProjectiveIcp, FindsThePoseBetweenScansOfSixtyFourRings) {
   EXPECT_LT(errors.worst_deg, 0.008);
 }
 
+// 9.5 mm a ring, as one unit was measured: of 200 rooms the median is 0.0053 degrees and one in a
+// hundred beyond 0.025; with the offsets left in, the median is 0.019 and four in ten are beyond.
+TEST(ProjectiveIcp, RingsMayEachHaveAnErrorOfTheirOwn) {
+  constexpr int kRooms = 12;
+  LidarModel model = ModelOf("vlp16");
+  model.ring_bias_sigma_m = 0.0095;
+  std::vector<double> errors_deg;
+  for (int room = 0; room < kRooms; ++room) {
+    const std::uint64_t seed = DeriveSeed(1, "projective_icp", 1, static_cast<std::uint64_t>(room));
+    const Expected<ScanPair> pair = ScanRoomTwice(model, seed);
+    ASSERT_TRUE(pair) << pair.error().message;
+    const Expected<ProjectiveIcpFit> fit = Fit(*pair);
+    ASSERT_TRUE(fit) << fit.error().message;
+    const PoseDistance error = DistanceBetween(fit->target_from_source, pair->target_from_source);
+    errors_deg.push_back(error.rotation_rad / kRadPerDeg);
+  }
+  std::ranges::sort(errors_deg);
+  EXPECT_LT(errors_deg[kRooms / 2], 0.01);
+  EXPECT_LT(errors_deg.back(), 0.03);
+}
+
 // Rows may hold several rings, and offsets in azimuth do not matter.
 TEST(ProjectiveIcp, TakesScansOfTwoSensors) {
   ScanPair pair = RoomTwice("vlp16", 0);
