@@ -65,14 +65,32 @@ SEXTANT_INLINE double SumLanes(const Lanes& lanes) {
   return two[0] + two[1];
 }
 
+/// Of each two, four or eight lanes the first half of p, then that of q; or the last halves.
+SEXTANT_INLINE Lanes FirstOfTwos(const Lanes& p, const Lanes& q) {
+  return __builtin_shufflevector(p, q, 0, 8, 2, 10, 4, 12, 6, 14);
+}
+SEXTANT_INLINE Lanes LastOfTwos(const Lanes& p, const Lanes& q) {
+  return __builtin_shufflevector(p, q, 1, 9, 3, 11, 5, 13, 7, 15);
+}
+SEXTANT_INLINE Lanes FirstOfFours(const Lanes& p, const Lanes& q) {
+  return __builtin_shufflevector(p, q, 0, 1, 8, 9, 4, 5, 12, 13);
+}
+SEXTANT_INLINE Lanes LastOfFours(const Lanes& p, const Lanes& q) {
+  return __builtin_shufflevector(p, q, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+SEXTANT_INLINE Lanes FirstOfEight(const Lanes& p, const Lanes& q) {
+  return __builtin_shufflevector(p, q, 0, 1, 2, 3, 8, 9, 10, 11);
+}
+SEXTANT_INLINE Lanes LastOfEight(const Lanes& p, const Lanes& q) {
+  return __builtin_shufflevector(p, q, 4, 5, 6, 7, 12, 13, 14, 15);
+}
+
 SEXTANT_INLINE Lanes SumPairs(const Lanes& p, const Lanes& q) {
-  return __builtin_shufflevector(p, q, 0, 8, 2, 10, 4, 12, 6, 14) +
-         __builtin_shufflevector(p, q, 1, 9, 3, 11, 5, 13, 7, 15);
+  return FirstOfTwos(p, q) + LastOfTwos(p, q);
 }
 
 SEXTANT_INLINE Lanes SumFours(const Lanes& p, const Lanes& q) {
-  return __builtin_shufflevector(p, q, 0, 1, 8, 9, 4, 5, 12, 13) +
-         __builtin_shufflevector(p, q, 2, 3, 10, 11, 6, 7, 14, 15);
+  return FirstOfFours(p, q) + LastOfFours(p, q);
 }
 
 /// The sums of eight vectors side by side, in a third of the time of eight SumLanes and in an order
@@ -81,8 +99,7 @@ SEXTANT_INLINE Lanes SumEach(const Lanes& a, const Lanes& b, const Lanes& c, con
                              const Lanes& e, const Lanes& f, const Lanes& g, const Lanes& h) {
   const Lanes abcd = SumFours(SumPairs(a, b), SumPairs(c, d));
   const Lanes efgh = SumFours(SumPairs(e, f), SumPairs(g, h));
-  return __builtin_shufflevector(abcd, efgh, 0, 1, 2, 3, 8, 9, 10, 11) +
-         __builtin_shufflevector(abcd, efgh, 4, 5, 6, 7, 12, 13, 14, 15);
+  return FirstOfEight(abcd, efgh) + LastOfEight(abcd, efgh);
 }
 
 SEXTANT_INLINE long long OrOfLanes(const LaneMask& mask) {

@@ -102,6 +102,15 @@ SEXTANT_INLINE SplitMask& operator|=(SplitMask& a, const SplitMask& b) { return 
 template <class L>
 using MaskOf = std::conditional_t<std::is_same_v<L, Lanes>, LaneMask, SplitMask>;
 
+/// Zero where the mask does not hold, whatever is there.
+SEXTANT_INLINE Lanes Keep(const LaneMask& mask, const Lanes& lanes) {
+  return reinterpret_cast<Lanes>(mask & reinterpret_cast<LaneMask>(lanes));
+}
+SEXTANT_INLINE SplitLanes Keep(const SplitMask& mask, const SplitLanes& lanes) {
+  return {reinterpret_cast<FourLanes>(mask.low & reinterpret_cast<FourMask>(lanes.low)),
+          reinterpret_cast<FourLanes>(mask.high & reinterpret_cast<FourMask>(lanes.high))};
+}
+
 /// `mask ? a : b`, for what is written once for doubles and both kinds of lanes.
 SEXTANT_INLINE double Select(bool mask, double a, double b) { return mask ? a : b; }
 template <class Mask>
@@ -175,11 +184,39 @@ SEXTANT_INLINE double SumLanes(const SplitLanes& lanes) {
   return two[0] + two[1];
 }
 
+SEXTANT_INLINE FourLanes FirstOfTwos(const FourLanes& p, const FourLanes& q) {
+  return __builtin_shufflevector(p, q, 0, 4, 2, 6);
+}
+SEXTANT_INLINE FourLanes LastOfTwos(const FourLanes& p, const FourLanes& q) {
+  return __builtin_shufflevector(p, q, 1, 5, 3, 7);
+}
+SEXTANT_INLINE FourLanes FirstOfFours(const FourLanes& p, const FourLanes& q) {
+  return __builtin_shufflevector(p, q, 0, 1, 4, 5);
+}
+SEXTANT_INLINE FourLanes LastOfFours(const FourLanes& p, const FourLanes& q) {
+  return __builtin_shufflevector(p, q, 2, 3, 6, 7);
+}
+#define SEXTANT_SPLIT_SHUFFLE(name)                                          \
+  SEXTANT_INLINE SplitLanes name(const SplitLanes& p, const SplitLanes& q) { \
+    return {name(p.low, q.low), name(p.high, q.high)};                       \
+  }
+SEXTANT_SPLIT_SHUFFLE(FirstOfTwos)
+SEXTANT_SPLIT_SHUFFLE(LastOfTwos)
+SEXTANT_SPLIT_SHUFFLE(FirstOfFours)
+SEXTANT_SPLIT_SHUFFLE(LastOfFours)
+#undef SEXTANT_SPLIT_SHUFFLE
+SEXTANT_INLINE SplitLanes FirstOfEight(const SplitLanes& p, const SplitLanes& q) {
+  return {p.low, q.low};
+}
+SEXTANT_INLINE SplitLanes LastOfEight(const SplitLanes& p, const SplitLanes& q) {
+  return {p.high, q.high};
+}
+
 SEXTANT_INLINE FourLanes SumPairs(const FourLanes& p, const FourLanes& q) {
-  return __builtin_shufflevector(p, q, 0, 4, 2, 6) + __builtin_shufflevector(p, q, 1, 5, 3, 7);
+  return FirstOfTwos(p, q) + LastOfTwos(p, q);
 }
 SEXTANT_INLINE FourLanes SumFours(const FourLanes& p, const FourLanes& q) {
-  return __builtin_shufflevector(p, q, 0, 1, 4, 5) + __builtin_shufflevector(p, q, 2, 3, 6, 7);
+  return FirstOfFours(p, q) + LastOfFours(p, q);
 }
 SEXTANT_INLINE FourLanes SumQuarters(const FourLanes& p, const FourLanes& q, const FourLanes& r,
                                      const FourLanes& s) {

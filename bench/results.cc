@@ -23,8 +23,9 @@ double Nanoseconds(const json& benchmark) {
 }  // namespace
 
 void AddTimings(const json& run, Timings& timings) {
+  Timings of_run;
   for (const json& benchmark : run.at("benchmarks")) {
-    Timing& timing = timings[benchmark.at("run_name").get<std::string>()];
+    Timing& timing = of_run[benchmark.at("run_name").get<std::string>()];
     if (benchmark.value("error_occurred", false)) {
       timing.error = benchmark.value("error_message", "failed");
       continue;
@@ -32,6 +33,13 @@ void AddTimings(const json& run, Timings& timings) {
     const std::string aggregate = benchmark.value("aggregate_name", "");
     if (aggregate == "median") timing.median_ns = Nanoseconds(benchmark);
     if (aggregate == "cv") timing.spread = benchmark.at("cpu_time").get<double>();
+  }
+  for (auto& [name, timing] : of_run) {
+    const auto [before, is_new] = timings.try_emplace(name, timing);
+    if (is_new || !before->second.median_ns) continue;
+    if (!timing.median_ns || *timing.median_ns < *before->second.median_ns) {
+      before->second = timing;
+    }
   }
 }
 

@@ -20,7 +20,8 @@ struct Timing {
 /// By name, task/implementation/N; ours is `sextant`, the others are peers.
 using Timings = std::map<std::string, Timing>;
 
-/// Adds the benchmarks of one run of Google Benchmark.
+/// Adds the benchmarks of one run of Google Benchmark. Of several runs of a benchmark the fastest
+/// stands, or the one that was wrong.
 void AddTimings(const nlohmann::json& run, Timings& timings);
 
 /// All *.json of a folder that scripts/bench has filled. Errors: kIo (no such folder, or none in

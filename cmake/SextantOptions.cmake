@@ -46,7 +46,10 @@ target_compile_options(sextant_options INTERFACE
 if(SEXTANT_NATIVE)
   # Eigen aligns by instruction set, and its types cross into Debian's libraries, which are built for
   # SSE2: with these its layouts and its allocator stay theirs.
-  target_compile_options(sextant_options INTERFACE -march=native)
+  target_compile_options(sextant_options INTERFACE -march=native
+    # g++ 12 takes undefined registers of its own AVX-512 header for unset variables, and Eigen's
+    # packets of eight doubles for reads beyond small matrices, in branches that are never taken.
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-uninitialized -Wno-array-bounds>)
   target_compile_definitions(sextant_options INTERFACE
     EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
 endif()

@@ -201,6 +201,8 @@ Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem&
 Rigid3d OptimiseOnInliers(const PairTerms& terms, const PoseScorer& scorer, const Rigid3d& pose,
                           int rounds, const RefineLimits& limits, InlierWorkspace& workspace) {
   const std::size_t least = terms.pixels.empty() ? 3 : 4;
+  RefineLimits of_pose = limits;
+  of_pose.wants_information = false;
   return OptimiseOnShrinkingInliers(
       pose, scorer.Cost(pose), rounds,
       [&](const Rigid3d& at, double most) { return scorer.Cost(at, most); },
@@ -211,7 +213,7 @@ Rigid3d OptimiseOnInliers(const PairTerms& terms, const PoseScorer& scorer, cons
         const std::optional<Rigid3d> closed_form =
             FitIsotropicPoints(workspace.terms.points, workspace.buffers);
         if (closed_form) return closed_form;
-        return RefinePose(workspace.terms.View(), at, limits).cam_from_lidar;
+        return RefinePose(workspace.terms.View(), at, of_pose).cam_from_lidar;
       });
 }
 

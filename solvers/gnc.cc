@@ -198,7 +198,7 @@ class GncSolver final : public Solver {
     squares.Inliers(start, projected);
     PairTerms in_front;
     in_front.AssignSubset(terms, projected);
-    return RefinePose(in_front.View(), start, {}).cam_from_lidar;
+    return RefinePose(in_front.View(), start, {.wants_information = false}).cam_from_lidar;
   }
 
   SolverPtr inner_;

@@ -50,27 +50,9 @@ SEXTANT_INLINE void LoadVectors(const double (&from)[9][kLanes], Vector<Lanes> (
   }
 }
 
-}  // namespace
-
-int SolveP3p(std::span<const Eigen::Vector3d, 3> rays_in_cam,
-             std::span<const Eigen::Vector3d, 3> points_in_lidar,
-             std::span<Rigid3d, kMaxP3pPoses> poses) {
-  Candidates found;
-  FindCandidates(rays_in_cam[0].data(), points_in_lidar[0].data(), found);
-  std::size_t count = 0;
-  for (std::size_t c = 0; c < kMaxP3pPoses; ++c) {
-    if (!(found.depth[c] > 0.0)) continue;
-    Eigen::Matrix3d rotation;
-    for (int k = 0; k < 9; ++k) rotation(k / 3, k % 3) = found.rotation[k][c];
-    Rigid3d& pose = poses[count++];
-    pose.rotation = Eigen::Quaterniond(rotation).normalized();
-    for (int k = 0; k < 3; ++k) pose.translation[k] = found.translation[k][c];
-  }
-  return static_cast<int>(count);
-}
-
+// A function of its own: of SolveP3pBatch, which is declared before, clang makes no versions.
 SEXTANT_MULTIVERSION
-void SolveP3pBatch(const P3pTriples& triples, P3pPoses& poses) {
+void SolveEight(const P3pTriples& triples, P3pPoses& poses) {
   Vector<Lanes> y[3];
   Vector<Lanes> p[3];
   LoadVectors(triples.rays, y);
@@ -93,6 +75,27 @@ void SolveP3pBatch(const P3pTriples& triples, P3pPoses& poses) {
     for (int k = 0; k < 3; ++k) StoreLanes(t[k], poses.translation[c][k]);
   }
 }
+
+}  // namespace
+
+int SolveP3p(std::span<const Eigen::Vector3d, 3> rays_in_cam,
+             std::span<const Eigen::Vector3d, 3> points_in_lidar,
+             std::span<Rigid3d, kMaxP3pPoses> poses) {
+  Candidates found;
+  FindCandidates(rays_in_cam[0].data(), points_in_lidar[0].data(), found);
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < kMaxP3pPoses; ++c) {
+    if (!(found.depth[c] > 0.0)) continue;
+    Eigen::Matrix3d rotation;
+    for (int k = 0; k < 9; ++k) rotation(k / 3, k % 3) = found.rotation[k][c];
+    Rigid3d& pose = poses[count++];
+    pose.rotation = Eigen::Quaterniond(rotation).normalized();
+    for (int k = 0; k < 3; ++k) pose.translation[k] = found.translation[k][c];
+  }
+  return static_cast<int>(count);
+}
+
+void SolveP3pBatch(const P3pTriples& triples, P3pPoses& poses) { SolveEight(triples, poses); }
 
 Rigid3d P3pPoses::Pose(std::size_t candidate, std::size_t triple) const {
   Eigen::Matrix3d matrix;

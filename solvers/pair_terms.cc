@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
+#include "solvers/pixel_pair_lanes.h"
 #include "solvers/subset.h"
 
 namespace sextant {
@@ -18,6 +20,25 @@ Eigen::Matrix3d Whitener(const Pair3d3d& pair, double assumed_sigma_m) {
   }
   return Eigen::Matrix3d::Identity() / (pair.sigma_m > 0.0 ? pair.sigma_m : assumed_sigma_m);
 }
+
+// Up to eight terms; whether all pairs state their noise.
+template <class L>
+SEXTANT_INLINE bool MakeBlockFor(std::span<const Pair2d3d> pairs, double assumed_sigma_px,
+                                 PixelBlock& block) {
+  const EightPixelPairs<L> eight = GatherPixelPairs<L>(pairs);
+  const MaskOf<L> known = eight.sigma > 0.0;
+  StoreLanes(eight.x, block.x);
+  StoreLanes(eight.y, block.y);
+  StoreLanes(eight.z, block.z);
+  StoreLanes(eight.u, block.u);
+  StoreLanes(eight.v, block.v);
+  StoreLanes(1.0 / Select(known, eight.sigma, All<L>(assumed_sigma_px)), block.inverse_sigma);
+  for (std::size_t k = pairs.size(); k < kLanes; ++k) block.inverse_sigma[k] = 0.0;
+  return !AnyLane(~known);
+}
+SEXTANT_FOR_LANES(bool, MakeBlock,
+                  (std::span<const Pair2d3d> pairs, double assumed_sigma_px, PixelBlock& block),
+                  (pairs, assumed_sigma_px, block))
 
 }  // namespace
 
@@ -68,10 +89,19 @@ void PairTerms::Add(std::span<const Pair2d3d> pairs, const Camera& of_pairs,
                     const AssumedNoise& assumed) {
   camera = of_pairs;
   pixels.reserve(pixels.size() + pairs.size());
-  for (const Pair2d3d& pair : pairs) {
+  // Those that fill a block begun before, then block by block.
+  for (; !pairs.empty() && pixels.size() % kLanes != 0; pairs = pairs.subspan(1)) {
+    const Pair2d3d& pair = pairs.front();
     const double sigma = pair.sigma_px > 0.0 ? pair.sigma_px : assumed.sigma_px;
     pixels.push_back({pair.pixel, pair.point_in_lidar, 1.0 / sigma});
     noise_known = noise_known && HasKnownNoise(pair);
+  }
+  PixelBlock block;
+  while (!pairs.empty()) {
+    const std::size_t count = std::min(kLanes, pairs.size());
+    if (!MakeBlock(pairs.first(count), assumed.sigma_px, block)) noise_known = false;
+    pixels.AppendBlock(block, count);
+    pairs = pairs.subspan(count);
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cassert>
 #include <cstddef>
 #include <iterator>
 #include <span>
@@ -96,6 +97,13 @@ class PixelTerms {
     block.v[k] = term.pixel.y();
     block.inverse_sigma[k] = term.inverse_sigma;
     ++size_;
+  }
+
+  /// Up to eight terms more, where those before fill their blocks.
+  void AppendBlock(const PixelBlock& block, std::size_t count) {
+    assert(size_ % kLanes == 0);
+    blocks_.push_back(block);
+    size_ += count;
   }
 
   PixelTermsView View() const { return {blocks_.data(), size_}; }

@@ -108,6 +108,9 @@ RefinedPose RefinePose(const TermsView& terms, const Rigid3d& start, const Refin
       if (is_last) {
         best.cam_from_lidar = Moved(best.cam_from_lidar, *step);
         here.squares += here.gradient.dot(*step);
+        if (limits.wants_information && SumUp(terms, best.cam_from_lidar, there)) {
+          here.information = there.information;
+        }
       }
       best.outcome = RefineOutcome::kConverged;
       break;

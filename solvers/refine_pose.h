@@ -10,6 +10,8 @@ namespace sextant {
 struct RefineLimits {
   int max_iterations = 50;
   double step_tolerance = 1e-10;  ///< Largest last step: |dphi| [rad], |dt| / (1 + |t|) [m].
+  /// Sums the information at the answer itself, which costs a pass over the terms.
+  bool wants_information = true;
 };
 
 enum class RefineOutcome {
@@ -21,9 +23,10 @@ enum class RefineOutcome {
 
 struct RefinedPose {
   Rigid3d cam_from_lidar;
-  double cost = 0.0;                        ///< 1/2 sum of squared whitened residuals.
-  Matrix6d information = Matrix6d::Zero();  ///< J^T J within 1e-6 rad and m of there.
-  int iterations = 0;                       ///< Times the residuals were differentiated.
+  double cost = 0.0;  ///< 1/2 sum of squared whitened residuals.
+  /// J^T J there; within 1e-6 rad and m of there where it is not wanted.
+  Matrix6d information = Matrix6d::Zero();
+  int iterations = 0;  ///< Times the residuals were differentiated.
   RefineOutcome outcome = RefineOutcome::kMaxIterations;
 };
 

@@ -68,7 +68,21 @@ Expected<void> CheckPairs(std::span<const Pair3d3d> pairs) {
   return {};
 }
 
+bool AreOrdinary(std::span<const Pair2d3d> pairs) {
+  double zero = 0.0;
+  bool alike = true;
+  for (const Pair2d3d& pair : pairs) {
+    const Eigen::Vector3d& point = pair.point_in_lidar;
+    zero += 0.0 * ((pair.pixel.x() + pair.pixel.y()) + (point.x() + point.y()) +
+                   (point.z() + pair.sigma_px));
+    alike &= pair.sigma_px >= 0.0;
+    alike &= (pair.sigma_px > 0.0) == (pairs[0].sigma_px > 0.0);
+  }
+  return alike && zero == 0.0;
+}
+
 Expected<void> CheckPairs(std::span<const Pair2d3d> pairs) {
+  if (AreOrdinary(pairs)) return {};
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Pair2d3d& pair = pairs[i];
     const auto where = [&] { return fmt::format("2D-3D pair {} of {}", i + 1, pairs.size()); };

@@ -95,6 +95,17 @@ TEST(ReadTimings, OfAFolder) {
   EXPECT_FALSE(ReadTimings(test::TestFolder() / "nowhere"));
 }
 
+TEST(AddTimings, OfSeveralRunsTheFastestStandsOrTheWrongOne) {
+  Timings timings;
+  for (const double median_us : {1.6, 1.5, 1.7}) AddTimings(MadeUpRun(median_us, 0.01), timings);
+  EXPECT_DOUBLE_EQ(*timings.at("kabsch/sextant/8").median_ns, 1500.0);
+  nlohmann::json wrong = MadeUpRun(1.0, 0.01);
+  for (nlohmann::json& entry : wrong["benchmarks"]) entry["error_occurred"] = true;
+  AddTimings(wrong, timings);
+  AddTimings(MadeUpRun(1.0, 0.01), timings);
+  EXPECT_FALSE(timings.at("kabsch/sextant/8").median_ns);
+}
+
 TEST(BenchCompare, EndsWithOneWhereSomethingBecameSlower) {
   const std::filesystem::path folder = test::TestFolder();
   WriteRun(folder / "old", 1.5, 0.01);

@@ -119,8 +119,7 @@ TEST(RefinePose, AgreesWithCeresOnEveryKindAndCamera) {
       const std::optional<Matrix6d> covariance = InvertInformation(ours.information);
       const std::optional<Matrix6d> reference = CeresCovariance(terms.View(), ours.cam_from_lidar);
       ASSERT_TRUE(covariance && reference);
-      // Ours is that of up to 1e-6 before the end, see RefinedPose.
-      EXPECT_TRUE(covariance->isApprox(*reference, 1e-5));
+      EXPECT_TRUE(covariance->isApprox(*reference, 1e-8));
     }
   }
 }
