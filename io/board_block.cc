@@ -17,16 +17,6 @@ namespace {
 
 constexpr std::size_t kMostTags = 10'000;
 
-BoardHole ReadHole(YamlFields& in, const YamlNode& node) {
-  static const std::vector<std::string> kKeys = {"width_m", "height_m", "center_in_board_m"};
-  BoardHole hole;
-  if (!in.IsMap(node, "hole", kKeys)) return hole;
-  hole.width_m = in.RealAt(node, "width_m");
-  hole.height_m = in.RealAt(node, "height_m");
-  hole.center_in_board_m = in.Point2At(node, "center_in_board_m", Eigen::Vector2d::Zero());
-  return hole;
-}
-
 BoardTag ReadTag(YamlFields& in, const YamlNode& node) {
   static const std::vector<std::string> kKeys = {"family", "id", "edge_m", "center_in_board_m",
                                                  "rotation_deg"};
@@ -86,6 +76,21 @@ void FailWith(YamlFields& in, const YamlNode& node, const BoardFault& fault) {
 
 }  // namespace
 
+BoardHole ReadHoleBlock(YamlFields& in, const YamlNode& node) {
+  static const std::vector<std::string> kKeys = {"width_m", "height_m", "center_in_board_m"};
+  BoardHole hole;
+  if (!in.IsMap(node, "hole", kKeys)) return hole;
+  hole.width_m = in.RealAt(node, "width_m");
+  hole.height_m = in.RealAt(node, "height_m");
+  hole.center_in_board_m = in.Point2At(node, "center_in_board_m", Eigen::Vector2d::Zero());
+  return hole;
+}
+
+std::string YamlHole(const BoardHole& hole) {
+  return fmt::format("{{width_m: {}, height_m: {}, center_in_board_m: {}}}", hole.width_m,
+                     hole.height_m, YamlList(hole.center_in_board_m));
+}
+
 Board ReadBoardBlock(YamlFields& in, const YamlNode& node) {
   static const std::vector<std::string> kKeys = {
       "id", "name", "top_right_m", "right_bottom_m", "thickness_m", "hole", "tags", "checker"};
@@ -96,7 +101,7 @@ Board ReadBoardBlock(YamlFields& in, const YamlNode& node) {
   board.top_right_m = in.RealAt(node, "top_right_m");
   board.right_bottom_m = in.RealAt(node, "right_bottom_m");
   board.thickness_m = in.RealAt(node, "thickness_m", 0.0);
-  if (const YamlNode* hole = node.Find("hole")) board.hole = ReadHole(in, *hole);
+  if (const YamlNode* hole = node.Find("hole")) board.hole = ReadHoleBlock(in, *hole);
   if (const YamlNode* tags = node.Find("tags")) ReadTags(in, *tags, board);
   if (const YamlNode* checker = node.Find("checker")) board.checker = ReadChecker(in, *checker);
   if (!in.ok()) return board;
@@ -134,10 +139,7 @@ void WriteBoardBlock(YamlText& out, const std::string& indent, const Board& boar
   out.Line("{}  top_right_m: {}", indent, board.top_right_m);
   out.Line("{}  right_bottom_m: {}", indent, board.right_bottom_m);
   if (board.thickness_m != 0.0) out.Line("{}  thickness_m: {}", indent, board.thickness_m);
-  if (board.hole) {
-    out.Line("{}  hole: {{width_m: {}, height_m: {}, center_in_board_m: {}}}", indent,
-             board.hole->width_m, board.hole->height_m, YamlList(board.hole->center_in_board_m));
-  }
+  if (board.hole) out.Line("{}  hole: {}", indent, YamlHole(*board.hole));
   if (!board.tags.empty()) out.Line("{}  tags:", indent);
   for (const BoardTag& tag : board.tags) {
     out.Line("{}    - {{family: {}, id: {}, edge_m: {}, center_in_board_m: {}, rotation_deg: {}}}",

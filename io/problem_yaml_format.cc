@@ -3,6 +3,8 @@
 
 #include <span>
 
+#include "io/board_block.h"
+#include "io/board_view_block.h"
 #include "io/camera_block.h"
 #include "io/problem_yaml.h"
 #include "io/yaml_text.h"
@@ -47,8 +49,8 @@ std::string FormatProblemYaml(const ProblemFile& file) {
   if (problem.camera) WriteCameraBlock(out, *problem.camera);
   if (!problem.boards.empty()) out.Line("boards:");
   for (const Board& board : problem.boards) {
-    out.Line("  - {{id: {}, top_right_m: {}, right_bottom_m: {}}}", board.id, board.top_right_m,
-             board.right_bottom_m);
+    out.Line("  - {{id: {}, top_right_m: {}, right_bottom_m: {}{}}}", board.id, board.top_right_m,
+             board.right_bottom_m, board.hole ? ", hole: " + YamlHole(*board.hole) : "");
   }
   if (problem.initial_cam_from_lidar) {
     out.Line("initial_cam_from_lidar:");
@@ -58,6 +60,8 @@ std::string FormatProblemYaml(const ProblemFile& file) {
   for (const Pair3d3d& pair : problem.pairs_3d3d) WritePair(out, pair);
   if (!problem.pairs_2d3d.empty()) out.Line("pairs_2d3d:");
   for (const Pair2d3d& pair : problem.pairs_2d3d) WritePair(out, pair);
+  if (!problem.board_views.empty()) out.Line("board_views:");
+  for (const BoardView& view : problem.board_views) WriteBoardView(out, view);
   const PointSets implied = WithholdPairing(problem.pairs_3d3d);
   if (problem.point_sets.in_cam != implied.in_cam ||
       problem.point_sets.in_lidar != implied.in_lidar) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "io/board_block.h"
+#include "io/board_view_block.h"
 #include "io/camera_block.h"
 #include "io/most_id.h"
 #include "io/pose_block.h"
@@ -70,7 +72,7 @@ std::vector<Eigen::Vector3d> ReadPointList(YamlFields& in, const YamlNode& list,
 }
 
 void ReadProblemBoards(YamlFields& in, const YamlNode& list, std::vector<Board>& boards) {
-  static const Keys kKeys = {"id", "top_right_m", "right_bottom_m"};
+  static const Keys kKeys = {"id", "top_right_m", "right_bottom_m", "hole"};
   if (!in.IsSequence(list, "boards")) return;
   for (const YamlNode& node : list.items) {
     if (!in.IsMap(node, "boards", kKeys)) return;
@@ -80,14 +82,15 @@ void ReadProblemBoards(YamlFields& in, const YamlNode& list, std::vector<Board>&
     board.id = in.IntegerAt(node, "id", 0, kMostId);
     board.top_right_m = in.NonNegativeAt(node, "top_right_m", 0.0);
     board.right_bottom_m = in.NonNegativeAt(node, "right_bottom_m", 0.0);
+    if (const YamlNode* hole = node.Find("hole")) board.hole = ReadHoleBlock(in, *hole);
     boards.push_back(board);
   }
 }
 
 void ReadProblemHeader(YamlFields& in, const YamlNode& root) {
-  static const Keys kKeys = {"sextant_problem", "comment",    "camera",
-                             "boards",          "pairs_3d3d", "pairs_2d3d",
-                             "point_sets",      "truth",      "initial_cam_from_lidar"};
+  static const Keys kKeys = {
+      "sextant_problem", "comment",     "camera",     "boards", "pairs_3d3d",
+      "pairs_2d3d",      "board_views", "point_sets", "truth",  "initial_cam_from_lidar"};
   if (root.kind == YamlNode::Kind::kMap && root.Find("sextant_problem") == nullptr) {
     in.Fail(root.line, {},
             "expected a problem file with the key sextant_problem: 1; is this another kind of "
@@ -120,6 +123,9 @@ Expected<ProblemFile> ParseProblemYaml(std::string_view text, const std::string&
   }
   if (const YamlNode* node = root->Find("pairs_3d3d")) ReadPairs3d3d(in, *node, problem.pairs_3d3d);
   if (const YamlNode* node = root->Find("pairs_2d3d")) ReadPairs2d3d(in, *node, problem.pairs_2d3d);
+  if (const YamlNode* node = root->Find("board_views")) {
+    problem.board_views = ReadBoardViews(in, *node, problem.boards);
+  }
   problem.point_sets = WithholdPairing(problem.pairs_3d3d);
   if (const YamlNode* node = root->Find("point_sets")) {
     static const Keys kKeys = {"in_cam", "in_lidar"};

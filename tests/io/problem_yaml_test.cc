@@ -66,6 +66,70 @@ TEST(ProblemYaml, RoundTripsToTheBit) {
   }
 }
 
+BoardView FullView(Random& random, int view) {
+  BoardView full{.view = view, .board = 26};
+  full.cam_from_board = RandomPose(random);
+  full.lidar_from_board = RandomPose(random);
+  for (const int count : {4, 1}) {
+    BoardPoints& printed = full.printed.emplace_back();
+    for (int i = 0; i < count; ++i) {
+      printed.in_board_m.emplace_back(NormalVector(random).head<2>());
+      printed.pixels.emplace_back(NormalVector(random).head<2>());
+    }
+    const Eigen::VectorXd factor = Eigen::VectorXd::Constant(2 * count, random.Normal());
+    printed.covariance_px2 = factor * factor.transpose();
+    printed.covariance_px2.diagonal().array() += 1.0 / 3.0;
+  }
+  full.range_sigma_m = 0.01 / 3.0;
+  for (int i = 0; i < 5; ++i) full.face_in_lidar.push_back(NormalVector(random));
+  for (const int side : {0, 3, 7}) {
+    full.edges.push_back(
+        {.direction = NormalVector(random).normalized(), .side = side, .sigma_m = 0.002});
+  }
+  return full;
+}
+
+TEST(ProblemYaml, BoardViewsRoundTripToTheBit) {
+  Random random(4);
+  ProblemFile file = FullProblem(random);
+  file.problem.boards[1].hole =
+      BoardHole{.width_m = 0.05, .height_m = 0.2, .center_in_board_m = {0.01, 1.0 / 30.0}};
+  file.problem.board_views = {FullView(random, 0), FullView(random, 3)};
+  file.problem.board_views[1].face_in_lidar.clear();
+  file.problem.board_views[1].range_sigma_m = 0.0;
+  file.problem.board_views[1].edges.clear();
+  const std::string text = FormatProblemYaml(file);
+  const Expected<ProblemFile> read = ParseProblemYaml(text, "p.yaml");
+  ASSERT_TRUE(read) << read.error().message << text;
+  ASSERT_TRUE(read->problem.boards[1].hole);
+  EXPECT_EQ(read->problem.boards[1].hole->center_in_board_m,
+            file.problem.boards[1].hole->center_in_board_m);
+  ASSERT_EQ(read->problem.board_views.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const BoardView& a = file.problem.board_views[i];
+    const BoardView& b = read->problem.board_views[i];
+    EXPECT_EQ(b.view, a.view);
+    EXPECT_EQ(b.board, a.board);
+    EXPECT_EQ(b.range_sigma_m, a.range_sigma_m);
+    EXPECT_EQ(b.face_in_lidar, a.face_in_lidar);
+    EXPECT_EQ(b.cam_from_board.translation, a.cam_from_board.translation);
+    EXPECT_EQ(b.lidar_from_board.rotation.coeffs(), a.lidar_from_board.rotation.coeffs());
+    ASSERT_EQ(b.printed.size(), a.printed.size());
+    for (std::size_t k = 0; k < a.printed.size(); ++k) {
+      EXPECT_EQ(b.printed[k].in_board_m, a.printed[k].in_board_m);
+      EXPECT_EQ(b.printed[k].pixels, a.printed[k].pixels);
+      EXPECT_EQ(b.printed[k].covariance_px2, a.printed[k].covariance_px2);
+    }
+    ASSERT_EQ(b.edges.size(), a.edges.size());
+    for (std::size_t k = 0; k < a.edges.size(); ++k) {
+      EXPECT_EQ(b.edges[k].direction, a.edges[k].direction);
+      EXPECT_EQ(b.edges[k].side, a.edges[k].side);
+      EXPECT_EQ(b.edges[k].sigma_m, a.edges[k].sigma_m);
+    }
+  }
+  EXPECT_EQ(FormatProblemYaml(*read), text);
+}
+
 TEST(ProblemYaml, PointSetsFollowThePairsUnlessTheyAreGiven) {
   Random random(2);
   ProblemFile file;
@@ -108,6 +172,16 @@ TEST_P(BadYamlTest, EndsInOneLineThatSaysWhereAndWhat) {
 
 std::string Problem(const std::string& rest) { return "sextant_problem: 1\n" + rest; }
 
+// A view without faults as far as its poses go.
+std::string View(const std::string& rest) {
+  return Problem(
+      "boards:\n  - {id: 0, top_right_m: 0.5, right_bottom_m: 0.5}\n"
+      "board_views:\n  - view: 0\n    board: 0\n"
+      "    cam_from_board: {translation_m: [0, 0, 2], quaternion_wxyz: [1, 0, 0, 0]}\n"
+      "    lidar_from_board: {translation_m: [2, 0, 0], quaternion_wxyz: [1, 0, 0, 0]}\n" +
+      rest);
+}
+
 std::string BillionLaughs() {
   std::string text = "a0: &a0 [x]\n";
   for (int i = 1; i < 40; ++i) text += fmt::format("a{0}: &a{0} [*a{1}, *a{1}]\n", i, i - 1);
@@ -135,6 +209,36 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"TwoNumbers",
                 Problem("pairs_3d3d:\n  - {point_in_cam: [1,2], point_in_lidar: [1,2,3]}"), kParse,
                 "p.yaml:3: point_in_cam: expected 3 numbers, got 2"},
+        BadText{"ViewOfNoBoard",
+                Problem("board_views:\n  - {view: 0, board: 5, printed: [], cam_from_board: "
+                        "{translation_m: [0,0,2], quaternion_wxyz: [1,0,0,0]}, lidar_from_board: "
+                        "{translation_m: [2,0,0], quaternion_wxyz: [1,0,0,0]}}"),
+                kParse, "p.yaml:3: board_views: view 0 names board 5, which is not among"},
+        BadText{"ViewWithoutPrinted", View(""), kParse, "p.yaml:5: printed: expected this key"},
+        BadText{"UnknownKeyOfView", View("    printed: []\n    faces_in_lidar: []"), kParse,
+                "unknown key 'faces_in_lidar'; did you mean 'face_in_lidar'?"},
+        BadText{"OddPixels",
+                View("    printed:\n      - {in_board_m: [0, 0], pixels: [1, 2, 3], "
+                     "covariance_px2: [1, 0, 0, 1]}"),
+                kParse, "p.yaml:10: pixels: expected two numbers a point, got 3 numbers"},
+        BadText{"SmallCovariance",
+                View("    printed:\n      - {in_board_m: [0, 0], pixels: [1, 2], "
+                     "covariance_px2: [1, 0]}"),
+                kParse, "p.yaml:10: covariance_px2: expected 4 numbers, got 2"},
+        BadText{"NegativeCovariance",
+                View("    printed:\n      - {in_board_m: [0, 0], pixels: [1, 2], "
+                     "covariance_px2: [-1, 0, 0, 1]}"),
+                kParse, "p.yaml:5: board_views: board 0 of view 0 has a covariance of pixels that"},
+        BadText{"FaceWithoutSigma", View("    printed: []\n    face_in_lidar:\n      - [1, 2, 3]"),
+                kParse, "range_sigma_m: expected this key"},
+        BadText{"EdgeOfNoSide",
+                View("    printed: []\n    edges:\n      - {direction: [1, 0, 0], side: 8, "
+                     "sigma_m: 0.01}"),
+                kParse, "p.yaml:11: side: expected"},
+        BadText{"EdgeOfTheHoleOfAWholeBoard",
+                View("    printed: []\n    edges:\n      - {direction: [1, 0, 0], side: 4, "
+                     "sigma_m: 0.01}"),
+                kParse, "board 0 of view 0 has an edge ray of side 4, expected 0 to 3"},
         BadText{"DecimalComma",
                 Problem("pairs_3d3d:\n- {point_in_cam: ['0,5',1,2], point_in_lidar: [1,2,3]}"),
                 kParse, "decimal comma?"},
