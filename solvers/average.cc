@@ -93,7 +93,7 @@ struct AverageOptions {
   RotationAverage rotation = RotationAverage::kChordal;
 };
 
-const OptionSet<AverageOptions>& Options() {
+const OptionSet<AverageOptions>& AverageOptionSet() {
   static const OptionSet<AverageOptions> options = OptionSet<AverageOptions>().Choice(
       "rotation", &AverageOptions::rotation, {"chordal", "quaternion_sum", "original_running"},
       "mean of least squares, the paper's formula, or what its package really computes");
@@ -183,7 +183,7 @@ SolverEntry AverageEntry() {
       .reference = "section on averaging in the paper; Markley et al. 2007 (rotations)",
       .example = "average(kabsch)",
       .wraps_solver = true,
-      .options = Options().Describe(),
+      .options = AverageOptionSet().Describe(),
       .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
         const DataNeeds& needs = arguments.inner->spec().needs;
         if (needs.pairs_3d3d == 0 && needs.pairs_2d3d == 0) {
@@ -195,9 +195,11 @@ SolverEntry AverageEntry() {
         if (Expected<void> ok = CheckKeepsCamera(*arguments.inner, arguments.name); !ok) {
           return tl::unexpected<Error>(std::move(ok.error()));
         }
-        return Options().Parse(arguments.options).map([&](const AverageOptions& o) -> SolverPtr {
-          return std::make_shared<AverageSolver>(arguments.name, arguments.inner, o);
-        });
+        return AverageOptionSet()
+            .Parse(arguments.options)
+            .map([&](const AverageOptions& o) -> SolverPtr {
+              return std::make_shared<AverageSolver>(arguments.name, arguments.inner, o);
+            });
       },
   };
 }

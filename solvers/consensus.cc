@@ -18,7 +18,7 @@ namespace sextant {
 namespace {
 
 constexpr double kMaxFalseAlarms = 0.01;
-constexpr int kMaxRefits = 10;
+constexpr int kMaxConsensusRefits = 10;
 // Quantiles at 0.99 of chi-square with 2 and 3 degrees of freedom.
 constexpr double kChiSquare2 = 9.210340371976184;
 constexpr double kChiSquare3 = 11.344866730144373;
@@ -193,7 +193,7 @@ Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem&
     Expected<Estimate> estimate = SolveSubset(inner, problem, inliers);
     if (!estimate) return estimate;
     scorer.Inliers(estimate->cam_from_lidar, next);
-    if (next == inliers || refit + 1 == kMaxRefits) return estimate;
+    if (next == inliers || refit + 1 == kMaxConsensusRefits) return estimate;
     std::swap(inliers, next);
   }
 }

@@ -15,7 +15,7 @@
 namespace sextant {
 namespace {
 
-constexpr int kMinPoints = 6;
+constexpr int kMinDltPoints = 6;
 
 // Thinner than this over its length, noise of rounding decides the axis across.
 constexpr double kMinThickness = 1e-5;
@@ -108,7 +108,7 @@ PoseOfMoments DltOfMoments(const Correspondences& data, const Rigid3d&) {
 Expected<Rigid3d> SolveDlt(std::span<const Eigen::Vector2d> image_points,
                            std::span<const Eigen::Vector3d> points_in_lidar) {
   const Expected<Correspondences> data =
-      PrepareCorrespondences(image_points, points_in_lidar, kMinPoints);
+      PrepareCorrespondences(image_points, points_in_lidar, kMinDltPoints);
   if (!data) return tl::unexpected<Error>(data.error());
   return PoseOf(*data);
 }
@@ -127,7 +127,7 @@ SolverEntry DltEntry() {
           return PnpPoses{.poses = {*pose}, .count = 1};
         };
         return std::make_shared<PnpSolver>(
-            SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = kMinPoints}}, kernel,
+            SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = kMinDltPoints}}, kernel,
             DltOfMoments);
       },
   };

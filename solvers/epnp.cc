@@ -13,7 +13,7 @@ namespace {
 
 // Thinner sets than this (standard deviations) are also solved as a plane: pixel noise then says
 // more of the third axis than its points do.
-constexpr double kThin = 0.05;
+constexpr double kNearlyFlat = 0.05;
 
 /// Tries every start, and gives the error of the best improper rotation.
 template <int kAxes>
@@ -46,7 +46,7 @@ Rigid3d PoseOf(const Correspondences& data, const EpnpCandidate& candidate) {
 double Search(const Correspondences& data, const Rigid3d* near, EpnpCandidate& best) {
   double mirrored = std::numeric_limits<double>::infinity();
   if (!data.frame.IsPlanar()) mirrored = SearchAxes<3>(data, near, best);
-  if (data.frame.deviation.z() < kThin * data.frame.deviation.x()) {
+  if (data.frame.deviation.z() < kNearlyFlat * data.frame.deviation.x()) {
     SearchAxes<2>(data, near, best);
   }
   return mirrored;

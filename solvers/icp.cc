@@ -15,14 +15,14 @@
 namespace sextant {
 namespace {
 
-using Points = std::span<const Eigen::Vector3d>;
+using PointSpan = std::span<const Eigen::Vector3d>;
 
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 // Finds and trims the matches; what it keeps from one iteration to the next saves allocations.
-class Matcher {
+class ClosestPoints {
  public:
-  Matcher(const PointTree& tree, Points source, const IcpSettings& settings)
+  ClosestPoints(const PointTree& tree, PointSpan source, const IcpSettings& settings)
       : tree_(tree), source_(source), trim_(settings.trim), nearest_(source.size(), -1) {
     if (settings.max_distance_m > 0.0) closer_than_m2_ = std::pow(settings.max_distance_m, 2);
     matches_.reserve(source.size());
@@ -55,7 +55,7 @@ class Matcher {
   }
 
   const PointTree& tree_;
-  Points source_;
+  PointSpan source_;
   double trim_;
   double closer_than_m2_ = std::numeric_limits<double>::infinity();
   std::vector<int> nearest_;  // Of each source point, as last seen.
@@ -68,7 +68,7 @@ class PointMetric {
  public:
   static constexpr std::size_t kMinMatches = 3;
 
-  PointMetric(Points target, Points source) : target_(target), source_(source) {
+  PointMetric(PointSpan target, PointSpan source) : target_(target), source_(source) {
     matched_target_.reserve(source.size());
     matched_source_.reserve(source.size());
   }
@@ -104,8 +104,8 @@ class PointMetric {
   }
 
  private:
-  Points target_;
-  Points source_;
+  PointSpan target_;
+  PointSpan source_;
   std::vector<Eigen::Vector3d> matched_target_;
   std::vector<Eigen::Vector3d> matched_source_;
 };
@@ -114,7 +114,7 @@ class PlaneMetric {
  public:
   static constexpr std::size_t kMinMatches = 6;
 
-  PlaneMetric(Points target, Points source, const PointTree& tree, int neighbours)
+  PlaneMetric(PointSpan target, PointSpan source, const PointTree& tree, int neighbours)
       : target_(target), source_(source), normals_(target, tree, neighbours) {
     matches_.reserve(source.size());
   }
@@ -137,8 +137,8 @@ class PlaneMetric {
   }
 
  private:
-  Points target_;
-  Points source_;
+  PointSpan target_;
+  PointSpan source_;
   SurfaceNormals normals_;
   std::vector<PlaneMatch> matches_;
 };
@@ -154,7 +154,7 @@ tl::unexpected<Error> ExplainStep(const Error& error, int iteration) {
 }
 
 template <class Metric>
-Expected<IcpFit> Iterate(Matcher& matcher, Metric& metric, const Rigid3d& start,
+Expected<IcpFit> Iterate(ClosestPoints& matcher, Metric& metric, const Rigid3d& start,
                          const IcpSettings& settings) {
   IcpFit fit;
   fit.target_from_source = start;
@@ -184,7 +184,7 @@ Expected<IcpFit> Iterate(Matcher& matcher, Metric& metric, const Rigid3d& start,
 
 }  // namespace
 
-Expected<IcpFit> FitIcp(Points target, Points source, const Rigid3d& start,
+Expected<IcpFit> FitIcp(PointSpan target, PointSpan source, const Rigid3d& start,
                         const IcpSettings& settings) {
   const bool planes = settings.metric == IcpMetric::kPlane;
   const std::size_t least_target = planes ? std::max(Index(settings.neighbours), 3UL) : 3UL;
@@ -200,7 +200,7 @@ Expected<IcpFit> FitIcp(Points target, Points source, const Rigid3d& start,
                            : ""));
   }
   const PointTree tree(target);
-  Matcher matcher(tree, source, settings);
+  ClosestPoints matcher(tree, source, settings);
   if (planes) {
     PlaneMetric metric(target, source, tree, settings.neighbours);
     return Iterate(matcher, metric, start, settings);
@@ -209,8 +209,8 @@ Expected<IcpFit> FitIcp(Points target, Points source, const Rigid3d& start,
   return Iterate(matcher, metric, start, settings);
 }
 
-Rigid3d AlignCentroids(Points target, Points source) {
-  const auto mean = [](Points points) {
+Rigid3d AlignCentroids(PointSpan target, PointSpan source) {
+  const auto mean = [](PointSpan points) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& point : points) sum += point;
     return Eigen::Vector3d(sum / static_cast<double>(points.size()));

@@ -17,7 +17,7 @@ struct IcpOptions : IcpSettings {
   double cell_deg = 2.0;
 };
 
-const OptionSet<IcpOptions>& Options() {
+const OptionSet<IcpOptions>& IcpOptionSet() {
   static const OptionSet<IcpOptions> options =
       OptionSet<IcpOptions>()
           .Choice("init", &IcpOptions::init, {"identity", "centroid", "pose"},
@@ -108,11 +108,13 @@ SolverEntry IcpEntry() {
           "Besl and McKay 1992; Chen and Medioni 1992; Blais and Levine 1995; "
           "Chetverikov et al. 2002",
       .example = "icp(init=centroid)",
-      .options = Options().Describe(),
+      .options = IcpOptionSet().Describe(),
       .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
-        return Options().Parse(arguments.options).map([&](const IcpOptions& options) -> SolverPtr {
-          return std::make_shared<IcpSolver>(arguments.name, options);
-        });
+        return IcpOptionSet()
+            .Parse(arguments.options)
+            .map([&](const IcpOptions& options) -> SolverPtr {
+              return std::make_shared<IcpSolver>(arguments.name, options);
+            });
       },
   };
 }

@@ -16,7 +16,7 @@ constexpr double kMostDamping = 1e12;
 constexpr double kMostDampingAtEnd = 1e-2;
 // Steps under this that raise the cost by no more than this share of it.
 constexpr double kSmallStep = 1e-6;
-constexpr double kRounding = 1e-12;
+constexpr double kJointRounding = 1e-12;
 
 struct JointStep {
   Eigen::VectorXd shared;
@@ -89,7 +89,7 @@ JointMinimum MinimiseJointly(const std::vector<JointView>& views, const JointUnk
       best.system = *std::move(there);
     }
     const bool lost_in_rounding =
-        !better && step.Size() < kSmallStep && rise <= kRounding * best.system.cost;
+        !better && step.Size() < kSmallStep && rise <= kJointRounding * best.system.cost;
     best.converged =
         (step.Size() < step_tolerance && damping <= kMostDampingAtEnd) || lost_in_rounding;
     if (best.converged) break;

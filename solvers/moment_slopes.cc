@@ -12,10 +12,10 @@ constexpr double kDisplacement = 1e-5;
 // The upper triangle of a symmetric 4x4 matrix, row by row.
 constexpr int kEntries = 10;
 using ByEntries = Eigen::Matrix<double, 6, kEntries>;
-using Entries = Eigen::Matrix<double, kEntries, 1>;
+using TriangleEntries = Eigen::Matrix<double, kEntries, 1>;
 
-Entries UpperTriangle(const Eigen::Matrix4d& m) {
-  Entries entries;
+TriangleEntries UpperTriangle(const Eigen::Matrix4d& m) {
+  TriangleEntries entries;
   int at = 0;
   for (int j = 0; j < 4; ++j) {
     for (int k = j; k < 4; ++k) entries(at++) = m(j, k);
@@ -144,7 +144,7 @@ std::optional<Matrix6d> ChainedMomentCovariance(const Correspondences& data,
   const std::optional<Slopes> slopes = Differentiate(data, estimate);
   if (!slopes) return std::nullopt;
   // The derivatives of CoordinateByCoordinate, point by point.
-  const Entries mean_entries = UpperTriangle(MeanProducts(data.frame));
+  const TriangleEntries mean_entries = UpperTriangle(MeanProducts(data.frame));
   const Vector6d constant_u = slopes->mean.col(0) - slopes->u * mean_entries -
                               2.0 * slopes->w * UpperTriangle(data.moments.u);
   const Vector6d constant_v = slopes->mean.col(1) - slopes->v * mean_entries -
@@ -153,7 +153,7 @@ std::optional<Matrix6d> ChainedMomentCovariance(const Correspondences& data,
   for (std::size_t i = 0; i < data.points.size(); ++i) {
     const Eigen::Vector4d h = InFrame(data.frame, data.points[i]);
     const Eigen::Vector2d uv = data.image_points[i] - data.moments.mean;
-    const Entries products = UpperTriangle(h * h.transpose());
+    const TriangleEntries products = UpperTriangle(h * h.transpose());
     const Vector6d by_w = 2.0 * slopes->w * products;
     Eigen::Matrix<double, 6, 2> by_image;
     by_image.col(0) = constant_u + slopes->u * products + uv.x() * by_w;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kFinalists = 24;
 constexpr double kDropped = 2.0;  // Of the cap.
-constexpr int kMaxRounds = 30;
+constexpr int kMaxMatchRounds = 30;
 constexpr double kSameAngle_rad = 0.1;
 constexpr double kSameShift = 1.0 / 3.0;  // Of an object's size.
 constexpr double kNoticeable_m = 1e-6;    // Costs of points that differ by less are equal.
@@ -150,7 +150,7 @@ class Matcher {
     MatchExplanation explanation;
     for (const double width : kWidths) {
       explanation = {};
-      for (int round = 0; round < kMaxRounds; ++round) {
+      for (int round = 0; round < kMaxMatchRounds; ++round) {
         MatchExplanation next = Explain(views_, pose, options_.cap, width * size_);
         const bool settled = round > 0 && SamePairings(next, explanation);
         explanation = std::move(next);

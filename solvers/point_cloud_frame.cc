@@ -7,15 +7,10 @@
 #include <cmath>
 
 #include "solvers/cloud_sums.h"
+#include "solvers/frame_limits.h"
 
 namespace sextant {
 namespace {
-
-// Points within 1e-5 of their length of a line leave the turn about it to rounding.
-constexpr double kMinLineVariance = 1e-10;
-
-// Doubles carry 1e-8 m at this distance.
-constexpr double kMaxDistance_m = 1e8;
 
 // Points within 1e-9 of the cloud's size of each other count as one.
 constexpr double kSameSquaredDistance = 1e-18;

@@ -6,7 +6,7 @@
 namespace sextant {
 namespace {
 
-struct Points {
+struct TreePoints {
   std::span<const Eigen::Vector3d> points;
 
   std::size_t kdtree_get_point_count() const { return points.size(); }
@@ -19,8 +19,8 @@ struct Points {
   }
 };
 
-using Distance = nanoflann::L2_Simple_Adaptor<double, Points, double, unsigned>;
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<Distance, Points, 3, unsigned>;
+using Distance = nanoflann::L2_Simple_Adaptor<double, TreePoints, double, unsigned>;
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<Distance, TreePoints, 3, unsigned>;
 
 #if NANOFLANN_VERSION >= 0x150
 using SearchParameters = nanoflann::SearchParameters;
@@ -54,7 +54,7 @@ struct PointTree::Index {
       : points{set}, tree(3, points, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)) {}
 
   static constexpr std::size_t kLeafSize = 10;
-  Points points;
+  TreePoints points;
   Tree tree;
 };
 

@@ -10,7 +10,7 @@ namespace sextant {
 namespace {
 
 // Quaternions are rounded to 1e-16; below this an eigenvalue gap or a cosine is only rounding.
-constexpr double kRounding = 1e-12;
+constexpr double kAngleRounding = 1e-12;
 
 tl::unexpected<Error> NothingToAverage() {
   return MakeError(ErrorCode::kMissingData, "no rotations to average");
@@ -19,7 +19,7 @@ tl::unexpected<Error> NothingToAverage() {
 // Adds `q` to `sum` with the sign that brings it nearer to `reference`; false where it has none.
 bool AddAligned(const Eigen::Vector4d& q, const Eigen::Vector4d& reference, Eigen::Vector4d& sum) {
   const double cosine = q.dot(reference);
-  if (!(std::abs(cosine) > kRounding)) return false;
+  if (!(std::abs(cosine) > kAngleRounding)) return false;
   sum += cosine > 0.0 ? q : Eigen::Vector4d(-q);
   return true;
 }
@@ -39,7 +39,7 @@ Expected<Eigen::Quaterniond> ChordalMean(std::span<const Eigen::Quaterniond> rot
   for (const Eigen::Quaterniond& q : rotations) sum += q.coeffs() * q.coeffs().transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(sum);
   const double gap = eigen.eigenvalues()(3) - eigen.eigenvalues()(2);
-  if (!(gap > kRounding * static_cast<double>(rotations.size()))) {
+  if (!(gap > kAngleRounding * static_cast<double>(rotations.size()))) {
     return MakeError(ErrorCode::kDegenerate,
                      fmt::format("the {} rotations are spread so evenly that two or more rotations "
                                  "are equally good means; average rotations that are near each "
