@@ -90,7 +90,8 @@ PoseOfMoments EpnpOfMoments(const Correspondences& data, const Rigid3d& near) {
   std::optional<NearestDepths<3>> of_space;
   std::optional<NearestDepths<2>> of_plane;
   if (!data.frame.IsPlanar()) of_space.emplace(data, near);
-  if (data.frame.deviation.z() < kThin * data.frame.deviation.x()) of_plane.emplace(data, near);
+  if (data.frame.deviation.z() < kNearlyFlat * data.frame.deviation.x())
+    of_plane.emplace(data, near);
   const bool is_plane =
       of_plane && (!of_space || of_plane->candidate().IsBetterThan(of_space->candidate()));
   const auto pose_by = [&data](const auto& depths) -> PoseOfMoments {

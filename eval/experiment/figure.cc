@@ -9,7 +9,7 @@
 namespace sextant {
 namespace {
 
-using Kind = Statistic::Kind;
+using StatisticKind = Statistic::Kind;
 
 double Square(double x) { return x * x; }
 
@@ -25,7 +25,7 @@ FigureGatherer::FigureGatherer(const Statistic& statistic, std::uint64_t seed)
 
 bool FigureGatherer::Counts(double value, double reference, double where) const {
   if (statistic_.where >= 0 && !IsNeither0NorNan(where)) return false;
-  if (statistic_.kind == Kind::kRate) return true;
+  if (statistic_.kind == StatisticKind::kRate) return true;
   return !std::isnan(value) && !(statistic_.reference >= 0 && std::isnan(reference));
 }
 
@@ -37,10 +37,10 @@ void FigureGatherer::Add(double value, double reference, double where) {
       successes_ += IsNeither0NorNan(value) ? 1U : 0U;
       break;
     case Stage::kSums:
-      if (statistic_.kind == Kind::kMean || statistic_.kind == Kind::kSd) {
+      if (statistic_.kind == StatisticKind::kMean || statistic_.kind == StatisticKind::kSd) {
         sums_->Add(value, 1.0);
       } else {
-        sums_->Add(Square(value), statistic_.kind == Kind::kRms ? 1.0 : Square(reference));
+        sums_->Add(Square(value), statistic_.kind == StatisticKind::kRms ? 1.0 : Square(reference));
       }
       break;
     case Stage::kDeviations:
@@ -73,10 +73,10 @@ void FigureGatherer::EndPass() {
 void FigureGatherer::EndCount() {
   stage_ = Stage::kDone;
   if (figure_.trials == 0) return;
-  if (statistic_.kind == Kind::kRate) {
+  if (statistic_.kind == StatisticKind::kRate) {
     figure_.value = static_cast<double>(successes_) / static_cast<double>(figure_.trials);
     figure_.interval = WilsonInterval(successes_, figure_.trials);
-  } else if (statistic_.kind == Kind::kQuantile) {
+  } else if (statistic_.kind == StatisticKind::kQuantile) {
     const double q = statistic_.quantile;
     quantiles_.emplace(figure_.trials, std::vector<QuantileGatherer::Wanted>{{q, HasInterval(q)}});
     stage_ = Stage::kRanks;
@@ -87,7 +87,7 @@ void FigureGatherer::EndCount() {
 }
 
 void FigureGatherer::EndSums() {
-  if (statistic_.kind == Kind::kSd && stage_ == Stage::kSums) {
+  if (statistic_.kind == StatisticKind::kSd && stage_ == Stage::kSums) {
     mean_ = sums_->ratio();
     sums_.emplace(figure_.trials);
     stage_ = Stage::kDeviations;
@@ -95,7 +95,7 @@ void FigureGatherer::EndSums() {
   }
   figure_.value = sums_->ratio();
   figure_.interval = sums_->BootstrapInterval(seed_);
-  if (statistic_.kind != Kind::kMean) {
+  if (statistic_.kind != StatisticKind::kMean) {
     figure_.value = std::sqrt(figure_.value);
     figure_.interval = {std::sqrt(figure_.interval->low), std::sqrt(figure_.interval->high)};
   }

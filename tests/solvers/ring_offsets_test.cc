@@ -14,14 +14,14 @@ namespace sextant {
 namespace {
 
 constexpr double kCell_rad = std::numbers::pi / 90.0;
-constexpr double kSigma_m = 0.0095;
+constexpr double kRingSigma_m = 0.0095;
 constexpr int kRings = 16;
 constexpr int kFloorRings = 3;  ///< Hardly a wall is seen by these.
 
 std::vector<double> TrueOffsets(std::uint64_t seed) {
   Random random(DeriveSeed(seed, "lidar_ring_bias", 0, 0));
   std::vector<double> offsets;
-  for (int ring = 0; ring < kRings; ++ring) offsets.push_back(kSigma_m * random.Normal());
+  for (int ring = 0; ring < kRings; ++ring) offsets.push_back(kRingSigma_m * random.Normal());
   return offsets;
 }
 
@@ -54,7 +54,7 @@ std::vector<double> Difference(std::vector<double> a, const std::vector<double>&
 // The weakest direction that is told has a sigma of 5 mm over all rings, 1.4 mm a ring.
 TEST(RingOffsets, AreToldBesideWhatPlanesTakeUp) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const ScanPair pair = Room(seed, kSigma_m);
+    const ScanPair pair = Room(seed, kRingSigma_m);
     const RingOffsets told = EstimateRingOffsets(ScanWindows(pair.in_target, kCell_rad),
                                                  ScanWindows(pair.in_source, kCell_rad));
     ASSERT_EQ(told.target_m.size(), static_cast<std::size_t>(kRings));
@@ -66,8 +66,8 @@ TEST(RingOffsets, AreToldBesideWhatPlanesTakeUp) {
 }
 
 TEST(RingOffsets, OfTwoUnitsAreToldApart) {
-  const ScanPair one = Room(1, kSigma_m);
-  const ScanPair other = Room(2, kSigma_m);
+  const ScanPair one = Room(1, kRingSigma_m);
+  const ScanPair other = Room(2, kRingSigma_m);
   const RingOffsets told = EstimateRingOffsets(ScanWindows(one.in_target, kCell_rad),
                                                ScanWindows(other.in_source, kCell_rad));
   ASSERT_EQ(told.target_m.size(), static_cast<std::size_t>(kRings));
