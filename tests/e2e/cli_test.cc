@@ -7,6 +7,8 @@
 #include <sstream>
 
 #include "e2e/run_sextant.h"
+#include "eval/simulate_views.h"
+#include "io/problem_yaml.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 
@@ -91,6 +93,21 @@ TEST(Cli, SolveWritesTheJsonContract) {
   EXPECT_TRUE(result.at("iterations").is_number_integer());
   EXPECT_EQ(result.at("termination"), "closed_form");
   EXPECT_TRUE(result.at("wall_time_us").is_number());
+}
+
+TEST(Cli, SolvesBoardViewsOfAFileByTheJointSolver) {
+  const Expected<SimulatedViews> views = SimulateViews({.views = 6, .exact = true});
+  ASSERT_TRUE(views) << views.error().message;
+  const auto path = TestFolder() / "views.yaml";
+  WriteText(path, FormatProblemYaml({.problem = views->problem}));
+  const ProgramRun run =
+      RunSextant("solve " + path.string() + " --solver 'joint(kabsch)' --json -");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json pose = json::parse(run.out).at("results").at(0).at("cam_from_lidar");
+  for (int i = 0; i < 3; ++i) {
+    const double told = pose.at("matrix").at(static_cast<std::size_t>(i)).at(3);
+    EXPECT_NEAR(told, views->true_cam_from_lidar.translation[i], 1e-5);
+  }
 }
 
 TEST(Cli, JsonFileStandsBesideTheText) {
