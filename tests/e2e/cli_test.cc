@@ -99,7 +99,9 @@ TEST(Cli, SolvesBoardViewsOfAFileByTheJointSolver) {
   const Expected<SimulatedViews> views = SimulateViews({.views = 6, .exact = true});
   ASSERT_TRUE(views) << views.error().message;
   const auto path = TestFolder() / "views.yaml";
-  WriteText(path, FormatProblemYaml({.problem = views->problem}));
+  WriteText(path, FormatProblemYaml({.problem = views->problem,
+                                     .true_cam_from_lidar = views->true_cam_from_lidar,
+                                     .comment = "six views"}));
   const ProgramRun run =
       RunSextant("solve " + path.string() + " --solver 'joint(kabsch)' --json -");
   ASSERT_EQ(run.exit_code, 0) << run.err;
