@@ -16,9 +16,13 @@
 #endif
 
 /// Defines a function from its template of the lanes, `name`For, which each machine gets with those
-/// that it computes on best. The template and what it calls must be SEXTANT_INLINE. Only its own
-/// file finds the choice: what others call must be a function around it.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(SEXTANT_SANITIZED)
+/// that it computes on best; one, where the build is for one machine. The template and what it
+/// calls must be SEXTANT_INLINE. Only its own file finds the choice: what others call must be a
+/// function around it.
+#if defined(__AVX512F__)
+#define SEXTANT_FOR_LANES(Return, name, parameters, arguments) \
+  Return name parameters { return name##For<Lanes> arguments; }
+#elif defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__) && !defined(SEXTANT_SANITIZED)
 #define SEXTANT_FOR_LANES(Return, name, parameters, arguments)                                     \
   SEXTANT_BEGIN_VERSIONS                                                                           \
   __attribute__((target("default"))) Return name parameters {                                      \
