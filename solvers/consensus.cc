@@ -70,6 +70,16 @@ int CountDistinct(const PairTerms& terms, std::span<const int> indices) {
   return static_cast<int>(std::unique(numbers.begin(), numbers.end()) - numbers.begin());
 }
 
+// Whether `inner` can work on so few.
+Expected<void> CheckEnough(const Solver& inner, std::size_t inlier_count) {
+  const int least = LeastPairs(inner.spec().needs);
+  if (inlier_count >= static_cast<std::size_t>(least)) return {};
+  return MakeError(ErrorCode::kNoConsensus,
+                   fmt::format("{} pairs agree on a pose, expected at least {}; check the pairing "
+                               "and the sigmas",
+                               inlier_count, least));
+}
+
 }  // namespace
 
 double InlierOptions::MaxSquared(PairKind kind) const {
@@ -137,13 +147,14 @@ Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer,
                         ChanceOfAgreement(terms, scorer.max_squared()), least);
 }
 
-Expected<void> CheckEnough(const Solver& inner, std::size_t inlier_count) {
-  const int least = LeastPairs(inner.spec().needs);
-  if (inlier_count >= static_cast<std::size_t>(least)) return {};
-  return MakeError(ErrorCode::kNoConsensus,
-                   fmt::format("{} pairs agree on a pose, expected at least {}; check the pairing "
-                               "and the sigmas",
-                               inlier_count, least));
+double WantedSamples(std::size_t count, std::size_t inliers, int sample_size, double confidence) {
+  const auto n = static_cast<double>(count);
+  double all_inliers = 1.0;
+  for (int drawn = 0; drawn < sample_size; ++drawn) {
+    all_inliers *= std::max(0.0, static_cast<double>(inliers) - drawn) / (n - drawn);
+  }
+  if (all_inliers >= 1.0) return 1.0;
+  return std::ceil(std::log1p(-confidence) / std::log1p(-all_inliers));
 }
 
 Expected<Estimate> SolveWhole(const Solver& inner, const CalibrationProblem& problem) {
@@ -182,20 +193,28 @@ Expected<Rigid3d> PoseOfSubset(const Solver& inner, const CalibrationProblem& pr
 }
 
 Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem& problem,
-                                  const PoseScorer& scorer, const Rigid3d& pose) {
+                                  const FindInliers& find_inliers, const Rigid3d& pose) {
   std::vector<int> inliers;
   std::vector<int> next;
-  scorer.Inliers(pose, inliers);
+  find_inliers(pose, inliers);
   for (int refit = 0;; ++refit) {
     if (Expected<void> ok = CheckEnough(inner, inliers.size()); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
     Expected<Estimate> estimate = SolveSubset(inner, problem, inliers);
     if (!estimate) return estimate;
-    scorer.Inliers(estimate->cam_from_lidar, next);
+    find_inliers(estimate->cam_from_lidar, next);
     if (next == inliers || refit + 1 == kMaxConsensusRefits) return estimate;
     std::swap(inliers, next);
   }
+}
+
+Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem& problem,
+                                  const PoseScorer& scorer, const Rigid3d& pose) {
+  const auto by_scorer = [&scorer](const Rigid3d& at, std::vector<int>& inliers) {
+    scorer.Inliers(at, inliers);
+  };
+  return RefitOnInliers(inner, problem, by_scorer, pose);
 }
 
 Rigid3d OptimiseOnInliers(const PairTerms& terms, const PoseScorer& scorer, const Rigid3d& pose,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -76,13 +77,21 @@ int LeastPairs(const DataNeeds& needs);
 /// `inner` with one pair more of its kind, as a consensus takes.
 DataNeeds NeedsOfConsensus(DataNeeds inner, PairKind kind);
 
-/// Error: kNoConsensus where `inner` cannot work on so few.
-Expected<void> CheckEnough(const Solver& inner, std::size_t inlier_count);
+/// How many samples of `sample_size` of `count` pairs to draw until one of inliers only has been
+/// drawn with this probability.
+double WantedSamples(std::size_t count, std::size_t inliers, int sample_size, double confidence);
+
+/// Writes the indices of a pose's inliers.
+using FindInliers = std::function<void(const Rigid3d& pose, std::vector<int>& inliers)>;
 
 /// `inner` on all inliers of `pose`, again and again until the inliers stay the same (at most ten
 /// times). The estimate's inliers are those it was solved from, as indices of the whole problem;
 /// `inner` is added to its stages. Errors: kNoConsensus for fewer inliers than `inner` needs, and
 /// those of `inner`.
+Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem& problem,
+                                  const FindInliers& find_inliers, const Rigid3d& pose);
+
+/// The same, by the scorer's threshold.
 Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem& problem,
                                   const PoseScorer& scorer, const Rigid3d& pose);
 

@@ -2,13 +2,13 @@
 #include "solvers/p3p_consensus.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <vector>
 
 #include "base/random.h"
+#include "solvers/consensus.h"
 #include "solvers/normal_step.h"
 #include "solvers/p3p.h"
 #include "solvers/pixel_sums.h"
@@ -54,7 +54,7 @@ class Search {
       SolveP3pBatch(triples_, candidates_);
       if (!TakeBestCandidate()) continue;
       Optimise(options_.local_rounds, kLocalStep);
-      wanted = std::min<double>(options_.max_samples, WantedSamples());
+      wanted = std::min<double>(options_.max_samples, SamplesForBest());
     }
     if (found_ && options_.local_rounds > 0) Optimise(kFinalRounds, kFinalStep);
   }
@@ -132,18 +132,12 @@ class Search {
     }
   }
 
-  double WantedSamples() {
+  double SamplesForBest() {
     PixelSums sums;
     const int inliers = SumPixelsWithin(terms_.View(), PinholePose(camera_, best_),
                                         options_.max_squared, options_.max_squared, sums);
-    const auto n = static_cast<double>(count_);
-    double all_inliers = 1.0;
-    for (int drawn = 0; drawn < 3; ++drawn) {
-      all_inliers *= std::max(0.0, static_cast<double>(inliers - drawn)) / (n - drawn);
-    }
-    screen_ = PixelScreen(static_cast<double>(inliers) / n);
-    if (all_inliers >= 1.0) return 1.0;
-    return std::ceil(std::log1p(-options_.confidence) / std::log1p(-all_inliers));
+    screen_ = PixelScreen(static_cast<double>(inliers) / static_cast<double>(count_));
+    return WantedSamples(count_, static_cast<std::size_t>(inliers), 3, options_.confidence);
   }
 
   const Camera& camera_;

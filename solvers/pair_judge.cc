@@ -14,7 +14,6 @@ namespace {
 
 // Of least squares on the inliers; far fewer are needed.
 constexpr int kMaxRounds = 20;
-constexpr int kMaxRefits = 10;
 
 /// Of pairs with any noise.
 class TermsJudge final : public PairJudge {
@@ -144,17 +143,10 @@ std::unique_ptr<PairJudge> MakePairJudge(const Solver& inner, const CalibrationP
 Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem& problem,
                                   const PairColumns& pairs, const Rigid3d& pose,
                                   double max_squared) {
-  std::vector<int> inliers = InliersOf(pairs, pose, max_squared);
-  for (int refit = 0;; ++refit) {
-    if (Expected<void> ok = CheckEnough(inner, inliers.size()); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
-    Expected<Estimate> estimate = SolveSubset(inner, problem, inliers);
-    if (!estimate) return estimate;
-    std::vector<int> next = InliersOf(pairs, estimate->cam_from_lidar, max_squared);
-    if (next == inliers || refit + 1 == kMaxRefits) return estimate;
-    inliers = std::move(next);
-  }
+  const auto by_columns = [&](const Rigid3d& at, std::vector<int>& inliers) {
+    inliers = InliersOf(pairs, at, max_squared);
+  };
+  return RefitOnInliers(inner, problem, by_columns, pose);
 }
 
 std::optional<Estimate> RefitIfNoWorse(const Solver& inner, const CalibrationProblem& problem,

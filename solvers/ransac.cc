@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
+#include <span>
 
 #include "solvers/p3p_consensus.h"
 #include "solvers/p3p_solver.h"
@@ -72,15 +72,12 @@ class RansacSolver final : public Solver {
       return SolveByTriples(terms, scorer);
     }
     TermsConsensus consensus(terms, scorer);
-    SampleSearch search(*inner_, sampling, problem, consensus);
-    search.Run();
-    if (!search.found()) return NoPose(search.iterations(), sampling.sample_size);
-    Expected<Estimate> estimate = Finish(problem, terms, scorer, search.best());
-    if (!estimate) return estimate;
-    if (Expected<void> ok = CheckConsensus(terms, scorer, estimate->inliers, LeastInliers()); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
-    return Checked(problem, search.iterations(), std::move(*estimate));
+    return SolveBySamples(
+        problem, sampling, consensus,
+        [&](const Rigid3d& pose) { return Finish(problem, terms, scorer, pose); },
+        [&](std::span<const int> inliers) {
+          return CheckConsensus(terms, scorer, inliers, LeastInliers());
+        });
   }
 
   // Isotropic 3D-3D pairs.
@@ -89,13 +86,25 @@ class RansacSolver final : public Solver {
     const double max_squared = options_.MaxSquared(kind_);
     const PairColumns pairs(problem.pairs_3d3d, options_.Assumed());
     ColumnsConsensus consensus(pairs, max_squared);
+    return SolveBySamples(
+        problem, sampling, consensus,
+        [&](const Rigid3d& pose) { return FinishInColumns(problem, pairs, max_squared, pose); },
+        [&](std::span<const int> inliers) {
+          return CheckConsensus(pairs, max_squared, inliers, LeastInliers());
+        });
+  }
+
+  // The answer from the best sample's pose, and the verdict on its inliers.
+  template <class Consensus, class FinishFrom, class Check>
+  Expected<Estimate> SolveBySamples(const CalibrationProblem& problem,
+                                    const SampleOptions& sampling, Consensus& consensus,
+                                    const FinishFrom& finish_from, const Check& check) const {
     SampleSearch search(*inner_, sampling, problem, consensus);
     search.Run();
     if (!search.found()) return NoPose(search.iterations(), sampling.sample_size);
-    Expected<Estimate> estimate = FinishInColumns(problem, pairs, max_squared, search.best());
+    Expected<Estimate> estimate = finish_from(search.best());
     if (!estimate) return estimate;
-    if (Expected<void> ok = CheckConsensus(pairs, max_squared, estimate->inliers, LeastInliers());
-        !ok) {
+    if (Expected<void> ok = check(estimate->inliers); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
     return Checked(problem, search.iterations(), std::move(*estimate));

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include "base/random.h"
@@ -45,7 +44,9 @@ class TripleSearch {
     double wanted = budget;
     while (samples_ < wanted) {
       ++samples_;
-      if (DrawAgreeing() && Improves()) wanted = std::min(wanted, WantedSamples());
+      if (!DrawAgreeing() || !Improves()) continue;
+      wanted = std::min(
+          wanted, WantedSamples(pairs_.size(), static_cast<std::size_t>(inliers_), 3, confidence_));
     }
     return samples_ < budget;
   }
@@ -94,14 +95,6 @@ class TripleSearch {
       improves = true;
     }
     return improves;
-  }
-
-  double WantedSamples() const {
-    const auto n = static_cast<double>(pairs_.size());
-    const auto k = static_cast<double>(inliers_);
-    const double all_true = k * (k - 1.0) * (k - 2.0) / (n * (n - 1.0) * (n - 2.0));
-    if (all_true >= 1.0) return 1.0;
-    return std::ceil(std::log1p(-confidence_) / std::log1p(-all_true));
   }
 
   const Solver& inner_;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -106,7 +105,8 @@ class SampleSearch {
           Optimise({.max_iterations = 4, .step_tolerance = 1e-6});
         }
         wanted = std::min<double>(options_.max_iterations,
-                                  WantedIterations(consensus_.CountInliers(best_)));
+                                  WantedSamples(consensus_.size(), consensus_.CountInliers(best_),
+                                                options_.sample_size, options_.confidence));
       }
     }
     if (found_) Optimise({.max_iterations = 30, .step_tolerance = 1e-10});
@@ -131,18 +131,6 @@ class SampleSearch {
     best_ = pose;
     found_ = true;
     return true;
-  }
-
-  // Samples until one of inliers only has been drawn with the wanted confidence.
-  double WantedIterations(std::size_t inlier_count) const {
-    const double n = static_cast<double>(consensus_.size());
-    double all_inliers = 1.0;
-    for (std::size_t i = 0; i < sample_.size(); ++i) {
-      const double drawn = static_cast<double>(i);
-      all_inliers *= std::max(0.0, static_cast<double>(inlier_count) - drawn) / (n - drawn);
-    }
-    if (all_inliers >= 1.0) return 1.0;
-    return std::ceil(std::log1p(-options_.confidence) / std::log1p(-all_inliers));
   }
 
   const Solver& inner_;
