@@ -10,7 +10,7 @@
 #include "solvers/registry.h"
 #include "support/kernel_calls.h"
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__GLIBC__) && !defined(SEXTANT_SANITIZED)
 #define SEXTANT_COUNTS_ALLOCATIONS
 #endif
 
