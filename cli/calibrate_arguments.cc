@@ -61,6 +61,8 @@ void AddCalibrate(CLI::App& app, CalibrateOptions& options) {
       ->capture_default_str();
   command.add_option("--out", options.out_path, "Result file (YAML)")->capture_default_str();
   command.add_option("--json", options.json_path, "The same as JSON; - for standard output");
+  command.add_option("--problem", options.problem_path,
+                     "Write the correspondences found, for sextant solve and compare (YAML)");
   command.footer(
       "Examples:\n"
       "  sextant calibrate --image photo.png --cloud scan.pcd --board board.yaml --camera "
@@ -68,6 +70,7 @@ void AddCalibrate(CLI::App& app, CalibrateOptions& options) {
       "  sextant calibrate --image 'photos/*.png' --cloud 'scans/*.pcd' --board board.yaml "
       "--camera cam.yaml\n"
       "  sextant calibrate session.yaml --solver 'gnc(kabsch),kabsch,refine(ransac(p3p))'\n"
+      "  sextant calibrate session.yaml --problem found.yaml && sextant compare found.yaml\n"
       "  sextant calibrate recording.bag --board board.yaml");
 }
 

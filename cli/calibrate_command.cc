@@ -29,6 +29,7 @@
 #include "io/calibration_result.h"
 #include "io/camera_file.h"
 #include "io/cloud_file.h"
+#include "io/problem_yaml.h"
 #include "io/text_file.h"
 
 namespace sextant::cli {
@@ -216,6 +217,18 @@ int DeliverResult(const CalibrateOptions& options, const CalibrationResult& resu
                  kAnswered);
 }
 
+Expected<void> WriteProblem(const CalibrateOptions& options, const Job& job,
+                            const Assembly& assembly, std::size_t views) {
+  if (options.problem_path.empty()) return {};
+  const ProblemFile file{
+      .problem = assembly.problem,
+      .true_cam_from_lidar = job.session.true_cam_from_lidar,
+      .comment =
+          fmt::format("sextant calibrate: {} boards in {} views, initial pose by their match",
+                      assembly.problem.board_views.size(), views)};
+  return WriteFileAtomically(options.problem_path, FormatProblemYaml(file));
+}
+
 std::string ErrorAgainstTruth(const Job& job, const SolveReport& report) {
   if (!job.session.true_cam_from_lidar) return {};
   const PoseDistance error =
@@ -271,6 +284,9 @@ int RunCalibrate(const CalibrateOptions& options) {
     Refuse("calibrate", assembly.error());
     fmt::print(stderr, "{}", OtherSizes(*job, views));
     return kNoAnswer;
+  }
+  if (Expected<void> ok = WriteProblem(options, *job, *assembly, views.size()); !ok) {
+    return Refuse("calibrate", ok.error());
   }
   const std::vector<ComparisonRow> rows =
       Compare(assembly->problem, job->solvers, job->session.true_cam_from_lidar);

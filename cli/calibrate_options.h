@@ -30,6 +30,7 @@ struct CalibrateOptions {
   int bootstrap = 100;  ///< Draws of the views; 0: none, and no cross-validation either.
   std::string out_path = "result.yaml";  ///< Empty: none.
   std::string json_path;
+  std::string problem_path;  ///< What the solvers are given; empty: not written.
 };
 
 void AddCalibrate(CLI::App& app, CalibrateOptions& options);

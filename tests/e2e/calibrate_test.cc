@@ -93,6 +93,25 @@ TEST(Calibrate, ASimulatedSessionAsItStands) {
   EXPECT_THAT(mixed.out, HasSubstr("image and scan of different moments"));
 }
 
+TEST(Calibrate, TheProblemFileGivesTheSameAnswerToSolve) {
+  const fs::path session = Simulated("--scans 3");
+  const std::string problem = (TestFolder() / "problem.yaml").string();
+  const fs::path calibrated = TestFolder() / "calibrated.json";
+  const std::string solver = " --solver 'joint(gnc(kabsch),board_size=scale)'";
+  const ProgramRun run = RunSextant("calibrate " + session.string() + Out() + solver +
+                                    " --problem " + problem + " --json " + calibrated.string());
+  ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+  const fs::path solved = TestFolder() / "solved.json";
+  const ProgramRun again = RunSextant("solve " + problem + solver + " --json " + solved.string());
+  ASSERT_EQ(again.exit_code, 0) << again.err << again.out;
+  EXPECT_EQ(json::parse(ReadText(solved)).at("cam_from_lidar"),
+            json::parse(ReadText(calibrated)).at("cam_from_lidar"));
+  const ProgramRun nowhere =
+      RunSextant("calibrate " + session.string() + Out() + " --problem /proc/none/problem.yaml");
+  EXPECT_EQ(nowhere.exit_code, 2);
+  EXPECT_THAT(nowhere.err, HasSubstr("/proc/none/problem.yaml"));
+}
+
 TEST(Calibrate, OnePairByItsFilesSaysWhatItCannotKnow) {
   const fs::path session = Simulated("--scans 1");
   const std::string files = " --image " + (session / "cam_000.png").string() + " --cloud " +
