@@ -4,11 +4,12 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <numbers>
+#include <span>
 
 #include "eval/simulator/scan.h"
 #include "support/lidar_scenes.h"
@@ -220,7 +221,7 @@ TEST(ScanNoise, IntensityFollowsThePrint) {
 
 bool SameBytes(const SimulatedScan& a, const SimulatedScan& b) {
   const auto same = [](const auto& x, const auto& y) {
-    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+    return std::ranges::equal(std::as_bytes(std::span(x)), std::as_bytes(std::span(y)));
   };
   return same(a.cloud.points, b.cloud.points) && same(a.cloud.intensity, b.cloud.intensity) &&
          same(a.cloud.ring, b.cloud.ring) && same(a.cloud.time_s, b.cloud.time_s);
