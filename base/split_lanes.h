@@ -5,34 +5,27 @@
 
 #include "base/lanes.h"
 
-// clang takes the versions that only the loader chooses for unused.
-#if defined(__clang__)
-#define SEXTANT_BEGIN_VERSIONS \
-  _Pragma("clang diagnostic push") _Pragma("clang diagnostic ignored \"-Wunused-function\"")
-#define SEXTANT_END_VERSIONS _Pragma("clang diagnostic pop")
-#else
-#define SEXTANT_BEGIN_VERSIONS
-#define SEXTANT_END_VERSIONS
-#endif
-
 /// Defines a function from its template of the lanes, `name`For, which each machine gets with those
 /// that it computes on best; one, where the build is for one machine. The template and what it
-/// calls must be SEXTANT_INLINE. Only its own file finds the choice: what others call must be a
-/// function around it.
+/// calls must be SEXTANT_INLINE. It asks the processor at each call, by one load and a branch that
+/// is always the same: the loader's choice would be as fast, but clang 14 then leaves out inline
+/// functions that only its versions call, and sanitizers cannot run it.
 #if defined(__AVX512F__)
 #define SEXTANT_FOR_LANES(Return, name, parameters, arguments) \
   Return name parameters { return name##For<Lanes> arguments; }
-#elif defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__) && !defined(SEXTANT_SANITIZED)
-#define SEXTANT_FOR_LANES(Return, name, parameters, arguments)                                     \
-  SEXTANT_BEGIN_VERSIONS                                                                           \
-  __attribute__((target("default"))) Return name parameters {                                      \
-    return name##For<SplitLanes> arguments;                                                        \
-  }                                                                                                \
-  __attribute__((target("avx2"))) Return name parameters {                                         \
-    return name##For<SplitLanes> arguments;                                                        \
-  }                                                                                                \
-  __attribute__((target("avx512f"))) Return name parameters { return name##For<Lanes> arguments; } \
-  SEXTANT_END_VERSIONS
+#elif defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__)
+#define SEXTANT_FOR_LANES(Return, name, parameters, arguments)            \
+  __attribute__((target("avx2"))) Return name##Avx2 parameters {          \
+    return name##For<SplitLanes> arguments;                               \
+  }                                                                       \
+  __attribute__((target("avx512f"))) Return name##Avx512 parameters {     \
+    return name##For<Lanes> arguments;                                    \
+  }                                                                       \
+  Return name parameters {                                                \
+    if (__builtin_cpu_supports("avx512f")) return name##Avx512 arguments; \
+    if (__builtin_cpu_supports("avx2")) return name##Avx2 arguments;      \
+    return name##For<SplitLanes> arguments;                               \
+  }
 #else
 #define SEXTANT_FOR_LANES(Return, name, parameters, arguments) \
   Return name parameters { return name##For<SplitLanes> arguments; }
