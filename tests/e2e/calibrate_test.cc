@@ -104,7 +104,7 @@ TEST(Calibrate, TheProblemFileGivesTheSameAnswerToSolve) {
   const fs::path solved = TestFolder() / "solved.json";
   const ProgramRun again = RunSextant("solve " + problem + solver + " --json " + solved.string());
   ASSERT_EQ(again.exit_code, 0) << again.err << again.out;
-  EXPECT_EQ(json::parse(ReadText(solved)).at("cam_from_lidar"),
+  EXPECT_EQ(json::parse(ReadText(solved)).at("results").at(0).at("cam_from_lidar"),
             json::parse(ReadText(calibrated)).at("cam_from_lidar"));
   const ProgramRun nowhere =
       RunSextant("calibrate " + session.string() + Out() + " --problem /proc/none/problem.yaml");
