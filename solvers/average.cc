@@ -44,7 +44,7 @@ Matrix6d Scatter(std::span<const Rigid3d> poses, const Rigid3d& average) {
     sum += d;
     squares += d * d.transpose();
   }
-  const Matrix6d scatter = (squares - sum * sum.transpose() / n) / (n - 1.0);
+  Matrix6d scatter = (squares - sum * sum.transpose() / n) / (n - 1.0);
   if (poses.size() >= kMinViewsForCorrelations) return scatter;
   return scatter.diagonal().cwiseMax(0.0).asDiagonal();
 }

@@ -229,7 +229,7 @@ Rigid3d OptimiseOnInliers(const PairTerms& terms, const PoseScorer& scorer, cons
         scorer.Inliers(at, workspace.inliers, widening);
         if (workspace.inliers.size() < least) return std::nullopt;
         workspace.terms.AssignSubset(terms, workspace.inliers);
-        const std::optional<Rigid3d> closed_form =
+        std::optional<Rigid3d> closed_form =
             FitIsotropicPoints(workspace.terms.points, workspace.buffers);
         if (closed_form) return closed_form;
         return RefinePose(workspace.terms.View(), at, of_pose).cam_from_lidar;

@@ -74,8 +74,8 @@ class OptionSet {
   }
 
   /// Any of the choices, joined by +; bit i of the member stands for choices[i]. None by default.
-  OptionSet& Set(std::string name, unsigned Options::*member, std::vector<std::string> choices,
-                 std::string meaning) {
+  OptionSet& Set(std::string name, unsigned Options::*member,
+                 const std::vector<std::string>& choices, std::string meaning) {
     std::string joined;
     for (const std::string& choice : choices) joined += (joined.empty() ? "" : "+") + choice;
     return Add(

@@ -40,16 +40,15 @@ SEXTANT_INLINE Lanes InTurn(const Lanes& a, const Lanes& b, const Lanes& c) {
 }
 
 /// Every lane from so many places on, the first ones last.
-template <int kPlaces>
+template <int kBy>
 SEXTANT_INLINE Lanes Turned(const Lanes& a) {
-  constexpr int k = kPlaces;
-  return __builtin_shufflevector(a, a, k, k + 1, k + 2, k + 3, k + 4, k + 5, k + 6, k + 7);
+  return __builtin_shufflevector(a, a, kBy, kBy + 1, kBy + 2, kBy + 3, kBy + 4, kBy + 5, kBy + 6,
+                                 kBy + 7);
 }
-template <int kPlaces>
+template <int kBy>
 SEXTANT_INLINE SplitLanes Turned(const SplitLanes& a) {
-  constexpr int k = kPlaces;
-  return {__builtin_shufflevector(a.low, a.high, k, k + 1, k + 2, k + 3),
-          __builtin_shufflevector(a.high, a.low, k, k + 1, k + 2, k + 3)};
+  return {__builtin_shufflevector(a.low, a.high, kBy, kBy + 1, kBy + 2, kBy + 3),
+          __builtin_shufflevector(a.high, a.low, kBy, kBy + 1, kBy + 2, kBy + 3)};
 }
 
 /// A point as three registers of x y z x y z ...
