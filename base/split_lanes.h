@@ -10,6 +10,7 @@
 /// calls must be SEXTANT_INLINE. It asks the processor at each call, by one load and a branch that
 /// is always the same: the loader's choice would be as fast, but clang 14 then leaves out inline
 /// functions that only its versions call, and sanitizers cannot run it.
+// NOLINTBEGIN(bugprone-macro-parentheses): types and parameter lists bear none.
 #if defined(__AVX512F__)
 #define SEXTANT_FOR_LANES(Return, name, parameters, arguments) \
   Return name parameters { return name##For<Lanes> arguments; }
@@ -30,6 +31,7 @@
 #define SEXTANT_FOR_LANES(Return, name, parameters, arguments) \
   Return name parameters { return name##For<SplitLanes> arguments; }
 #endif
+// NOLINTEND(bugprone-macro-parentheses)
 
 namespace sextant {
 

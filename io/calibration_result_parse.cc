@@ -110,7 +110,7 @@ Rigid3d ReadPose(YamlFields& in, const YamlNode& node, std::string_view key) {
   if (matrix != nullptr && numbers.items.empty()) {
     return ReadPoseBlock(in, block_of({"matrix"}), key);
   }
-  const Rigid3d pose = ReadPoseBlock(in, numbers, key);
+  Rigid3d pose = ReadPoseBlock(in, numbers, key);
   if (matrix == nullptr || !in.ok()) return pose;
   const Rigid3d other = ReadPoseBlock(in, block_of({"matrix"}), key);
   if (in.ok() && !(PoseDifference(other, pose).cwiseAbs().maxCoeff() < 1e-5)) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include "base/error.h"
 
@@ -48,8 +49,8 @@ class AtomicFileWriter {
 
 /// parse(text, name) of the file's content; the path as given names it in messages.
 template <class Parse>
-auto ReadWith(const std::filesystem::path& path, Parse parse)
-    -> decltype(parse(std::string_view(), std::string())) {
+std::invoke_result_t<Parse, std::string_view, std::string> ReadWith(
+    const std::filesystem::path& path, Parse parse) {
   const Expected<std::string> text = ReadTextFile(path);
   if (!text) return tl::unexpected<Error>(text.error());
   return parse(std::string_view(*text), path.string());

@@ -41,9 +41,9 @@ Eigen::Matrix<double, 1, 6> DistanceByPose(const Meeting& at, const BoardPlane& 
 }  // namespace
 
 BoardSide SideOf(const Board& board, int side) {
-  static const std::array<Eigen::Vector2d, 4> sides = {
+  static const std::array<Eigen::Vector2d, 4> kOutward = {
       Eigen::Vector2d(0, -1), Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1), Eigen::Vector2d(-1, 0)};
-  const Eigen::Vector2d outward = sides[static_cast<std::size_t>(side % kCornersPerBoard)];
+  const Eigen::Vector2d outward = kOutward[static_cast<std::size_t>(side % kCornersPerBoard)];
   const Eigen::Vector2d half_share = 0.5 * outward.cwiseAbs();
   if (side < kCornersPerBoard) {
     const Eigen::Vector2d size(board.top_right_m, board.right_bottom_m);

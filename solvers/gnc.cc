@@ -188,7 +188,7 @@ class GncSolver final : public Solver {
     }
     std::vector<int> all(terms.size());
     std::iota(all.begin(), all.end(), 0);
-    const Expected<Rigid3d> pose = PoseOfSubset(*inner_, weighted, terms, all);
+    Expected<Rigid3d> pose = PoseOfSubset(*inner_, weighted, terms, all);
     if (!pose || !spec().estimates_rotation) return pose;
     const PoseScorer squares(terms, kEveryPair);
     const bool is_better = !before || squares.Cost(*pose) <= squares.Cost(*before);

@@ -17,7 +17,7 @@ namespace {
 
 using PointSpan = std::span<const Eigen::Vector3d>;
 
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+std::size_t Place(int i) { return static_cast<std::size_t>(i); }
 
 // Finds and trims the matches; what it keeps from one iteration to the next saves allocations.
 class ClosestPoints {
@@ -77,8 +77,8 @@ class PointMetric {
     matched_target_.clear();
     matched_source_.clear();
     for (const IcpMatch& match : matches) {
-      matched_target_.push_back(target_[Index(match.target)]);
-      matched_source_.push_back(source_[Index(match.source)]);
+      matched_target_.push_back(target_[Place(match.target)]);
+      matched_source_.push_back(source_[Place(match.source)]);
     }
   }
 
@@ -122,9 +122,9 @@ class PlaneMetric {
   void SetMatches(const std::vector<IcpMatch>& matches) {
     matches_.clear();
     for (const IcpMatch& match : matches) {
-      const Eigen::Vector3d& normal = normals_[Index(match.target)];
+      const Eigen::Vector3d& normal = normals_[Place(match.target)];
       if (normal.isZero(0.0)) continue;
-      matches_.push_back({source_[Index(match.source)], target_[Index(match.target)], normal});
+      matches_.push_back({source_[Place(match.source)], target_[Place(match.target)], normal});
     }
   }
 
@@ -187,7 +187,7 @@ Expected<IcpFit> Iterate(ClosestPoints& matcher, Metric& metric, const Rigid3d& 
 Expected<IcpFit> FitIcp(PointSpan target, PointSpan source, const Rigid3d& start,
                         const IcpSettings& settings) {
   const bool planes = settings.metric == IcpMetric::kPlane;
-  const std::size_t least_target = planes ? std::max(Index(settings.neighbours), 3UL) : 3UL;
+  const std::size_t least_target = planes ? std::max(Place(settings.neighbours), 3UL) : 3UL;
   const std::size_t least_source = planes ? PlaneMetric::kMinMatches : PointMetric::kMinMatches;
   if (target.size() < least_target || source.size() < least_source) {
     return MakeError(

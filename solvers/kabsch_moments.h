@@ -139,10 +139,10 @@ struct SeenFromOrigin {
 };
 
 /// A point of pairs.
-template <class L, Eigen::Vector3d Pair3d3d::*point>
+template <class L, Eigen::Vector3d Pair3d3d::*kPoint>
 struct PairsFromOrigin {
   SEXTANT_INLINE Point3<L> Eight(std::size_t i) const {
-    return Gather<L>(&pairs[i], point) - origin;
+    return Gather<L>(&pairs[i], kPoint) - origin;
   }
 
   std::span<const Pair3d3d> pairs;

@@ -17,9 +17,8 @@ std::vector<int> ByFallingDegree(const std::vector<int>& degrees) {
   std::vector<int> begins(degrees.size() + 1, 0);
   for (const int degree : degrees) ++begins[static_cast<std::size_t>(degree)];
   int begin = 0;
-  for (auto count = begins.rbegin(); count != begins.rend(); ++count) {
-    begin += std::exchange(*count, begin);
-  }
+  std::for_each(begins.rbegin(), begins.rend(),
+                [&](int& count) { begin += std::exchange(count, begin); });
   std::vector<int> order(degrees.size());
   for (std::size_t v = 0; v < degrees.size(); ++v) {
     int& place = begins[static_cast<std::size_t>(degrees[v])];

@@ -33,11 +33,11 @@ std::optional<MaxTraceRotation> MaximizeTraceByEigensolver(const CrossMatrix<dou
                           -lambda(0)};
 }
 
-std::optional<MaxTraceRotation> MaximizeTrace(const Eigen::Matrix3d& m, double trace_bound) {
-  const CrossMatrix<double> cross = {m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1),
-                                     m(1, 2), m(2, 0), m(2, 1), m(2, 2)};
+std::optional<MaxTraceRotation> MaximizeTrace(const Eigen::Matrix3d& cross, double trace_bound) {
+  const CrossMatrix<double> m = {cross(0, 0), cross(0, 1), cross(0, 2), cross(1, 0), cross(1, 1),
+                                 cross(1, 2), cross(2, 0), cross(2, 1), cross(2, 2)};
   TraceMaximum best;
-  if (!ByFormula(cross, trace_bound, best)) return MaximizeTraceByEigensolver(cross, trace_bound);
+  if (!ByFormula(m, trace_bound, best)) return MaximizeTraceByEigensolver(m, trace_bound);
   return MaxTraceRotation{ToQuaternion(best.q), best.trace, best.mirrored_trace};
 }
 

@@ -74,7 +74,7 @@ Rigid3d Turned(const Eigen::Quaterniond& turn, const Rigid3d& pose) {
   return Rigid3d{turn, Eigen::Vector3d::Zero()} * pose;
 }
 
-double FocalLength_px(const Camera& camera) { return 0.5 * (camera.fx_px + camera.fy_px); }
+double FocalLengthPx(const Camera& camera) { return 0.5 * (camera.fx_px + camera.fy_px); }
 
 /// The covariance through the moments; none of four different points, of which the kernel also
 /// looks at the pixels.
@@ -130,7 +130,7 @@ std::optional<Matrix6d> KernelCovariance(const PnpKernel& kernel, PnpCovariance 
   }
   if (!in_view && kind == PnpCovariance::kMoments) {
     in_view =
-        ThroughMoments(kernel, FocalLength_px(camera), view, *image_covariances, view_from_lidar);
+        ThroughMoments(kernel, FocalLengthPx(camera), view, *image_covariances, view_from_lidar);
   }
   if (!in_view) return std::nullopt;
   Matrix6d turn = Matrix6d::Zero();
@@ -155,7 +155,7 @@ Expected<Estimate> PnpSolver::DoSolve(const CalibrationProblem& problem) const {
   const std::vector<Pair2d3d>& pairs = problem.pairs_2d3d;
   Expected<View> view = MakeView(camera, pairs);
   if (!view) return tl::unexpected<Error>(Named(view.error()));
-  Expected<PnpPoses> found = kernel_({view->image_points, view->points, FocalLength_px(camera)});
+  Expected<PnpPoses> found = kernel_({view->image_points, view->points, FocalLengthPx(camera)});
   if (!found) return tl::unexpected<Error>(Named(found.error()));
   for (Rigid3d& pose : found->poses) pose = Turned(view->cam_from_view, pose);
   Estimate estimate;
@@ -198,7 +198,7 @@ void PnpSolver::DoHypothesize(const CalibrationProblem& problem, std::span<const
                           std::span<const Eigen::Vector3d> points,
                           const Eigen::Quaterniond& cam_from_view) {
     const Expected<PnpPoses> found =
-        kernel_({image_points, points, FocalLength_px(camera), {.unchecked = true}});
+        kernel_({image_points, points, FocalLengthPx(camera), {.unchecked = true}});
     for (int i = 0; found && i < found->count; ++i) {
       poses.push_back(Turned(cam_from_view, found->poses[static_cast<std::size_t>(i)]));
     }

@@ -116,7 +116,7 @@ class RansacSolver final : public Solver {
     const std::size_t count =
         kind_ == PairKind::k3d3d ? problem.pairs_3d3d.size() : problem.pairs_2d3d.size();
     if (2 * estimate.inliers.size() < count) {
-      const Expected<Estimate> of_all = SolveWhole(*inner_, problem);
+      Expected<Estimate> of_all = SolveWhole(*inner_, problem);
       if (!of_all && of_all.error().code == ErrorCode::kMirrored) return of_all;
     }
     estimate.iterations = iterations;

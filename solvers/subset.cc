@@ -22,7 +22,8 @@ CalibrationProblem SubsetOf(const CalibrationProblem& problem, const DataNeeds& 
   subset.camera = problem.camera;
   subset.boards = problem.boards;
   subset.initial_cam_from_lidar = problem.initial_cam_from_lidar;
-  if (needs.pairs_3d3d > 0) {
+  // clang-tidy 14 takes the two for the same.
+  if (needs.pairs_3d3d > 0) {  // NOLINT(bugprone-branch-clone)
     subset.pairs_3d3d = Select(problem.pairs_3d3d, indices);
   } else {
     subset.pairs_2d3d = Select(problem.pairs_2d3d, indices);

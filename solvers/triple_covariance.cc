@@ -30,7 +30,7 @@ std::optional<Matrix6d> ProjectionInformation(const Camera& camera, std::span<co
 
 std::optional<Matrix6d> TripleCovariance(const Camera& camera, std::span<const Pair2d3d> pairs,
                                          const Triple& triple, const Rigid3d& pose) {
-  const std::optional<Matrix6d> relative = RelativeTripleCovariance(camera, pairs, triple, pose);
+  std::optional<Matrix6d> relative = RelativeTripleCovariance(camera, pairs, triple, pose);
   if (!relative || HasKnownNoise(pairs.front())) return relative;
   if (pairs.size() == 3) return std::nullopt;
   double squares = 0.0;
