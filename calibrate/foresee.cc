@@ -169,7 +169,7 @@ std::optional<BoardView> ForeseeView(const SensorPair& sensors, const Board& boa
                                      const Rigid3d& cam_from_board) {
   const Rigid3d lidar_from_board = sensors.cam_from_lidar.Inverse() * cam_from_board;
   const auto normal_of = [](const Rigid3d& pose) {
-    return Eigen::Vector3d(pose.rotation * Eigen::Vector3d::UnitZ());
+    return (pose.rotation * Eigen::Vector3d::UnitZ()).eval();
   };
   if (!SeesFront(cam_from_board.translation, normal_of(cam_from_board)) ||
       !SeesFront(lidar_from_board.translation, normal_of(lidar_from_board))) {

@@ -84,7 +84,7 @@ Expected<Matrix6d> CramerRaoBoundOfViews(const CalibrationProblem& problem,
   Matrix6d sum = Matrix6d::Zero();
   for (std::size_t i = 0; i < problem.board_views.size(); ++i) {
     const BoardView& view = problem.board_views[i];
-    const Expected<Matrix6d> information =
+    Expected<Matrix6d> information =
         InformationOfView(view, *FindBoard(problem.boards, view.board), *problem.camera,
                           true_cam_from_lidar, true_cam_from_board[i]);
     if (!information) return information;

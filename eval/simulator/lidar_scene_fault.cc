@@ -67,21 +67,19 @@ Expected<void> CheckLidarScene(const Scene& scene) {
     if (Expected<void> ok = CheckBoard(scene.boards[i], i); !ok) return ok;
   }
   for (const SceneWall& wall : scene.walls) {
-    const Expected<void> ok =
-        CheckPoseAndSizes(fmt::format("wall '{}'", wall.name), wall.world_from_wall,
-                          Eigen::Vector2d(wall.width_m, wall.height_m));
+    Expected<void> ok = CheckPoseAndSizes(fmt::format("wall '{}'", wall.name), wall.world_from_wall,
+                                          Eigen::Vector2d(wall.width_m, wall.height_m));
     if (!ok) return ok;
   }
   for (const SceneBox& box : scene.boxes) {
-    const Expected<void> ok =
+    Expected<void> ok =
         CheckPoseAndSizes(fmt::format("box '{}'", box.name), box.world_from_box, box.size_m);
     if (!ok) return ok;
   }
   for (const SceneCylinder& cylinder : scene.cylinders) {
     const Rigid3d pose{Eigen::Quaterniond::Identity(), cylinder.base_in_world};
-    const Expected<void> ok =
-        CheckPoseAndSizes(fmt::format("cylinder '{}'", cylinder.name), pose,
-                          Eigen::Vector2d(cylinder.radius_m, cylinder.height_m));
+    Expected<void> ok = CheckPoseAndSizes(fmt::format("cylinder '{}'", cylinder.name), pose,
+                                          Eigen::Vector2d(cylinder.radius_m, cylinder.height_m));
     if (!ok) return ok;
   }
   return {};

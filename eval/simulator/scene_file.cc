@@ -16,7 +16,7 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-std::string NameAt(YamlFields& in, const YamlNode& node, std::string otherwise = {}) {
+std::string NameAt(YamlFields& in, const YamlNode& node, const std::string& otherwise = {}) {
   return node.Find("name") != nullptr ? in.TextAt(node, "name") : otherwise;
 }
 

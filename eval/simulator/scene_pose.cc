@@ -31,7 +31,7 @@ Eigen::Quaterniond ReadQuaternion(YamlFields& in, const YamlNode& node) {
 }  // namespace
 
 Eigen::Quaterniond SceneRotation(SceneAxes axes, const EulerZyx& euler) {
-  const Eigen::Quaterniond turned = FromEulerZyx(euler);
+  Eigen::Quaterniond turned = FromEulerZyx(euler);
   if (axes == SceneAxes::kForwardIsX) return turned;
   Eigen::Matrix3d forward_left_up_from_axes;
   forward_left_up_from_axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;

@@ -119,7 +119,7 @@ class AprilTagDetector final : public TagDetector {
   void DetectIn(Engine& engine, const cv::Mat& grey, const cv::Rect& region,
                 Detections& found) const {
     const cv::Mat part = grey(region);
-    const double noise_grey = SeesPixels() ? EstimateNoise_grey(part) : 0.0;
+    const double noise_grey = SeesPixels() ? EstimateNoiseGrey(part) : 0.0;
     const std::unique_ptr<zarray_t, void (*)(zarray_t*)> quads(
         engine.Detect(part, LeastRange(noise_grey)), apriltag_detections_destroy);
     for (int i = 0; i < zarray_size(quads.get()); ++i) {

@@ -21,7 +21,7 @@ std::string CheckerKey(const BoardChecker& checker) {
 
 // "aruco(refine=subpix)" and "aruco_original" make "aruco(dictionary=original,refine=subpix)".
 Expected<std::string> SpecFor(const std::string& family, const std::string& detector) {
-  const Expected<std::string> usual = DetectorSpecFor(family);
+  Expected<std::string> usual = DetectorSpecFor(family);
   if (!usual || detector.empty()) return usual;
   Expected<SpecNode> wanted = ParseSpec(detector);
   if (!wanted) return tl::unexpected<Error>(wanted.error());
@@ -165,7 +165,7 @@ Expected<BoardFinder> BoardFinder::Make(std::vector<Board> boards, std::optional
     if (!ok) return tl::unexpected<Error>(ok.error());
   }
   finder.boards_ = std::move(boards);
-  finder.camera_ = std::move(camera);
+  finder.camera_ = camera;
   return finder;
 }
 

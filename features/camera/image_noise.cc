@@ -32,7 +32,7 @@ int SumOfDifferences(const cv::Mat& grey, int left, int top) {
 
 }  // namespace
 
-double EstimateNoise_grey(const cv::Mat& grey) {
+double EstimateNoiseGrey(const cv::Mat& grey) {
   std::vector<int> sums;
   for (int top = 0; top + kBlock_px <= grey.rows; top += kBlock_px) {
     for (int left = 1; left + kBlock_px < grey.cols; left += kBlock_px) {
@@ -46,7 +46,8 @@ double EstimateNoise_grey(const cv::Mat& grey) {
   // White noise of sigma 1: mean |difference| is sqrt(6) sqrt(2 / pi), and blocks of 128, whose
   // neighbours go together, scatter by 9 percent: their lower quartile is 0.94 of that.
   const double of_unit_noise = 0.94 * std::sqrt(12.0 / std::acos(-1.0));
-  return *quartile / (kBlock_px * kBlock_px / kRowStep * of_unit_noise);
+  constexpr int kDifferences = kBlock_px * kBlock_px / kRowStep;
+  return *quartile / (kDifferences * of_unit_noise);
 }
 
 }  // namespace sextant

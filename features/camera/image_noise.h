@@ -11,6 +11,6 @@ namespace sextant {
 /// harm; blocks without any difference (black, or overexposed) do not count. Noise that goes
 /// together over neighbouring pixels is told too small; texture finer than some pixels that fills
 /// the image is told as noise. 0 where there is no block or no difference.
-double EstimateNoise_grey(const cv::Mat& grey);
+double EstimateNoiseGrey(const cv::Mat& grey);
 
 }  // namespace sextant

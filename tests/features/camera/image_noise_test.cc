@@ -31,7 +31,7 @@ TEST(ImageNoise, IsToldThroughLightAndPrint) {
     AddNoise(image, sigma_grey, 1);
     // Rounding to whole levels adds 1 / 12. A quarter of all blocks is the median of those without
     // print, 6 percent above their lower quartile.
-    EXPECT_NEAR(EstimateNoise_grey(image), std::sqrt(sigma_grey * sigma_grey + 1.0 / 12.0),
+    EXPECT_NEAR(EstimateNoiseGrey(image), std::sqrt(sigma_grey * sigma_grey + 1.0 / 12.0),
                 0.09 * sigma_grey);
   }
 }
@@ -40,16 +40,16 @@ TEST(ImageNoise, OfAWallIsExactToItsSamplingError) {
   cv::Mat image(720, 1280, CV_8U, cv::Scalar(128));
   AddNoise(image, 3.0, 2);
   // 3600 blocks: the quartile scatters by 0.2 percent; the constant is rounded to one percent.
-  EXPECT_NEAR(EstimateNoise_grey(image), std::sqrt(9.0 + 1.0 / 12.0), 0.03);
+  EXPECT_NEAR(EstimateNoiseGrey(image), std::sqrt(9.0 + 1.0 / 12.0), 0.03);
 }
 
 TEST(ImageNoise, OfAnExactImageIsZeroAndOverexposedPartsDoNotCount) {
-  EXPECT_EQ(EstimateNoise_grey(cv::Mat(100, 100, CV_8U, cv::Scalar(7))), 0.0);
-  EXPECT_EQ(EstimateNoise_grey(cv::Mat(9, 9, CV_8U, cv::Scalar(7))), 0.0);
+  EXPECT_EQ(EstimateNoiseGrey(cv::Mat(100, 100, CV_8U, cv::Scalar(7))), 0.0);
+  EXPECT_EQ(EstimateNoiseGrey(cv::Mat(9, 9, CV_8U, cv::Scalar(7))), 0.0);
   cv::Mat image(480, 480, CV_8U, cv::Scalar(128));
   AddNoise(image, 3.0, 3);
   image(cv::Rect(0, 0, 480, 240)) = 255;
-  EXPECT_NEAR(EstimateNoise_grey(image), 3.0, 0.1);
+  EXPECT_NEAR(EstimateNoiseGrey(image), 3.0, 0.1);
 }
 
 }  // namespace
