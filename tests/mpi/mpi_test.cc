@@ -15,6 +15,11 @@ namespace {
 
 using testing::HasSubstr;
 
+// The sanitizer looks for leaks at the end, when OpenMPI's modules, which have some, are unloaded.
+constexpr const char* kAsRootOnOneCore =
+    "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+    "OMPI_MCA_rmaps_base_oversubscribe=1 ASAN_OPTIONS=detect_leaks=0 ";
+
 std::string Quoted(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
 
 std::filesystem::path WriteExperiment(int trials) {
@@ -59,13 +64,11 @@ class Mpi : public testing::Test {
   // A command of the shell in the place of a rank, whose number is in $OMPI_COMM_WORLD_RANK.
   static ProgramRun Start(int ranks, const std::string& rank_command) {
     const std::string shell = "sh -c " + Quoted(rank_command);
-    // Under the sanitizer: OpenMPI's modules leave memory behind, and are gone when it is told.
-    return RunProgram(
-        "ASAN_OPTIONS=detect_leaks=0 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-        "OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_btl=self,vader "
-        "OMPI_MCA_btl_vader_single_copy_mechanism=none " +
-            Mpirun(),
-        "-n " + std::to_string(ranks) + " " + shell);
+    return RunProgram(std::string(kAsRootOnOneCore) +
+                          "OMPI_MCA_btl=self,vader "
+                          "OMPI_MCA_btl_vader_single_copy_mechanism=none " +
+                          Mpirun(),
+                      "-n " + std::to_string(ranks) + " " + shell);
   }
 
   static ProgramRun Run(int ranks, const std::filesystem::path& experiment,
@@ -206,10 +209,8 @@ TEST_F(Mpi, TheSlurmJobStartsIt) {
                 Mpirun() + " -n 2 \"$@\"\n");
   std::filesystem::permissions(bin / "srun", std::filesystem::perms::owner_all);
   const ProgramRun run = RunProgram(
-      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-      "OMPI_MCA_rmaps_base_oversubscribe=1 SLURM_CPUS_PER_TASK=1 SEXTANT_MPI=" +
-          Program() + " PATH=" + bin.string() + ":$PATH " +
-          (SourceRoot() / "scripts/slurm/mpi").string(),
+      std::string(kAsRootOnOneCore) + "SLURM_CPUS_PER_TASK=1 SEXTANT_MPI=" + Program() +
+          " PATH=" + bin.string() + ":$PATH " + (SourceRoot() / "scripts/slurm/mpi").string(),
       Quoted(experiment) + " --no-csv --out " + Quoted(TestFolder() / "out"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Rows("out") == WholeRows(experiment));
