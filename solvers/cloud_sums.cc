@@ -101,7 +101,7 @@ void AddMoments(const double* image, const double* points, std::size_t count,
     for (int axis = 0; axis < 3; ++axis) offset[axis] = p.of[axis] - frame.centroid[axis];
     Lanes h[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const double* a = &frame.axes[3 * axis];
+      const double* a = frame.axes + 3 * axis;
       h[axis] = a[0] * offset[0] + a[1] * offset[1] + a[2] * offset[2];
     }
     u_sums[0] += u;

@@ -45,7 +45,7 @@ void FindCandidates(const double* rays, const double* points, Candidates& out) {
 }
 
 SEXTANT_INLINE void LoadVectors(const double (&from)[9][kLanes], Vector<Lanes> (&to)[3]) {
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (int i = 0; i < 3; ++i) {
     to[i] = {LoadLanes(from[3 * i]), LoadLanes(from[3 * i + 1]), LoadLanes(from[3 * i + 2])};
   }
 }

@@ -44,8 +44,7 @@ RowOfWindow SumRow(const ScanCells& cells, int row, int column) {
   double squares = 0.0;
   for (int c = -1; c <= 1; ++c) {
     const int other = (column + c + cells.columns()) % cells.columns();
-    const int place = row * cells.columns() + other;
-    const auto& of = cells.sums()[static_cast<std::size_t>(place)].of;
+    const auto& of = cells.sums()[static_cast<std::size_t>(row * cells.columns() + other)].of;
     const double* first = of.data() + CellSums::kFirst;
     const double* second = of.data() + CellSums::kSecond;
     sums.count += of[CellSums::kCount];
@@ -63,8 +62,7 @@ struct WindowShare {
 };
 
 WindowShare ShareOf(const ScanWindows& windows, int row, int column, double variance) {
-  const int place = row * windows.cells().columns() + column;
-  const auto cell = static_cast<std::size_t>(place);
+  const auto cell = static_cast<std::size_t>(row * windows.cells().columns() + column);
   const auto& inverse = windows.planes().inverse;
   const auto at = [&](std::size_t k) { return inverse[k][cell]; };
   Eigen::Matrix3d inverse_moments;

@@ -20,7 +20,7 @@
 namespace sextant {
 namespace {
 
-constexpr std::size_t kChunkSize = 768UL * 1024;  // As ROS records.
+constexpr std::size_t kChunkSize = 768 * 1024;  // As ROS records.
 constexpr std::size_t kBagHeaderSize = 4096;
 constexpr std::int64_t kLastTime = std::int64_t{0xffffffff} * 1'000'000'000;
 
