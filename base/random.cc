@@ -35,10 +35,10 @@ double PortableLog(double x) {
   return 2.0 * z * sum + exponent * kLn2;
 }
 
-template <std::size_t N>
-double Polynomial(const std::array<double, N>& coefficients, double x) {
+template <std::size_t kTerms>
+double Polynomial(const std::array<double, kTerms>& coefficients, double x) {
   double value = coefficients.back();
-  for (std::size_t i = N - 1; i-- > 0;) value = value * x + coefficients[i];
+  for (std::size_t i = kTerms - 1; i-- > 0;) value = value * x + coefficients[i];
   return value;
 }
 

@@ -10,20 +10,20 @@ namespace sextant {
 namespace {
 
 // Coefficients from the constant up.
-template <std::size_t Size>
-using Polynomial = std::array<double, Size>;
+template <std::size_t kTerms>
+using Polynomial = std::array<double, kTerms>;
 
-template <std::size_t Size>
-double Value(const Polynomial<Size>& p, double x) {
+template <std::size_t kTerms>
+double Value(const Polynomial<kTerms>& p, double x) {
   double sum = 0.0;
-  for (std::size_t i = Size; i-- > 0;) sum = sum * x + p[i];
+  for (std::size_t i = kTerms; i-- > 0;) sum = sum * x + p[i];
   return sum;
 }
 
-template <std::size_t Size>
-double Slope(const Polynomial<Size>& p, double x) {
+template <std::size_t kTerms>
+double Slope(const Polynomial<kTerms>& p, double x) {
   double sum = 0.0;
-  for (std::size_t i = Size; i-- > 1;) sum = sum * x + static_cast<double>(i) * p[i];
+  for (std::size_t i = kTerms; i-- > 1;) sum = sum * x + static_cast<double>(i) * p[i];
   return sum;
 }
 
@@ -31,15 +31,15 @@ double Slope(const Polynomial<Size>& p, double x) {
 // the interval closes in on it; what 30 halvings leave open touches zero.
 constexpr int kMaxHalvings = 30;
 
-template <std::size_t Size>
-bool IsPositiveByHalving(Polynomial<Size> bernstein, int halvings) {
+template <std::size_t kTerms>
+bool IsPositiveByHalving(Polynomial<kTerms> bernstein, int halvings) {
   if (!(bernstein.front() > 0.0 && bernstein.back() > 0.0)) return false;
   if (*std::min_element(bernstein.begin(), bernstein.end()) > 0.0) return true;
   if (halvings == 0) return false;
-  Polynomial<Size> left;
-  for (std::size_t level = 0; level < Size; ++level) {
+  Polynomial<kTerms> left;
+  for (std::size_t level = 0; level < kTerms; ++level) {
     left[level] = bernstein[0];
-    for (std::size_t i = 0; i + level + 1 < Size; ++i) {
+    for (std::size_t i = 0; i + level + 1 < kTerms; ++i) {
       bernstein[i] = 0.5 * (bernstein[i] + bernstein[i + 1]);
     }
   }
@@ -48,24 +48,24 @@ bool IsPositiveByHalving(Polynomial<Size> bernstein, int halvings) {
 
 // Whether p > 0 on all of [0, end]. Allocates nothing and needs no search for roots, so that the
 // domain of a camera is known without a cache beside its coefficients.
-template <std::size_t Size>
-bool IsPositiveUpTo(const Polynomial<Size>& p, double end) {
-  Polynomial<Size> scaled;
+template <std::size_t kTerms>
+bool IsPositiveUpTo(const Polynomial<kTerms>& p, double end) {
+  Polynomial<kTerms> scaled;
   double power = 1.0;
   double lower_bound = p[0];
-  for (std::size_t i = 0; i < Size; ++i) {
+  for (std::size_t i = 0; i < kTerms; ++i) {
     scaled[i] = p[i] * power;
     if (i > 0) lower_bound += std::min(0.0, scaled[i]);
     power *= end;
   }
   if (lower_bound > 0.0) return true;
   // Bernstein coefficient i is sum_j C(i, j) / C(degree, j) scaled_j.
-  Polynomial<Size> bernstein{};
-  for (std::size_t i = 0; i < Size; ++i) {
+  Polynomial<kTerms> bernstein{};
+  for (std::size_t i = 0; i < kTerms; ++i) {
     double ratio = 1.0;
     for (std::size_t j = 0; j <= i; ++j) {
       bernstein[i] += ratio * scaled[j];
-      if (j < i) ratio *= static_cast<double>(i - j) / static_cast<double>(Size - 1 - j);
+      if (j < i) ratio *= static_cast<double>(i - j) / static_cast<double>(kTerms - 1 - j);
     }
   }
   return IsPositiveByHalving(bernstein, kMaxHalvings);
