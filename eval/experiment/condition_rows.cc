@@ -60,7 +60,8 @@ Expected<ConditionRows> ConditionRows::Open(const Experiment& experiment,
   return rows;
 }
 
-ColumnPasses::ColumnPasses(const ConditionRows& rows, std::vector<int> metrics) : rows_(&rows) {
+ColumnPasses::ColumnPasses(const ConditionRows& rows, const std::vector<int>& metrics)
+    : rows_(&rows) {
   for (const int metric : metrics) columns_.push_back(ColumnOf(*rows.experiment_, metric));
   std::uint64_t count = 0;
   for (const RowBlockPlace& block : rows.blocks_) count += block.rows;

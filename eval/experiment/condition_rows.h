@@ -52,7 +52,7 @@ class ColumnPasses {
 
   /// Requires wanted metrics; -1 stands for none, whose column stays empty. The rows must outlive
   /// this.
-  ColumnPasses(const ConditionRows& rows, std::vector<int> metrics);
+  ColumnPasses(const ConditionRows& rows, const std::vector<int>& metrics);
 
   /// All rows of the condition, trial by trial.
   Expected<void> Pass(const std::function<void(const Rows&)>& visit);

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "base/nearest_name.h"
 #include "eval/experiment/timing.h"
@@ -68,7 +69,7 @@ Expected<Experiment> ExperimentParser::Parse(const YamlNode& root) {
 
 std::string ExperimentParser::OptionalText(const YamlNode& map, std::string_view key,
                                            std::string otherwise) {
-  return fields_.ok() && map.Find(key) != nullptr ? fields_.TextAt(map, key) : otherwise;
+  return fields_.ok() && map.Find(key) != nullptr ? fields_.TextAt(map, key) : std::move(otherwise);
 }
 
 bool ExperimentParser::Flag(const YamlNode& map, std::string_view key) {

@@ -20,7 +20,7 @@ Statistic ExperimentParser::ParseStatisticOf(const YamlNode& node, const Experim
 
 std::string ExperimentParser::ParseAxis(const YamlNode& map, std::string_view key,
                                         const Experiment& experiment, bool may_be_index) {
-  const std::string name = fields_.TextAt(map, key);
+  std::string name = fields_.TextAt(map, key);
   std::vector<std::string> known = experiment.axes;
   if (may_be_index) known.emplace_back("index");
   if (!fields_.ok() || std::find(known.begin(), known.end(), name) != known.end()) return name;

@@ -117,7 +117,7 @@ void RowFileReader::FindBlocks() {
     if (!ReadAt(whole_bytes_, bytes.data(), bytes.size())) return;
     std::uint64_t checksum = 0;
     std::memcpy(&checksum, bytes.data() + bytes.size() - 8, 8);
-    if (checksum != RowChecksum(std::string_view(bytes).substr(0, bytes.size() - 8))) return;
+    if (checksum != RowChecksum(std::string_view{bytes}.substr(0, bytes.size() - 8))) return;
     blocks_.push_back({.number = head[1], .rows = head[2], .offset = whole_bytes_});
     whole_bytes_ += bytes.size();
   }

@@ -44,15 +44,15 @@ Scene TwoBoardsInRoom(const BoardField& field, Random& random);
 /// A stand that holds a board from behind: a pole from the floor to above its lowest corner, as
 /// near to its back as it gets, and a tripod's hub and feet below. Requires a scene of
 /// TwoBoardsInRoom.
-void AddStand(const SceneBoard& board, Scene& scene);
+void AddStand(const SceneBoard& placed, Scene& scene);
 
 /// A person within a forearm behind a board, with both hands over its lower edges.
-void AddHolder(const SceneBoard& board, Random& random, Scene& scene);
+void AddHolder(const SceneBoard& placed, Random& random, Scene& scene);
 
 /// Boards of a scene, in its order.
 std::vector<Board> BoardsIn(const Scene& scene);
 
 /// Corner i of board b in the world.
-Eigen::Vector3d TrueCorner(const SceneBoard& board, int corner);
+Eigen::Vector3d TrueCorner(const SceneBoard& placed, int corner);
 
 }  // namespace sextant
