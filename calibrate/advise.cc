@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +11,7 @@
 
 #include "base/units.h"
 #include "calibrate/information.h"
+#include "geometry/symmetric.h"
 #include "solvers/board_view_check.h"
 #include "solvers/board_view_information.h"
 
@@ -65,9 +65,9 @@ std::optional<Matrix6d> InformationAt(const SensorPair& sensors, const Board& bo
 
 // Log of the determinant in scaled axes, so that the start may be singular; minus infinity then.
 double LogDeterminant(const Matrix6d& information) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information, Eigen::EigenvaluesOnly);
-  if (!(eigen.eigenvalues()[0] > 0.0)) return -std::numeric_limits<double>::infinity();
-  return eigen.eigenvalues().array().log().sum();
+  const SymmetricEigen<6> eigen = EigenOf(information);
+  if (!(eigen.values[0] > 0.0)) return -std::numeric_limits<double>::infinity();
+  return eigen.values.array().log().sum();
 }
 
 // By image, else by scan and the answer.

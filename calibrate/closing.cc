@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "base/units.h"
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -56,16 +56,16 @@ std::string Certainty(const SolveReport& report) {
     return "How sure it is cannot be told: no residual is left to judge by.";
   }
   const Matrix6d& covariance = *report.covariance;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> turn(covariance.topLeftCorner<3, 3>());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> shift(covariance.bottomRightCorner<3, 3>());
+  const SymmetricEigen<3> turn = EigenOf<3>(covariance.topLeftCorner<3, 3>());
+  const SymmetricEigen<3> shift = EigenOf<3>(covariance.bottomRightCorner<3, 3>());
   return fmt::format(
       "One standard deviation is {:.2f} deg and {:.1f} mm over all axes together; weakest are the "
       "rotation about {} with {:.2f} deg and the translation along {} with {:.1f} mm, in the "
       "camera "
       "frame.",
-      kDegPerRad * std::sqrt(turn.eigenvalues().sum()), 1e3 * std::sqrt(shift.eigenvalues().sum()),
-      AxisText(turn.eigenvectors().col(2)), kDegPerRad * std::sqrt(turn.eigenvalues()(2)),
-      AxisText(shift.eigenvectors().col(2)), 1e3 * std::sqrt(shift.eigenvalues()(2)));
+      kDegPerRad * std::sqrt(turn.values.sum()), 1e3 * std::sqrt(shift.values.sum()),
+      AxisText(turn.vectors.col(2)), kDegPerRad * std::sqrt(turn.values(2)),
+      AxisText(shift.vectors.col(2)), 1e3 * std::sqrt(shift.values(2)));
 }
 
 // What limits it, and what to do, in the order of what helps most.

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "geometry/so3.h"
-#include "solvers/invert_information.h"
+#include "geometry/symmetric.h"
 #include "solvers/pair_noise.h"
 
 namespace sextant {
@@ -66,7 +66,7 @@ std::optional<ScaleFit> FitScale(const CalibrationProblem& problem, const Rigid3
     squares += weight * residual.squaredNorm();
     boards += pair.id.corner == 0 ? 1 : 0;
   }
-  const std::optional<Matrix7d> inverse = InvertSymmetric(normal);
+  const std::optional<Eigen::MatrixXd> inverse = InvertSymmetric<Eigen::Dynamic>(normal);
   if (boards < 2 || !inverse) return std::nullopt;
   const Vector7d step = *inverse * gradient;
   ScaleFit fit{.excess = step(6), .sum_squares = squares - step.dot(gradient)};

@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "base/units.h"
+#include "geometry/symmetric.h"
 #include "solvers/board_view_check.h"
 #include "solvers/board_view_information.h"
 
@@ -19,8 +19,8 @@ struct Weakest3 {
 };
 
 Weakest3 WeakestOf3(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
-  return {eigen.eigenvectors().col(2), std::sqrt(std::max(0.0, eigen.eigenvalues()[2]))};
+  const SymmetricEigen<3> eigen = EigenOf(covariance);
+  return {eigen.vectors.col(2), std::sqrt(std::max(0.0, eigen.values[2]))};
 }
 
 std::optional<Matrix6d> InformationOf(const CalibrationProblem& problem, int view,
@@ -68,11 +68,10 @@ std::optional<Matrix6d> CovarianceOf(const Matrix6d& information) {
   constexpr double kSmallestEigenvalue = 1e-9;
   if (!(information.diagonal().minCoeff() > 0.0)) return std::nullopt;
   const Vector6d scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scale.asDiagonal() * information *
-                                                      scale.asDiagonal());
-  if (!(eigen.eigenvalues()[0] > kSmallestEigenvalue)) return std::nullopt;
-  const Matrix6d root = scale.asDiagonal() * eigen.eigenvectors();
-  const Vector6d inverse = eigen.eigenvalues().cwiseInverse();
+  const SymmetricEigen<6> eigen = EigenOf<6>(scale.asDiagonal() * information * scale.asDiagonal());
+  if (!(eigen.values[0] > kSmallestEigenvalue)) return std::nullopt;
+  const Matrix6d root = scale.asDiagonal() * eigen.vectors;
+  const Vector6d inverse = eigen.values.cwiseInverse();
   const Matrix6d covariance = root * inverse.asDiagonal() * root.transpose();
   return 0.5 * (covariance + covariance.transpose());
 }

@@ -93,7 +93,7 @@ Expected<ImageReport> Examine(const Search& search, const cv::Mat& image) {
 
 // out.png for one image; out-NAME.png for each of many.
 std::filesystem::path OverlayPath(const DetectOptions& options, const std::string& image) {
-  const std::filesystem::path out(options.overlay_path);
+  std::filesystem::path out(options.overlay_path);
   if (options.images.size() == 1) return out;
   return out.parent_path() /
          (out.stem().string() + "-" + std::filesystem::path(image).stem().string() +

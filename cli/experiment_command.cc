@@ -23,8 +23,8 @@ Expected<Shard> ParseShard(const std::string& text) {
   };
   const std::size_t slash = text.find('/');
   if (slash != std::string::npos) {
-    const std::uint64_t i = number(std::string_view(text).substr(0, slash));
-    const std::uint64_t n = number(std::string_view(text).substr(slash + 1));
+    const std::uint64_t i = number(std::string_view{text}.substr(0, slash));
+    const std::uint64_t n = number(std::string_view{text}.substr(slash + 1));
     if (i >= 1 && i <= n) return Shard{.number = i - 1, .of = n};
   }
   return MakeError(ErrorCode::kInvalidOption,

@@ -11,7 +11,7 @@ constexpr double kClickSlack_px = 4.0;  // A hand that clicks moves no farther.
 
 }  // namespace
 
-MarkController::MarkController(MarkSession session, MarkViewport viewport, bool has_photo)
+MarkController::MarkController(MarkSession session, const MarkViewport& viewport, bool has_photo)
     : session_(std::move(session)), viewport_(viewport), has_photo_(has_photo) {}
 
 void MarkController::LeftDown(const Eigen::Vector2d& canvas) { pressed_at_ = canvas; }

@@ -22,7 +22,7 @@ enum class MarkKey : int { kLeft = 0x10000, kUp, kRight, kDown };
 /// Mouse and keys of `sextant mark`, turned into what they do. Positions are on the canvas.
 class MarkController {
  public:
-  MarkController(MarkSession session, MarkViewport viewport, bool has_photo);
+  MarkController(MarkSession session, const MarkViewport& viewport, bool has_photo);
 
   /// A left click marks, if it does not move meanwhile; else it drags the picture.
   void LeftDown(const Eigen::Vector2d& canvas);

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/symmetric.h"
 #include "solvers/board_view_check.h"
 #include "solvers/board_view_information.h"
-#include "solvers/invert_information.h"
 #include "solvers/pair_noise.h"
 #include "solvers/subset.h"
 
@@ -59,12 +59,12 @@ Expected<Matrix6d> CramerRaoBound(const CalibrationProblem& problem,
     const Expected<void> ok = AddInformation(problem, true_cam_from_lidar, pair, information);
     if (!ok) return tl::unexpected<Error>(ok.error());
   }
-  const Eigen::LDLT<Matrix6d> factor(information);
-  if (factor.info() != Eigen::Success || !factor.isPositive() || factor.rcond() < 1e-15) {
+  const std::optional<Matrix6d> bound = InvertSymmetric(information);
+  if (!bound) {
     return MakeError(ErrorCode::kDegenerate,
                      "the pairs leave a direction of the pose undetermined");
   }
-  return Matrix6d(factor.solve(Matrix6d::Identity()));
+  return *bound;
 }
 
 Expected<Matrix6d> CramerRaoBoundOfViews(const CalibrationProblem& problem,

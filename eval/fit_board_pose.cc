@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/fit_board_pose.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <optional>
 
-#include "solvers/invert_information.h"
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -56,7 +55,7 @@ Expected<BoardPoseFit> Fit(const NormalAt& normal_at, const Rigid3d& start) {
   for (int i = 0; now && i < kMostIterations; ++i) {
     Matrix6d damped = now->matrix;
     damped.diagonal() *= 1.0 + damping;
-    const Vector6d step = -damped.ldlt().solve(now->gradient);
+    const Vector6d step = -SolveSymmetric(damped, now->gradient);
     if (!step.allFinite()) break;
     const Rigid3d tried = Perturb(pose, step);
     const std::optional<Normal> then = normal_at(tried);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/judge.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "eval/judge_order.h"
+#include "geometry/symmetric.h"
 #include "solvers/kabsch.h"
 #include "solvers/pair_noise.h"
 #include "solvers/subset.h"
@@ -75,10 +75,10 @@ std::vector<EdgeFinding> JudgeEdges(const CalibrationProblem& problem) {
 }
 
 std::optional<WeakDirection> Weakest(const Eigen::Matrix3d& covariance, bool is_rotation) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
-  const Eigen::Vector3d sigma = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const SymmetricEigen<3> eigen = EigenOf(covariance);
+  const Eigen::Vector3d sigma = eigen.values.cwiseMax(0.0).cwiseSqrt();
   if (sigma(2) <= kWeakRatio * sigma(0)) return std::nullopt;
-  return WeakDirection{is_rotation, eigen.eigenvectors().col(2), sigma(2), sigma(0)};
+  return WeakDirection{is_rotation, eigen.vectors.col(2), sigma(2), sigma(0)};
 }
 
 }  // namespace

@@ -47,6 +47,10 @@ Eigen::Matrix3d LeftJacobianSo3(const Eigen::Vector3d& phi) {
   return Eigen::Matrix3d::Identity() + first * hat + second * hat * hat;
 }
 
+Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
 double RotationDistance(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
   return LogSo3(a * b.conjugate()).norm();
 }

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -86,11 +86,10 @@ Matrix6d PseudoInverse(const Matrix6d& information) {
   constexpr double kSmallestEigenvalue = 1e-12;
   const Vector6d scale =
       information.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scale.asDiagonal() * information *
-                                                      scale.asDiagonal());
-  const Vector6d inverse = eigen.eigenvalues().unaryExpr(
-      [](double e) { return e > kSmallestEigenvalue ? 1.0 / e : 0.0; });
-  const Matrix6d vectors = scale.asDiagonal() * eigen.eigenvectors();
+  const SymmetricEigen<6> eigen = EigenOf<6>(scale.asDiagonal() * information * scale.asDiagonal());
+  const Vector6d inverse =
+      eigen.values.unaryExpr([](double e) { return e > kSmallestEigenvalue ? 1.0 / e : 0.0; });
+  const Matrix6d vectors = scale.asDiagonal() * eigen.vectors;
   return vectors * inverse.asDiagonal() * vectors.transpose();
 }
 

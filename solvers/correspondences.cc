@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "geometry/so3.h"
+#include "geometry/symmetric.h"
 
 namespace sextant {
 Expected<Correspondences> PrepareCorrespondences(std::span<const Eigen::Vector2d> image_points,
@@ -53,7 +53,7 @@ void PolishIfExact(const Correspondences& data, const ImageFit& fit, Eigen::Matr
     normal += jacobian.transpose() * jacobian;
     right -= jacobian.transpose() * (in_cam.head<2>() - in_cam.z() * data.image_points[i]);
   }
-  const Vector6d step = normal.ldlt().solve(right);
+  const Vector6d step = SolveSymmetric(normal, right);
   if (!step.allFinite()) return;
   rotation = ExpSo3(step.head<3>()) * rotation;
   centroid_in_cam += step.tail<3>();

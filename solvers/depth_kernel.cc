@@ -2,13 +2,13 @@
 #include "solvers/depth_kernel.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "base/lanes.h"
+#include "geometry/symmetric.h"
 #include "solvers/max_trace_rotation.h"
 
 namespace sextant {
@@ -17,9 +17,9 @@ template <int kAxes>
 DepthKernel<kAxes>::DepthKernel(const Correspondences& data, const Rigid3d* near)
     : data_(data), near_(near), deviation_(data.frame.deviation.head<kAxes>()) {
   SetMoments(data.moments);
-  const Eigen::SelfAdjointEigenSolver<Square> eigen(reduced_);
-  eigenvectors_ = eigen.eigenvectors();
-  eigenvalues_ = eigen.eigenvalues();
+  const SymmetricEigen<kDepths> eigen = EigenOf(reduced_);
+  eigenvectors_ = eigen.vectors;
+  eigenvalues_ = eigen.values;
 }
 
 template <int kAxes>

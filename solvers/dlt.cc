@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <optional>
 
+#include "geometry/symmetric.h"
 #include "solvers/correspondences.h"
 #include "solvers/max_trace_rotation.h"
 #include "solvers/pnp_solver.h"
@@ -60,8 +60,6 @@ Expected<Rigid3d> PoseOf(const PointCloudFrame& frame, const ImageMoments& momen
   return Rigid3d{nearest->rotation, model.col(0) / scale - nearest->rotation * frame.centroid};
 }
 
-using DepthSolver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>;
-
 Expected<Rigid3d> PoseOf(const Correspondences& data) {
   const PointCloudFrame& frame = data.frame;
   const double thickness = frame.deviation.z() / frame.deviation.x();
@@ -73,29 +71,29 @@ Expected<Rigid3d> PoseOf(const Correspondences& data) {
                                  thickness));
   }
   const UnitMoments unit(frame, data.moments);
-  const DepthSolver eigen(unit.reduced);
-  const Eigen::Vector4d& lambda = eigen.eigenvalues();
+  const SymmetricEigen<4> eigen = EigenOf(unit.reduced);
+  const Eigen::Vector4d& lambda = eigen.values;
   if (!(lambda(1) - lambda(0) > kMinRelativeGap * lambda(3))) {
     return MakeError(ErrorCode::kDegenerate,
                      "the points and the camera lie on a surface that leaves the linear "
                      "projection undetermined; add points, or use epnp or sqpnp");
   }
-  return PoseOf(frame, data.moments, unit, eigen.eigenvectors().col(0));
+  return PoseOf(frame, data.moments, unit, eigen.vectors.col(0));
 }
 
 /// PoseOf with the depths' first perturbation, reduced z = lambda z, in place of another
 /// decomposition.
 PoseOfMoments DltOfMoments(const Correspondences& data, const Rigid3d&) {
   const UnitMoments unit(data.frame, data.moments);
-  const DepthSolver eigen(unit.reduced);
+  const SymmetricEigen<4> eigen = EigenOf(unit.reduced);
   return [&data, unit, eigen](const ImageMoments& moments) -> std::optional<Rigid3d> {
     const UnitMoments displaced(data.frame, moments);
-    const Eigen::Matrix4d& vectors = eigen.eigenvectors();
+    const Eigen::Matrix4d& vectors = eigen.vectors;
     Eigen::Vector4d depth = vectors.col(0);
     const Eigen::Vector4d moved =
         vectors.transpose() * ((displaced.reduced - unit.reduced) * depth);
     for (int k = 1; k < 4; ++k) {
-      depth += moved(k) / (eigen.eigenvalues()(0) - eigen.eigenvalues()(k)) * vectors.col(k);
+      depth += moved(k) / (eigen.values(0) - eigen.values(k)) * vectors.col(k);
     }
     const Expected<Rigid3d> pose = PoseOf(data.frame, moments, displaced, depth);
     if (!pose) return std::nullopt;

@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "geometry/so3.h"
 #include "solvers/plane_frame.h"
 #include "solvers/plane_image_moments.h"
 
@@ -70,8 +71,7 @@ std::array<Eigen::Matrix3d, 2> InfinitesimalRotations(const Eigen::Matrix3d& h) 
   const Eigen::Matrix2d jacobian =
       (h.topLeftCorner<2, 2>() - value * h.bottomLeftCorner<1, 2>()) / h(2, 2);
   const Eigen::Matrix3d cam_from_ray =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), value.homogeneous())
-          .toRotationMatrix();
+      RotationBetween(Eigen::Vector3d::UnitZ(), value.homogeneous()).toRotationMatrix();
   const Eigen::Matrix2d turned =
       cam_from_ray.topLeftCorner<2, 2>() - value * cam_from_ray.bottomLeftCorner<1, 2>();
   const Eigen::Matrix2d stretched = turned.inverse() * jacobian;

@@ -6,8 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "geometry/symmetric.h"
 #include "solvers/board_view_check.h"
-#include "solvers/invert_information.h"
 #include "solvers/joint_knowledge.h"
 #include "solvers/joint_search.h"
 #include "solvers/pair_terms.h"
@@ -156,7 +156,7 @@ class JointSolver final : public Solver {
   Expected<void> Report(const CalibrationProblem& problem, const JointUnknowns& unknowns,
                         const JointAnswer& answer, const Eigen::MatrixXd& information,
                         Estimate& estimate) const {
-    const auto covariance = InvertSymmetric<Eigen::MatrixXd>(information);
+    const auto covariance = InvertSymmetric(information);
     if (!covariance) {
       return MakeError(ErrorCode::kDegenerate,
                        "the views leave a direction of the pose undetermined; hold the board at "

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/symmetric.h"
 #include "solvers/board_view_check.h"
-#include "solvers/invert_information.h"
 
 namespace sextant {
 namespace {
@@ -67,7 +67,7 @@ std::optional<JointUntold> FindUntold(const Eigen::MatrixXd& information,
   if (useful.size() == 0) return std::nullopt;
   Eigen::MatrixXd with_prior = information;
   with_prior.diagonal().tail(useful.size()) += (kPriorWidth * useful).cwiseAbs2().cwiseInverse();
-  const auto covariance = InvertSymmetric<Eigen::MatrixXd>(with_prior);
+  const auto covariance = InvertSymmetric(with_prior);
   if (!covariance) return std::nullopt;
   const Eigen::VectorXd sigma = covariance->diagonal().tail(useful.size()).cwiseSqrt();
   Eigen::Index worst = 0;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/symmetric.h"
+
 namespace sextant {
 namespace {
 
@@ -57,7 +59,7 @@ JointStep Solve(const JointSystem& system, double damping) {
     shared.noalias() -= view.bs.transpose() * by_shared[i];
     gradient.noalias() -= view.bs.transpose() * step.boards[i];
   }
-  step.shared = -shared.ldlt().solve(gradient);
+  step.shared = -SolveSymmetric(shared, gradient);
   for (std::size_t i = 0; i < count; ++i) {
     step.boards[i] = -step.boards[i] - by_shared[i] * step.shared;
   }

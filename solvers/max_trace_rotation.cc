@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/max_trace_rotation.h"
 
-#include <Eigen/Eigenvalues>
-
+#include "geometry/symmetric.h"
 #include "solvers/trace_formula.h"
 
 namespace sextant {
@@ -26,10 +25,10 @@ std::optional<MaxTraceRotation> MaximizeTraceByEigensolver(const CrossMatrix<dou
   Eigen::Matrix4d k;
   k << h.xx, h.xy, h.xz, h.xw, h.xy, h.yy, h.yz, h.yw, h.xz, h.yz, h.zz, h.zw, h.xw, h.yw, h.zw,
       h.ww;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(k);
-  const Eigen::Vector4d& lambda = eigen.eigenvalues();
+  const SymmetricEigen<4> eigen = EigenOf(k);
+  const Eigen::Vector4d& lambda = eigen.values;
   if (!(lambda(3) - lambda(2) > kMinRelativeGap * bound)) return std::nullopt;
-  return MaxTraceRotation{Eigen::Quaterniond(eigen.eigenvectors().col(3)).normalized(), lambda(3),
+  return MaxTraceRotation{Eigen::Quaterniond(eigen.vectors.col(3)).normalized(), lambda(3),
                           -lambda(0)};
 }
 

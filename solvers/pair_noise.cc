@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/pair_noise.h"
 
-#include <Eigen/Cholesky>
-
+#include "geometry/symmetric.h"
 #include "solvers/residuals.h"
 #include "solvers/subset.h"
 
@@ -49,12 +48,9 @@ std::optional<Matrix6d> PropagateCovariance(std::span<const Pair3d3d> pairs,
     if (freedom <= 0.0) return std::nullopt;
     noise *= weighted_squares / freedom;
   }
-  const Eigen::LDLT<Matrix6d> factor(hessian);
-  if (factor.info() != Eigen::Success || !factor.isPositive() || factor.rcond() < 1e-15) {
-    return std::nullopt;
-  }
-  const Matrix6d half = factor.solve(noise);
-  const Matrix6d covariance = factor.solve(half.transpose());
+  const std::optional<Matrix6d> inverse = InvertSymmetric(hessian);
+  if (!inverse) return std::nullopt;
+  const Matrix6d covariance = *inverse * noise * *inverse;
   return Matrix6d(0.5 * (covariance + covariance.transpose()));
 }
 

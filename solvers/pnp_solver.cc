@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "geometry/so3.h"
 #include "solvers/image_noise.h"
 #include "solvers/moment_covariance.h"
 #include "solvers/object_space_covariance.h"
@@ -28,7 +29,7 @@ Expected<Eigen::Quaterniond> ProjectRays(std::span<const Eigen::Vector3d> rays,
   if (std::any_of(rays.begin(), rays.end(), is_wide)) {
     const Eigen::Vector3d sum =
         std::accumulate(rays.begin(), rays.end(), Eigen::Vector3d(Eigen::Vector3d::Zero()));
-    cam_from_view = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), sum);
+    cam_from_view = RotationBetween(Eigen::Vector3d::UnitZ(), sum);
   }
   if (std::any_of(rays.begin(), rays.end(), is_wide)) {
     return MakeError(ErrorCode::kInvalidInput,

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "geometry/symmetric.h"
 #include "solvers/cloud_sums.h"
 #include "solvers/frame_limits.h"
 
@@ -49,16 +49,16 @@ Expected<PointCloudFrame> FramePointCloud(std::span<const Eigen::Vector3d> point
                                  "{}; leave out duplicated pairs and add others",
                                  frame.different_count, points.size(), min_different));
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scatter);
-  const Eigen::Vector3d& ascending = eigen.eigenvalues();
+  const SymmetricEigen<3> eigen = EigenOf(scatter);
+  const Eigen::Vector3d& ascending = eigen.values;
   if (!(ascending(1) > kMinLineVariance * ascending(2))) {
     return MakeError(ErrorCode::kDegenerate,
                      "the points lie on one line, which leaves the rotation about it undetermined; "
                      "use points that span a plane");
   }
   frame.deviation = ascending.reverse().cwiseMax(0.0).cwiseSqrt();
-  frame.axes.col(0) = eigen.eigenvectors().col(2);
-  frame.axes.col(1) = eigen.eigenvectors().col(1);
+  frame.axes.col(0) = eigen.vectors.col(2);
+  frame.axes.col(1) = eigen.vectors.col(1);
   frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));
   return frame;
 }

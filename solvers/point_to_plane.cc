@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -83,15 +84,14 @@ Expected<Rigid3d> StepToPlanes(std::span<const PlaneMatch> matches, const Rigid3
     hessian += row * row.transpose() / n;
     gradient += row * (DistanceToPlane(match, b_from_a) / n);
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(hessian);
-  if (!(eigen.eigenvalues()(0) > kMinEigenvalue)) {
+  const SymmetricEigen<6> solved = EigenOf(hessian);
+  if (!(solved.values(0) > kMinEigenvalue)) {
     return MakeError(ErrorCode::kDegenerate,
                      "the planes leave a motion undetermined: one plane alone, parallel planes or "
                      "a sphere do; use metric=point or add surfaces of other directions");
   }
   const Vector6d step =
-      -(eigen.eigenvectors() *
-        (eigen.eigenvectors().transpose() * gradient).cwiseQuotient(eigen.eigenvalues()));
+      -(solved.vectors * (solved.vectors.transpose() * gradient).cwiseQuotient(solved.values));
   const Eigen::Quaterniond turn = ExpSo3(step.head<3>() / size);
   return Rigid3d{(turn * b_from_a.rotation).normalized(),
                  turn * (b_from_a.translation - centre) + centre + step.tail<3>()};
@@ -112,14 +112,11 @@ std::optional<Matrix6d> PlaneCovariance(std::span<const PlaneMatch> matches,
     row << (b_from_a.rotation * match.point_in_a).cross(match.normal_in_b), match.normal_in_b;
     hessian += row * row.transpose();
   }
-  const Eigen::LDLT<Matrix6d> factor(hessian);
-  if (factor.info() != Eigen::Success || !factor.isPositive() || factor.rcond() < 1e-15) {
-    return std::nullopt;
-  }
+  const std::optional<Matrix6d> inverse = InvertSymmetric(hessian);
+  if (!inverse) return std::nullopt;
   const double n = static_cast<double>(matches.size());
   const double rmse = RmseToPlanes(matches, b_from_a);
-  const Matrix6d covariance = factor.solve(Matrix6d::Identity()) * (rmse * rmse * n / (n - 6.0));
-  return Matrix6d(0.5 * (covariance + covariance.transpose()));
+  return Matrix6d(*inverse * (rmse * rmse * n / (n - 6.0)));
 }
 
 }  // namespace sextant

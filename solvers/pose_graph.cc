@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -11,7 +10,7 @@
 #include <utility>
 
 #include "base/nearest_name.h"
-#include "solvers/invert_information.h"
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -149,7 +148,7 @@ Expected<SensorGraph> SensorGraph::Solve(const std::vector<PoseEdge>& edges) {
   NormalEquations normal = Linearise(links, poses);
   bool converged = false;
   for (int i = 0; i < kMaxIterations && !converged; ++i) {
-    Eigen::VectorXd step = -normal.information.ldlt().solve(normal.gradient);
+    Eigen::VectorXd step = -SolveSymmetric(normal.information, normal.gradient);
     std::vector<Rigid3d> moved = Moved(poses, step);
     NormalEquations next = Linearise(links, moved);
     for (int k = 0; k < kMaxHalvings && next.chi_square > normal.chi_square; ++k) {

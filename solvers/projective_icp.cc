@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/symmetric.h"
 #include "solvers/ring_offsets.h"
 #include "solvers/scan_match.h"
 
@@ -116,8 +116,8 @@ double RelativeStiffness(const Matrix6d& normal) {
   Vector6d scale = Vector6d::Ones();
   scale.head<3>().setConstant(1.0 / std::max(size, 1e-300));
   const Matrix6d scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled, Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues()[0] / eigen.eigenvalues()[5];
+  const Vector6d ascending = EigenOf(scaled).values;
+  return ascending[0] / ascending[5];
 }
 
 }  // namespace
@@ -160,7 +160,7 @@ Expected<ProjectiveIcpFit> FitProjectiveIcp(std::span<const Eigen::Vector3d> tar
                                    "show leave a motion free",
                                    fit.iterations));
     }
-    const Vector6d step = equations.normal.ldlt().solve(equations.right);
+    const Vector6d step = SolveSymmetric(equations.normal, equations.right);
     fit.target_from_source = Perturb(fit.target_from_source, step);
     const double turn_rad = step.head<3>().norm();
     const double move_m = step.tail<3>().norm();

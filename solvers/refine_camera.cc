@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "geometry/intrinsics.h"
+#include "geometry/symmetric.h"
 #include "solvers/ceres_parts.h"
-#include "solvers/invert_information.h"
 #include "solvers/pair_cost.h"
 
 namespace sextant {
@@ -145,7 +145,7 @@ double Freedom(const PairTerms& terms, std::size_t free) {
 // The inverse of the information, if it says something of every free number.
 Expected<Eigen::MatrixXd> Judge(const PairTerms& terms, const std::vector<int>& free,
                                 const State& state) {
-  std::optional<Eigen::MatrixXd> inverse = InvertSymmetric<Eigen::MatrixXd>(state.information);
+  std::optional<Eigen::MatrixXd> inverse = InvertSymmetric(state.information);
   if (!inverse) {
     return MakeError(ErrorCode::kDegenerate,
                      "the pairs leave a combination of pose and intrinsics undetermined; use "

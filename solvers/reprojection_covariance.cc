@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/reprojection_covariance.h"
 
-#include <Eigen/Cholesky>
-
+#include "geometry/symmetric.h"
 #include "solvers/residuals.h"
 #include "solvers/subset.h"
 
@@ -53,13 +52,10 @@ std::optional<Matrix6d> ReprojectionCovariance(const Camera& camera,
     const double variance = HasKnownNoise(pair) ? pair.sigma_px * pair.sigma_px : 1.0;
     information += jacobian->transpose() * *jacobian / variance;
   }
-  const Eigen::LDLT<Matrix6d> factor(information);
-  if (factor.info() != Eigen::Success || !factor.isPositive() || factor.rcond() < 1e-15) {
-    return std::nullopt;
-  }
+  const std::optional<Matrix6d> inverse = InvertSymmetric(information);
+  if (!inverse) return std::nullopt;
   const double scale = HasKnownNoise(pairs.front()) ? 1.0 : *unstated;
-  const Matrix6d covariance = scale * factor.solve(Matrix6d::Identity());
-  return Matrix6d(0.5 * (covariance + covariance.transpose()));
+  return Matrix6d(scale * *inverse);
 }
 
 }  // namespace sextant

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/ring_offsets.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -129,13 +130,13 @@ Equations EquationsOf(const ScanWindows& windows, std::span<const Index> ring_of
 // The equations in directions that do not know of each other, those left out that planes take up.
 struct Modes {
   explicit Modes(const Equations& equations) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(equations.normal);
-    const Eigen::VectorXd& stiffness = eigen.eigenvalues();
+    const SymmetricEigen<Eigen::Dynamic> eigen = EigenOf(equations.normal);
+    const Eigen::VectorXd& stiffness = eigen.values;
     const double least = kLeastStiffness * stiffness[stiffness.size() - 1];
     Index first = 0;
     while (first < stiffness.size() && !(stiffness[first] > least)) ++first;
     const Index count = stiffness.size() - first;
-    directions = eigen.eigenvectors().rightCols(count);
+    directions = eigen.vectors.rightCols(count);
     stiffnesses = stiffness.tail(count);
     right = directions.transpose() * equations.right;
   }

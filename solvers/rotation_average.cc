@@ -3,8 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -37,8 +38,8 @@ Expected<Eigen::Quaterniond> ChordalMean(std::span<const Eigen::Quaterniond> rot
   if (rotations.empty()) return NothingToAverage();
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   for (const Eigen::Quaterniond& q : rotations) sum += q.coeffs() * q.coeffs().transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(sum);
-  const double gap = eigen.eigenvalues()(3) - eigen.eigenvalues()(2);
+  const SymmetricEigen<4> eigen = EigenOf(sum);
+  const double gap = eigen.values(3) - eigen.values(2);
   if (!(gap > kAngleRounding * static_cast<double>(rotations.size()))) {
     return MakeError(ErrorCode::kDegenerate,
                      fmt::format("the {} rotations are spread so evenly that two or more rotations "
@@ -46,7 +47,7 @@ Expected<Eigen::Quaterniond> ChordalMean(std::span<const Eigen::Quaterniond> rot
                                  "other",
                                  rotations.size()));
   }
-  return Eigen::Quaterniond(eigen.eigenvectors().col(3)).normalized();
+  return Eigen::Quaterniond(eigen.vectors.col(3)).normalized();
 }
 
 Expected<Eigen::Quaterniond> QuaternionSumMean(std::span<const Eigen::Quaterniond> rotations) {

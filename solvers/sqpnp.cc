@@ -43,7 +43,10 @@ class Minima {
 
   void SearchFrom(const Eigen::Matrix3d& start);
   std::span<const Minimum> found() const { return std::span(found_).first(count_); }
-  double best_cost() const { return count_ > 0 ? found_[0].cost : kNone; }
+  double best_cost() const {
+    if (count_ == 0) return kNone;
+    return found_[0].cost;
+  }
   /// Whether the best leaves less than `share` of the image points' squared distance from their
   /// mean.
   bool ExplainImage(double share) const {

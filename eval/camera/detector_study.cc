@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "eval/text_table.h"
 #include "features/camera/edge_refine.h"
 #include "features/camera/tag_detector.h"
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -89,7 +89,7 @@ Answer RefinedAnswer(const std::optional<Quad>& start, const TagPicture& picture
       RefineTag(picture.image, *start, pattern, Undistortion(picture.camera));
   if (!refined) return {};
   Answer answer = AnswerOf(refined->corners_px, picture.corners_px);
-  answer.nees = answer.error.dot(refined->covariance_px2.ldlt().solve(answer.error)) / 8.0;
+  answer.nees = SquaredMahalanobis(answer.error, refined->covariance_px2) / 8.0;
   return answer;
 }
 

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 
 #include "base/random.h"
 #include "eval/simulator/stereo_cloud.h"
 #include "features/camera/tag_detector.h"
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -100,10 +100,10 @@ double WallOffset(const StereoPair& pair, const Rigid3d& cam2_from_cam1) {
     for (const Eigen::Vector3d& point : second) {
       scatter += (point - middle) * (point - middle).transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scatter);
+    const SymmetricEigen<3> eigen = EigenOf(scatter);
     double mean = 0.0;
     for (const Eigen::Vector3d& point : first) {
-      mean += eigen.eigenvectors().col(0).dot(cam2_from_cam1 * point - middle);
+      mean += eigen.vectors.col(0).dot(cam2_from_cam1 * point - middle);
     }
     mean /= static_cast<double>(first.size());
     squares += mean * mean;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/units.h"
+#include "geometry/so3.h"
 
 namespace sextant {
 namespace {
@@ -39,8 +40,7 @@ void AddWalls(Scene& scene) {
   }
   scene.walls.push_back(
       {.name = "floor",
-       .world_from_wall = {Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(),
-                                                              -Eigen::Vector3d::UnitZ()),
+       .world_from_wall = {RotationBetween(Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitZ()),
                            Eigen::Vector3d(0.0, 0.0, kFloor_m)},
        .width_m = 2.0 * kHalf_m,
        .height_m = 2.0 * kHalf_m});
@@ -182,11 +182,10 @@ void AddHolder(const SceneBoard& placed, Random& random, Scene& scene) {
         body + (side == 1 ? -kBody_m : kBody_m) * left + 0.3 * Eigen::Vector3d::UnitZ();
     const Eigen::Vector3d arm = shoulder - grip;
     const Eigen::Vector3d inward = 0.04 * arm.normalized();
-    scene.boxes.push_back(
-        {.name = "arm",
-         .world_from_box = {Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), arm),
-                            0.5 * (grip + shoulder) + inward},
-         .size_m = Eigen::Vector3d(arm.norm(), 0.07, 0.07)});
+    scene.boxes.push_back({.name = "arm",
+                           .world_from_box = {RotationBetween(Eigen::Vector3d::UnitX(), arm),
+                                              0.5 * (grip + shoulder) + inward},
+                           .size_m = Eigen::Vector3d(arm.norm(), 0.07, 0.07)});
   }
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -16,6 +15,7 @@
 #include "eval/simulator/scan.h"
 #include "eval/text_table.h"
 #include "features/lidar/corner_extractor.h"
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -146,8 +146,7 @@ class Study {
           const Eigen::Vector3d outward = (truth - board.world_from_board.translation).normalized();
           error.distances_m.push_back(off.norm());
           error.outward_m += outward.dot(off) / kCornersPerBoard;
-          error.nees +=
-              off.dot(corners->CovarianceOf(i).ldlt().solve(off)) / 3.0 / kCornersPerBoard;
+          error.nees += SquaredMahalanobis(off, corners->CovarianceOf(i)) / 3.0 / kCornersPerBoard;
         }
         outcome.errors.push_back(std::move(error));
       }

@@ -13,6 +13,7 @@
 #include "eval/simulator/camera_model.h"
 #include "features/camera/tag_pattern.h"
 #include "geometry/board_check.h"
+#include "geometry/so3.h"
 
 namespace sextant {
 namespace {
@@ -59,7 +60,7 @@ Expected<Rigid3d> DrawPose(const TagPictureOptions& options, const Camera& camer
                                  options.camera_model, center.x(), center.y()));
   }
   const double depth_m = camera.fx_px * options.edge_m / options.side_px;
-  const auto facing = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), *sight);
+  const Eigen::Quaterniond facing = RotationBetween(Eigen::Vector3d::UnitZ(), *sight);
   const Eigen::Vector3d axis(std::cos(direction), std::sin(direction), 0.0);
   const Eigen::Quaterniond tilt(Eigen::AngleAxisd(options.tilt_rad, axis));
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()));

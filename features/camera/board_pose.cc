@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "geometry/so3.h"
+#include "geometry/symmetric.h"
 #include "solvers/ippe.h"
 #include "solvers/refine_pose.h"
 
@@ -70,7 +71,7 @@ std::optional<Minimum> Refine(const Camera& camera, std::span<const Whitened> gr
   for (int i = 0; best && i < kMaxIterations; ++i) {
     Matrix6d damped = best->information;
     damped.diagonal() *= 1.0 + damping;
-    const Vector6d step = damped.ldlt().solve(best->gradient);
+    const Vector6d step = SolveSymmetric(damped, best->gradient);
     if (!step.allFinite()) return std::nullopt;
     const auto next = Evaluate(camera, groups, Perturb(best->pose, step));
     const bool fell = next && next->chi_square <= best->chi_square;

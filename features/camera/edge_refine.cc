@@ -12,6 +12,7 @@
 
 #include "features/camera/edge_pixels.h"
 #include "features/camera/tag_model.h"
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -61,7 +62,7 @@ class Fit {
     model_.Linearise(HUGE_VAL, normal_, right_);
     normal_.diagonal().array() += 1e-6;
     const Eigen::Matrix<double, 6, 1> light =
-        normal_.bottomRightCorner<6, 6>().ldlt().solve(right_.tail<6>());
+        SolveSymmetric<6>(normal_.bottomRightCorner<6, 6>(), right_.tail<6>());
     state_.gain = light.head<3>();
     state_.offset = light.tail<3>();
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <optional>
 
 #include "features/lidar/corner_geometry.h"
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -49,7 +49,7 @@ Line3d LeastSquaresLine(const std::vector<Eigen::Vector3d>& points) {
   for (const Eigen::Vector3d& p : points) {
     scatter += (p - line.point) * (p - line.point).transpose();
   }
-  line.direction = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(2);
+  line.direction = EigenOf(scatter).vectors.col(2);
   return line;
 }
 

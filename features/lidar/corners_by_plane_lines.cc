@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 
 #include "features/lidar/corner_geometry.h"
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -76,8 +76,7 @@ PlaneLine FitLine(const std::vector<EdgePoint>& edges, const std::vector<int>& m
       const Eigen::Vector2d d = edges[static_cast<std::size_t>(members[i])].in_plane - line.center;
       scatter += weights[i] * d * d.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(scatter);
-    line.normal = eigen.eigenvectors().col(0);
+    line.normal = EigenOf(scatter).vectors.col(0);
     line.offset = line.normal.dot(line.center);
     for (std::size_t i = 0; i < members.size(); ++i) {
       const double distance = std::abs(

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/lidar/lidar_plane.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -55,11 +56,11 @@ std::optional<LidarPlane> FitPlane(std::span<const Eigen::Vector3d> points,
     const Eigen::Vector3d d = points[static_cast<std::size_t>(i)] - mean;
     scatter += d * d.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scatter);
-  if (eigen.eigenvalues()(1) < 1e-6 * eigen.eigenvalues()(2)) return std::nullopt;
+  const SymmetricEigen<3> eigen = EigenOf(scatter);
+  if (eigen.values(1) < 1e-6 * eigen.values(2)) return std::nullopt;
   LidarPlane plane;
   plane.origin = mean;
-  plane.normal = eigen.eigenvectors().col(0);
+  plane.normal = eigen.vectors.col(0);
   if (plane.normal.dot(mean) < 0.0) plane.normal = -plane.normal;
   if (plane.normal.dot(mean.normalized()) < kLeastIncidence) return std::nullopt;
   // Down as far as the plane allows; a level plane takes what is away from the sensor for up.
@@ -69,7 +70,7 @@ std::optional<LidarPlane> FitPlane(std::span<const Eigen::Vector3d> points,
   plane.x_axis = down.cross(plane.normal).normalized();
   plane.y_axis = plane.normal.cross(plane.x_axis);
   plane.sigma_m =
-      std::max(kLeastSigma_m, std::sqrt(std::max(0.0, eigen.eigenvalues()(0)) / (count - 3.0)));
+      std::max(kLeastSigma_m, std::sqrt(std::max(0.0, eigen.values(0)) / (count - 3.0)));
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   for (const int i : inliers) {
     const Eigen::Vector3d d = points[static_cast<std::size_t>(i)] - mean;

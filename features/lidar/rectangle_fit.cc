@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/lidar/rectangle_fit.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -10,6 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -171,7 +171,7 @@ class Fitter {
     // A little damping: a start may leave a direction open that the answer does not.
     normal.diagonal() *= 1.0 + 1e-6;
     normal.diagonal().array() += 1e-3;
-    step = -normal.ldlt().solve(gradient);
+    step = -SolveSymmetric(normal, gradient);
     return cost;
   }
 
@@ -201,8 +201,8 @@ class Fitter {
     // Angles in units of the board's half diagonal, so that both kinds of unknowns compare.
     Eigen::Vector3d scale(1.0, 1.0, 1.0 / half_.norm());
     const Eigen::Matrix3d scaled = scale.asDiagonal() * sums.information * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scaled, Eigen::EigenvaluesOnly);
-    if (eigen.eigenvalues()(0) < 1e-4 * eigen.eigenvalues()(2)) return std::nullopt;
+    const SymmetricEigen<3> eigen = EigenOf(scaled);
+    if (eigen.values(0) < 1e-4 * eigen.values(2)) return std::nullopt;
     fit.covariance = sums.Covariance();
     fit.rms = std::sqrt(sums.chi2 / sums.used);
     fit.rms_m = std::sqrt(sums.squares / sums.used);

@@ -9,6 +9,7 @@
 #include "calibrate/matched_board.h"
 #include "eval/lidar/board_scenes.h"
 #include "eval/simulator/camera_model.h"
+#include "geometry/symmetric.h"
 #include "support/calibration_scene.h"
 
 namespace sextant::test {
@@ -155,7 +156,7 @@ TEST(Observe, CornersOfAMatchAgreeUnderTheTruth) {
   for (const Pair3d3d& pair : problem.pairs_3d3d) {
     const Eigen::Vector3d off = pair.point_in_cam - cam_from_lidar * pair.point_in_lidar;
     // Chi-square of 3 degrees of freedom: beyond 30 once in 700000.
-    EXPECT_LT(off.dot(pair.covariance_in_cam->ldlt().solve(off)), 30.0);
+    EXPECT_LT(SquaredMahalanobis(off, *pair.covariance_in_cam), 30.0);
   }
   for (const Pair2d3d& pair : problem.pairs_2d3d) {
     const auto pixel = Project(*problem.camera, cam_from_lidar * pair.point_in_lidar);

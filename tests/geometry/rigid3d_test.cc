@@ -54,6 +54,20 @@ TEST(So3, LogOfHalfATurnHasLengthPi) {
   EXPECT_NEAR(LogSo3(Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0)).norm(), std::numbers::pi, 1e-15);
 }
 
+TEST(So3, RotationBetweenTurnsOneDirectionToTheOther) {
+  Random random(6);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d from = RandomVector(random, 1.0);
+    const Eigen::Vector3d to = RandomVector(random, 1.0);
+    const Eigen::Quaterniond turn = RotationBetween(from, to);
+    EXPECT_LT(((turn * from).normalized() - to.normalized()).norm(), 1e-14);
+    // The least: about the axis across both.
+    EXPECT_LT(std::abs(LogSo3(turn).dot(from.normalized())), 1e-14);
+    const Eigen::Vector3d back = RotationBetween(from, -2.0 * from) * from;
+    EXPECT_LT((back + from).norm(), 1e-7 * from.norm());
+  }
+}
+
 TEST(EulerZyx, RoundTripsAlsoAtGimbalLock) {
   Random random(4);
   for (int i = 0; i < 200; ++i) {

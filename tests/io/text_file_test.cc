@@ -37,12 +37,12 @@ TEST(TextFile, KeepsPermissionsAndFollowsLinks) {
   const fs::path path = folder.path() / "a.txt";
   const fs::path link = folder.path() / "link";
   ASSERT_TRUE(WriteFileAtomically(path, "old"));
-  fs::permissions(path, fs::perms(0640));
+  fs::permissions(path, fs::perms{0640});
   fs::create_symlink("a.txt", link);
   ASSERT_TRUE(WriteFileAtomically(link, "new"));
   EXPECT_TRUE(fs::is_symlink(link));
   EXPECT_EQ(*ReadTextFile(path), "new");
-  EXPECT_EQ(fs::status(path).permissions(), fs::perms(0640));
+  EXPECT_EQ(fs::status(path).permissions(), fs::perms{0640});
 }
 
 TEST(TextFile, LeavesNothingBehindWhereItCannotWrite) {

@@ -23,7 +23,7 @@ constexpr const char* kAsRootOnOneCore =
 std::string Quoted(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
 
 std::filesystem::path WriteExperiment(int trials) {
-  const std::filesystem::path path = TestFolder() / "small.yaml";
+  std::filesystem::path path = TestFolder() / "small.yaml";
   WriteText(path, "title: A small one\nkind: random_scene\ntrials: " + std::to_string(trials) +
                       "\nparameters: {data: points}\nsolvers: [kabsch, 'ransac(kabsch, seed=3)']\n"
                       "grid: {outliers: [0, 0.25]}\nmetrics: [rotation_deg, nees]\n"

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "base/random.h"
 #include "geometry/random_vectors.h"
+#include "geometry/symmetric.h"
 #include "solvers/registry.h"
 #include "support/poses.h"
 
@@ -123,7 +123,7 @@ TEST(Average, StandardErrorFromTheScatterIsHonest) {
       const Vector6d error = PoseDifference(report->cam_from_lidar, session.cam_from_lidar);
       squares += error.cwiseAbs2() / kTrials;
       variance += report->covariance->diagonal() / kTrials;
-      const double t2 = error.dot(report->covariance->ldlt().solve(error));
+      const double t2 = SquaredMahalanobis(error, *report->covariance);
       sum += t2;
       sum_squares += t2 * t2;
     }

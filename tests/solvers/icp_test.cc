@@ -14,6 +14,7 @@
 #include "base/random.h"
 #include "base/units.h"
 #include "geometry/random_vectors.h"
+#include "geometry/symmetric.h"
 #include "solvers/kabsch.h"
 #include "solvers/registry.h"
 #include "support/points.h"
@@ -172,7 +173,7 @@ TEST(Icp, CovarianceIsHonestWhereTheMatchesAreRight) {
     const Expected<IcpFit> fit = FitIcp(target, source, truth, {});
     ASSERT_TRUE(fit && fit->covariance);
     const Vector6d error = PoseDifference(fit->target_from_source, truth);
-    sum += error.dot(fit->covariance->ldlt().solve(error)) / 6.0;
+    sum += SquaredMahalanobis(error, *fit->covariance) / 6.0;
   }
   // The estimated variance, of 114 degrees of freedom, raises the mean by 114 / 112.
   EXPECT_NEAR(sum / kTrials, 114.0 / 112.0, 5.0 * std::sqrt(2.0 / (6.0 * kTrials)));
@@ -191,7 +192,7 @@ TEST(Icp, CovarianceOfPlanesIsHonest) {
     const Expected<IcpFit> fit = FitIcp(target, source, truth, settings);
     ASSERT_TRUE(fit && fit->covariance);
     const Vector6d error = PoseDifference(fit->target_from_source, truth);
-    sum += error.dot(fit->covariance->ldlt().solve(error)) / 6.0;
+    sum += SquaredMahalanobis(error, *fit->covariance) / 6.0;
   }
   EXPECT_NEAR(sum / kTrials, 84.0 / 82.0, 5.0 * std::sqrt(2.0 / (6.0 * kTrials)));
 }

@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "eval/bounds.h"
 #include "eval/simulate_views.h"
+#include "geometry/symmetric.h"
 #include "solvers/board_view_residuals.h"
 #include "solvers/registry.h"
 #include "solvers/rotation_manifold.h"
@@ -30,7 +31,7 @@ double ErrorInSigmas(const SimulatedViews& session, const Rigid3d& cam_from_lida
   const Matrix6d bound = *CramerRaoBoundOfViews(session.problem, session.true_cam_from_lidar,
                                                 session.true_cam_from_board);
   const Vector6d error = PoseDifference(cam_from_lidar, session.true_cam_from_lidar);
-  return std::sqrt(error.dot(bound.ldlt().solve(error)));
+  return std::sqrt(SquaredMahalanobis(error, bound));
 }
 
 // The root of the 1 - 1e-6 quantile of chi-square with 6 degrees of freedom, 38.3.

@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "eval/bounds.h"
 #include "eval/mismatched_pairs.h"
+#include "geometry/symmetric.h"
 #include "solvers/p3p_start.h"
 #include "solvers/pair_terms.h"
 #include "solvers/registry.h"
@@ -34,7 +34,7 @@ struct Score {
   void Add(const Expected<SolveReport>& report, const PairScene& scene, const Matrix6d& bound) {
     const Vector6d error =
         report ? PoseDifference(report->cam_from_lidar, scene.cam_from_lidar) : Vector6d();
-    const double squared = report ? error.dot(bound.ldlt().solve(error)) : kWrong;
+    const double squared = report ? SquaredMahalanobis(error, bound) : kWrong;
     if (!(squared < kWrong)) {
       ++wrong;
       return;

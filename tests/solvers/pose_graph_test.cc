@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -104,7 +105,7 @@ TEST(SensorGraph, CovarianceAndChiSquareAreRight) {
     ASSERT_TRUE(graph) << graph.error().message;
     const UncertainPose pose = *graph->Between("cam2", "cam1");
     const Vector6d error = PoseDifference(rig.Between(2, 1), pose.b_from_a);
-    nees += error.dot(pose.covariance.ldlt().solve(error)) / 6.0 / kTrials;
+    nees += SquaredMahalanobis(error, pose.covariance) / 6.0 / kTrials;
     chi_square += graph->chi_square() / graph->redundancy() / kTrials;
     const UncertainPose chain = Chain(edges[1].to_from, Inverse(edges[0].to_from));
     joint += pose.covariance.trace();

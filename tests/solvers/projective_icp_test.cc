@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "eval/lidar/board_scenes.h"
 #include "eval/lidar/scan_pairs.h"
+#include "geometry/symmetric.h"
 #include "solvers/registry.h"
 #include "support/poses.h"
 
@@ -54,7 +55,7 @@ Errors ErrorsOver(const char* model, int rooms) {
     }
     EXPECT_TRUE(fit->converged) << "room " << room;
     const Vector6d error = PoseDifference(fit->target_from_source, pair.target_from_source);
-    errors.nees += error.dot(fit->covariance.ldlt().solve(error)) / (6.0 * rooms);
+    errors.nees += SquaredMahalanobis(error, fit->covariance) / (6.0 * rooms);
     errors.worst_deg = std::max(errors.worst_deg, error.head<3>().norm() / kRadPerDeg);
   }
   return errors;

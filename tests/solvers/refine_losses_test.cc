@@ -2,11 +2,11 @@
 // Every robust loss on every kind of residual: accepted, and with a covariance that is honest.
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <string>
 
 #include "eval/random_scene.h"
+#include "geometry/symmetric.h"
 #include "solvers/registry.h"
 
 namespace sextant {
@@ -50,7 +50,7 @@ TEST_P(RefineLosses, CovarianceIsThatOfTheEstimate) {
     ASSERT_TRUE(report) << spec << ": " << report.error().message;
     ASSERT_TRUE(report->covariance);
     const Vector6d error = PoseDifference(report->cam_from_lidar, scene.cam_from_lidar);
-    nees += error.dot(report->covariance->ldlt().solve(error)) / 6.0 / kTrials;
+    nees += SquaredMahalanobis(error, *report->covariance) / 6.0 / kTrials;
   }
   const double low = std::min(kind.pixels ? loss.pixels : 1.0, kind.points ? loss.points : 1.0);
   const double high = std::max(kind.pixels ? loss.pixels : 0.0, kind.points ? loss.points : 0.0);

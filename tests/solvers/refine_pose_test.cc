@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "geometry/symmetric.h"
 #include "solvers/refine_ceres.h"
 #include "solvers/term_derivatives.h"
 #include "support/scenes.h"
@@ -205,7 +206,7 @@ TEST_P(RefinePoseNees, IsThatOfAnHonestCovariance) {
         LeastSquaresCovariance(terms, refined.information, refined.cost);
     ASSERT_TRUE(covariance);
     const Vector6d error = PoseDifference(refined.cam_from_lidar, scene.cam_from_lidar);
-    sum += error.dot(covariance->ldlt().solve(error)) / 6.0;
+    sum += SquaredMahalanobis(error, *covariance) / 6.0;
     freedom = 3.0 * static_cast<double>(terms.points.size()) +
               2.0 * static_cast<double>(terms.pixels.size()) - 6.0;
   }

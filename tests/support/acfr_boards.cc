@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/acfr_boards.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "geometry/symmetric.h"
 
 namespace sextant::test {
 namespace {
@@ -56,9 +57,9 @@ Plane FitPlane(const RingPoints& board) {
     for (const Eigen::Vector3d& p : inliers) {
       scatter += (p - plane.center) * (p - plane.center).transpose() / count;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
-    plane.normal = solver.eigenvectors().col(0);
-    plane.rms_m = std::sqrt(solver.eigenvalues()[0]);
+    const SymmetricEigen<3> solved = EigenOf(scatter);
+    plane.normal = solved.vectors.col(0);
+    plane.rms_m = std::sqrt(solved.values[0]);
     limit = 0.05;
   }
   return plane;

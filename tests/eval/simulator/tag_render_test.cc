@@ -25,7 +25,7 @@ Rigid3d Pose(double yaw, double pitch, double roll, const Eigen::Vector3d& at) {
   const Eigen::AngleAxisd about_y(yaw, Eigen::Vector3d::UnitY());
   const Eigen::AngleAxisd about_x(pitch, Eigen::Vector3d::UnitX());
   const Eigen::AngleAxisd about_z(roll, Eigen::Vector3d::UnitZ());
-  return {Eigen::Quaterniond(about_y * about_x * about_z), at};
+  return {about_y * about_x * about_z, at};
 }
 
 Board BoardWith(const BoardTag& tag) {

@@ -64,7 +64,7 @@ void Require(const Expected<void>& done) { ASSERT_TRUE(done) << done.error().mes
 
 // Two scans, an image of each kind, cameras of all models.
 std::filesystem::path WrittenBag(BagCompression compression, int points = 40) {
-  const std::filesystem::path path = test::TestFolder() / "session.bag";
+  std::filesystem::path path = test::TestFolder() / "session.bag";
   Expected<Rosbag1Writer> writer = Rosbag1Writer::Create(path, compression);
   EXPECT_TRUE(writer) << writer.error().message;
   Require(writer->Write("/points", kStart, SomeScan(1, points)));
