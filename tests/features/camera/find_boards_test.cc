@@ -114,8 +114,7 @@ TEST(FindBoards, CornersInTheCameraFrameAreWithinTheirCovariance) {
         EXPECT_GT(covariance(2, 2), covariance(0, 0));
       }
       // A rigid board: only 6 of the corners' 12 or 24 numbers are free.
-      const Eigen::VectorXd variances =
-          board.corners.covariance.selfadjointView<Eigen::Lower>().eigenvalues();
+      const Eigen::VectorXd variances = EigenOf<Eigen::Dynamic>(board.corners.covariance).values;
       EXPECT_EQ((variances.array() > 1e-9 * variances.maxCoeff()).count(), 6);
     }
   }
