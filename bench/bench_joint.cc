@@ -12,7 +12,7 @@ namespace {
 // One view alone determines the pose to some centimetres only.
 constexpr Tolerance kTolerance{.rotation_rad = 0.1, .translation_m = 0.2};
 
-void BM_Joint(benchmark::State& state) {
+void SolveJoint(benchmark::State& state) {
   const Expected<SolverPtr> solver = BuiltinSolvers().Make("joint(kabsch)");
   const Expected<SimulatedViews> session =
       SimulateViews({.seed = 3, .views = static_cast<int>(state.range(0))});
@@ -30,7 +30,7 @@ void BM_Joint(benchmark::State& state) {
   state.SetComplexityN(state.range(0));
   state.counters["iterations"] = report->iterations;
 }
-BENCHMARK(BM_Joint)
+BENCHMARK(SolveJoint)
     ->Name("joint/sextant")
     ->RangeMultiplier(10)
     ->Range(1, 1000)

@@ -71,7 +71,7 @@ Expected<SolveReport> Answer(const Recording& recording, const Observer& observe
   return solver.Solve(assembly->problem);
 }
 
-void BM_OnePair(benchmark::State& state) {
+void CalibrateOnePair(benchmark::State& state) {
   cv::setNumThreads(1);
   const Recording& recording = TheRecording();
   const Observer observer = *Observer::Make(recording.boards, recording.camera);
@@ -88,9 +88,9 @@ void BM_OnePair(benchmark::State& state) {
   }
   for (auto _ : state) benchmark::DoNotOptimize(Answer(recording, observer, *solver));
 }
-BENCHMARK(BM_OnePair)->Name("calibrate/one_pair/1")->Unit(benchmark::kMillisecond);
+BENCHMARK(CalibrateOnePair)->Name("calibrate/one_pair/1")->Unit(benchmark::kMillisecond);
 
-void BM_ImageAndScan(benchmark::State& state) {
+void FindInImageAndScan(benchmark::State& state) {
   cv::setNumThreads(1);
   const Recording& recording = TheRecording();
   const Observer observer = *Observer::Make(recording.boards, recording.camera);
@@ -98,7 +98,7 @@ void BM_ImageAndScan(benchmark::State& state) {
     benchmark::DoNotOptimize(observer.Observe(recording.image, recording.cloud));
   }
 }
-BENCHMARK(BM_ImageAndScan)->Name("calibrate/image_and_scan/1")->Unit(benchmark::kMillisecond);
+BENCHMARK(FindInImageAndScan)->Name("calibrate/image_and_scan/1")->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace sextant

@@ -244,8 +244,8 @@ void OpenCv(benchmark::State& state, const std::vector<View>& views, const Toler
   Time(state, views, tolerance, prepare, [](const OpenCvAnswer& answer) {
     Poses poses;
     for (std::size_t i = 0; i < answer.rotations.size(); ++i) {
-      const auto r = cv::Vec3d(answer.rotations[i]);
-      const auto t = cv::Vec3d(answer.translations[i]);
+      const cv::Vec3d r = answer.rotations[i];
+      const cv::Vec3d t = answer.translations[i];
       poses.push_back({ExpSo3({r[0], r[1], r[2]}), {t[0], t[1], t[2]}});
     }
     return poses;

@@ -135,8 +135,8 @@ struct Reprojection {
   bool operator()(const T* pose, T* residuals) const {
     const Camera& camera = *problem->camera;
     for (const Pair2d3d& pair : problem->pairs_2d3d) {
-      const T point[3] = {T(pair.point_in_lidar.x()), T(pair.point_in_lidar.y()),
-                          T(pair.point_in_lidar.z())};
+      const T point[3] = {T{pair.point_in_lidar.x()}, T{pair.point_in_lidar.y()},
+                          T{pair.point_in_lidar.z()}};
       T p[3];
       ceres::AngleAxisRotatePoint(pose, point, p);
       *residuals++ =
