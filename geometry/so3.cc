@@ -48,7 +48,20 @@ Eigen::Matrix3d LeftJacobianSo3(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to);
+  const Eigen::Vector3d a = from.normalized();
+  const Eigen::Vector3d sum = a + to.normalized();
+  // Shorter sums are mostly rounding.
+  constexpr double kOpposite = 1e-8;
+  const double length = sum.norm();
+  Eigen::Quaterniond rotation(0.0, 0.0, 0.0, 0.0);
+  if (length > kOpposite) {
+    // Half of the turn leads to the middle between the two.
+    rotation.w() = a.dot(sum);
+    rotation.vec() = a.cross(sum);
+  } else {
+    rotation.vec() = a.unitOrthogonal();
+  }
+  return rotation.normalized();
 }
 
 double RotationDistance(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {

@@ -21,8 +21,8 @@ Eigen::Vector3d LogSo3(const Eigen::Quaterniond& rotation);
 /// J with Exp(phi + d) = Exp(J d) Exp(phi) to first order in d.
 Eigen::Matrix3d LeftJacobianSo3(const Eigen::Vector3d& phi);
 
-/// The least rotation that turns one direction to another; where they are opposite, about any axis
-/// across them. Neither may be zero.
+/// The least rotation that turns one direction to another; where they are opposite to 1e-8 rad,
+/// half a turn about any axis across them. Neither may be zero.
 Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 /// Angle of b_from_a's rotation against another, in [0, pi] rad.

@@ -64,7 +64,7 @@ TEST(So3, RotationBetweenTurnsOneDirectionToTheOther) {
     // The least: about the axis across both.
     EXPECT_LT(std::abs(LogSo3(turn).dot(from.normalized())), 1e-14);
     const Eigen::Vector3d back = RotationBetween(from, -2.0 * from) * from;
-    EXPECT_LT((back + from).norm(), 1e-7 * from.norm());
+    EXPECT_LT((back + from).norm(), 1e-14 * from.norm());
   }
 }
 
