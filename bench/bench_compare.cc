@@ -8,13 +8,13 @@
 #include "bench/compare.h"
 
 int main(int argc, char** argv) {
-  using namespace sextant;
+  namespace bench = sextant::bench;
   if (argc != 3) {
     std::fputs("usage: bench_compare <folder of old results> <folder of new results>\n", stderr);
     return 2;
   }
-  const Expected<bench::Timings> before = bench::ReadTimings(argv[1]);
-  const Expected<bench::Timings> after = bench::ReadTimings(argv[2]);
+  const sextant::Expected<bench::Timings> before = bench::ReadTimings(argv[1]);
+  const sextant::Expected<bench::Timings> after = bench::ReadTimings(argv[2]);
   for (const auto* timings : {&before, &after}) {
     if (*timings) continue;
     fmt::print(stderr, "bench_compare: {}\n", timings->error().message);

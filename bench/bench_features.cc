@@ -57,10 +57,8 @@ const Photo& ThePhoto() {
 
 // Grey levels as smooth over so many pixels, of this sigma.
 cv::Mat Blotches(const cv::Size& size, int over_px, double sigma_grey, Random& random) {
-  cv::Mat small(size / over_px + cv::Size(1, 1), CV_32F);
-  for (auto grey = small.begin<float>(); grey != small.end<float>(); ++grey) {
-    *grey = static_cast<float>(sigma_grey * random.Normal());
-  }
+  cv::Mat_<float> small(size / over_px + cv::Size(1, 1));
+  for (float& grey : small) grey = static_cast<float>(sigma_grey * random.Normal());
   cv::Mat large;
   cv::resize(small, large, size, 0.0, 0.0, cv::INTER_CUBIC);
   return large;

@@ -21,6 +21,7 @@ thread_local long allocations = 0;
 
 #ifdef SEXTANT_COUNTS_ALLOCATIONS
 // The C library's own, under the names that it exports for this purpose.
+// NOLINTBEGIN: its names, and those of its parameters.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -49,6 +50,7 @@ int posix_memalign(void** result, std::size_t alignment, std::size_t size) {
   return *result == nullptr ? 12 : 0;
 }
 }
+// NOLINTEND
 #endif
 
 namespace sextant::test {

@@ -39,7 +39,7 @@ boards:
 
 // Two scans of two boards, with the file of the boards beside them.
 fs::path SimulatedScans() {
-  const fs::path folder = TestFolder() / "session";
+  fs::path folder = TestFolder() / "session";
   WriteText(TestFolder() / "scene.yaml", kSceneOfBoards);
   const ProgramRun run = RunSextant("simulate " + (TestFolder() / "scene.yaml").string() +
                                     " --scans 2 --out " + folder.string());

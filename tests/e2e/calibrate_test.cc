@@ -51,7 +51,7 @@ walls:
 )";
 
 fs::path Simulated(const std::string& options) {
-  const fs::path folder = TestFolder() / "session";
+  fs::path folder = TestFolder() / "session";
   WriteText(TestFolder() / "scene.yaml", kSceneToCalibrate);
   const ProgramRun run = RunSextant("simulate " + (TestFolder() / "scene.yaml").string() +
                                     " --interval 60 --out " + folder.string() + " " + options);

@@ -27,7 +27,7 @@ using testing::Not;
 
 // The paper's two boards seen from a known pose, as points.txt.
 std::string SimulatedSession(const std::string& options = "") {
-  const std::string path = (TestFolder() / "session.yaml").string();
+  std::string path = (TestFolder() / "session.yaml").string();
   const ProgramRun run = RunSextant("simulate pairs --out " + path + " " + options);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   return path;

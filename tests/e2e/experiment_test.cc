@@ -19,7 +19,7 @@ std::string Quoted(const std::filesystem::path& path) { return "'" + path.string
 
 // A small experiment with every sort of output; returns its path.
 std::filesystem::path WriteExperiment(int trials) {
-  const std::filesystem::path path = TestFolder() / "small.yaml";
+  std::filesystem::path path = TestFolder() / "small.yaml";
   WriteText(path,
             "title: A small one\nkind: random_scene\ntrials: " + std::to_string(trials) +
                 "\nquick_trials: 20\nparameters: {data: points}\n"
