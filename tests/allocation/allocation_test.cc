@@ -87,8 +87,18 @@ TEST_F(Allocation, IsCounted) {
               delete number;
             }),
             1);
-  EXPECT_EQ(AllocationsOf([] { std::vector<double>(3).push_back(1.0); }), 2);
-  EXPECT_EQ(AllocationsOf([] { Eigen::VectorXd::Zero(9).eval(); }), 1);
+  EXPECT_EQ(AllocationsOf([] {
+              std::vector<double> numbers(3);
+              escaped = numbers.data();
+              numbers.push_back(1.0);
+              escaped = numbers.data();
+            }),
+            2);
+  EXPECT_EQ(AllocationsOf([] {
+              Eigen::VectorXd numbers = Eigen::VectorXd::Zero(9);
+              escaped = numbers.data();
+            }),
+            1);
   EXPECT_EQ(AllocationsOf([] { Eigen::Matrix3d::Zero().eval(); }), 0);
 }
 
