@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "eval/simulate_pairs.h"
+#include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
@@ -120,7 +121,7 @@ TEST(SimulatePairs, ResidualsUnderTheTruthHaveTheStatedCovariance) {
   double chi2 = 0.0;
   for (const Pair3d3d& pair : session.problem.pairs_3d3d) {
     const Eigen::Vector3d r = pair.point_in_cam - session.true_cam_from_lidar * pair.point_in_lidar;
-    chi2 += r.dot(pair.covariance_in_cam->inverse() * r);
+    chi2 += SquaredMahalanobis(r, *pair.covariance_in_cam);
   }
   const double freedom = 3.0 * static_cast<double>(session.problem.pairs_3d3d.size());
   EXPECT_NEAR(chi2 / freedom, 1.0, 5.0 * std::sqrt(2.0 / freedom));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,6 +11,7 @@
 #include "eval/simulator/lidar_model.h"
 #include "eval/simulator/scan.h"
 #include "features/lidar/corner_extractor.h"
+#include "geometry/symmetric.h"
 #include "support/median.h"
 
 namespace sextant::test {
@@ -68,7 +68,7 @@ void AddErrors(const Scene& scene, const BoardSearch& search, const std::vector<
         const Eigen::Vector3d off =
             corners->in_lidar[static_cast<std::size_t>(i)] - TrueCorner(scene.boards[b], i);
         of.distances_m.push_back(off.norm());
-        nees += off.dot(corners->CovarianceOf(i).inverse() * off) / 3.0 / kCornersPerBoard;
+        nees += SquaredMahalanobis(off, corners->CovarianceOf(i)) / 3.0 / kCornersPerBoard;
       }
       of.nees.push_back(nees);
     }
