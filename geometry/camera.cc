@@ -57,6 +57,7 @@ std::optional<Eigen::Vector2d> UndistortPlane(const Camera& camera, const Eigen:
     if (full.norm() < kLastStep) return Distort(camera, guess + full) ? guess + full : guess;
     double fraction = 1.0;
     std::optional<Distorted> next;
+    // NOLINTNEXTLINE(clang-analyzer-security.FloatLoopCounter): halved exactly.
     for (; fraction > kMinFraction; fraction *= 0.5) {
       next = Distort(camera, guess + fraction * full);
       if (next && (target - next->point).norm() < residual.norm()) break;

@@ -16,6 +16,7 @@ struct CellKey {
   int subject = 0;
   int index = 0;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): what the compiler writes for <=> looks like one.
   friend auto operator<=>(const CellKey&, const CellKey&) = default;
 };
 
