@@ -4,9 +4,9 @@
 #include <benchmark/benchmark.h>
 
 #include "base/random.h"
-#include "eval/lidar/board_scenes.h"
-#include "eval/simulator/scan.h"
+#include "eval/extractors/board_scenes.h"
 #include "features/lidar/corner_extractor.h"
+#include "simulator/lidar/scan.h"
 
 namespace sextant {
 namespace {

@@ -9,8 +9,9 @@
 #include <string>
 #include <thread>
 
-#include "eval/experiment/report.h"
-#include "eval/experiment/run_trials.h"
+#include "eval/experiment/report/report.h"
+#include "eval/experiment/run/run_trials.h"
+#include "solvers/builtin_solvers.h"
 
 namespace sextant::bench {
 namespace {

@@ -13,11 +13,11 @@ extern "C" {
 #include <opencv2/imgproc.hpp>
 
 #include "base/random.h"
-#include "eval/simulator/camera_model.h"
-#include "eval/simulator/render.h"
 #include "features/camera/find_boards.h"
 #include "geometry/board_check.h"
 #include "geometry/so3.h"
+#include "simulator/camera/render.h"
+#include "simulator/scene/camera_model.h"
 
 namespace sextant {
 namespace {

@@ -7,8 +7,8 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "eval/simulator/camera_model.h"
-#include "eval/simulator/render.h"
+#include "simulator/camera/render.h"
+#include "simulator/scene/camera_model.h"
 
 namespace sextant::bench {
 namespace {

@@ -3,8 +3,9 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/check.h"
-#include "eval/simulate_views.h"
-#include "solvers/registry.h"
+#include "eval/synthetic/simulate_views.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 
 namespace sextant::bench {
 namespace {

@@ -10,8 +10,8 @@
 #include "bench/check.h"
 #include "geometry/random_vectors.h"
 #include "geometry/so3.h"
-#include "solvers/kabsch.h"
-#include "solvers/kabsch_batch.h"
+#include "solvers/kernels/kabsch.h"
+#include "solvers/kernels/kabsch_batch.h"
 
 namespace sextant::bench {
 namespace {

@@ -10,10 +10,11 @@
 #include <thread>
 #include <vector>
 
-#include "eval/outlier_study.h"
-#include "solvers/registry.h"
+#include "eval/metrics/outlier_study.h"
+#include "solvers/core/registry.h"
 
 #ifdef SEXTANT_BENCH_OPENCV
+#include "solvers/builtin_solvers.h"
 #include "solvers/opencv/opencv_solvers.h"
 #endif
 #ifdef SEXTANT_BENCH_OPENGV

@@ -6,8 +6,9 @@
 #include <Eigen/Geometry>
 
 #include "bench/peer_tasks.h"
-#include "solvers/kabsch.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
+#include "solvers/kernels/kabsch.h"
 
 namespace sextant::bench {
 namespace {

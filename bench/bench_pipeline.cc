@@ -5,13 +5,14 @@
 
 #include <opencv2/core.hpp>
 
-#include "calibrate/assemble.h"
-#include "eval/simulator/camera_model.h"
-#include "eval/simulator/lidar_model.h"
-#include "eval/simulator/render.h"
-#include "eval/simulator/scan.h"
+#include "calibrate/match/assemble.h"
 #include "geometry/so3.h"
-#include "solvers/registry.h"
+#include "simulator/camera/render.h"
+#include "simulator/lidar/lidar_model.h"
+#include "simulator/lidar/scan.h"
+#include "simulator/scene/camera_model.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 
 namespace sextant {
 namespace {

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "bench/check.h"
-#include "solvers/dlt.h"
-#include "solvers/epnp.h"
-#include "solvers/ippe.h"
-#include "solvers/p3p.h"
-#include "solvers/sqpnp.h"
+#include "solvers/kernels/p3p.h"
+#include "solvers/pnp/dlt.h"
+#include "solvers/pnp/epnp.h"
+#include "solvers/pnp/ippe.h"
+#include "solvers/pnp/sqpnp.h"
 
 #ifdef SEXTANT_BENCH_OPENGV
 #include <opengv/absolute_pose/CentralAbsoluteAdapter.hpp>

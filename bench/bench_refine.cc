@@ -11,10 +11,11 @@
 #include <vector>
 
 #include "bench/check.h"
-#include "eval/mismatched_pairs.h"
-#include "solvers/p3p_start.h"
-#include "solvers/refine_pose.h"
-#include "solvers/registry.h"
+#include "eval/synthetic/mismatched_pairs.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
+#include "solvers/least_squares/refine_pose.h"
+#include "solvers/refine/p3p_start.h"
 
 #ifdef SEXTANT_BENCH_OPENCV
 #include <opencv2/calib3d.hpp>

@@ -8,8 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "eval/mismatched_pairs.h"
-#include "solvers/registry.h"
+#include "eval/synthetic/mismatched_pairs.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 
 namespace sextant::bench {
 namespace {

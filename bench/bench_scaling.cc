@@ -13,11 +13,12 @@
 #include "base/random.h"
 #include "bench/machine.h"
 #include "bench/scaling_chart.h"
-#include "eval/mismatched_pairs.h"
-#include "eval/random_scene.h"
-#include "eval/simulate_views.h"
-#include "io/text_file.h"
-#include "solvers/registry.h"
+#include "eval/synthetic/mismatched_pairs.h"
+#include "eval/synthetic/random_scene.h"
+#include "eval/synthetic/simulate_views.h"
+#include "io/text/text_file.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 
 namespace sextant::bench {
 namespace {

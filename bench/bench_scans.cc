@@ -8,8 +8,9 @@
 #include <numbers>
 #include <string>
 
-#include "eval/lidar/scan_pairs.h"
-#include "solvers/registry.h"
+#include "eval/extractors/scan_pairs.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 
 namespace sextant {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "eval/simulator/scan.h"
+#include "simulator/lidar/scan.h"
 
 namespace sextant::bench {
 namespace {

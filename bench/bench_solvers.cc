@@ -9,9 +9,10 @@
 #include <string>
 
 #include "bench/check.h"
-#include "eval/bounds.h"
+#include "eval/metrics/bounds.h"
 #include "geometry/symmetric.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 
 namespace sextant::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "eval/random_scene.h"
+#include "eval/synthetic/random_scene.h"
 #include "geometry/rigid3d.h"
 
 namespace sextant::bench {

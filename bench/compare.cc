@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "eval/text_table.h"
+#include "eval/statistics/text_table.h"
 
 namespace sextant::bench {
 namespace {

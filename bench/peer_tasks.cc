@@ -10,10 +10,10 @@
 #include "base/random.h"
 #include "base/units.h"
 #include "bench/check.h"
-#include "eval/lidar/scan_pairs.h"
-#include "eval/mismatched_pairs.h"
-#include "eval/random_scene.h"
-#include "solvers/kabsch.h"
+#include "eval/extractors/scan_pairs.h"
+#include "eval/synthetic/mismatched_pairs.h"
+#include "eval/synthetic/random_scene.h"
+#include "solvers/kernels/kabsch.h"
 
 namespace sextant::bench {
 namespace {

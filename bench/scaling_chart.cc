@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "eval/plot.h"
-#include "eval/text_table.h"
+#include "eval/statistics/text_table.h"
+#include "report/plot.h"
 
 namespace sextant::bench {
 namespace {

@@ -5,15 +5,15 @@
 #include <numbers>
 
 #include "base/units.h"
-#include "calibrate/advise.h"
-#include "calibrate/information.h"
-#include "calibrate/photo_file.h"
-#include "cli/advice_picture.h"
+#include "calibrate/advise/advise.h"
+#include "calibrate/observe/photo_file.h"
+#include "calibrate/trust/information.h"
 #include "cli/commands.h"
 #include "cli/load.h"
 #include "cli/result_options.h"
-#include "eval/bounds.h"
-#include "eval/simulator/lidar_model.h"
+#include "eval/metrics/bounds.h"
+#include "report/advice_picture.h"
+#include "simulator/lidar/lidar_model.h"
 
 namespace sextant::cli {
 namespace {

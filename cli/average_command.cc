@@ -7,10 +7,10 @@
 #include "base/version.h"
 #include "cli/commands.h"
 #include "cli/load.h"
-#include "eval/running_average.h"
-#include "eval/text_table.h"
-#include "io/average_log.h"
-#include "io/pose_json.h"
+#include "eval/metrics/running_average.h"
+#include "eval/statistics/text_table.h"
+#include "io/blocks/pose_json.h"
+#include "io/original/average_log.h"
 
 namespace sextant::cli {
 namespace {

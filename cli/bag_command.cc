@@ -8,8 +8,8 @@
 #include "cli/bag_extract.h"
 #include "cli/commands.h"
 #include "cli/load.h"
-#include "eval/text_table.h"
-#include "io/number_text.h"
+#include "eval/statistics/text_table.h"
+#include "io/text/number_text.h"
 
 namespace sextant::cli {
 namespace {

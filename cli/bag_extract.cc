@@ -9,9 +9,9 @@
 #include <set>
 
 #include "calibrate/bag/bag_image.h"
-#include "io/camera_file.h"
-#include "io/pcd_file.h"
-#include "io/text_file.h"
+#include "io/cameras/camera_file.h"
+#include "io/clouds/pcd_file.h"
+#include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "cli/board_drawing.h"
 #include "cli/commands.h"
 #include "cli/load.h"
-#include "io/board_file.h"
-#include "io/text_file.h"
+#include "io/boards/board_file.h"
+#include "io/text/text_file.h"
+#include "report/board_drawing.h"
 
 namespace sextant::cli {
 namespace {

@@ -5,16 +5,16 @@
 #include <optional>
 #include <vector>
 
-#include "cli/boards_report.h"
 #include "cli/commands.h"
 #include "cli/load.h"
 #include "cli/progress.h"
-#include "cli/scan_picture.h"
 #include "cli/search_options.h"
 #include "features/lidar/polygon_edges.h"
-#include "io/board_file.h"
-#include "io/cloud_file.h"
-#include "io/polygon_file.h"
+#include "io/boards/board_file.h"
+#include "io/boards/polygon_file.h"
+#include "io/clouds/cloud_file.h"
+#include "report/boards_report.h"
+#include "report/scan_picture.h"
 
 namespace sextant::cli {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/assemble.h"
-#include "calibrate/observe.h"
-#include "calibrate/session.h"
+#include "calibrate/match/assemble.h"
+#include "calibrate/observe/observe.h"
+#include "calibrate/session/session.h"
 
 namespace sextant::cli {
 

@@ -2,6 +2,7 @@
 #include "cli/catalogue.h"
 
 #ifdef SEXTANT_WITH_OPENCV_SOLVERS
+#include "solvers/builtin_solvers.h"
 #include "solvers/opencv/opencv_solvers.h"
 #endif
 

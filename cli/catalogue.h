@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "solvers/registry.h"
+#include "solvers/core/registry.h"
 
 namespace sextant::cli {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cli/search_options.h"
-#include "eval/lidar/extractor_study.h"
-#include "eval/simulate_pairs.h"
+#include "eval/extractors/extractor_study.h"
+#include "eval/synthetic/simulate_pairs.h"
 
 namespace sextant::cli {
 

@@ -3,9 +3,9 @@
 
 #include "cli/commands.h"
 #include "cli/load.h"
-#include "io/points_file.h"
-#include "io/read_problem.h"
-#include "io/text_file.h"
+#include "io/problems/points_file.h"
+#include "io/problems/read_problem.h"
+#include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {

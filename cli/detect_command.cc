@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "calibrate/photo_file.h"
+#include "calibrate/observe/photo_file.h"
 #include "cli/commands.h"
-#include "cli/detect_report.h"
 #include "cli/load.h"
 #include "cli/progress.h"
 #include "features/camera/grey_image.h"
-#include "io/board_file.h"
-#include "io/camera_file.h"
+#include "io/boards/board_file.h"
+#include "io/cameras/camera_file.h"
+#include "report/detect_report.h"
 
 namespace sextant::cli {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "cli/commands.h"
 #include "cli/load.h"
-#include "eval/camera/detector_study.h"
-#include "eval/text_table.h"
+#include "eval/extractors/detector_study.h"
+#include "eval/statistics/text_table.h"
 #include "features/camera/tag_detector.h"
 
 namespace sextant::cli {

@@ -8,8 +8,8 @@
 #include "cli/commands.h"
 #include "cli/experiment_run.h"
 #include "cli/load.h"
-#include "eval/experiment/kinds_page.h"
-#include "eval/experiment/part_files.h"
+#include "eval/experiment/kinds/kinds_page.h"
+#include "eval/experiment/run/part_files.h"
 
 namespace sextant::cli {
 namespace {

@@ -9,9 +9,9 @@
 #include "cli/catalogue.h"
 #include "cli/load.h"
 #include "cli/progress.h"
-#include "eval/experiment/timing.h"
-#include "eval/experiment/write_report.h"
-#include "io/text_file.h"
+#include "eval/experiment/definition/timing.h"
+#include "eval/experiment/report/write_report.h"
+#include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {

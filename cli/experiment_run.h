@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "cli/commands.h"
-#include "eval/experiment/run_trials.h"
+#include "eval/experiment/run/run_trials.h"
 
 namespace sextant::cli {
 

@@ -6,8 +6,8 @@
 #include "cli/commands.h"
 #include "cli/load.h"
 #include "cli/result_options.h"
-#include "io/export_transform.h"
-#include "io/text_file.h"
+#include "io/export/export_transform.h"
+#include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "cli/commands.h"
 #include "cli/load.h"
-#include "eval/lidar/extractor_study.h"
-#include "eval/text_table.h"
+#include "eval/extractors/extractor_study.h"
+#include "eval/statistics/text_table.h"
 #include "features/lidar/corner_extractor.h"
 
 namespace sextant::cli {

@@ -9,12 +9,12 @@
 #include "cli/commands.h"
 #include "cli/load.h"
 #include "cli/pose_file.h"
-#include "eval/cloud_fusion.h"
-#include "io/cloud_file.h"
-#include "io/pcd_file.h"
-#include "io/ply_file.h"
-#include "io/text_file.h"
-#include "io/transform_list.h"
+#include "eval/metrics/cloud_fusion.h"
+#include "io/clouds/cloud_file.h"
+#include "io/clouds/pcd_file.h"
+#include "io/clouds/ply_file.h"
+#include "io/problems/transform_list.h"
+#include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {

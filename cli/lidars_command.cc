@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "cli/commands.h"
-#include "eval/simulator/lidar_model.h"
-#include "eval/text_table.h"
+#include "eval/statistics/text_table.h"
+#include "simulator/lidar/lidar_model.h"
 
 namespace sextant::cli {
 namespace {

@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <vector>
 
-#include "io/board_file.h"
-#include "io/camera_file.h"
-#include "io/marker_files.h"
-#include "io/read_problem.h"
-#include "io/text_file.h"
+#include "io/boards/board_file.h"
+#include "io/boards/marker_files.h"
+#include "io/cameras/camera_file.h"
+#include "io/problems/read_problem.h"
+#include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {

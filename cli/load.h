@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "eval/judge.h"
-#include "io/problem_yaml.h"
-#include "io/results_json.h"
+#include "eval/judge/judge.h"
+#include "io/problems/problem_yaml.h"
+#include "io/results/results_json.h"
 
 namespace sextant::cli {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "cli/pose_file.h"
-#include "io/number_text.h"
+#include "io/text/number_text.h"
 
 namespace sextant::cli {
 namespace {

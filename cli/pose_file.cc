@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "io/results_json.h"
-#include "io/text_file.h"
-#include "io/transform_list.h"
-#include "io/yaml_fields.h"
+#include "io/problems/transform_list.h"
+#include "io/results/results_json.h"
+#include "io/text/text_file.h"
+#include "io/text/yaml_fields.h"
 
 namespace sextant::cli {
 namespace {

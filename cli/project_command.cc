@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <opencv2/core/mat.hpp>
 
-#include "calibrate/observe.h"
-#include "calibrate/photo_file.h"
+#include "calibrate/observe/observe.h"
+#include "calibrate/observe/photo_file.h"
 #include "cli/commands.h"
 #include "cli/load.h"
 #include "cli/result_options.h"
-#include "cli/scan_on_image.h"
-#include "io/board_file.h"
-#include "io/calibration_result.h"
-#include "io/camera_file.h"
-#include "io/cloud_file.h"
+#include "io/boards/board_file.h"
+#include "io/cameras/camera_file.h"
+#include "io/clouds/cloud_file.h"
+#include "io/results/calibration_result.h"
+#include "report/scan_on_image.h"
 
 namespace sextant::cli {
 namespace {

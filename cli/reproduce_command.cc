@@ -7,8 +7,8 @@
 #include "cli/commands.h"
 #include "cli/load.h"
 #include "cli/progress.h"
-#include "eval/experiment/reproduce.h"
-#include "eval/text_table.h"
+#include "eval/experiment/reproduction/reproduce.h"
+#include "eval/statistics/text_table.h"
 
 namespace sextant::cli {
 

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/result_options.h"
-#include "io/export_transform.h"
+#include "io/export/export_transform.h"
 
 namespace sextant::cli {
 namespace {

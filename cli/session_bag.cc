@@ -8,10 +8,10 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "calibrate/photo_file.h"
+#include "calibrate/observe/photo_file.h"
 #include "io/bag/rosbag1_writer.h"
-#include "io/camera_file.h"
-#include "io/pcd_file.h"
+#include "io/cameras/camera_file.h"
+#include "io/clouds/pcd_file.h"
 
 namespace sextant::cli {
 namespace {

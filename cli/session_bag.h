@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "base/error.h"
-#include "eval/simulator/scene.h"
-#include "eval/simulator/session.h"
-#include "eval/simulator/truth_yaml.h"
+#include "simulator/scene/scene.h"
+#include "simulator/scene/truth_yaml.h"
+#include "simulator/session/session.h"
 
 namespace sextant::cli {
 

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/image_file.h"
 #include "cli/load.h"
 #include "cli/progress.h"
 #include "cli/session_bag.h"
-#include "eval/simulator/contact_sheet.h"
-#include "eval/simulator/scene_file.h"
-#include "eval/simulator/session.h"
-#include "io/text_file.h"
+#include "io/text/text_file.h"
+#include "report/image_file.h"
+#include "simulator/scene/scene_file.h"
+#include "simulator/session/contact_sheet.h"
+#include "simulator/session/session.h"
 
 namespace sextant::cli {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "cli/commands.h"
 #include "cli/load.h"
-#include "io/problem_yaml.h"
-#include "io/text_file.h"
+#include "io/problems/problem_yaml.h"
+#include "io/text/text_file.h"
 
 namespace sextant::cli {
 

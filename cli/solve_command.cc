@@ -8,11 +8,11 @@
 #include "cli/catalogue.h"
 #include "cli/commands.h"
 #include "cli/load.h"
-#include "cli/overlay.h"
-#include "cli/report_text.h"
-#include "eval/compare.h"
-#include "eval/default_specs.h"
-#include "eval/plot.h"
+#include "eval/metrics/compare.h"
+#include "eval/metrics/default_specs.h"
+#include "report/overlay.h"
+#include "report/plot.h"
+#include "report/report_text.h"
 
 namespace sextant::cli {
 namespace {

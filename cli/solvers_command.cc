@@ -4,7 +4,7 @@
 #include "base/nearest_name.h"
 #include "cli/catalogue.h"
 #include "cli/commands.h"
-#include "eval/text_table.h"
+#include "eval/statistics/text_table.h"
 
 namespace sextant::cli {
 namespace {

@@ -21,3 +21,14 @@ function(sextant_library name)
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sextant)
 endfunction()
+
+# Several libraries under one name: sextant_umbrella(<folder> <parts of it>...).
+function(sextant_umbrella name)
+  string(REPLACE "/" "_" target ${name})
+  list(TRANSFORM ARGN PREPEND sextant::${target}_ OUTPUT_VARIABLE parts)
+  add_library(sextant_${target} INTERFACE)
+  add_library(sextant::${target} ALIAS sextant_${target})
+  target_link_libraries(sextant_${target} INTERFACE ${parts})
+  set_target_properties(sextant_${target} PROPERTIES EXPORT_NAME ${target})
+  install(TARGETS sextant_${target} EXPORT sextantTargets)
+endfunction()

@@ -44,6 +44,12 @@ struct Pair2d3d {
   PairId id;
 };
 
+/// Whether the pair states its noise.
+inline bool HasKnownNoise(const Pair3d3d& pair) {
+  return pair.covariance_in_cam.has_value() || pair.sigma_m > 0.0;
+}
+inline bool HasKnownNoise(const Pair2d3d& pair) { return pair.sigma_px > 0.0; }
+
 /// Points of the same objects in both frames. Metres.
 struct PointSets {
   std::vector<Eigen::Vector3d> in_cam;

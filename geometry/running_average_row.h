@@ -7,7 +7,7 @@ namespace sextant {
 
 /// One iteration in the log of the original package (avg_values.txt): its running average of
 /// cam_from_lidar after `iteration` scans, as printed. The rotation is not a mean; see
-/// solvers/rotation_average.h.
+/// solvers/averaging/rotation_average.h.
 struct RunningAverageRow {
   int iteration = 0;  ///< Counts from 1.
   Eigen::Vector3d mean_translation_m = Eigen::Vector3d::Zero();

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+
+#include "solvers/core/registry.h"
 
 // One line a solver, in the order of the catalogue; X(Name) is `SolverEntry NameEntry()` in the
 // solver's own file. An explicit table: the linker drops self-registering objects.

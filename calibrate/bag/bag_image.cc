@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/number_text.h"
+#include "io/text/number_text.h"
 
 namespace sextant {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "calibrate/bag/bag_image.h"
 #include "calibrate/bag/bag_streams.h"
-#include "calibrate/motion.h"
+#include "calibrate/match/motion.h"
 #include "io/bag/messages.h"
 
 namespace sextant {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/assemble.h"
-#include "calibrate/observe.h"
+#include "calibrate/match/assemble.h"
+#include "calibrate/observe/observe.h"
 #include "geometry/camera.h"
 #include "io/bag/bag.h"
 

@@ -10,7 +10,7 @@
 
 #include "cli/experiment_run.h"
 #include "cli/load.h"
-#include "eval/experiment/part_files.h"
+#include "eval/experiment/run/part_files.h"
 
 namespace sextant::cli {
 namespace {

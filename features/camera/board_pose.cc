@@ -11,8 +11,8 @@
 
 #include "geometry/so3.h"
 #include "geometry/symmetric.h"
-#include "solvers/ippe.h"
-#include "solvers/refine_pose.h"
+#include "solvers/least_squares/refine_pose.h"
+#include "solvers/pnp/ippe.h"
 
 namespace sextant {
 namespace {

@@ -30,9 +30,9 @@ struct BoardPose {
 
 /// The pose that fits all points at once: least squares of whitened reprojection errors.
 ///
-/// Each group alone gives two starts by IPPE (solvers/ippe.h; Collins and Bartoli 2014), each is
-/// refined over all points by Levenberg-Marquardt, and the best minimum is taken. Another minimum
-/// stays as `ambiguous_with` where a likelihood-ratio test at 1 % (chi-square 9.2 of two
+/// Each group alone gives two starts by IPPE (solvers/pnp/ippe.h; Collins and Bartoli 2014), each
+/// is refined over all points by Levenberg-Marquardt, and the best minimum is taken. Another
+/// minimum stays as `ambiguous_with` where a likelihood-ratio test at 1 % (chi-square 9.2 of two
 /// hypotheses, scaled as the covariance is) does not refuse it.
 /// Errors: kTooFewPairs (no group); kDegenerate, kMirrored from IPPE for every group;
 /// kNoConvergence; kInvalidInput for a covariance that is not positive definite or not of the

@@ -7,10 +7,10 @@
 #include <set>
 #include <utility>
 
+#include "base/spec.h"
 #include "features/camera/grey_image.h"
 #include "features/camera/tag_pattern.h"
 #include "geometry/board_check.h"
-#include "solvers/spec.h"
 
 namespace sextant {
 namespace {

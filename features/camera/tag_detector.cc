@@ -8,12 +8,12 @@
 #include <tuple>
 
 #include "base/nearest_name.h"
+#include "base/spec.h"
 #include "features/camera/apriltag_detector.h"
 #include "features/camera/aruco_detector.h"
 #include "features/camera/checkerboard_detector.h"
 #include "features/camera/grey_image.h"
 #include "features/camera/tag_pattern.h"
-#include "solvers/spec.h"
 
 namespace sextant {
 namespace {

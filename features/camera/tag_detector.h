@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/options.h"
 #include "features/camera/detection.h"
-#include "solvers/options.h"
 
 namespace sextant {
 

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "io/number_text.h"
+#include "io/text/number_text.h"
 
 namespace sextant {
 namespace {

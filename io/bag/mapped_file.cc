@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "io/number_text.h"
+#include "io/text/number_text.h"
 
 namespace sextant {
 namespace {

@@ -10,7 +10,7 @@
 #include "io/bag/decompress.h"
 #include "io/bag/open_bytes.h"
 #include "io/bag/topic_table.h"
-#include "io/number_text.h"
+#include "io/text/number_text.h"
 
 namespace sextant {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "io/number_text.h"
+#include "io/text/number_text.h"
 
 namespace sextant {
 namespace {

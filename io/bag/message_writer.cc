@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "io/scalar_type.h"
+#include "io/clouds/scalar_type.h"
 
 namespace sextant {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "io/bag/message_reader.h"
-#include "io/camera_parts.h"
-#include "io/cloud_builder.h"
-#include "io/number_text.h"
-#include "io/scalar_type.h"
+#include "io/cameras/camera_parts.h"
+#include "io/clouds/cloud_builder.h"
+#include "io/clouds/scalar_type.h"
+#include "io/text/number_text.h"
 
 namespace sextant {
 namespace {

@@ -4,7 +4,7 @@
 #include "io/bag/mapped_file.h"
 #include "io/bag/open_bytes.h"
 #include "io/bag/rosbag1_records.h"
-#include "io/number_text.h"
+#include "io/text/number_text.h"
 
 namespace sextant {
 namespace {

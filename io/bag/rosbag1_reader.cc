@@ -8,7 +8,7 @@
 #include "io/bag/open_bytes.h"
 #include "io/bag/rosbag1_records.h"
 #include "io/bag/topic_table.h"
-#include "io/number_text.h"
+#include "io/text/number_text.h"
 
 namespace sextant {
 namespace {

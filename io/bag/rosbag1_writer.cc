@@ -15,7 +15,7 @@
 #include "io/bag/decompress.h"
 #include "io/bag/message_writer.h"
 #include "io/bag/rosbag1_records.h"
-#include "io/number_text.h"
+#include "io/text/number_text.h"
 
 namespace sextant {
 namespace {

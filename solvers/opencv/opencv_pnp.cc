@@ -8,7 +8,7 @@
 #include <opencv2/calib3d.hpp>
 #include <optional>
 
-#include "solvers/correspondences.h"
+#include "solvers/pnp/correspondences.h"
 
 namespace sextant {
 namespace {

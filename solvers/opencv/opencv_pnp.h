@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "solvers/pnp_solver.h"
+#include "solvers/pnp/pnp_solver.h"
 
 namespace sextant {
 

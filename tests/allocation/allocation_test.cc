@@ -6,8 +6,9 @@
 #include <cstddef>
 #include <cstdlib>
 
-#include "eval/mismatched_pairs.h"
-#include "solvers/registry.h"
+#include "eval/synthetic/mismatched_pairs.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/kernel_calls.h"
 
 #if defined(__GLIBC__) && !defined(SEXTANT_SANITIZED)

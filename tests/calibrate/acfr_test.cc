@@ -12,11 +12,12 @@
 #include <vector>
 
 #include "base/units.h"
-#include "calibrate/assemble.h"
-#include "calibrate/diagnose.h"
-#include "calibrate/observe_files.h"
-#include "io/camera_file.h"
-#include "solvers/registry.h"
+#include "calibrate/match/assemble.h"
+#include "calibrate/session/observe_files.h"
+#include "calibrate/trust/diagnose.h"
+#include "io/cameras/camera_file.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/real_data.h"
 
 namespace sextant::test {

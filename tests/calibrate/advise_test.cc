@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibrate/advise.h"
+#include "calibrate/advise/advise.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "calibrate/information.h"
-#include "eval/bounds.h"
-#include "eval/simulate_views.h"
-#include "solvers/board_view_information.h"
+#include "calibrate/trust/information.h"
+#include "eval/metrics/bounds.h"
+#include "eval/synthetic/simulate_views.h"
+#include "solvers/joint/board_view_information.h"
 
 namespace sextant {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibrate/diagnose.h"
+#include "calibrate/trust/diagnose.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibrate/match.h"
+#include "calibrate/match/match.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibrate/motion.h"
+#include "calibrate/match/motion.h"
 
 #include <gmock/gmock.h>
 

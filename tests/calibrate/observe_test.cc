@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibrate/observe.h"
+#include "calibrate/observe/observe.h"
 
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/matched_board.h"
-#include "eval/lidar/board_scenes.h"
-#include "eval/simulator/camera_model.h"
+#include "calibrate/match/matched_board.h"
+#include "eval/extractors/board_scenes.h"
 #include "geometry/symmetric.h"
+#include "simulator/scene/camera_model.h"
 #include "support/calibration_scene.h"
 
 namespace sextant::test {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibrate/probe_size.h"
+#include "calibrate/observe/probe_size.h"
 
 #include <gmock/gmock.h>
 
-#include "eval/lidar/board_scenes.h"
-#include "eval/simulator/lidar_model.h"
-#include "eval/simulator/scan.h"
+#include "eval/extractors/board_scenes.h"
+#include "simulator/lidar/lidar_model.h"
+#include "simulator/lidar/scan.h"
 
 namespace sextant::test {
 namespace {

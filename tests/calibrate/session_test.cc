@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibrate/session.h"
+#include "calibrate/session/session.h"
 
 #include <gmock/gmock.h>
 
-#include "io/text_file.h"
+#include "io/text/text_file.h"
 #include "support/scratch_folder.h"
 
 namespace sextant::test {

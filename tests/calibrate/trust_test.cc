@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibrate/trust.h"
+#include "calibrate/trust/trust.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,11 +8,12 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "calibrate/outlier_views.h"
-#include "calibrate/select_views.h"
+#include "calibrate/trust/outlier_views.h"
+#include "calibrate/trust/select_views.h"
 #include "geometry/random_vectors.h"
-#include "io/acfr_poses.h"
-#include "solvers/registry.h"
+#include "io/problems/acfr_poses.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/real_data.h"
 
 namespace sextant {

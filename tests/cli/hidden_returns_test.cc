@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/hidden_returns.h"
+#include "report/hidden_returns.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

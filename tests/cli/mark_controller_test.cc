@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/mark_controller.h"
+#include "cli/mark/mark_controller.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/mark_canvas.h"
+#include "cli/mark/mark_canvas.h"
 
 namespace sextant::cli {
 namespace {

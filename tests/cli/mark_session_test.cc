@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/mark_session.h"
+#include "cli/mark/mark_session.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/scenes.h"
 
 namespace sextant {

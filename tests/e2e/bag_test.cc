@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "e2e/run_sextant.h"
-#include "io/camera_file.h"
-#include "io/cloud_file.h"
+#include "io/cameras/camera_file.h"
+#include "io/clouds/cloud_file.h"
 #include "support/bag_built.h"
 #include "support/real_data.h"
 #include "support/run_program.h"

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "e2e/run_sextant.h"
-#include "eval/simulate_views.h"
-#include "io/problem_yaml.h"
+#include "eval/synthetic/simulate_views.h"
+#include "io/problems/problem_yaml.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 

@@ -6,8 +6,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "e2e/run_sextant.h"
-#include "eval/simulator/tag_picture.h"
-#include "io/board_file.h"
+#include "io/boards/board_file.h"
+#include "simulator/camera/tag_picture.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 

@@ -7,8 +7,8 @@
 
 #include "e2e/run_sextant.h"
 #include "geometry/rigid3d.h"
-#include "io/cloud_file.h"
-#include "io/pcd_file.h"
+#include "io/clouds/cloud_file.h"
+#include "io/clouds/pcd_file.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 

@@ -8,13 +8,13 @@
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 
-#include "cli/mark_canvas.h"
-#include "cli/mark_viewport.h"
+#include "cli/mark/mark_canvas.h"
+#include "cli/mark/mark_viewport.h"
 #include "features/lidar/corner_extractor.h"
 #include "features/lidar/polygon_edges.h"
-#include "io/pcd_file.h"
-#include "io/polygon_file.h"
-#include "io/results_json.h"
+#include "io/boards/polygon_file.h"
+#include "io/clouds/pcd_file.h"
+#include "io/results/results_json.h"
 #include "support/drawn_board.h"
 #include "support/run_program.h"
 #include "support/virtual_display.h"

@@ -9,11 +9,11 @@
 #include <regex>
 #include <string>
 
-#include "calibrate/session.h"
+#include "calibrate/session/session.h"
 #include "e2e/run_sextant.h"
-#include "io/board_file.h"
-#include "io/calibration_result.h"
-#include "io/camera_file.h"
+#include "io/boards/board_file.h"
+#include "io/cameras/camera_file.h"
+#include "io/results/calibration_result.h"
 #include "support/run_program.h"
 
 namespace sextant {

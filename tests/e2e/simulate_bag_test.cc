@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "e2e/run_sextant.h"
-#include "io/camera_file.h"
+#include "io/cameras/camera_file.h"
 #include "support/run_program.h"
 
 #ifdef SEXTANT_WITH_BAG

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/bounds.h"
+#include "eval/metrics/bounds.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <cmath>
 
-#include "solvers/pair_noise.h"
-#include "solvers/refine_ceres.h"
+#include "geometry/pair_noise.h"
+#include "solvers/refine/refine_ceres.h"
 #include "support/scenes.h"
 
 namespace sextant {

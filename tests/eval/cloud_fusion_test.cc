@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/cloud_fusion.h"
+#include "eval/metrics/cloud_fusion.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/gather.h"
+#include "eval/statistics/gather.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/judge.h"
+#include "eval/judge/judge.h"
 
 #include <gmock/gmock.h>
 
 #include <algorithm>
 
-#include "eval/simulate_pairs.h"
+#include "eval/synthetic/simulate_pairs.h"
 #include "geometry/symmetric.h"
 
 namespace sextant {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/outlier_study.h"
+#include "eval/metrics/outlier_study.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 
 namespace sextant {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/running_average.h"
+#include "eval/metrics/running_average.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include "base/random.h"
 #include "base/units.h"
 #include "geometry/random_vectors.h"
-#include "solvers/evaluation.h"
-#include "solvers/kabsch.h"
-#include "solvers/rotation_average.h"
+#include "solvers/averaging/rotation_average.h"
+#include "solvers/core/evaluation.h"
+#include "solvers/kernels/kabsch.h"
 #include "support/real_data.h"
 
 namespace sextant {

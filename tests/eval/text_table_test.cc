@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/text_table.h"
+#include "eval/statistics/text_table.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/acfr_poses.h"
+#include "io/problems/acfr_poses.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "solvers/kabsch.h"
+#include "solvers/kernels/kabsch.h"
 #include "support/bad_text.h"
 #include "support/real_data.h"
 

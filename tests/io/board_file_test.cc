@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/board_file.h"
+#include "io/boards/board_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

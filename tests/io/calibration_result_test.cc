@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/calibration_result.h"
+#include "io/results/calibration_result.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "io/text_file.h"
+#include "io/text/text_file.h"
 #include "support/bad_text.h"
 #include "support/calibration_result.h"
 #include "support/scratch_folder.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/cloud_file.h"
+#include "io/clouds/cloud_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "io/cloud_builder.h"
+#include "io/clouds/cloud_builder.h"
 #include "support/bad_text.h"
 #include "support/real_data.h"
 #include "support/run_program.h"

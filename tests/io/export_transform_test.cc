@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each export is parsed here by what its format says, not by our readers, and maps a point.
-#include "io/export_transform.h"
+#include "io/export/export_transform.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

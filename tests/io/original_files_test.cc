@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/average_log.h"
-#include "io/marker_files.h"
-#include "io/original_config.h"
-#include "io/points_file.h"
-#include "io/transform_list.h"
+#include "io/boards/marker_files.h"
+#include "io/original/average_log.h"
+#include "io/original/original_config.h"
+#include "io/problems/points_file.h"
+#include "io/problems/transform_list.h"
 #include "support/bad_text.h"
 #include "support/real_data.h"
 

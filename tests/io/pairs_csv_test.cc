@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/pairs_csv.h"
+#include "io/problems/pairs_csv.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

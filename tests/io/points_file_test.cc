@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/points_file.h"
+#include "io/problems/points_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "solvers/kabsch.h"
+#include "solvers/kernels/kabsch.h"
 #include "support/bad_text.h"
 #include "support/real_data.h"
 #include "support/scenes.h"

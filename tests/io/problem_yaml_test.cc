@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/problem_yaml.h"
+#include "io/problems/problem_yaml.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

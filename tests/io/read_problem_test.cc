@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/read_problem.h"
+#include "io/problems/read_problem.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

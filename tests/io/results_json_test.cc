@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/results_json.h"
+#include "io/results/results_json.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

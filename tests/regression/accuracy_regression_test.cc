@@ -8,9 +8,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "eval/experiment/golden.h"
-#include "eval/experiment/run_trials.h"
-#include "io/text_file.h"
+#include "eval/experiment/report/golden.h"
+#include "eval/experiment/run/run_trials.h"
+#include "io/text/text_file.h"
+#include "solvers/builtin_solvers.h"
 #include "support/run_program.h"
 #include "support/source_tree.h"
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Solvers on the 40 real board placements of acfr/cam_lidar_calibration.
-#include "io/acfr_poses.h"
+#include "io/problems/acfr_poses.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/real_data.h"
 
 namespace sextant {

@@ -5,10 +5,11 @@
 
 #include <cmath>
 
-#include "io/camera_file.h"
-#include "io/marker_files.h"
-#include "io/original_config.h"
-#include "solvers/registry.h"
+#include "io/boards/marker_files.h"
+#include "io/cameras/camera_file.h"
+#include "io/original/original_config.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/real_data.h"
 
 namespace sextant {

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "io/cloud_file.h"
-#include "solvers/icp.h"
+#include "io/clouds/cloud_file.h"
+#include "solvers/icp/icp.h"
 #include "support/real_data.h"
 
 namespace sextant {

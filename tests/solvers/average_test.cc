@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/average.h"
+#include "solvers/averaging/average.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,8 @@
 #include "base/random.h"
 #include "geometry/random_vectors.h"
 #include "geometry/symmetric.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/poses.h"
 
 namespace sextant {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/barron_loss.h"
+#include "solvers/refine/barron_loss.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/board_view_information.h"
+#include "solvers/joint/board_view_information.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <functional>
 
-#include "eval/bounds.h"
-#include "eval/simulate_views.h"
-#include "solvers/board_view_check.h"
-#include "solvers/solver.h"
+#include "eval/metrics/bounds.h"
+#include "eval/synthetic/simulate_views.h"
+#include "solvers/core/board_view_check.h"
+#include "solvers/core/solver.h"
 
 namespace sextant {
 namespace {

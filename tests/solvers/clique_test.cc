@@ -6,10 +6,11 @@
 #include <cmath>
 #include <set>
 
-#include "solvers/agreement_graph.h"
-#include "solvers/clique_listing.h"
-#include "solvers/max_clique.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
+#include "solvers/kernels/agreement_graph.h"
+#include "solvers/robust/clique_listing.h"
+#include "solvers/robust/max_clique.h"
 #include "support/outliers.h"
 
 namespace sextant {

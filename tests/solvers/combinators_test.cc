@@ -4,7 +4,8 @@
 
 #include <numeric>
 
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/outliers.h"
 
 namespace sextant {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/corner_order.h"
+#include "solvers/matching/corner_order.h"
 
 #include <gtest/gtest.h>
 

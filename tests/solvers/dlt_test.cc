@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/dlt.h"
+#include "solvers/pnp/dlt.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/icp.h"
+#include "solvers/icp/icp.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,9 @@
 #include "base/units.h"
 #include "geometry/random_vectors.h"
 #include "geometry/symmetric.h"
-#include "solvers/kabsch.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
+#include "solvers/kernels/kabsch.h"
 #include "support/points.h"
 #include "support/poses.h"
 #include "support/real_data.h"

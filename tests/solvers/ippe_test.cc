@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/ippe.h"
+#include "solvers/pnp/ippe.h"
 
 #include <gmock/gmock.h>
 
@@ -9,7 +9,8 @@
 #include "base/random.h"
 #include "geometry/random_vectors.h"
 #include "geometry/so3.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/scenes.h"
 
 namespace sextant {

@@ -6,12 +6,13 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "eval/bounds.h"
-#include "eval/simulate_views.h"
+#include "eval/metrics/bounds.h"
+#include "eval/synthetic/simulate_views.h"
 #include "geometry/symmetric.h"
-#include "solvers/board_view_residuals.h"
-#include "solvers/registry.h"
-#include "solvers/rotation_manifold.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
+#include "solvers/joint/board_view_residuals.h"
+#include "solvers/refine/rotation_manifold.h"
 
 namespace sextant {
 namespace {

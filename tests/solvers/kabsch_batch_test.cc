@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/kabsch_batch.h"
+#include "solvers/kernels/kabsch_batch.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/kabsch.h"
+#include "solvers/kernels/kabsch.h"
 
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "geometry/pair_noise.h"
 #include "geometry/so3.h"
-#include "solvers/pair_noise.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/points.h"
 #include "support/scenes.h"
 

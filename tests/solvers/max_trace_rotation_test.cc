@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/max_trace_rotation.h"
+#include "solvers/kernels/max_trace_rotation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/object_match.h"
+#include "solvers/matching/object_match.h"
 
 #include <gtest/gtest.h>
 

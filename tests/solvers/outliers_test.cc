@@ -9,7 +9,8 @@
 #include <cmath>
 #include <ostream>
 
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 
 namespace sextant {
 namespace {

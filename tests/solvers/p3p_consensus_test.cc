@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pixels from p3p to the minimum: how often, and how near to the Cramer-Rao bound.
-#include "solvers/p3p_consensus.h"
+#include "solvers/robust/p3p_consensus.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "eval/bounds.h"
-#include "eval/mismatched_pairs.h"
+#include "eval/metrics/bounds.h"
+#include "eval/synthetic/mismatched_pairs.h"
 #include "geometry/symmetric.h"
-#include "solvers/p3p_start.h"
-#include "solvers/pair_terms.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
+#include "solvers/kernels/pair_terms.h"
+#include "solvers/refine/p3p_start.h"
 #include "support/scenes.h"
 
 namespace sextant {

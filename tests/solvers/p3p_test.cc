@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/p3p.h"
+#include "solvers/kernels/p3p.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,8 @@
 #include "base/random.h"
 #include "geometry/random_vectors.h"
 #include "geometry/so3.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/scenes.h"
 
 namespace sextant {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs are gathered eight at a time: no term may differ from its pair, wherever it stands.
-#include "solvers/pair_terms.h"
+#include "solvers/kernels/pair_terms.h"
 
 #include <gtest/gtest.h>
 

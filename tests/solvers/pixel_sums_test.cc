@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is computed eight terms at a time, against the same one term at a time.
-#include "solvers/pixel_sums.h"
+#include "solvers/kernels/pixel_sums.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
-#include "solvers/pair_terms.h"
-#include "solvers/term_derivatives.h"
+#include "solvers/kernels/pair_terms.h"
+#include "solvers/least_squares/term_derivatives.h"
 #include "support/scenes.h"
 
 namespace sextant {

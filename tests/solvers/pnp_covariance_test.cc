@@ -7,7 +7,8 @@
 #include <string>
 
 #include "base/random.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/pixel_differences.h"
 #include "support/scenes.h"
 

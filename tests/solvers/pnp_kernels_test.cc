@@ -11,8 +11,8 @@
 #include "base/random.h"
 #include "geometry/random_vectors.h"
 #include "geometry/so3.h"
-#include "solvers/epnp.h"
-#include "solvers/sqpnp.h"
+#include "solvers/pnp/epnp.h"
+#include "solvers/pnp/sqpnp.h"
 
 namespace sextant {
 namespace {

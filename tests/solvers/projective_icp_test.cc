@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/projective_icp.h"
+#include "solvers/icp/projective_icp.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,11 @@
 
 #include "base/random.h"
 #include "base/units.h"
-#include "eval/lidar/board_scenes.h"
-#include "eval/lidar/scan_pairs.h"
+#include "eval/extractors/board_scenes.h"
+#include "eval/extractors/scan_pairs.h"
 #include "geometry/symmetric.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/poses.h"
 
 namespace sextant {

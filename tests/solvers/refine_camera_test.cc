@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // refine(x, intrinsics=...): pose and camera together, from a camera that is wrong.
-#include "solvers/refine_camera.h"
+#include "solvers/refine/refine_camera.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "eval/random_scene.h"
+#include "eval/synthetic/random_scene.h"
 #include "geometry/symmetric.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/make_solver.h"
 
 namespace sextant {

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <string>
 
-#include "eval/random_scene.h"
+#include "eval/synthetic/random_scene.h"
 #include "geometry/symmetric.h"
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 
 namespace sextant {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/refine_pose.h"
+#include "solvers/least_squares/refine_pose.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "geometry/symmetric.h"
-#include "solvers/refine_ceres.h"
-#include "solvers/term_derivatives.h"
+#include "solvers/least_squares/term_derivatives.h"
+#include "solvers/refine/refine_ceres.h"
 #include "support/scenes.h"
 
 namespace sextant {

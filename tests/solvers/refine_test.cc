@@ -5,7 +5,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 #include "support/make_solver.h"
 #include "support/outliers.h"
 #include "support/real_data.h"

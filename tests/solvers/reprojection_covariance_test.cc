@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/reprojection_covariance.h"
+#include "solvers/pnp/reprojection_covariance.h"
 
 #include <gtest/gtest.h>
 

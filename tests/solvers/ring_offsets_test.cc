@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/ring_offsets.h"
+#include "solvers/icp/ring_offsets.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "base/random.h"
-#include "eval/lidar/scan_pairs.h"
+#include "eval/extractors/scan_pairs.h"
 
 namespace sextant {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/rotation_average.h"
+#include "solvers/averaging/rotation_average.h"
 
 #include <gtest/gtest.h>
 

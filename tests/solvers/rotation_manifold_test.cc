@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/rotation_manifold.h"
+#include "solvers/refine/rotation_manifold.h"
 
 #include <gtest/gtest.h>
 

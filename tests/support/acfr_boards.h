@@ -6,9 +6,9 @@
 #include <map>
 #include <vector>
 
-#include "eval/simulator/scene.h"
 #include "geometry/point_cloud.h"
-#include "io/acfr_poses.h"
+#include "io/problems/acfr_poses.h"
+#include "simulator/scene/scene.h"
 
 namespace sextant::test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "io/calibration_result.h"
+#include "io/results/calibration_result.h"
 
 namespace sextant::test {
 

@@ -5,11 +5,11 @@
 
 #include <numbers>
 
-#include "eval/lidar/board_scenes.h"
-#include "eval/simulator/lidar_model.h"
-#include "eval/simulator/render.h"
-#include "eval/simulator/scan.h"
+#include "eval/extractors/board_scenes.h"
 #include "geometry/so3.h"
+#include "simulator/camera/render.h"
+#include "simulator/lidar/lidar_model.h"
+#include "simulator/lidar/scan.h"
 
 namespace sextant::test {
 

@@ -4,8 +4,8 @@
 #include <opencv2/core/mat.hpp>
 
 #include "base/random.h"
-#include "eval/simulator/scene.h"
 #include "geometry/point_cloud.h"
+#include "simulator/scene/scene.h"
 
 namespace sextant::test {
 

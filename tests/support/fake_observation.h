@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/random.h"
-#include "calibrate/observe.h"
+#include "calibrate/observe/observe.h"
 #include "features/camera/board_pose.h"
 #include "geometry/scan_marks.h"
 #include "geometry/so3.h"

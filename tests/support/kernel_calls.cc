@@ -6,20 +6,21 @@
 #include <cstdlib>
 #include <memory>
 
-#include "eval/mismatched_pairs.h"
-#include "eval/random_scene.h"
-#include "solvers/consensus.h"
-#include "solvers/dlt.h"
-#include "solvers/epnp.h"
-#include "solvers/ippe.h"
-#include "solvers/kabsch.h"
-#include "solvers/p3p.h"
-#include "solvers/pair_noise.h"
-#include "solvers/pose_scorer.h"
-#include "solvers/refine_pose.h"
-#include "solvers/registry.h"
-#include "solvers/reprojection_covariance.h"
-#include "solvers/sqpnp.h"
+#include "eval/synthetic/mismatched_pairs.h"
+#include "eval/synthetic/random_scene.h"
+#include "geometry/pair_noise.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
+#include "solvers/kernels/kabsch.h"
+#include "solvers/kernels/p3p.h"
+#include "solvers/least_squares/refine_pose.h"
+#include "solvers/pnp/dlt.h"
+#include "solvers/pnp/epnp.h"
+#include "solvers/pnp/ippe.h"
+#include "solvers/pnp/reprojection_covariance.h"
+#include "solvers/pnp/sqpnp.h"
+#include "solvers/robust/consensus.h"
+#include "solvers/robust/pose_scorer.h"
 
 namespace sextant::test {
 namespace {

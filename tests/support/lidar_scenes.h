@@ -5,9 +5,9 @@
 
 #include <string>
 
-#include "eval/simulator/lidar_model.h"
-#include "eval/simulator/scan.h"
-#include "eval/simulator/scene.h"
+#include "simulator/lidar/lidar_model.h"
+#include "simulator/lidar/scan.h"
+#include "simulator/scene/scene.h"
 
 namespace sextant::test {
 

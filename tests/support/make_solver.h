@@ -5,7 +5,8 @@
 
 #include <string>
 
-#include "solvers/registry.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/core/registry.h"
 
 namespace sextant::test {
 

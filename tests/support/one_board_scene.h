@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "eval/simulator/render.h"
-#include "eval/simulator/scene.h"
+#include "simulator/camera/render.h"
+#include "simulator/scene/scene.h"
 
 namespace sextant::test {
 

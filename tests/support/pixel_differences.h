@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "solvers/solver.h"
+#include "solvers/core/solver.h"
 
 namespace sextant::test {
 

@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "eval/random_scene.h"
-#include "eval/simulate_views.h"
+#include "eval/synthetic/random_scene.h"
+#include "eval/synthetic/simulate_views.h"
 
 namespace sextant::test {
 

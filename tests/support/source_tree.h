@@ -9,7 +9,7 @@ namespace sextant::test {
 
 /// A text file of the project.
 struct SourceFile {
-  std::string path;    ///< From the project's root: "solvers/kabsch.cc".
+  std::string path;    ///< From the project's root: "solvers/kernels/kabsch.cc".
   std::string folder;  ///< "solvers"; empty for the root itself.
   std::vector<std::string> lines;
 };

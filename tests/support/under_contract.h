@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "solvers/registry.h"
+#include "solvers/core/registry.h"
 
 namespace sextant {
 

@@ -6,9 +6,9 @@
 #include <atomic>
 #include <memory>
 
-#include "eval/lidar/board_scenes.h"
-#include "eval/simulator/camera_model.h"
+#include "eval/extractors/board_scenes.h"
 #include "io/bag/rosbag1_writer.h"
+#include "simulator/scene/camera_model.h"
 #include "support/calibration_scene.h"
 #include "support/scratch_folder.h"
 

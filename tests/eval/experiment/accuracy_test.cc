@@ -5,8 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "eval/experiment/report.h"
-#include "eval/experiment/run_trials.h"
+#include "eval/experiment/report/report.h"
+#include "eval/experiment/run/run_trials.h"
+#include "solvers/builtin_solvers.h"
 #include "support/run_program.h"
 
 namespace sextant::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/experiment/claims.h"
+#include "eval/experiment/reproduction/claims.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,8 @@
 #include <algorithm>
 #include <map>
 
-#include "eval/experiment/judge_claim.h"
+#include "eval/experiment/reproduction/judge_claim.h"
+#include "solvers/builtin_solvers.h"
 #include "support/source_tree.h"
 
 namespace sextant::test {

@@ -4,7 +4,8 @@
 
 #include <string>
 
-#include "eval/experiment/experiment.h"
+#include "eval/experiment/definition/experiment.h"
+#include "solvers/builtin_solvers.h"
 #include "solvers/opencv/opencv_solvers.h"
 #include "support/bad_text.h"
 #include "support/real_data.h"

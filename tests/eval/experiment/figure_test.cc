@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/experiment/figure.h"
+#include "eval/experiment/report/figure.h"
 
 #include <gtest/gtest.h>
 

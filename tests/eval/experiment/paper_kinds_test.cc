@@ -6,7 +6,8 @@
 #include <map>
 #include <string>
 
-#include "eval/experiment/experiment.h"
+#include "eval/experiment/definition/experiment.h"
+#include "solvers/builtin_solvers.h"
 #include "support/source_tree.h"
 
 namespace sextant::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/experiment/run_trials.h"
+#include "eval/experiment/run/run_trials.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "eval/experiment/row_file.h"
+#include "eval/experiment/run/row_file.h"
+#include "solvers/builtin_solvers.h"
 #include "support/run_program.h"
 
 namespace sextant::test {

@@ -8,11 +8,11 @@
 
 #include "features/camera/find_boards.h"
 #include "geometry/board_check.h"
-#include "io/acfr_poses.h"
-#include "io/board_file.h"
-#include "io/camera_file.h"
-#include "io/marker_files.h"
-#include "io/points_file.h"
+#include "io/boards/board_file.h"
+#include "io/boards/marker_files.h"
+#include "io/cameras/camera_file.h"
+#include "io/problems/acfr_poses.h"
+#include "io/problems/points_file.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 

@@ -8,12 +8,12 @@
 #include <string>
 
 #include "base/random.h"
-#include "eval/simulator/camera_model.h"
-#include "eval/simulator/render.h"
 #include "features/camera/explain_missing.h"
 #include "geometry/board_check.h"
 #include "geometry/so3.h"
 #include "geometry/symmetric.h"
+#include "simulator/camera/render.h"
+#include "simulator/scene/camera_model.h"
 
 namespace sextant {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "base/lanes.h"
 #include "base/random.h"
-#include "eval/simulator/camera_model.h"
 #include "features/camera/undistortion.h"
+#include "simulator/scene/camera_model.h"
 
 namespace sextant {
 namespace {

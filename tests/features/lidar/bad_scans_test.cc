@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "eval/lidar/board_scenes.h"
-#include "eval/simulator/lidar_model.h"
-#include "eval/simulator/scan.h"
+#include "eval/extractors/board_scenes.h"
 #include "features/lidar/corner_extractor.h"
+#include "simulator/lidar/lidar_model.h"
+#include "simulator/lidar/scan.h"
 
 namespace sextant::test {
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "eval/lidar/board_scenes.h"
-#include "eval/simulator/lidar_model.h"
-#include "eval/simulator/scan.h"
+#include "eval/extractors/board_scenes.h"
 #include "features/lidar/corner_extractor.h"
 #include "geometry/symmetric.h"
+#include "simulator/lidar/lidar_model.h"
+#include "simulator/lidar/scan.h"
 #include "support/median.h"
 
 namespace sextant::test {

@@ -10,10 +10,10 @@
 #include <ostream>
 #include <string>
 
-#include "eval/lidar/board_scenes.h"
+#include "eval/extractors/board_scenes.h"
 #include "features/lidar/corner_extractor.h"
-#include "io/acfr_poses.h"
-#include "io/pcd_file.h"
+#include "io/clouds/pcd_file.h"
+#include "io/problems/acfr_poses.h"
 #include "support/acfr_boards.h"
 #include "support/drawn_board.h"
 #include "support/median.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "features/lidar/corner_extractor.h"
-#include "io/acfr_poses.h"
-#include "io/pcd_file.h"
+#include "io/clouds/pcd_file.h"
+#include "io/problems/acfr_poses.h"
 #include "support/median.h"
 #include "support/real_data.h"
 

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/spec.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+
+namespace sextant {
+namespace {
+
+// Deeper nesting has no use and would let a hostile text exhaust the stack.
+constexpr int kMaxDepth = 32;
+
+class SpecParser {
+ public:
+  explicit SpecParser(std::string_view text) : text_(text) {}
+
+  Expected<std::vector<SpecNode>> ParseAll() {
+    std::vector<SpecNode> specs;
+    do {
+      Expected<SpecNode> spec = ParseNode(0);
+      if (!spec) return tl::unexpected<Error>(std::move(spec.error()));
+      specs.push_back(std::move(*spec));
+    } while (Accept(','));
+    SkipBlanks();
+    if (position_ != text_.size()) return Fail("',' or the end");
+    return specs;
+  }
+
+ private:
+  Expected<SpecNode> ParseNode(int depth) {
+    if (depth > kMaxDepth) return Fail(fmt::format("at most {} nested solvers", kMaxDepth));
+    SpecNode node;
+    node.name = Word();
+    if (node.name.empty()) return Fail("the name of a solver");
+    if (!Accept('(')) return node;
+    if (Accept(')')) return node;
+    do {
+      if (Expected<void> ok = ParseArgument(depth, node); !ok) {
+        return tl::unexpected<Error>(std::move(ok.error()));
+      }
+    } while (Accept(','));
+    if (!Accept(')')) return Fail("',' or ')'");
+    return node;
+  }
+
+  Expected<void> ParseArgument(int depth, SpecNode& node) {
+    const std::size_t start = position_;
+    const std::string key = Word();
+    if (!key.empty() && Accept('=')) {
+      std::string value = Word();
+      if (value.empty()) return Fail(fmt::format("a value for '{}'", key));
+      node.options.emplace_back(key, std::move(value));
+      return {};
+    }
+    position_ = start;
+    Expected<SpecNode> inner = ParseNode(depth + 1);
+    if (!inner) return tl::unexpected<Error>(std::move(inner.error()));
+    node.inner.push_back(std::move(*inner));
+    return {};
+  }
+
+  void SkipBlanks() {
+    while (position_ < text_.size() &&
+           std::isspace(static_cast<unsigned char>(text_[position_])) != 0) {
+      ++position_;
+    }
+  }
+
+  bool Accept(char expected) {
+    SkipBlanks();
+    if (position_ >= text_.size() || text_[position_] != expected) return false;
+    ++position_;
+    return true;
+  }
+
+  // Signs belong to the words, for values such as -1e-3; slashes, for paths.
+  std::string Word() {
+    SkipBlanks();
+    const std::size_t start = position_;
+    while (position_ < text_.size()) {
+      const char c = text_[position_];
+      const bool belongs = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' ||
+                           c == '.' || c == '-' || c == '+' || c == '/';
+      if (!belongs) break;
+      ++position_;
+    }
+    return std::string(text_.substr(start, position_ - start));
+  }
+
+  tl::unexpected<Error> Fail(const std::string& expected) const {
+    return MakeError(ErrorCode::kParse, fmt::format("solver '{}', column {}: expected {}", text_,
+                                                    position_ + 1, expected));
+  }
+
+  std::string_view text_;
+  std::size_t position_ = 0;
+};
+
+}  // namespace
+
+Expected<std::vector<SpecNode>> ParseSpecList(std::string_view text) {
+  return SpecParser(text).ParseAll();
+}
+
+Expected<SpecNode> ParseSpec(std::string_view text) {
+  Expected<std::vector<SpecNode>> specs = ParseSpecList(text);
+  if (!specs) return tl::unexpected<Error>(std::move(specs.error()));
+  if (specs->size() != 1) {
+    return MakeError(ErrorCode::kParse,
+                     fmt::format("expected one solver, got {} in '{}'", specs->size(), text));
+  }
+  return std::move(specs->front());
+}
+
+std::string FormatSpec(const SpecNode& node) {
+  std::vector<std::string> arguments;
+  for (const SpecNode& inner : node.inner) arguments.push_back(FormatSpec(inner));
+  for (const auto& [key, value] : node.options) arguments.push_back(key + "=" + value);
+  if (arguments.empty()) return node.name;
+  return fmt::format("{}({})", node.name, fmt::join(arguments, ","));
+}
+
+}  // namespace sextant

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/match/assemble.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace sextant {
+namespace {
+
+// What the image lacks of a board, or the scan of any.
+std::string WhyMissing(const Observation& seen, int board, bool image) {
+  for (const MissingBoard& missing : seen.missing) {
+    if (missing.image == image && (missing.board == board || missing.board < 0)) return missing.why;
+  }
+  return image ? "not seen" : "every board-like patch belongs to another board";
+}
+
+class Rows {
+ public:
+  Rows(std::span<const SessionView> views, std::span<const Board> boards, const Matching& matching)
+      : views_(views), boards_(boards) {
+    for (const MatchedBoard& kept : matching.kept) {
+      fates_[{Index(kept.view), BoardOf(kept)}] = {.fate = BoardFate::kKept};
+    }
+    for (const DroppedBoard& dropped : matching.dropped) {
+      fates_[{Index(dropped.match.view), BoardOf(dropped.match)}] = {
+          .fate = BoardFate::kDisagrees,
+          .why = fmt::format(
+              "its corners are {:.0f} mm and its face {:.1f} deg off the other views' pose: image "
+              "and scan of different moments, or not this board",
+              1e3 * dropped.off_m, dropped.off_rad * 180.0 / std::numbers::pi)};
+    }
+  }
+
+  std::vector<BoardRow> All() const {
+    std::vector<BoardRow> rows;
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      const SessionView& view = views_[i];
+      if (!view.seen) {
+        rows.push_back({i, -1, BoardFate::kUnreadable, view.seen.error().message});
+      } else {
+        for (int b = 0; b < static_cast<int>(boards_.size()); ++b) rows.push_back(RowOf(i, b));
+      }
+    }
+    return rows;
+  }
+
+ private:
+  static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+
+  int BoardOf(const MatchedBoard& match) const {
+    return views_[Index(match.view)].seen->in_image[Index(match.sighting)].board;
+  }
+
+  BoardRow RowOf(std::size_t view, int board) const {
+    BoardRow row{.view = view, .board = board};
+    const auto known = fates_.find({view, board});
+    if (known != fates_.end()) {
+      row.fate = known->second.fate;
+      row.why = known->second.why;
+      return row;
+    }
+    const Observation& seen = *views_[view].seen;
+    const auto sighting = std::ranges::find(seen.in_image, board, &CameraSighting::board);
+    const bool in_image = sighting != seen.in_image.end();
+    if (in_image && !sighting->left_out.empty()) {
+      row.fate = BoardFate::kLeftOut;
+      row.why = sighting->left_out;
+      return row;
+    }
+    row.fate = in_image ? BoardFate::kNotInScan : BoardFate::kNotInImage;
+    row.why = WhyMissing(seen, board, !in_image);
+    return row;
+  }
+
+  std::span<const SessionView> views_;
+  std::span<const Board> boards_;
+  std::map<std::pair<std::size_t, int>, BoardRow> fates_;
+};
+
+std::string WhyNothing(std::span<const SessionView> views, std::span<const Board> boards) {
+  std::string text = fmt::format(
+      "no board was seen by both sensors in any of {} views, so there is nothing to "
+      "calibrate from",
+      views.size());
+  constexpr std::size_t kShown = 3;
+  std::size_t shown = 0;
+  for (const BoardRow& row : Rows(views, boards, {}).All()) {
+    if (++shown > kShown) break;
+    const std::string board =
+        row.board < 0 ? std::string()
+                      : fmt::format(", board {}", boards[static_cast<std::size_t>(row.board)].id);
+    text += fmt::format("\n  view {}{}: {}: {}", views[row.view].name, board, ToString(row.fate),
+                        row.why);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string_view ToString(BoardFate fate) {
+  switch (fate) {
+    case BoardFate::kKept:
+      return "kept";
+    case BoardFate::kUnreadable:
+      return "unreadable";
+    case BoardFate::kLeftOut:
+      return "left out";
+    case BoardFate::kNotInImage:
+      return "not in the image";
+    case BoardFate::kNotInScan:
+      return "not in the scan";
+    case BoardFate::kDisagrees:
+      return "disagrees";
+  }
+  return "unknown";
+}
+
+Expected<Assembly> Assemble(std::span<const SessionView> views, std::span<const Board> boards,
+                            const Camera& camera, const MatchSettings& settings) {
+  // Views that could not be read take part as empty ones, so that places stay those of the session.
+  std::vector<Observation> observations(views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (views[i].seen) observations[i] = *views[i].seen;
+  }
+  Expected<Matching> matching = MatchViews(observations, settings);
+  if (!matching && matching.error().code == ErrorCode::kTooFewPairs) {
+    return MakeError(ErrorCode::kMissingData, WhyNothing(views, boards));
+  }
+  if (!matching) return tl::unexpected<Error>(matching.error());
+  Assembly assembly;
+  CalibrationProblem& problem = assembly.problem;
+  problem.camera = camera;
+  problem.boards.assign(boards.begin(), boards.end());
+  problem.initial_cam_from_lidar = matching->cam_from_lidar;
+  for (const MatchedBoard& kept : matching->kept) {
+    const Observation& seen = observations[static_cast<std::size_t>(kept.view)];
+    problem.board_views.push_back(MakeBoardView(seen, kept, boards));
+    AppendPairs(seen, kept, boards, matching->cam_from_lidar, problem);
+  }
+  problem.point_sets = WithholdPairing(problem.pairs_3d3d);
+  assembly.rows = Rows(views, boards, *matching).All();
+  assembly.matching = std::move(*matching);
+  return assembly;
+}
+
+}  // namespace sextant

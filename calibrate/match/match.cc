@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/match/match.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "base/units.h"
+#include "geometry/scan_marks.h"
+#include "solvers/matching/object_match.h"
+
+namespace sextant {
+namespace {
+
+constexpr double kNumbersPerBoard = 3.0 * kCornersPerBoard;
+constexpr double kMostSigmas = 4.0;
+constexpr double kAsLikely = 9.2;  // -2 ln of 1 %.
+
+// A view as the matcher takes it, and what each of its pairings stands for.
+struct ViewPairings {
+  MatchView view;
+  std::vector<MatchedBoard> meanings;
+};
+
+double MeanVariance(const Eigen::MatrixXd& covariance) {
+  return covariance.topLeftCorner<3 * kCornersPerBoard, 3 * kCornersPerBoard>().trace() /
+         kNumbersPerBoard;
+}
+
+std::vector<Eigen::Vector3d> Outer(const std::vector<Eigen::Vector3d>& corners) {
+  return {corners.begin(), corners.begin() + kCornersPerBoard};
+}
+
+void AddPairing(const Observation& observation, const MatchedBoard& match, double floor_m,
+                ViewPairings& pairings) {
+  const CameraSighting& sighting = observation.in_image[static_cast<std::size_t>(match.sighting)];
+  const BoardPlacement& placement = observation.in_scan[static_cast<std::size_t>(match.patch)]
+                                        .placements[static_cast<std::size_t>(match.placement)];
+  const double variance = MeanVariance(sighting.corners.covariance) +
+                          MeanVariance(placement.corners.covariance) + floor_m * floor_m;
+  const double other = match.other_pose ? sighting.pose.ambiguity_chi_square : 0.0;
+  pairings.view.pairings.push_back(
+      {.in_b = match.sighting,
+       .in_a = match.patch,
+       .points_in_b = Outer(match.other_pose ? sighting.other_corners : sighting.corners.points),
+       .points_in_a = Outer(placement.corners.in_lidar),
+       .sigma_m = std::sqrt(variance),
+       .penalty = placement.misfit + other});
+  pairings.meanings.push_back(match);
+}
+
+ViewPairings PairingsOf(const Observation& observation, int view, double floor_m) {
+  ViewPairings pairings;
+  for (std::size_t s = 0; s < observation.in_image.size(); ++s) {
+    const CameraSighting& sighting = observation.in_image[s];
+    if (!sighting.left_out.empty()) continue;
+    const int poses = sighting.pose.ambiguous_with ? 2 : 1;
+    for (std::size_t p = 0; p < observation.in_scan.size(); ++p) {
+      const auto& placements = observation.in_scan[p].placements;
+      for (std::size_t k = 0; k < placements.size(); ++k) {
+        if (placements[k].board != sighting.board) continue;
+        for (int pose = 0; pose < poses; ++pose) {
+          AddPairing(observation,
+                     {.view = view,
+                      .sighting = static_cast<int>(s),
+                      .patch = static_cast<int>(p),
+                      .placement = static_cast<int>(k),
+                      .other_pose = pose == 1},
+                     floor_m, pairings);
+        }
+      }
+    }
+  }
+  return pairings;
+}
+
+// Of the corners that fit, in their stated variance; at least 1.
+double NoiseScale(const MatchExplanation& explanation) {
+  std::vector<double> costs;
+  for (const TakenPairing& taken : explanation.taken) {
+    if (taken.fits) costs.push_back(taken.cost / kNumbersPerBoard);
+  }
+  // Two boards fit each other; their median says little of the noise.
+  if (costs.size() < 3) return 1.0;
+  const auto middle = costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 2);
+  std::nth_element(costs.begin(), middle, costs.end());
+  return std::max(1.0, *middle);
+}
+
+DroppedBoard Dropped(const Observation& observation, const MatchedBoard& match,
+                     const ObjectPairing& pairing, const Rigid3d& cam_from_lidar) {
+  DroppedBoard dropped{.match = match};
+  double squares = 0.0;
+  for (std::size_t i = 0; i < pairing.points_in_b.size(); ++i) {
+    squares += (pairing.points_in_b[i] - cam_from_lidar * pairing.points_in_a[i]).squaredNorm();
+  }
+  dropped.off_m = std::sqrt(squares / static_cast<double>(pairing.points_in_b.size()));
+  const CameraSighting& sighting = observation.in_image[static_cast<std::size_t>(match.sighting)];
+  const Rigid3d& cam_from_board =
+      match.other_pose ? *sighting.pose.ambiguous_with : sighting.pose.cam_from_board;
+  const Rigid3d& lidar_from_board = observation.in_scan[static_cast<std::size_t>(match.patch)]
+                                        .placements[static_cast<std::size_t>(match.placement)]
+                                        .lidar_from_board;
+  dropped.off_rad = RotationDistance(cam_from_board.rotation,
+                                     cam_from_lidar.rotation * lidar_from_board.rotation);
+  return dropped;
+}
+
+// The first explanation and those that are as likely; moves the one nearest to `rotation` to the
+// front.
+std::size_t CountAsLikely(std::vector<MatchExplanation>& explanations, double scale,
+                          const Eigen::Quaterniond& rotation) {
+  std::size_t count = 1;
+  while (count < explanations.size() &&
+         (explanations[count].cost - explanations[0].cost) / scale < kAsLikely) {
+    ++count;
+  }
+  const auto nearest = std::min_element(explanations.begin(),
+                                        explanations.begin() + static_cast<std::ptrdiff_t>(count),
+                                        [&](const MatchExplanation& a, const MatchExplanation& b) {
+                                          return RotationDistance(a.b_from_a.rotation, rotation) <
+                                                 RotationDistance(b.b_from_a.rotation, rotation);
+                                        });
+  std::iter_swap(explanations.begin(), nearest);
+  return count;
+}
+
+}  // namespace
+
+Expected<Matching> MatchViews(std::span<const Observation> views, const MatchSettings& settings) {
+  std::vector<ViewPairings> pairings;
+  std::vector<MatchView> match_views;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    pairings.push_back(PairingsOf(views[i], static_cast<int>(i), settings.floor_m));
+    match_views.push_back(pairings.back().view);
+  }
+  MatchOptions options{.cap = kMostSigmas * kMostSigmas * kNumbersPerBoard};
+  Expected<std::vector<MatchExplanation>> found = MatchObjects(match_views, options);
+  if (!found && found.error().code == ErrorCode::kTooFewPairs) {
+    return MakeError(
+        ErrorCode::kTooFewPairs,
+        fmt::format("no board was seen by both sensors in any of {} views", views.size()));
+  }
+  if (!found) return tl::unexpected<Error>(found.error());
+  const double scale = NoiseScale(found->front());
+  if (scale > 1.0) {
+    options.cap *= scale;
+    found = MatchObjects(match_views, options);
+    if (!found) return tl::unexpected<Error>(found.error());
+  }
+  Matching matching;
+  if (found->size() > 1) matching.margin = ((*found)[1].cost - (*found)[0].cost) / scale;
+  const Eigen::Quaterniond initial =
+      settings.initial ? settings.initial->rotation : AxesCamFromLidar().rotation;
+  const std::size_t as_likely = CountAsLikely(*found, scale, initial);
+  const MatchExplanation& best = found->front();
+  matching.cam_from_lidar = best.b_from_a;
+  for (std::size_t i = 1; i < as_likely; ++i) matching.as_likely.push_back((*found)[i].b_from_a);
+  for (const TakenPairing& taken : best.taken) {
+    const MatchedBoard& match = pairings[taken.view].meanings[taken.pairing];
+    if (taken.fits) {
+      matching.kept.push_back(match);
+    } else {
+      matching.dropped.push_back(Dropped(views[taken.view], match,
+                                         match_views[taken.view].pairings[taken.pairing],
+                                         best.b_from_a));
+    }
+  }
+  return matching;
+}
+
+std::vector<std::string> DescribeAmbiguity(const Matching& matching,
+                                           const MatchSettings& settings) {
+  if (matching.as_likely.empty()) return {};
+  const Eigen::Quaterniond initial =
+      settings.initial ? settings.initial->rotation : AxesCamFromLidar().rotation;
+  double next = std::numbers::pi;
+  for (const Rigid3d& other : matching.as_likely) {
+    next = std::min(next, RotationDistance(other.rotation, initial));
+  }
+  const double taken = RotationDistance(matching.cam_from_lidar.rotation, initial);
+  std::vector<std::string> lines = {fmt::format(
+      "ambiguous: {} poses explain the views equally well, for boards of one shape look alike and "
+      "a square one looks the same after each quarter turn",
+      matching.as_likely.size() + 1)};
+  lines.push_back(fmt::format(
+      "assumed: {}, from which the pose taken is {:.0f} deg away and the next {:.0f} deg. {}",
+      settings.initial ? "the rotation of --initial"
+                       : "a camera that looks along the LiDAR's x axis, upright",
+      taken * kDegPerRad, next * kDegPerRad,
+      settings.initial ? "More views with the board elsewhere settle it"
+                       : "If it is mounted otherwise, say so with --initial; more views with the "
+                         "board elsewhere settle it without"));
+  return lines;
+}
+
+}  // namespace sextant

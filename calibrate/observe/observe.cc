@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/observe/observe.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "calibrate/observe/face_returns.h"
+
+namespace sextant {
+namespace {
+
+// Why a board that has no pose has none.
+std::string WhyUnseen(const Board& board, const SeenBoard& seen) {
+  if (seen.pose) return seen.pose->error().message;
+  if (!seen.duplicate_tags.empty()) {
+    return fmt::format("its tag {} is there more than once, so it is not used",
+                       board.tags[seen.duplicate_tags.front()].id);
+  }
+  if (!board.tags.empty()) {
+    return fmt::format("tag {} of {} was not found", board.tags.front().id,
+                       board.tags.front().family);
+  }
+  return fmt::format("no checkerboard of {} x {} inner corners was found",
+                     board.checker->inner_columns, board.checker->inner_rows);
+}
+
+CameraSighting SightingOf(const Board& board, const SeenBoard& seen) {
+  CameraSighting sighting{.board = static_cast<int>(seen.index),
+                          .printed = seen.printed,
+                          .pose = **seen.pose,
+                          .corners = seen.corners};
+  if (sighting.pose.ambiguous_with) {
+    for (const Eigen::Vector3d& corner : BoardCorners(board)) {
+      sighting.other_corners.push_back(*sighting.pose.ambiguous_with * corner);
+    }
+  }
+  return sighting;
+}
+
+// The median elevation of each ring that has returns.
+LidarPattern PatternOf(const ScanRings& rings, const LidarBeam& beam) {
+  LidarPattern pattern{.azimuth_step_rad = rings.azimuth_step_rad(),
+                       .range_sigma_m = rings.range_sigma_m(),
+                       .aperture_m = beam.aperture_h_m,
+                       .divergence_rad = beam.divergence_h_rad};
+  for (int i = 0; i < rings.rings(); ++i) {
+    std::vector<double> elevations;
+    for (const RingPoint& point : rings.ring(i)) {
+      elevations.push_back(std::asin(point.point.z() / point.range_m));
+    }
+    if (elevations.empty()) continue;
+    const auto middle = elevations.begin() + static_cast<std::ptrdiff_t>(elevations.size() / 2);
+    std::nth_element(elevations.begin(), middle, elevations.end());
+    pattern.elevations_rad.push_back(*middle);
+  }
+  std::ranges::sort(pattern.elevations_rad);
+  return pattern;
+}
+
+// Of the placement, by lines through its edge points; empty where they do not suffice.
+std::vector<double> MeasuredSides(const BoardPatch& patch, const BoardPlacement& placement,
+                                  const Board& board) {
+  BoardPatch placed = patch;
+  placed.fit = placement.fit;
+  const Expected<LidarCorners> corners = ExtractCorners("plane_lines", placed, board);
+  if (!corners) return {};
+  const std::vector<double>& lengths = corners->checks.edge_lengths_m;
+  return {lengths.begin(), lengths.begin() + kCornersPerBoard};
+}
+
+// The rejected patches that come nearest to a board: those with most points.
+std::string WhyNotInScan(const BoardSearch& search) {
+  constexpr std::size_t kNamed = 2;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kNamed, search.rejected.size()); ++i) {
+    const RejectedPatch& patch = search.rejected[i];
+    text += fmt::format("; what is flat at ({:.2f}, {:.2f}, {:.2f}) m, {} points on {} rings: {}",
+                        patch.center_in_lidar.x(), patch.center_in_lidar.y(),
+                        patch.center_in_lidar.z(), patch.points, patch.rings, patch.why);
+  }
+  return text;
+}
+
+}  // namespace
+
+Expected<Observer> Observer::Make(std::vector<Board> boards, const Camera& camera,
+                                  const ObserveOptions& options) {
+  if (boards.empty()) {
+    return MakeError(ErrorCode::kInvalidInput, "no board to look for: one at least must be known");
+  }
+  if (const auto known = ExtractCorners(options.extractor, {}, {});
+      !known && known.error().code == ErrorCode::kUnknownName) {
+    return tl::unexpected<Error>(known.error());
+  }
+  for (const Board& board : boards) {
+    if (board.top_right_m > 0.0 && board.right_bottom_m > 0.0) continue;
+    return MakeError(ErrorCode::kInvalidInput,
+                     fmt::format("board {} has no size ({} x {} m)", board.id, board.top_right_m,
+                                 board.right_bottom_m));
+  }
+  Expected<BoardFinder> finder = BoardFinder::Make(std::move(boards), camera, options.detector);
+  if (!finder) return tl::unexpected<Error>(finder.error());
+  return Observer(std::move(*finder), options);
+}
+
+Expected<Observation> Observer::Observe(const cv::Mat& image, const PointCloud& cloud) const {
+  Observation observation;
+  if (Expected<void> ok = LookInImage(image, observation); !ok) {
+    return MakeError(ok.error().code, "image: " + ok.error().message);
+  }
+  if (Expected<void> ok = LookInScan(cloud, observation); !ok) {
+    return MakeError(ok.error().code, "scan: " + ok.error().message);
+  }
+  return observation;
+}
+
+Expected<void> Observer::LookInImage(const cv::Mat& image, Observation& observation) const {
+  const Expected<SeenBoards> seen = finder_.Find(image);
+  if (!seen) return tl::unexpected<Error>(seen.error());
+  for (const SeenBoard& board : seen->boards) {
+    if (board.pose && *board.pose) {
+      observation.in_image.push_back(SightingOf(boards()[board.index], board));
+    } else {
+      observation.missing.push_back({.board = static_cast<int>(board.index),
+                                     .image = true,
+                                     .why = WhyUnseen(boards()[board.index], board)});
+    }
+  }
+  return {};
+}
+
+Expected<void> Observer::LookInScan(const PointCloud& cloud, Observation& observation) const {
+  const Expected<ScanRings> rings = ScanRings::Build(cloud);
+  if (!rings) return tl::unexpected<Error>(rings.error());
+  observation.lidar = PatternOf(*rings, options_.search.beam);
+  const Expected<BoardSearch> search = FindBoards(*rings, boards(), options_.search);
+  if (!search) return tl::unexpected<Error>(search.error());
+  for (const BoardPatch& patch : search->found) {
+    std::string why;
+    Expected<std::vector<BoardPlacement>> placements =
+        PlaceBoards(patch, boards(), options_.extractor, why);
+    if (!placements) return tl::unexpected<Error>(placements.error());
+    if (placements->empty()) {
+      observation.missing.push_back({.why = why});
+      continue;
+    }
+    LidarSighting sighting{.placements = std::move(*placements),
+                           .plane = patch.plane,
+                           .edges = patch.edges,
+                           .face = FaceReturns(*rings, patch, boards())};
+    sighting.range_sigma_m = RangeSigma(sighting.face, patch.plane);
+    sighting.measured_sides_m =
+        MeasuredSides(patch, sighting.placements.front(),
+                      boards()[static_cast<std::size_t>(sighting.placements.front().board)]);
+    observation.in_scan.push_back(std::move(sighting));
+  }
+  if (search->found.size() < boards().size()) {
+    observation.missing.push_back(
+        {.why = fmt::format("{} of {} boards found{}", search->found.size(), boards().size(),
+                            WhyNotInScan(*search))});
+  }
+  return {};
+}
+
+}  // namespace sextant

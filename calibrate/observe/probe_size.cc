@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/observe/probe_size.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "features/lidar/corner_extractor.h"
+
+namespace sextant {
+namespace {
+
+constexpr double kStep = 1.07;  // The search takes boards that are a few percent off.
+constexpr int kSteps = 10;
+
+Board Scaled(const Board& board, double factor) {
+  Board scaled{.id = board.id,
+               .top_right_m = factor * board.top_right_m,
+               .right_bottom_m = factor * board.right_bottom_m};
+  if (board.hole) {
+    scaled.hole = BoardHole{.width_m = factor * board.hole->width_m,
+                            .height_m = factor * board.hole->height_m,
+                            .center_in_board_m = factor * board.hole->center_in_board_m};
+  }
+  return scaled;
+}
+
+// By lines that do not know the size; else the size that was looked for.
+std::string SizeOf(const BoardPatch& patch, const Board& board) {
+  double width = board.top_right_m;
+  double height = board.right_bottom_m;
+  if (const auto corners = ExtractCorners("plane_lines", patch, board)) {
+    const std::vector<double>& edges = corners->checks.edge_lengths_m;
+    width = 0.5 * (edges[0] + edges[2]);
+    height = 0.5 * (edges[1] + edges[3]);
+  }
+  return fmt::format("{:.2f} x {:.2f} m", width, height);
+}
+
+}  // namespace
+
+std::vector<std::string> ProbeSizes(const PointCloud& cloud, std::span<const Board> boards,
+                                    const BoardSearchOptions& options) {
+  std::vector<std::string> lines;
+  const Expected<ScanRings> rings = ScanRings::Build(cloud);
+  if (!rings) return lines;
+  for (const Board& board : boards) {
+    std::optional<BoardPatch> best;
+    Board best_board;
+    for (int i = -kSteps; i <= kSteps; ++i) {
+      const std::vector<Board> scaled = {Scaled(board, std::pow(kStep, i))};
+      const Expected<BoardSearch> search = FindBoards(*rings, scaled, options);
+      if (!search || search->found.empty()) continue;
+      const BoardPatch& patch = search->found.front();
+      if (best && best->fit.rms <= patch.fit.rms) continue;
+      best = patch;
+      best_board = scaled.front();
+    }
+    if (!best) continue;
+    const Eigen::Vector3d center = best->plane.At(best->fit.center);
+    lines.push_back(fmt::format(
+        "board file: the scan shows no board {} of {:.3f} x {:.3f} m, but one of about {} at "
+        "({:.2f}, {:.2f}, {:.2f}) m: measure the board",
+        board.id, board.top_right_m, board.right_bottom_m, SizeOf(*best, best_board), center.x(),
+        center.y(), center.z()));
+  }
+  return lines;
+}
+
+}  // namespace sextant

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/session/file_pairs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+#include <system_error>
+
+namespace sextant {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+
+// Numbers without leading zeros behind their own length, so that they sort and compare by value.
+std::string NaturalKey(std::string_view text) {
+  std::string key;
+  for (std::size_t i = 0; i < text.size();) {
+    if (!IsDigit(text[i])) {
+      key += text[i++];
+      continue;
+    }
+    while (i + 1 < text.size() && text[i] == '0' && IsDigit(text[i + 1])) ++i;
+    const std::size_t first = i;
+    while (i < text.size() && IsDigit(text[i])) ++i;
+    key += fmt::format("{:04}:{}", i - first, text.substr(first, i - first));
+  }
+  return key;
+}
+
+// Whether the name matches a pattern whose `*` stand for any text.
+bool Matches(std::string_view name, std::string_view pattern) {
+  const std::size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return name == pattern;
+  if (!name.starts_with(pattern.substr(0, star))) return false;
+  const std::string_view rest = pattern.substr(star + 1);
+  for (std::size_t i = star; i <= name.size(); ++i) {
+    if (Matches(name.substr(i), rest)) return true;
+  }
+  return false;
+}
+
+// What each file's name has between the beginning and the end that all share.
+std::vector<std::string> OwnParts(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.stem().string());
+  std::size_t begin = names.front().size();
+  std::size_t end = names.front().size();
+  for (const std::string& name : names) {
+    const auto ahead = std::mismatch(name.begin(), name.end(), names[0].begin(), names[0].end());
+    const auto behind =
+        std::mismatch(name.rbegin(), name.rend(), names[0].rbegin(), names[0].rend());
+    begin = std::min(begin, static_cast<std::size_t>(ahead.first - name.begin()));
+    end = std::min(end, static_cast<std::size_t>(behind.first - name.rbegin()));
+  }
+  // A number is not cut in two: 10 and 11 share a 1 that is their own.
+  while (begin > 0 && IsDigit(names[0][begin - 1])) --begin;
+  while (end > 0 && IsDigit(names[0][names[0].size() - end])) --end;
+  std::vector<std::string> parts;
+  for (const std::string& name : names) {
+    const std::size_t length = name.size() - std::min(name.size(), begin + end);
+    parts.push_back(name.substr(begin, length));
+  }
+  return parts;
+}
+
+}  // namespace
+
+Expected<std::vector<fs::path>> ExpandPattern(const fs::path& pattern) {
+  const std::string name = pattern.filename().string();
+  std::error_code error;
+  if (name.find('*') == std::string::npos || fs::exists(pattern, error)) {
+    return std::vector<fs::path>{pattern};
+  }
+  const fs::path folder = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
+  std::vector<fs::path> files;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (Matches(it->path().filename().string(), name)) {
+      files.push_back(pattern.has_parent_path() ? it->path() : it->path().filename());
+    }
+  }
+  if (error) {
+    return MakeError(ErrorCode::kIo, fmt::format("cannot read the folder '{}': {}", folder.string(),
+                                                 error.message()));
+  }
+  if (files.empty()) {
+    return MakeError(ErrorCode::kMissingData,
+                     fmt::format("no file is named '{}'", pattern.string()));
+  }
+  std::ranges::sort(files, {}, [](const fs::path& file) { return NaturalKey(file.string()); });
+  return files;
+}
+
+FilePairs PairFiles(const std::vector<fs::path>& images, const std::vector<fs::path>& clouds) {
+  FilePairs result;
+  if (images.size() == 1 && clouds.size() == 1) {
+    result.pairs.push_back({images[0].stem().string(), images[0], clouds[0]});
+    return result;
+  }
+  std::map<std::string, FilePair> by_key;
+  if (!images.empty()) {
+    const std::vector<std::string> parts = OwnParts(images);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      FilePair& pair = by_key[NaturalKey(parts[i])];
+      if (!pair.image.empty()) result.without_partner.push_back(pair.image);
+      pair.name = parts[i];
+      pair.image = images[i];
+    }
+  }
+  if (!clouds.empty()) {
+    const std::vector<std::string> parts = OwnParts(clouds);
+    for (std::size_t i = 0; i < clouds.size(); ++i) {
+      FilePair& pair = by_key[NaturalKey(parts[i])];
+      if (!pair.cloud.empty()) result.without_partner.push_back(pair.cloud);
+      pair.cloud = clouds[i];
+    }
+  }
+  for (const auto& [key, pair] : by_key) {
+    if (pair.image.empty() || pair.cloud.empty()) {
+      result.without_partner.push_back(pair.image.empty() ? pair.cloud : pair.image);
+    } else {
+      result.pairs.push_back(pair);
+    }
+  }
+  return result;
+}
+
+}  // namespace sextant

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/session/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "io/blocks/pose_block.h"
+#include "io/text/text_file.h"
+#include "io/text/yaml_fields.h"
+
+namespace sextant {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsRecording(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  return extension == ".bag" || extension == ".db3" || extension == ".mcap";
+}
+
+bool Exists(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+// Takes the keys of a session file; paths are relative to its folder.
+class SessionReader {
+ public:
+  explicit SessionReader(const std::string& file)
+      : in_(file), folder_(fs::path(file).parent_path()) {}
+
+  Expected<Session> Read(const YamlNode& root) {
+    static const std::vector<std::string> kKeys = {
+        "sextant_session", "boards", "camera",      "pairs",       "images",
+        "clouds",          "bag",    "image_topic", "cloud_topic", "initial_cam_from_lidar"};
+    in_.IsMap(root, "session", kKeys);
+    in_.IntegerAt(root, "sextant_session", 1, 1);
+    session_.boards = PathAt(root, "boards");
+    session_.camera = PathAt(root, "camera");
+    session_.bag = PathAt(root, "bag");
+    session_.image_topic = TextAt(root, "image_topic");
+    session_.cloud_topic = TextAt(root, "cloud_topic");
+    if (const YamlNode* pose = root.Find("initial_cam_from_lidar")) {
+      session_.initial_cam_from_lidar = ReadPoseBlock(in_, *pose, "initial_cam_from_lidar");
+    }
+    ReadFiles(root);
+    if (!in_.ok()) return in_.TakeError();
+    return std::move(session_);
+  }
+
+ private:
+  std::string TextAt(const YamlNode& map, std::string_view key) {
+    return map.Find(key) == nullptr ? std::string() : in_.TextAt(map, key);
+  }
+
+  fs::path PathAt(const YamlNode& map, std::string_view key) {
+    const std::string text = TextAt(map, key);
+    return text.empty() ? fs::path() : (folder_ / text).lexically_normal();
+  }
+
+  void ReadFiles(const YamlNode& root) {
+    const bool has_patterns = root.Find("images") != nullptr || root.Find("clouds") != nullptr;
+    const int ways = (root.Find("pairs") != nullptr ? 1 : 0) + (has_patterns ? 1 : 0) +
+                     (root.Find("bag") != nullptr ? 1 : 0);
+    if (in_.ok() && ways != 1) {
+      in_.Fail(root.line, "session", "expected one of pairs, images with clouds, and bag");
+    }
+    if (const YamlNode* pairs = root.Find("pairs")) ReadPairs(*pairs);
+    if (has_patterns) ReadPatterns(root);
+  }
+
+  void ReadPairs(const YamlNode& pairs) {
+    static const std::vector<std::string> kKeys = {"name", "image", "cloud"};
+    if (!in_.IsSequence(pairs, "pairs")) return;
+    for (const YamlNode& node : pairs.items) {
+      if (!in_.IsMap(node, "pairs", kKeys)) return;
+      FilePair pair{.name = TextAt(node, "name"),
+                    .image = folder_ / in_.TextAt(node, "image"),
+                    .cloud = folder_ / in_.TextAt(node, "cloud")};
+      if (pair.name.empty()) pair.name = pair.image.stem().string();
+      session_.files.pairs.push_back(std::move(pair));
+    }
+  }
+
+  void ReadPatterns(const YamlNode& root) {
+    const fs::path images = folder_ / in_.TextAt(root, "images");
+    const fs::path clouds = folder_ / in_.TextAt(root, "clouds");
+    if (!in_.ok()) return;
+    const auto image_files = ExpandPattern(images);
+    if (!image_files) return in_.Fail(root.line, "images", image_files.error().message);
+    const auto cloud_files = ExpandPattern(clouds);
+    if (!cloud_files) return in_.Fail(root.line, "clouds", cloud_files.error().message);
+    session_.files = PairFiles(*image_files, *cloud_files);
+  }
+
+  YamlFields in_;
+  fs::path folder_;
+  Session session_;
+};
+
+// cam_from_lidar of a camera in truth.yaml, which carries much else.
+Expected<std::optional<Rigid3d>> TruthOf(const fs::path& path, const std::string& camera) {
+  if (!Exists(path)) return std::optional<Rigid3d>();
+  const Expected<std::string> text = ReadTextFile(path);
+  if (!text) return tl::unexpected<Error>(text.error());
+  const Expected<YamlNode> root = ParseYaml(*text, path.string());
+  if (!root) return tl::unexpected<Error>(root.error());
+  const YamlNode* cameras = root->Find("cameras");
+  if (cameras == nullptr) return std::optional<Rigid3d>();
+  for (const YamlNode& node : cameras->items) {
+    const YamlNode* name = node.Find("camera");
+    const YamlNode* pose = node.Find("cam_from_lidar");
+    if (name == nullptr || pose == nullptr || name->text != camera) continue;
+    YamlFields in(path.string());
+    const Rigid3d cam_from_lidar = ReadPoseBlock(in, *pose, "cam_from_lidar");
+    if (!in.ok()) return in.TakeError();
+    return std::optional<Rigid3d>(cam_from_lidar);
+  }
+  return std::optional<Rigid3d>();
+}
+
+// The cameras that have an info file, by name.
+Expected<std::vector<std::string>> CamerasIn(const fs::path& folder) {
+  const Expected<std::vector<fs::path>> infos = ExpandPattern(folder / "*_info.yaml");
+  if (!infos) return tl::unexpected<Error>(infos.error());
+  std::vector<std::string> names;
+  for (const fs::path& info : *infos) {
+    const std::string stem = info.stem().string();
+    names.push_back(stem.substr(0, stem.size() - std::string("_info").size()));
+  }
+  return names;
+}
+
+Expected<Session> ReadSimulated(const fs::path& folder, const std::string& camera_name) {
+  const Expected<std::vector<std::string>> cameras = CamerasIn(folder);
+  if (!cameras) return tl::unexpected<Error>(cameras.error());
+  const std::string camera = camera_name.empty() ? cameras->front() : camera_name;
+  if (std::ranges::find(*cameras, camera) == cameras->end()) {
+    std::string known;
+    for (const std::string& name : *cameras) known += (known.empty() ? "" : ", ") + name;
+    return MakeError(ErrorCode::kMissingData, fmt::format("{}: no camera '{}'; there are: {}",
+                                                          folder.string(), camera, known));
+  }
+  Session session{.boards = folder / "boards.yaml", .camera = folder / (camera + "_info.yaml")};
+  const auto images = ExpandPattern(folder / (camera + "_*.png"));
+  if (!images) return tl::unexpected<Error>(images.error());
+  const auto clouds = ExpandPattern(folder / "scan_*.pcd");
+  if (!clouds) return tl::unexpected<Error>(clouds.error());
+  // Of the cameras cam and cam_right, cam_*.png takes the other's images too.
+  std::vector<fs::path> own;
+  const auto is_number = [](char c) { return c >= '0' && c <= '9'; };
+  for (const fs::path& image : *images) {
+    const std::string number = image.stem().string().substr(camera.size() + 1);
+    if (std::ranges::all_of(number, is_number)) own.push_back(image);
+  }
+  session.files = PairFiles(own, *clouds);
+  const Expected<std::optional<Rigid3d>> truth = TruthOf(folder / "truth.yaml", camera);
+  if (!truth) return tl::unexpected<Error>(truth.error());
+  session.true_cam_from_lidar = *truth;
+  return session;
+}
+
+}  // namespace
+
+Expected<Session> ParseSession(std::string_view text, const std::string& file) {
+  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
+  if (!root) return tl::unexpected<Error>(root.error());
+  return SessionReader(file).Read(*root);
+}
+
+Expected<Session> ReadSession(const fs::path& path, const std::string& camera_name) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) {
+    if (IsRecording(path)) return Session{.bag = path};
+    return ReadWith(path, ParseSession);
+  }
+  if (Exists(path / "session.yaml")) return ReadWith(path / "session.yaml", ParseSession);
+  if (Exists(path / "boards.yaml")) return ReadSimulated(path, camera_name);
+  for (fs::directory_iterator it(path, error), end; !error && it != end; it.increment(error)) {
+    if (IsRecording(it->path())) return Session{.bag = path};
+  }
+  return MakeError(ErrorCode::kMissingData,
+                   fmt::format("{}: expected a folder with session.yaml, one that sextant simulate "
+                               "wrote (boards.yaml, <camera>_info.yaml, <camera>_*.png, "
+                               "scan_*.pcd) or a recording; or name images and scans with --image "
+                               "and --cloud, as in --image 'photos/*.png' --cloud 'scans/*.pcd'",
+                               path.string()));
+}
+
+}  // namespace sextant

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "calibrate/session/file_pairs.h"
+#include "geometry/rigid3d.h"
+
+namespace sextant {
+
+/// What is calibrated: which files hold the boards, the camera, and images and scans. Empty where
+/// it does not say.
+struct Session {
+  std::filesystem::path boards{};
+  std::filesystem::path camera{};
+  FilePairs files{};
+  std::filesystem::path bag{};  ///< A recording instead of files.
+  std::string image_topic{};    ///< Of the recording; empty: the only one.
+  std::string cloud_topic{};
+  std::optional<Rigid3d> initial_cam_from_lidar{};
+  std::optional<Rigid3d> true_cam_from_lidar{};  ///< Of a simulated one; never shown to a solver.
+};
+
+/// A session by its path:
+/// - a YAML file (docs/formats.md), its paths taken from its own folder;
+/// - a folder with session.yaml in it;
+/// - a folder that `sextant simulate` wrote: boards.yaml, <camera>_info.yaml, <camera>_*.png,
+///   scan_*.pcd, truth.yaml; of several cameras `camera_name` names one (empty: the first);
+/// - a recording of ROS: a file that ends in .bag, .db3 or .mcap, or a folder with one.
+/// Errors: kIo; kParse with file, line and key; kMissingData for a folder that is none of these and
+/// for one without a camera of that name.
+Expected<Session> ReadSession(const std::filesystem::path& path,
+                              const std::string& camera_name = "");
+Expected<Session> ParseSession(std::string_view text, const std::string& file);
+
+}  // namespace sextant

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "geometry/calibration_problem.h"
+#include "io/results/calibration_result.h"
+
+namespace sextant {
+
+/// The direction of the pose that is known worst, of each kind, by the eigenvectors of the two 3x3
+/// blocks of a covariance.
+struct WeakestDirections {
+  Eigen::Vector3d translation_axis_in_cam = Eigen::Vector3d::UnitX();  ///< Unit.
+  double translation_sigma_m = 0.0;
+  Eigen::Vector3d rotation_axis_in_cam = Eigen::Vector3d::UnitX();  ///< Unit.
+  double rotation_sigma_rad = 0.0;
+};
+WeakestDirections WeakestOf(const Matrix6d& covariance);
+
+/// "right-left", "down-up", "forward" where an axis is one of the camera's within 25 degrees, else
+/// its three numbers.
+std::string AxisName(const Eigen::Vector3d& axis_in_cam);
+
+/// "translation right-left 8.2 mm, rotation about forward 0.12 deg".
+std::string DescribeWeakest(const WeakestDirections& weakest);
+
+/// The covariance that goes with an information; none where a direction is not determined.
+std::optional<Matrix6d> CovarianceOf(const Matrix6d& information);
+
+/// Writes what each kept view of the result tells of its answer, from the problem's board views
+/// (solvers/joint/board_view_information.h), and the predicted sigma after each. Views without
+/// board views, and those that the answer does not fit at all, stay without.
+void AddInformation(const CalibrationProblem& problem, CalibrationResult& result);
+
+}  // namespace sextant

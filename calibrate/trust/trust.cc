@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/trust/trust.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/random.h"
+#include "calibrate/trust/outlier_views.h"
+#include "calibrate/trust/select_views.h"
+#include "calibrate/trust/trust_text.h"
+
+namespace sextant {
+namespace {
+
+using Poses = std::vector<std::optional<Rigid3d>>;
+
+std::optional<Rigid3d> PoseOf(const CalibrationProblem& problem, const Solver& solver) {
+  const Expected<SolveReport> report = solver.Solve(problem);
+  if (!report) return std::nullopt;
+  return report->cam_from_lidar;
+}
+
+// The answers of all folds but one; none where the solver finds no pose in them.
+Poses SolveFolds(const CalibrationProblem& problem, const Solver& solver,
+                 const std::vector<int>& views, std::size_t folds) {
+  Poses answers(folds);
+  tbb::parallel_for(std::size_t{0}, folds, [&](std::size_t fold) {
+    std::vector<int> others;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (i % folds != fold) others.push_back(views[i]);
+    }
+    answers[fold] = PoseOf(SelectViews(problem, others), solver);
+  });
+  return answers;
+}
+
+Poses SolveDraws(const CalibrationProblem& problem, const Solver& solver,
+                 const std::vector<int>& views, const TrustOptions& options) {
+  Poses answers(static_cast<std::size_t>(options.bootstrap_samples));
+  tbb::parallel_for(std::size_t{0}, answers.size(), [&](std::size_t draw) {
+    Random random(DeriveSeed(options.seed, "bootstrap of views", 0, draw));
+    std::vector<int> drawn;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const std::uint64_t place = random.Below(views.size());
+      drawn.push_back(views[place]);
+    }
+    answers[draw] = PoseOf(DrawViews(problem, drawn), solver);
+  });
+  return answers;
+}
+
+std::vector<Vector6d> DifferencesFrom(const Rigid3d& reference, const Poses& poses) {
+  std::vector<Vector6d> differences;
+  for (const std::optional<Rigid3d>& pose : poses) {
+    if (pose) differences.push_back(PoseDifference(*pose, reference));
+  }
+  return differences;
+}
+
+// Sum over the differences of their squared distance to the mean, each axis for itself.
+Vector6d ScatterOf(const std::vector<Vector6d>& differences) {
+  Vector6d mean = Vector6d::Zero();
+  for (const Vector6d& d : differences) mean += d / static_cast<double>(differences.size());
+  Vector6d scatter = Vector6d::Zero();
+  for (const Vector6d& d : differences) scatter += (d - mean).cwiseAbs2();
+  return scatter;
+}
+
+// Linear between the order statistics.
+double Quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  const double place = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  const double part = place - static_cast<double>(below);
+  return (1.0 - part) * values[below] + part * values[above];
+}
+
+void AddBootstrap(const std::vector<Vector6d>& differences, const TrustOptions& options,
+                  TrustFigures& figures) {
+  BootstrapFigures& bootstrap = figures.bootstrap.emplace();
+  bootstrap.level = options.level;
+  bootstrap.samples = static_cast<int>(differences.size());
+  bootstrap.unanswered = options.bootstrap_samples - bootstrap.samples;
+  for (int axis = 0; axis < 6; ++axis) {
+    std::vector<double> values;
+    for (const Vector6d& d : differences) values.push_back(d[axis]);
+    bootstrap.low[axis] = Quantile(values, 0.5 * (1.0 - options.level));
+    bootstrap.high[axis] = Quantile(values, 0.5 * (1.0 + options.level));
+  }
+  figures.bootstrap_sigma =
+      (ScatterOf(differences) / static_cast<double>(differences.size() - 1)).cwiseSqrt();
+}
+
+// The geometric mean over the axes of a / b; none where an axis is known exactly.
+std::optional<double> MeanRatio(const std::optional<Vector6d>& a,
+                                const std::optional<Vector6d>& b) {
+  if (!a || !b || !(a->minCoeff() > 0.0) || !(b->minCoeff() > 0.0)) return std::nullopt;
+  return std::exp((a->array().log() - b->array().log()).mean());
+}
+
+// Root mean square over the finite ones of residuals that belong to a view.
+class ViewRms {
+ public:
+  void Add(double residual) {
+    if (!std::isfinite(residual)) return;
+    squares_ += residual * residual;
+    ++count_;
+  }
+  void Add(const ViewRms& other) {
+    squares_ += other.squares_;
+    count_ += other.count_;
+  }
+  std::optional<double> Value() const {
+    if (count_ == 0) return std::nullopt;
+    return std::sqrt(squares_ / count_);
+  }
+
+ private:
+  double squares_ = 0.0;
+  int count_ = 0;
+};
+
+struct ViewFit {
+  ViewRms metres;
+  ViewRms pixels;
+};
+
+// Of one view under a pose.
+ViewFit FitOf(const CalibrationProblem& problem, int view, const Rigid3d& pose) {
+  ViewFit fit;
+  const Evaluation evaluation = Evaluate(SelectViews(problem, {&view, 1}), pose);
+  for (const double r : evaluation.per_pair_m) fit.metres.Add(r);
+  for (const double r : evaluation.per_pair_px) fit.pixels.Add(r);
+  return fit;
+}
+
+// How every view fits, under the answer and under that of the other folds.
+void AddFits(const CalibrationProblem& problem, const std::vector<int>& views,
+             const SolveReport& answer, const Poses& folds, Trust& trust) {
+  ViewFit all;
+  ViewFit all_held_out;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    ViewTrust& view = trust.views.emplace_back();
+    view.view = views[i];
+    const ViewFit fit = FitOf(problem, views[i], answer.cam_from_lidar);
+    view.rmse_m = fit.metres.Value();
+    view.rmse_px = fit.pixels.Value();
+    all.metres.Add(fit.metres);
+    all.pixels.Add(fit.pixels);
+    if (folds.empty() || !folds[i % folds.size()]) continue;
+    const ViewFit held_out = FitOf(problem, views[i], *folds[i % folds.size()]);
+    view.held_out_m = held_out.metres.Value();
+    view.held_out_px = held_out.pixels.Value();
+    all_held_out.metres.Add(held_out.metres);
+    all_held_out.pixels.Add(held_out.pixels);
+  }
+  trust.figures.fit_rmse_m = all.metres.Value();
+  trust.figures.fit_rmse_px = all.pixels.Value();
+  trust.figures.held_out_rmse_m = all_held_out.metres.Value();
+  trust.figures.held_out_rmse_px = all_held_out.pixels.Value();
+}
+
+std::vector<double> HeldOutErrors(const Trust& trust) {
+  std::vector<double> errors;
+  for (const ViewTrust& view : trust.views) {
+    errors.push_back(view.held_out_m.value_or(view.held_out_px.value_or(0.0)));
+  }
+  return errors;
+}
+
+std::vector<double> ErrorsUnder(const CalibrationProblem& problem, const std::vector<int>& views,
+                                const Rigid3d& pose) {
+  std::vector<double> errors;
+  for (const int view : views) {
+    const ViewFit fit = FitOf(problem, view, pose);
+    errors.push_back(fit.metres.Value().value_or(fit.pixels.Value().value_or(0.0)));
+  }
+  return errors;
+}
+
+// The rest answers again without the views that were marked, and all are judged under that.
+std::vector<bool> MarkOutliers(const CalibrationProblem& problem, const Solver& solver,
+                               const std::vector<int>& views, const Trust& trust) {
+  std::vector<bool> marked = OutlyingViews(HeldOutErrors(trust));
+  constexpr int kMostRounds = 10;
+  for (int round = 0; round < kMostRounds; ++round) {
+    std::vector<int> rest;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (!marked[i]) rest.push_back(views[i]);
+    }
+    if (rest.size() == views.size()) break;
+    const std::optional<Rigid3d> pose = PoseOf(SelectViews(problem, rest), solver);
+    if (!pose) break;
+    std::vector<bool> again = OutlyingViews(ErrorsUnder(problem, views, *pose));
+    if (again == marked) break;
+    marked = std::move(again);
+  }
+  return marked;
+}
+
+}  // namespace
+
+Expected<Trust> JudgeTrust(const CalibrationProblem& problem, const Solver& solver,
+                           const SolveReport& answer, const TrustOptions& options) {
+  const std::vector<int> views = ViewsOf(problem);
+  if (views.empty()) {
+    return MakeError(ErrorCode::kMissingData,
+                     "expected pairs or board views that can be held against each other, got none");
+  }
+  Trust trust;
+  TrustFigures& figures = trust.figures;
+  if (answer.covariance) {
+    figures.covariance_sigma = answer.covariance->diagonal().cwiseMax(0.0).cwiseSqrt();
+  }
+  Poses folds;
+  if (views.size() > 1) {
+    figures.folds = std::min(std::max(options.folds, 2), static_cast<int>(views.size()));
+    folds = SolveFolds(problem, solver, views, static_cast<std::size_t>(figures.folds));
+  }
+  AddFits(problem, views, answer, folds, trust);
+  const std::vector<Vector6d> of_folds = DifferencesFrom(answer.cam_from_lidar, folds);
+  if (of_folds.size() > 2 && of_folds.size() == folds.size()) {
+    const double g = figures.folds;
+    figures.jackknife_sigma = ((g - 1.0) / g * ScatterOf(of_folds)).cwiseSqrt();
+  }
+  if (views.size() > 2 && options.bootstrap_samples > 1) {
+    const std::vector<Vector6d> draws =
+        DifferencesFrom(answer.cam_from_lidar, SolveDraws(problem, solver, views, options));
+    if (draws.size() > 1) AddBootstrap(draws, options, figures);
+  }
+  figures.bootstrap_over_covariance = MeanRatio(figures.bootstrap_sigma, figures.covariance_sigma);
+  figures.jackknife_over_covariance = MeanRatio(figures.jackknife_sigma, figures.covariance_sigma);
+  const std::vector<bool> marked = MarkOutliers(problem, solver, views, trust);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    trust.views[i].outlier = marked[i];
+    if (marked[i]) figures.outlier_views.push_back(views[i]);
+  }
+  figures.verdict = TrustVerdict(figures, static_cast<int>(views.size()));
+  return trust;
+}
+
+void AddTrust(const Trust& trust, CalibrationResult& result) {
+  result.trust = trust.figures;
+  for (ResultView& view : result.views) {
+    const auto judged = std::find_if(trust.views.begin(), trust.views.end(),
+                                     [&](const ViewTrust& v) { return v.view == view.view; });
+    if (judged == trust.views.end()) continue;
+    view.rmse_m = judged->rmse_m;
+    view.rmse_px = judged->rmse_px;
+    view.held_out_m = judged->held_out_m;
+    view.held_out_px = judged->held_out_px;
+    if (!judged->outlier) continue;
+    const std::string name = view.name.empty() ? "view " + std::to_string(view.view) : view.name;
+    result.warnings.push_back(OutlierText(name, *judged, trust.figures));
+  }
+}
+
+}  // namespace sextant

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/trust/trust_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+
+namespace sextant {
+namespace {
+
+// "4.1 mm and 0.08 deg": the root of the sum over the axes.
+std::string SigmaText(const Vector6d& sigma) {
+  return fmt::format("{:.2g} mm and {:.2g} deg", sigma.tail<3>().norm() * 1e3,
+                     sigma.head<3>().norm() / kRadPerDeg);
+}
+
+std::string ErrorText(const std::optional<double>& metres, const std::optional<double>& pixels) {
+  if (metres) return fmt::format("{:.1f} mm", *metres * 1e3);
+  return pixels ? fmt::format("{:.2f} px", *pixels) : "nothing";
+}
+
+std::string CrossValidationText(const TrustFigures& figures) {
+  if (!figures.held_out_rmse_m && !figures.held_out_rmse_px) return "";
+  return fmt::format("Corners of views held out are off by {}, those fitted by {}. ",
+                     ErrorText(figures.held_out_rmse_m, figures.held_out_rmse_px),
+                     ErrorText(figures.fit_rmse_m, figures.fit_rmse_px));
+}
+
+std::string SigmasText(const TrustFigures& figures) {
+  std::string text;
+  if (figures.covariance_sigma) {
+    text += "The covariance states " + SigmaText(*figures.covariance_sigma);
+  }
+  if (figures.bootstrap_sigma) {
+    text += (text.empty() ? "Views drawn anew give " : ", views drawn anew give ") +
+            SigmaText(*figures.bootstrap_sigma);
+  }
+  if (figures.jackknife_sigma) {
+    text += (text.empty() ? "Views left out give " : ", views left out give ") +
+            SigmaText(*figures.jackknife_sigma);
+  }
+  return text.empty() ? text : text + " (1 sigma). ";
+}
+
+std::string ComparisonText(const TrustFigures& figures, int views) {
+  if (!figures.bootstrap_over_covariance) return "";
+  const double band = 1.0 + 2.0 / std::sqrt(2.0 * std::max(1, views - 1));
+  const double largest =
+      std::max(*figures.bootstrap_over_covariance, figures.jackknife_over_covariance.value_or(0.0));
+  const double least =
+      std::min(*figures.bootstrap_over_covariance,
+               figures.jackknife_over_covariance.value_or(*figures.bootstrap_over_covariance));
+  if (largest > band) {
+    return fmt::format(
+        "The views differ from each other by {:.1f} times what their stated noise allows: trust "
+        "the larger figures, and look for a wrong board size, wrong intrinsics or a view that does "
+        "not belong.",
+        largest);
+  }
+  if (least < 1.0 / band) {
+    return fmt::format(
+        "The views agree {:.1f} times better than their stated noise: the covariance is cautious, "
+        "or the views are too alike to show an error that they share.",
+        1.0 / least);
+  }
+  return "They agree within what so many views can tell.";
+}
+
+}  // namespace
+
+std::string TrustVerdict(const TrustFigures& figures, int views) {
+  if (views < 2) return "One view alone: nothing holds its answer against anything.";
+  std::string text = CrossValidationText(figures) + SigmasText(figures);
+  if (views == 2) text += "Two views are too few for a bootstrap.";
+  text += ComparisonText(figures, views);
+  if (!figures.outlier_views.empty()) {
+    text +=
+        fmt::format(" {} {} with the others.", figures.outlier_views.size() == 1 ? "View" : "Views",
+                    fmt::format("{} {}", fmt::join(figures.outlier_views, ", "),
+                                figures.outlier_views.size() == 1 ? "disagrees" : "disagree"));
+  }
+  while (text.ends_with(' ')) text.pop_back();
+  return text;
+}
+
+std::string OutlierText(const std::string& name, const ViewTrust& view,
+                        const TrustFigures& figures) {
+  return fmt::format(
+      "{} disagrees with the other views: under their answer its corners are off by {}, those of "
+      "all views by {}; was the board still, and is its scan of the same moment?",
+      name, ErrorText(view.held_out_m, view.held_out_px),
+      ErrorText(figures.held_out_rmse_m, figures.held_out_rmse_px));
+}
+
+}  // namespace sextant

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/mark/mark_input.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/units.h"
+#include "calibrate/observe/photo_file.h"
+#include "cli/pose_argument.h"
+#include "io/boards/polygon_file.h"
+#include "io/cameras/camera_file.h"
+#include "io/clouds/cloud_file.h"
+
+namespace sextant::cli {
+namespace {
+
+constexpr int kAssumedWidth_px = 1280;
+constexpr int kAssumedHeight_px = 720;
+
+Expected<Camera> ChooseCamera(const MarkOptions& options, const cv::Mat& photo) {
+  if (options.camera_path.empty()) {
+    return photo.empty() ? AssumedCamera(kAssumedWidth_px, kAssumedHeight_px)
+                         : AssumedCamera(photo.cols, photo.rows);
+  }
+  Expected<Camera> camera = ReadCamera(options.camera_path);
+  if (!camera) return camera;
+  const bool size_known = camera->width_px > 0 && camera->height_px > 0;
+  if (!size_known) {
+    camera->width_px = photo.empty() ? static_cast<int>(2.0 * camera->cx_px) + 1 : photo.cols;
+    camera->height_px = photo.empty() ? static_cast<int>(2.0 * camera->cy_px) + 1 : photo.rows;
+  } else if (!photo.empty() &&
+             (photo.cols != camera->width_px || photo.rows != camera->height_px)) {
+    return MakeError(ErrorCode::kInvalidInput,
+                     fmt::format("{}: the image has {} x {} pixels, expected the {} x {} of {}",
+                                 options.image_path, photo.cols, photo.rows, camera->width_px,
+                                 camera->height_px, options.camera_path));
+  }
+  return camera;
+}
+
+Expected<Rigid3d> ChoosePose(const MarkOptions& options) {
+  if (options.cam_from_lidar.empty()) {
+    const Eigen::AngleAxisd turn(-kRadPerDeg * options.yaw_deg, Eigen::Vector3d::UnitZ());
+    return AxesCamFromLidar() * Rigid3d{Eigen::Quaterniond(turn), Eigen::Vector3d::Zero()};
+  }
+  return PoseFromArgument("--cam-from-lidar", options.cam_from_lidar);
+}
+
+bool SameProjection(const ScanMarks& a, const ScanMarks& b) {
+  const auto text = [](const ScanMarks& marks) {
+    return FormatPolygons({.camera = marks.camera, .cam_from_lidar = marks.cam_from_lidar});
+  };
+  return text(a) == text(b);
+}
+
+// The marks of `path` take the place of the empty ones, if their projection is the one asked for
+// or none was.
+Expected<void> GoOnWith(const std::filesystem::path& path, const MarkOptions& options,
+                        MarkInput& input) {
+  const Expected<ScanMarks> kept = ReadPolygons(path);
+  if (!kept) return tl::unexpected<Error>(kept.error());
+  const bool asked =
+      !options.camera_path.empty() || !options.cam_from_lidar.empty() || options.yaw_deg != 0.0;
+  const bool fits_photo = input.photo.empty() || (kept->camera.width_px == input.photo.cols &&
+                                                  kept->camera.height_px == input.photo.rows);
+  if ((asked && !SameProjection(*kept, input.marks)) || !fits_photo) {
+    return MakeError(ErrorCode::kInvalidInput,
+                     fmt::format("{}: was drawn in another projection of a scan; go on with its "
+                                 "own --camera, --cam-from-lidar and --image, write to another "
+                                 "--out, or remove it",
+                                 path.string()));
+  }
+  input.marks = *kept;
+  input.note = "goes on with " + path.filename().string();
+  return {};
+}
+
+}  // namespace
+
+std::filesystem::path AutosavePath(const MarkOptions& options) {
+  return options.out_path + ".autosave";
+}
+
+Expected<MarkInput> LoadMarkInput(const MarkOptions& options) {
+  const Expected<PointCloud> scan = ReadCloud(options.cloud_path);
+  if (!scan) return tl::unexpected<Error>(scan.error());
+  MarkInput input;
+  if (!options.image_path.empty()) {
+    const Expected<cv::Mat> photo = ReadColourImage(options.image_path);
+    if (!photo) return tl::unexpected<Error>(photo.error());
+    input.photo = *photo;
+  }
+  const Expected<Camera> camera = ChooseCamera(options, input.photo);
+  if (!camera) return tl::unexpected<Error>(camera.error());
+  const Expected<Rigid3d> pose = ChoosePose(options);
+  if (!pose) return tl::unexpected<Error>(pose.error());
+  input.marks = {.camera = *camera, .cam_from_lidar = *pose};
+  std::error_code ignored;
+  input.is_saved = !std::filesystem::exists(AutosavePath(options), ignored);
+  if (!input.is_saved || std::filesystem::exists(options.out_path, ignored)) {
+    const std::filesystem::path from =
+        input.is_saved ? std::filesystem::path(options.out_path) : AutosavePath(options);
+    if (Expected<void> ok = GoOnWith(from, options, input); !ok) {
+      return tl::unexpected<Error>(std::move(ok.error()));
+    }
+  }
+  input.returns = ProjectScan(*scan, input.marks.camera, input.marks.cam_from_lidar);
+  if (input.returns.empty()) {
+    return MakeError(ErrorCode::kDegenerate,
+                     fmt::format("{}: none of its {} points is in view; turn the camera with --yaw "
+                                 "or give --cam-from-lidar",
+                                 options.cloud_path, scan->points.size()));
+  }
+  return input;
+}
+
+}  // namespace sextant::cli

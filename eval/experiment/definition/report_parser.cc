@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of an experiment file that says what its report shows.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/nearest_name.h"
+#include "eval/experiment/definition/experiment_parser.h"
+#include "io/text/number_text.h"
+
+namespace sextant {
+
+Statistic ExperimentParser::ParseStatisticOf(const YamlNode& node, const Experiment& experiment) {
+  if (!fields_.ok()) return {};
+  Expected<Statistic> statistic = ParseStatistic(node.text, experiment.metrics);
+  if (statistic) return *statistic;
+  fields_.Fail(node.line, "statistic", statistic.error().message);
+  return {};
+}
+
+std::string ExperimentParser::ParseAxis(const YamlNode& map, std::string_view key,
+                                        const Experiment& experiment, bool may_be_index) {
+  std::string name = fields_.TextAt(map, key);
+  std::vector<std::string> known = experiment.axes;
+  if (may_be_index) known.emplace_back("index");
+  if (!fields_.ok() || std::find(known.begin(), known.end(), name) != known.end()) return name;
+  fields_.Fail(map.Find(key)->line, key,
+               fmt::format("{} is no axis of the grid; {}", Quoted(name),
+                           known.empty() ? "it has none" : SuggestName(name.substr(0, 60), known)));
+  return {};
+}
+
+void ExperimentParser::ParseTables(const YamlNode& root, Experiment& experiment) {
+  const YamlNode* list = fields_.ok() ? root.Find("tables") : nullptr;
+  if (list == nullptr || !fields_.IsSequence(*list, "tables")) return;
+  const std::vector<std::string> keys = {"title", "columns", "labels", "across", "intervals"};
+  for (const YamlNode& node : list->items) {
+    TableSpec table;
+    if (!fields_.IsMap(node, "tables", keys)) return;
+    table.title = OptionalText(node, "title", "");
+    if (node.Find("across") != nullptr) table.across = ParseAxis(node, "across", experiment, false);
+    if (node.Find("intervals") != nullptr) table.intervals = Flag(node, "intervals");
+    const YamlNode& columns = fields_.Require(node, "columns");
+    if (!fields_.IsSequence(columns, "columns")) return;
+    for (const YamlNode& item : columns.items) {
+      table.columns.push_back(ParseStatisticOf(item, experiment));
+    }
+    if (const YamlNode* labels = node.Find("labels"); labels != nullptr && fields_.ok()) {
+      if (!fields_.IsSequence(*labels, "labels")) return;
+      if (labels->items.size() != table.columns.size()) {
+        fields_.Fail(labels->line, "labels",
+                     fmt::format("expected {} labels, as many as columns, got {}",
+                                 table.columns.size(), labels->items.size()));
+        return;
+      }
+      for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        table.columns[i].label = labels->items[i].text;
+      }
+    }
+    const bool wrong_count =
+        table.across.empty() ? table.columns.empty() : table.columns.size() != 1;
+    if (fields_.ok() && wrong_count) {
+      fields_.Fail(columns.line, "columns",
+                   table.across.empty() ? "expected at least one statistic"
+                                        : "expected one statistic, as the axis gives the columns");
+    }
+    experiment.tables.push_back(std::move(table));
+  }
+}
+
+void ExperimentParser::ParsePlots(const YamlNode& root, Experiment& experiment) {
+  const YamlNode* list = fields_.ok() ? root.Find("plots") : nullptr;
+  if (list == nullptr || !fields_.IsSequence(*list, "plots")) return;
+  const std::vector<std::string> keys = {"name",    "title",   "x",     "y",
+                                         "x_label", "y_label", "log_x", "log_y"};
+  for (const YamlNode& node : list->items) {
+    PlotSpec plot;
+    if (!fields_.IsMap(node, "plots", keys)) return;
+    plot.name = OptionalText(node, "name", fmt::format("plot{}", experiment.plots.size() + 1));
+    plot.title = OptionalText(node, "title", "");
+    plot.x = ParseAxis(node, "x", experiment, true);
+    plot.y = ParseStatisticOf(fields_.Require(node, "y"), experiment);
+    plot.x_label = OptionalText(node, "x_label", plot.x);
+    plot.y_label = OptionalText(node, "y_label", plot.y.label);
+    plot.log_x = Flag(node, "log_x");
+    plot.log_y = Flag(node, "log_y");
+    experiment.plots.push_back(std::move(plot));
+  }
+}
+
+}  // namespace sextant

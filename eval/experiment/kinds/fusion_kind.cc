@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <memory>
+#include <mutex>
+
+#include "base/units.h"
+#include "eval/experiment/definition/trials.h"
+#include "eval/experiment/kinds/pose_graph.h"
+#include "eval/experiment/kinds/scene_sight.h"
+#include "eval/experiment/kinds/stereo_scene.h"
+#include "eval/metrics/cloud_fusion.h"
+#include "solvers/averaging/average.h"
+#include "solvers/kernels/kabsch.h"
+
+namespace sextant {
+namespace {
+
+constexpr int kComparedPoints = 4000;
+
+struct FusionSettings : SceneSettings {
+  int scans = 10;
+  double tape_m = 0.01;
+  double tape_deg = 2.0;
+};
+
+enum FusionMeasured : int { kFusedTranslationMm, kFusedRotationDeg, kCloudMm, kWallMm, kCheckerMm };
+
+const std::vector<Metric>& FusionMetrics() {
+  static const std::vector<Metric> metrics = {
+      {"translation_mm", "of cam2_from_cam1, against the truth"},
+      {"rotation_deg", "of cam2_from_cam1, against the truth"},
+      {"cloud_mm", "median distance of the first stereo cloud from the surfaces of the second"},
+      {"wall_mm", "distance between both clouds' images of a wall: RMS over the walls"},
+      {"checker_mm", "distance between both stereo cameras' mean checkerboard corner"},
+  };
+  return metrics;
+}
+
+const ParameterSet<FusionSettings>& FusionParameters() {
+  static const ParameterSet<FusionSettings> set = [] {
+    ParameterSet<FusionSettings> options;
+    AddSceneSettings(options)
+        .Count("scans", &FusionSettings::scans, 1, 1000,
+               "of one placement, whose answers are averaged")
+        .Real("tape_m", &FusionSettings::tape_m, "m", 0.0, 1.0,
+              "standard error of a distance by tape, per axis of each camera's pose")
+        .Real("tape_deg", &FusionSettings::tape_deg, "deg", 0.0, 45.0,
+              "standard error of an angle by tape and trigonometry");
+    return options;
+  }();
+  return set;
+}
+
+// cam1 and cam2 never look at the same board: each is calibrated to the LiDAR, and the graph of
+// sensors joins them.
+class FusionTrials final : public Trials {
+ public:
+  FusionTrials(SceneSight first, SceneSight second, const FusionSettings& settings)
+      : sights_{std::move(first), std::move(second)}, settings_(settings) {}
+
+  const std::vector<std::string>& subjects() const override {
+    static const std::vector<std::string> names = {"truth", "tape", "pipeline, one scan",
+                                                   "pipeline, scans averaged"};
+    return names;
+  }
+
+  void Run(const TrialId& id, TrialRows& rows) const override {
+    std::call_once(looked_, [this] { pair_ = LookInStereo(sights_[0].whole_scene()); });
+    const Rigid3d truth = sights_[1].cam_from_lidar() * sights_[0].cam_from_lidar().Inverse();
+    Measure(truth, truth, rows.Add(0));
+    Measure(ByTape(id.seed), truth, rows.Add(1));
+    Measure(ByPipeline(id.seed, 1), truth, rows.Add(2));
+    Measure(ByPipeline(id.seed, settings_.scans), truth, rows.Add(3));
+  }
+
+ private:
+  Expected<Rigid3d> ByTape(std::uint64_t seed) const {
+    Random random(DeriveSeed(seed, "tape", 0, 0));
+    std::array<Rigid3d, 2> cam_from_lidar;
+    for (std::size_t i = 0; i < 2; ++i) {
+      Vector6d delta;
+      for (int k = 0; k < 6; ++k) {
+        delta[k] = (k < 3 ? kRadPerDeg * settings_.tape_deg : settings_.tape_m) * random.Normal();
+      }
+      cam_from_lidar[i] = Perturb(sights_[i].cam_from_lidar(), delta);
+    }
+    return cam_from_lidar[1] * cam_from_lidar[0].Inverse();
+  }
+
+  Expected<UncertainPose> Calibrate(const SceneSight& sight, std::uint64_t seed, int scans) const {
+    constexpr double kBetweenScans_s = 0.1;
+    const Scene scene = sight.HangBoards(seed);
+    std::vector<Rigid3d> answers;
+    for (int scan = 0; scan < scans; ++scan) {
+      const Expected<CalibrationProblem> seen =
+          sight.Look(scene, seed, scan, kBetweenScans_s * scan);
+      if (!seen) continue;
+      const PointSets points = PointsOf(seen->pairs_3d3d);
+      const Expected<KabschFit> fit = FitKabsch(points.in_cam, points.in_lidar);
+      if (fit) answers.push_back(fit->b_from_a);
+    }
+    const Expected<Rigid3d> mean = AveragePoses(answers, RotationAverage::kChordal);
+    if (!mean) return tl::unexpected<Error>(mean.error());
+    // A chain has no loop for the weights to matter in; any covariance gives the same answer.
+    return UncertainPose{*mean, 1e-6 * Matrix6d::Identity()};
+  }
+
+  Expected<Rigid3d> ByPipeline(std::uint64_t seed, int scans) const {
+    std::vector<PoseEdge> edges;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Expected<UncertainPose> pose = Calibrate(sights_[i], seed, scans);
+      if (!pose) return tl::unexpected<Error>(pose.error());
+      edges.push_back({.from = "lidar", .to = i == 0 ? "cam1" : "cam2", .to_from = *pose});
+    }
+    const Expected<SensorGraph> graph = SensorGraph::Solve(edges);
+    if (!graph) return tl::unexpected<Error>(graph.error());
+    return graph->Between("cam2", "cam1").map([](const UncertainPose& p) { return p.b_from_a; });
+  }
+
+  void Measure(const Expected<Rigid3d>& cam2_from_cam1, const Rigid3d& truth,
+               MetricValues values) const {
+    if (!cam2_from_cam1) return;
+    const PoseDistance error = DistanceBetween(*cam2_from_cam1, truth);
+    values.Set(kFusedTranslationMm, 1e3 * error.translation_m);
+    values.Set(kFusedRotationDeg, error.rotation_rad / kRadPerDeg);
+    if (!pair_) return;
+    values.Set(kCloudMm, 1e3 * CompareClouds(pair_->clouds[0], *cam2_from_cam1, pair_->clouds[1],
+                                             {.most_points = kComparedPoints})
+                                   .median_m);
+    values.Set(kWallMm, 1e3 * WallOffset(*pair_, *cam2_from_cam1));
+    values.Set(kCheckerMm, 1e3 * CheckerOffset(*pair_, *cam2_from_cam1));
+  }
+
+  std::array<SceneSight, 2> sights_;
+  FusionSettings settings_;
+  mutable std::once_flag looked_;
+  mutable Expected<StereoPair> pair_ = MakeError(ErrorCode::kMissingData, "not looked yet");
+};
+
+Expected<TrialsPtr> MakeFusionTrials(const KindArguments& arguments) {
+  const Expected<FusionSettings> settings = FusionParameters().Parse(arguments.parameters);
+  if (!settings) return tl::unexpected<Error>(settings.error());
+  if (!settings->translation_m.empty() || !settings->rotation_deg.empty()) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     "both cameras stand where the scene says; leave out translation_m and "
+                     "rotation_deg");
+  }
+  Expected<SceneSight> first = SceneSight::Make(*settings, arguments.folder, 0);
+  if (!first) return tl::unexpected<Error>(first.error());
+  Expected<SceneSight> second = SceneSight::Make(*settings, arguments.folder, 1);
+  if (!second) return tl::unexpected<Error>(second.error());
+  return std::make_shared<FusionTrials>(std::move(*first), std::move(*second), *settings);
+}
+
+}  // namespace
+
+TrialKind FusionKind() {
+  return {.name = "fusion",
+          .summary =
+              "two stereo cameras joined through the LiDAR: their clouds fused by tape and by "
+              "the pipeline",
+          .takes_solvers = false,
+          .parameters = FusionParameters().Describe(),
+          .metrics = FusionMetrics(),
+          .trials_per_block = 5,
+          .make = MakeFusionTrials};
+}
+
+}  // namespace sextant

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <memory>
+
+#include "base/units.h"
+#include "eval/experiment/definition/trials.h"
+#include "eval/experiment/kinds/scene_sight.h"
+#include "solvers/averaging/average.h"
+#include "solvers/kernels/kabsch.h"
+
+namespace sextant {
+namespace {
+
+struct SceneAverageSettings : SceneSettings {
+  int scans = 100;
+  double interval_s = 0.1;
+};
+
+enum SceneAverageMeasured : int {
+  kAverageTranslationMm,
+  kAverageRotationDeg,
+  kAverageXM,
+  kAverageYM,
+  kAverageZM
+};
+
+const std::vector<Metric>& SceneAverageMetrics() {
+  static const std::vector<Metric> metrics = {
+      {"translation_mm", "distance of the averaged translation from the truth"},
+      {"rotation_deg", "angle of the averaged rotation against the truth"},
+      {"x_m", "averaged translation"},
+      {"y_m", "averaged translation"},
+      {"z_m", "averaged translation"},
+  };
+  return metrics;
+}
+
+const ParameterSet<SceneAverageSettings>& SceneAverageParameters() {
+  static const ParameterSet<SceneAverageSettings> set = [] {
+    ParameterSet<SceneAverageSettings> options;
+    AddSceneSettings(options)
+        .Count("scans", &SceneAverageSettings::scans, 1, 10'000,
+               "averaged; a row after 1, 2, 3, 5, 7, 10 ...")
+        .Real("interval_s", &SceneAverageSettings::interval_s, "s", 0.0, 1e6,
+              "from one scan to the next");
+    return options;
+  }();
+  return set;
+}
+
+// 1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100 and so on.
+bool IsReported(int scans) {
+  int digits = scans;
+  while (digits >= 100 && digits % 10 == 0) digits /= 10;
+  for (const int step : {1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70}) {
+    if (digits == step) return true;
+  }
+  return false;
+}
+
+class AverageTrials final : public Trials {
+ public:
+  AverageTrials(SceneSight sight, const SceneAverageSettings& settings)
+      : sight_(std::move(sight)), scans_(settings.scans), interval_s_(settings.interval_s) {}
+
+  const std::vector<std::string>& subjects() const override {
+    static const std::vector<std::string> names = {"true mean", "original's running average",
+                                                   "kabsch of all pairs", "one scan / sqrt(N)"};
+    return names;
+  }
+
+  // The boards hang where they hang and the unit is the same one: what a trial averages is noise.
+  void Run(const TrialId& id, TrialRows& rows) const override {
+    const Scene scene = sight_.HangBoards(id.seed);
+    std::vector<Rigid3d> answers;
+    std::vector<Eigen::Vector3d> in_cam;
+    std::vector<Eigen::Vector3d> in_lidar;
+    for (int scan = 0; scan < scans_; ++scan) {
+      const Expected<CalibrationProblem> seen =
+          sight_.Look(scene, id.seed, scan, interval_s_ * scan);
+      if (!seen) continue;
+      const PointSets points = PointsOf(seen->pairs_3d3d);
+      const Expected<KabschFit> fit = FitKabsch(points.in_cam, points.in_lidar);
+      if (!fit) continue;
+      answers.push_back(fit->b_from_a);
+      in_cam.insert(in_cam.end(), points.in_cam.begin(), points.in_cam.end());
+      in_lidar.insert(in_lidar.end(), points.in_lidar.begin(), points.in_lidar.end());
+      const int count = static_cast<int>(answers.size());
+      if (!IsReported(count)) continue;
+      int subject = 0;
+      for (const RotationAverage kind :
+           {RotationAverage::kChordal, RotationAverage::kOriginalRunning}) {
+        Measure(AveragePoses(answers, kind), rows.Add(subject++, count));
+      }
+      Measure(FitKabsch(in_cam, in_lidar).map([](const KabschFit& all) { return all.b_from_a; }),
+              rows.Add(subject++, count));
+      MeasureIdeal(answers[0], count, rows.Add(subject, count));
+    }
+  }
+
+ private:
+  // What is left of the first scan's error where all of it is noise.
+  void MeasureIdeal(const Rigid3d& first, int scans, MetricValues values) const {
+    const PoseDistance error = DistanceBetween(first, sight_.cam_from_lidar());
+    values.Set(kAverageTranslationMm, 1e3 * error.translation_m / std::sqrt(scans));
+    values.Set(kAverageRotationDeg, kDegPerRad * error.rotation_rad / std::sqrt(scans));
+  }
+
+  void Measure(const Expected<Rigid3d>& pose, MetricValues values) const {
+    if (!pose) return;
+    const PoseDistance error = DistanceBetween(*pose, sight_.cam_from_lidar());
+    values.Set(kAverageTranslationMm, 1e3 * error.translation_m);
+    values.Set(kAverageRotationDeg, kDegPerRad * error.rotation_rad);
+    values.Set(kAverageXM, pose->translation.x());
+    values.Set(kAverageYM, pose->translation.y());
+    values.Set(kAverageZM, pose->translation.z());
+  }
+
+  SceneSight sight_;
+  int scans_;
+  double interval_s_;
+};
+
+Expected<TrialsPtr> MakeSceneAverageTrials(const KindArguments& arguments) {
+  const Expected<SceneAverageSettings> settings =
+      SceneAverageParameters().Parse(arguments.parameters);
+  if (!settings) return tl::unexpected<Error>(settings.error());
+  Expected<SceneSight> sight = SceneSight::Make(*settings, arguments.folder);
+  if (!sight) return tl::unexpected<Error>(sight.error());
+  return std::make_shared<AverageTrials>(std::move(*sight), *settings);
+}
+
+}  // namespace
+
+TrialKind SceneAverageKind() {
+  return {.name = "scene_average",
+          .summary = "answers of many scans of one session, averaged in four ways",
+          .takes_solvers = false,
+          .parameters = SceneAverageParameters().Describe(),
+          .metrics = SceneAverageMetrics(),
+          .trials_per_block = 1,
+          .make = MakeSceneAverageTrials};
+}
+
+}  // namespace sextant

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/experiment/kinds/scene_sight.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/units.h"
+#include "features/lidar/corner_extractor.h"
+#include "geometry/scan_marks.h"
+#include "io/text/number_text.h"
+#include "simulator/scene/camera_model.h"
+#include "simulator/scene/scene_file.h"
+#include "simulator/scene/scene_truth.h"
+#include "simulator/session/validate_scene.h"
+
+namespace sextant {
+namespace {
+
+void Enlarge(double scale, Board& board) {
+  board.top_right_m *= scale;
+  board.right_bottom_m *= scale;
+  for (BoardTag& tag : board.tags) {
+    tag.edge_m *= scale;
+    tag.center_in_board_m *= scale;
+  }
+  if (board.hole) {
+    board.hole->width_m *= scale;
+    board.hole->height_m *= scale;
+    board.hole->center_in_board_m *= scale;
+  }
+  if (board.checker) {
+    board.checker->square_m *= scale;
+    board.checker->center_in_board_m *= scale;
+  }
+}
+
+// cam_from_lidar of the scene, with what the settings say instead.
+Expected<Rigid3d> ExtrinsicOf(const SceneSettings& settings, const Rigid3d& of_scene) {
+  Rigid3d cam_from_lidar = of_scene;
+  if (!settings.translation_m.empty()) {
+    const auto xyz = ParseNumbers("translation_m", settings.translation_m, 3);
+    if (!xyz) return tl::unexpected<Error>(xyz.error());
+    cam_from_lidar.translation = {(*xyz)[0], (*xyz)[1], (*xyz)[2]};
+  }
+  if (!settings.rotation_deg.empty()) {
+    const auto angles = ParseNumbers("rotation_deg", settings.rotation_deg, 3);
+    if (!angles) return tl::unexpected<Error>(angles.error());
+    const Eigen::Quaterniond turn = FromEulerZyx({.yaw = kRadPerDeg * (*angles)[0],
+                                                  .pitch = kRadPerDeg * (*angles)[1],
+                                                  .roll = kRadPerDeg * (*angles)[2]});
+    cam_from_lidar.rotation = (turn * AxesCamFromLidar().rotation).normalized();
+  }
+  return cam_from_lidar;
+}
+
+Expected<Camera> ToldCameraOf(const SceneSettings& settings, const Camera& true_camera) {
+  Camera told = true_camera;
+  if (!settings.told_intrinsics.empty()) {
+    const auto numbers = ParseNumbers("told_intrinsics", settings.told_intrinsics, 4);
+    if (!numbers) return tl::unexpected<Error>(numbers.error());
+    told.fx_px = (*numbers)[0];
+    told.fy_px = (*numbers)[1];
+    told.cx_px = (*numbers)[2];
+    told.cy_px = (*numbers)[3];
+  }
+  told.fx_px *= 1.0 + settings.told_focal_error;
+  told.fy_px *= 1.0 + settings.told_focal_error;
+  if (!settings.told_distortion) {
+    told.model = CameraModel::kPinhole;
+    told.distortion.fill(0.0);
+  }
+  if (const Expected<void> ok = ValidateCamera(told); !ok) {
+    return tl::unexpected<Error>(ok.error());
+  }
+  return told;
+}
+
+Eigen::Vector3d MeanOf(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) mean += point;
+  return mean / static_cast<double>(points.size());
+}
+
+}  // namespace
+
+Expected<std::vector<double>> ParseNumbers(const std::string& name, const std::string& text,
+                                           std::size_t count) {
+  std::istringstream words(text);
+  std::vector<double> numbers;
+  for (std::string word; words >> word;) {
+    const Expected<double> number = ParseFinite(word, {.file = name});
+    if (!number) return tl::unexpected<Error>(number.error());
+    numbers.push_back(*number);
+  }
+  if (numbers.size() == count) return numbers;
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("option {}={}: expected {} numbers", name, text, count));
+}
+
+Eigen::Vector3d RandomDirection(Random& random) {
+  Eigen::Vector3d direction;
+  for (int i = 0; i < 3; ++i) direction[i] = random.Normal();
+  return direction.normalized();
+}
+
+Expected<SceneSight> SceneSight::Make(const SceneSettings& settings,
+                                      const std::filesystem::path& folder, int camera) {
+  SceneSight sight;
+  sight.settings_ = settings;
+  sight.camera_index_ = camera;
+  const Expected<Scene> scene = ReadScene(folder / settings.scene);
+  if (!scene) return tl::unexpected<Error>(scene.error());
+  sight.scene_ = *scene;
+  for (SceneBoard& board : sight.scene_.boards) Enlarge(settings.board_scale, board.board);
+  if (!settings.lidar_model.empty()) sight.scene_.lidar.model = settings.lidar_model;
+  if (static_cast<int>(sight.scene_.cameras.size()) <= camera) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("{}: expected {} or more cameras", settings.scene, camera + 1));
+  }
+  SceneCamera& scene_camera = sight.scene_.cameras[static_cast<std::size_t>(camera)];
+  if (!settings.camera_model.empty()) scene_camera.model = settings.camera_model;
+  const Expected<Rigid3d> extrinsic =
+      ExtrinsicOf(settings, CamFromLidar(sight.scene_, scene_camera));
+  if (!extrinsic) return tl::unexpected<Error>(extrinsic.error());
+  sight.cam_from_lidar_ = *extrinsic;
+  scene_camera.world_from_cam =
+      sight.scene_.lidar.world_from_lidar * sight.cam_from_lidar_.Inverse();
+  if (const Expected<void> ok = ValidateScene(sight.scene_); !ok) {
+    return MakeError(ok.error().code, settings.scene + ": " + ok.error().message);
+  }
+  sight.camera_ = *RenderingCamera(scene_camera);
+  sight.whole_scene_ = sight.scene_;
+  std::erase_if(sight.scene_.boards,
+                [&sight](const SceneBoard& board) { return !sight.CanFind(board); });
+  if (sight.scene_.boards.empty()) {
+    return MakeError(ErrorCode::kMissingData,
+                     fmt::format("{}: camera {} can find no board", settings.scene, camera));
+  }
+  const Expected<Camera> told = ToldCameraOf(settings, *ToldCamera(scene_camera));
+  if (!told) return tl::unexpected<Error>(told.error());
+  sight.told_ = *told;
+  sight.lidar_ = *FindLidarModel(sight.scene_.lidar.model);
+  if (const auto known = ExtractCorners(settings.extractor, {}, {});
+      !known && known.error().code == ErrorCode::kUnknownName) {
+    return tl::unexpected<Error>(known.error());
+  }
+  if (settings.camera == CameraSight::kRendered) {
+    Expected<BoardFinder> finder = BoardFinder::Make(sight.Boards(), sight.told_);
+    if (!finder) return tl::unexpected<Error>(finder.error());
+    sight.finder_ = std::make_shared<const BoardFinder>(std::move(*finder));
+  }
+  return sight;
+}
+
+std::vector<Board> SceneSight::Boards() const {
+  std::vector<Board> boards;
+  for (const SceneBoard& board : scene_.boards) boards.push_back(board.board);
+  return boards;
+}
+
+Scene SceneSight::HangBoards(std::uint64_t seed) const {
+  Scene scene = scene_;
+  Random random(DeriveSeed(seed, "hang", 0, 0));
+  for (SceneBoard& board : scene.boards) {
+    Vector6d delta;
+    for (int i = 0; i < 6; ++i) {
+      const double most = i < 3 ? kRadPerDeg * settings_.hang_deg : settings_.hang_m;
+      delta[i] = random.Uniform(-most, most);
+    }
+    board.world_from_board = Perturb(board.world_from_board, delta);
+  }
+  return scene;
+}
+
+Rigid3d SceneSight::DrawStart(std::uint64_t seed, const PointSets& sets) const {
+  Random random(DeriveSeed(seed, "start", 0, 0));
+  Rigid3d start = settings_.start == StartPose::kAxes ? AxesCamFromLidar() : cam_from_lidar_;
+  const Eigen::Vector3d axis = RandomDirection(random);
+  const Eigen::Vector3d shift = settings_.start_m * RandomDirection(random);
+  start.rotation = (ExpSo3(kRadPerDeg * settings_.start_deg * axis) * start.rotation).normalized();
+  if (settings_.start_centroids && !sets.in_cam.empty()) {
+    start.translation = MeanOf(sets.in_cam) - start.rotation * MeanOf(sets.in_lidar);
+  }
+  start.translation += shift;
+  return start;
+}
+
+Expected<CalibrationProblem> SceneSight::Look(const Scene& scene, std::uint64_t unit_seed, int view,
+                                              double time_s) const {
+  CalibrationProblem problem;
+  problem.camera = told_;
+  problem.boards = Boards();
+  const auto in_lidar = LookWithLidar(scene, unit_seed, view, time_s);
+  if (!in_lidar) return tl::unexpected<Error>(in_lidar.error());
+  if (settings_.camera == CameraSight::kMarked) {
+    MarkCorners(scene, *in_lidar, unit_seed, view, time_s, problem);
+  } else {
+    const auto in_cam = LookWithCamera(scene, unit_seed, view, time_s);
+    if (!in_cam) return tl::unexpected<Error>(in_cam.error());
+    PairCorners(*in_cam, *in_lidar, view, problem);
+  }
+  if (!problem.pairs_2d3d.empty() || !problem.pairs_3d3d.empty()) return problem;
+  return MakeError(ErrorCode::kTooFewPairs,
+                   settings_.scene + ": no board was found by both sensors");
+}
+
+void SceneSight::PairCorners(const std::vector<SeenCorners>& in_cam,
+                             const std::vector<SeenCorners>& in_lidar, int view,
+                             CalibrationProblem& problem) const {
+  const Eigen::Matrix3d rotation = cam_from_lidar_.rotation.toRotationMatrix();
+  for (std::size_t b = 0; b < in_cam.size(); ++b) {
+    const std::size_t corners = std::min(in_cam[b].points.size(), in_lidar[b].points.size());
+    for (std::size_t i = 0; i < corners; ++i) {
+      Pair3d3d pair{.point_in_cam = in_cam[b].points[i],
+                    .point_in_lidar = in_lidar[b].points[i],
+                    .covariance_in_cam = {},
+                    .id = {view, scene_.boards[b].board.id, static_cast<int>(i)}};
+      if (settings_.state_noise) {
+        const auto at = 3 * static_cast<Eigen::Index>(i);
+        pair.covariance_in_cam =
+            in_cam[b].covariance.block<3, 3>(at, at) +
+            rotation * in_lidar[b].covariance.block<3, 3>(at, at) * rotation.transpose();
+      }
+      problem.pairs_3d3d.push_back(std::move(pair));
+    }
+  }
+}
+
+}  // namespace sextant

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+#include "eval/experiment/report/report.h"
+#include "eval/experiment/run/run_trials.h"
+#include "io/text/text_file.h"
+
+namespace sextant {
+namespace {
+
+std::string CsvField(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string Header(const Experiment& experiment) {
+  std::string line = "experiment,condition";
+  for (const std::string& axis : experiment.axes) line += "," + axis;
+  line += ",subject,trial,index";
+  for (std::size_t m = 0; m < experiment.metrics.size(); ++m) {
+    if (experiment.wanted[m]) line += "," + experiment.metrics[m].name;
+  }
+  return line + "\n";
+}
+
+// What all rows of a subject begin with.
+std::vector<std::string> Beginnings(const Experiment& experiment, const Condition& condition) {
+  std::string common = experiment.name + "," + CsvField(condition.name);
+  for (const std::string& place : condition.place) common += "," + CsvField(place);
+  std::vector<std::string> beginnings;
+  for (const std::string& subject : condition.trials->subjects()) {
+    beginnings.push_back(common + "," + CsvField(subject));
+  }
+  return beginnings;
+}
+
+void AppendNumber(double value, std::string& text) {
+  text += ',';
+  if (!std::isnan(value)) fmt::format_to(std::back_inserter(text), "{}", value);
+}
+
+Expected<std::string> RowsText(const RowFileReader& reader, const RowBlockPlace& block,
+                               std::uint64_t first_trial,
+                               const std::vector<std::string>& beginnings) {
+  const Expected<std::vector<std::uint64_t>> keys = reader.ReadKeys(block);
+  if (!keys) return tl::unexpected<Error>(keys.error());
+  std::vector<std::vector<double>> columns;
+  for (std::size_t column = 0; column < reader.columns(); ++column) {
+    Expected<std::vector<double>> values = reader.ReadColumn(block, column);
+    if (!values) return tl::unexpected<Error>(values.error());
+    columns.push_back(std::move(*values));
+  }
+  std::string text;
+  for (std::size_t row = 0; row < keys->size(); ++row) {
+    const std::uint64_t key = (*keys)[row];
+    text += beginnings[static_cast<std::size_t>(SubjectOfKey(key))];
+    fmt::format_to(std::back_inserter(text), ",{},{}", first_trial + TrialOfKey(key),
+                   IndexOfKey(key));
+    for (const std::vector<double>& column : columns) AppendNumber(column[row], text);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+Expected<void> WriteRowsCsv(const Experiment& experiment, const RowFileReader& reader,
+                            const std::filesystem::path& path) {
+  Expected<AtomicFileWriter> writer = AtomicFileWriter::Open(path);
+  if (!writer) return tl::unexpected<Error>(std::move(writer.error()));
+  if (Expected<void> ok = writer->Append(Header(experiment)); !ok) return ok;
+  const std::uint64_t per_condition = BlocksPerCondition(experiment);
+  const auto block_trials = static_cast<std::uint64_t>(experiment.trials_per_block);
+  for (const RowBlockPlace& block : reader.blocks()) {
+    const Condition& condition = experiment.conditions[block.number / per_condition];
+    const Expected<std::string> text =
+        RowsText(reader, block, block.number % per_condition * block_trials,
+                 Beginnings(experiment, condition));
+    if (!text) return tl::unexpected<Error>(text.error());
+    if (Expected<void> ok = writer->Append(*text); !ok) return ok;
+  }
+  return writer->Commit();
+}
+
+}  // namespace sextant

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "eval/experiment/report/report.h"
+
+namespace sextant {
+namespace {
+
+struct Point {
+  double x = 0.0;
+  Figure figure;
+};
+
+// A line of the plot with its points, in the order in which they come.
+using Lines = std::vector<std::pair<std::string, std::vector<Point>>>;
+
+std::vector<Point>& LineOf(const std::string& name, Lines& lines) {
+  const auto found =
+      std::find_if(lines.begin(), lines.end(), [&name](const auto& l) { return l.first == name; });
+  if (found != lines.end()) return found->second;
+  return lines.emplace_back(name, std::vector<Point>()).second;
+}
+
+std::optional<double> NumberOf(const std::string& text) {
+  double value = 0.0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+// Places on the axis that are no numbers are counted.
+double PlaceOn(const Experiment& experiment, const Condition& condition, const std::string& axis,
+               std::map<std::string, double>& named) {
+  const auto at = static_cast<std::size_t>(
+      std::find(experiment.axes.begin(), experiment.axes.end(), axis) - experiment.axes.begin());
+  if (const std::optional<double> number = NumberOf(condition.place[at])) return *number;
+  return named.emplace(condition.place[at], static_cast<double>(named.size())).first->second;
+}
+
+Lines CollectLines(const Experiment& experiment, const PlotSpec& plot, const ReportData& data,
+                   std::map<std::string, double>& named) {
+  const bool by_index = plot.x == "index";
+  Lines lines;
+  for (std::size_t c = 0; c < experiment.conditions.size(); ++c) {
+    const Condition& condition = experiment.conditions[c];
+    const std::string place = PlaceWithout(experiment, condition, plot.x);
+    const std::vector<Figure>& figures = data.figures(c, plot.y);
+    for (std::size_t cell = 0; cell < figures.size(); ++cell) {
+      CellKey key = data.cells(c)[cell];
+      const double x = by_index ? key.index : PlaceOn(experiment, condition, plot.x, named);
+      if (by_index) key.index = 0;
+      const double value = figures[cell].value;
+      if (!std::isfinite(value) || (plot.log_y && value <= 0.0) || (plot.log_x && x <= 0.0)) {
+        continue;
+      }
+      const std::string subject = SubjectText(condition, key);
+      const std::string both = subject + (subject.empty() || place.empty() ? "" : ", ") + place;
+      LineOf(both, lines).push_back({x, figures[cell]});
+    }
+  }
+  return lines;
+}
+
+// In gnuplot's single quotes a quote is doubled and nothing else is special.
+std::string Quote(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string DataOf(const Lines& lines, bool log_y) {
+  std::string data;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    data += fmt::format("$line{} << EOD\n", i);
+    for (const Point& point : lines[i].second) {
+      const double value = point.figure.value;
+      Interval interval = point.figure.interval.value_or(Interval{value, value});
+      if (log_y && interval.low <= 0.0) interval.low = value;
+      data += fmt::format("{} {} {} {}\n", point.x, value, interval.low, interval.high);
+    }
+    data += "EOD\n";
+  }
+  return data;
+}
+
+// From zero, where that does not press all values into a corner of the picture.
+bool BeginsAtZero(const Lines& lines) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  for (const auto& [name, points] : lines) {
+    for (const Point& point : points) {
+      least = std::min(least, point.figure.value);
+      most = std::max(most, point.figure.value);
+    }
+  }
+  return least >= 0.0 && least <= 0.5 * most;
+}
+
+}  // namespace
+
+std::string PlotCommands(const Experiment& experiment, const PlotSpec& plot,
+                         const ReportData& data) {
+  std::map<std::string, double> named;
+  const Lines lines = CollectLines(experiment, plot, data, named);
+  if (lines.empty()) return {};
+  std::vector<std::string> series;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    series.push_back(
+        fmt::format("$line{} using 1:2:3:4 with yerrorlines pt 7 ps 0.5 lw 1.5 lc {} title {}", i,
+                    i + 1, Quote(lines[i].first)));
+  }
+  std::string ticks;
+  for (const auto& [name, x] : named)
+    ticks += fmt::format("{}{} {}", ticks.empty() ? "" : ", ", Quote(name), x);
+  std::string y_axis = BeginsAtZero(lines) ? "set yrange [0:*]\n" : "";
+  if (plot.log_y) y_axis = "set logscale y\n";
+  return fmt::format(
+      "{}set key outside right noenhanced\nset grid\nset title {} noenhanced\nset xlabel {} "
+      "noenhanced\nset ylabel {} noenhanced\n{}{}{}set offsets graph 0.03, graph 0.03, 0, 0\nplot "
+      "{}\n",
+      DataOf(lines, plot.log_y), Quote(plot.title), Quote(plot.x_label), Quote(plot.y_label),
+      plot.log_x ? "set logscale x\n" : "", y_axis,
+      ticks.empty() ? "" : "set xtics (" + ticks + ")\n", fmt::join(series, ", \\\n  "));
+}
+
+}  // namespace sextant

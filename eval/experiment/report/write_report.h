@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "eval/experiment/definition/experiment.h"
+
+namespace sextant {
+
+struct ReportSettings {
+  bool csv = true;
+  bool plots = true;
+};
+
+/// Reads the finished rows of the experiment and writes into the folder: rows.csv, summary.json,
+/// report.md, tables.tex, and NAME.svg and NAME.png of every plot. Returns the tables for a
+/// terminal. The bytes of all but the PNG depend on the rows alone. Errors: kIo, kParse,
+/// kInvalidInput (rows of another configuration).
+Expected<std::string> WriteReport(const Experiment& experiment,
+                                  const std::filesystem::path& rows_path,
+                                  const std::filesystem::path& folder,
+                                  const ReportSettings& settings);
+
+}  // namespace sextant

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/experiment/reproduction/reproduce.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <map>
+#include <memory>
+
+#include "eval/experiment/report/write_report.h"
+#include "eval/experiment/run/run_trials.h"
+#include "io/text/text_file.h"
+
+namespace sextant {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One experiment with its rows, which claims are then judged by.
+struct Done {
+  Experiment experiment;
+  RowFileReader reader;
+};
+
+Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const std::string& name,
+                                       const SolverRegistry& registry) {
+  Expected<Experiment> experiment =
+      ReadExperiment(settings.experiments / (name + ".yaml"), BuiltinKinds(), registry);
+  if (!experiment) return tl::unexpected<Error>(experiment.error());
+  if (settings.quick) experiment->trials = experiment->quick_trials;
+  const fs::path folder = settings.out / name;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    return MakeError(ErrorCode::kIo, fmt::format("cannot make the folder '{}': {}; name another "
+                                                 "with --out",
+                                                 folder.string(), error.message()));
+  }
+  const fs::path rows = folder / "rows.sxtrows";
+  const Expected<RunOutcome> outcome =
+      RunTrials(*experiment, {.rows_path = rows,
+                              .threads = settings.threads,
+                              .after_block = [&](std::uint64_t done, std::uint64_t all) {
+                                settings.progress(name, done, all);
+                              }});
+  if (!outcome) return tl::unexpected<Error>(outcome.error());
+  const Expected<std::string> tables =
+      WriteReport(*experiment, rows, folder, {.csv = false, .plots = true});
+  if (!tables) return tl::unexpected<Error>(tables.error());
+  Expected<RowFileReader> reader = RowFileReader::Open(rows);
+  if (!reader) return tl::unexpected<Error>(reader.error());
+  return std::make_unique<Done>(Done{std::move(*experiment), std::move(*reader)});
+}
+
+}  // namespace
+
+Expected<Reproduction> Reproduce(const ReproduceSettings& settings,
+                                 const SolverRegistry& registry) {
+  const auto start = std::chrono::steady_clock::now();
+  const Expected<ClaimsFile> file = ReadClaims(settings.claims);
+  if (!file) return tl::unexpected<Error>(file.error());
+  Reproduction reproduction;
+  std::map<std::string, std::unique_ptr<Done>> done;
+  std::map<std::string, RowsOf> rows;
+  for (const std::string& name : file->experiments) {
+    Expected<std::unique_ptr<Done>> one = RunOne(settings, name, registry);
+    if (!one && one.error().code == ErrorCode::kMissingData) {
+      reproduction.skipped.push_back(name + ": " + one.error().message);
+      continue;
+    }
+    if (!one) return tl::unexpected<Error>(one.error());
+    rows[name] = {&(*one)->experiment, &(*one)->reader};
+    done[name] = std::move(*one);
+  }
+  for (const Claim& claim : file->claims) {
+    Expected<JudgedClaim> judged = JudgeClaim(claim, rows);
+    if (!judged) return tl::unexpected<Error>(judged.error());
+    reproduction.claims.push_back(std::move(*judged));
+  }
+  const std::string command = fmt::format("sextant reproduce{}", settings.quick ? " --quick" : "");
+  const Expected<void> written = WriteFileAtomically(
+      settings.out / "REPRODUCTION.md",
+      FormatReproduction(*file, reproduction.claims, reproduction.skipped, command));
+  if (!written) return tl::unexpected<Error>(written.error());
+  reproduction.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return reproduction;
+}
+
+}  // namespace sextant

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "eval/experiment/reproduction/reproduce.h"
+
+namespace sextant {
+namespace {
+
+// A bar would end the cell.
+std::string Cell(const std::string& text) {
+  std::string cell;
+  for (const char c : text) cell += c == '|' ? std::string("\\|") : std::string(1, c);
+  return cell;
+}
+
+std::string LinkTo(const Claim& claim) {
+  if (!claim.ours) return "-";
+  std::string text = fmt::format("[{0}]({0}/report.md)", claim.ours->experiment);
+  if (!claim.ours->condition.empty()) text += ": " + claim.ours->condition;
+  text += ", " + claim.ours->subject;
+  if (claim.ours->index > 0) text += fmt::format(" #{}", claim.ours->index);
+  return text;
+}
+
+std::string Tally(const std::vector<JudgedClaim>& claims) {
+  std::string text;
+  for (const Verdict verdict : {Verdict::kReproduced, Verdict::kDirection, Verdict::kRefuted,
+                                Verdict::kUndecided, Verdict::kNotTestable}) {
+    const auto count = std::ranges::count(claims, verdict, &JudgedClaim::verdict);
+    if (count == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, ToString(verdict));
+  }
+  return text;
+}
+
+std::string Rows(const std::vector<JudgedClaim>& claims) {
+  std::string text =
+      "| where | claim | printed | ours [95 %] | verdict | by | remark |\n"
+      "|:--|:--|:--|:--|:--|:--|:--|\n";
+  for (const JudgedClaim& judged : claims) {
+    text += fmt::format("| {} | {} | {} | {} | **{}** | {} | {} |\n", Cell(judged.claim.where),
+                        Cell(judged.claim.text), Cell(judged.claim.printed),
+                        judged.ours.empty() ? "-" : Cell(judged.ours), ToString(judged.verdict),
+                        Cell(LinkTo(judged.claim)), Cell(judged.remark));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string FormatReproduction(const ClaimsFile& file, const std::vector<JudgedClaim>& claims,
+                               const std::vector<std::string>& skipped,
+                               const std::string& command) {
+  std::string text = fmt::format(
+      "# What of the paper can be reproduced\n\n{}\n\nWritten by `{}`; do not edit. The paper's "
+      "raw "
+      "data was never published, so its experiments are done again with known truth: the same "
+      "boards, sensors, poses and steps, simulated. Noise comes from data sheets and real "
+      "recordings, is stated in each file of `experiments/`, and was not tuned. Printed values, "
+      "claims and rules stand in `paper/claims.yaml`.\n\n{} claims: {}.\n\n",
+      file.paper, command, claims.size(), Tally(claims));
+  text +=
+      "A verdict follows from a rule alone. One printed measurement is *reproduced* where it lies "
+      "in "
+      "the middle 95 % of our trials (given in brackets behind the median). A printed average is, "
+      "where our 95 % interval comes within a factor of 2 of it (3.16 for an order of magnitude). "
+      "A "
+      "bound is where our whole interval keeps it, and *refuted* where none of it does. A "
+      "comparison "
+      "without a number is *direction reproduced* where both intervals are apart in the order that "
+      "the paper claims, and refuted where they are apart in the other. What is neither is "
+      "*undecided*. `sextant run experiments/NAME.yaml` does one experiment alone.\n\n";
+  text += Rows(claims);
+  if (!skipped.empty()) {
+    text += "\n## Not run\n\n";
+    for (const std::string& why : skipped) text += fmt::format("- {}\n", why);
+  }
+  text += "\n## Errata of the paper\n\n| where | printed | is |\n|:--|:--|:--|\n";
+  for (const Erratum& erratum : file.errata) {
+    text += fmt::format("| {} | {} | {} |\n", Cell(erratum.where), Cell(erratum.printed),
+                        Cell(erratum.is));
+  }
+  text += "\n## Experiments\n\n";
+  for (const std::string& name : file.experiments) {
+    text += fmt::format("- [{0}]({0}/report.md)\n", name);
+  }
+  return text;
+}
+
+}  // namespace sextant

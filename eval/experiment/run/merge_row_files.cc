@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "eval/experiment/run/row_file.h"
+#include "eval/experiment/run/run_trials.h"
+
+namespace sextant {
+namespace {
+
+struct Piece {
+  std::size_t file = 0;
+  RowBlockPlace place;
+};
+
+// How many blocks the experiment of this configuration has.
+std::uint64_t ExpectedBlocks(const std::string& configuration) {
+  const auto json = nlohmann::json::parse(configuration, nullptr, /*allow_exceptions=*/false);
+  const auto number = [&json](const char* key) {
+    return json.is_object() && json.contains(key) && json[key].is_number_unsigned()
+               ? json[key].get<std::uint64_t>()
+               : 0;
+  };
+  const std::uint64_t size = std::max<std::uint64_t>(1, number("trials_per_block"));
+  const std::uint64_t conditions =
+      json.is_object() && json.contains("conditions") ? json["conditions"].size() : 0;
+  return conditions * ((number("trials") + size - 1) / size);
+}
+
+Expected<std::vector<RowFileReader>> OpenAll(const std::vector<std::filesystem::path>& shards) {
+  std::vector<RowFileReader> readers;
+  for (const std::filesystem::path& path : shards) {
+    Expected<RowFileReader> reader = RowFileReader::Open(path);
+    if (!reader) return tl::unexpected<Error>(reader.error());
+    if (!readers.empty() && reader->configuration() != readers[0].configuration()) {
+      return MakeError(ErrorCode::kInvalidInput,
+                       fmt::format("'{}' holds the rows of another experiment than '{}'",
+                                   path.string(), shards[0].string()));
+    }
+    readers.push_back(std::move(*reader));
+  }
+  return readers;
+}
+
+// By number, each block once. Errors: kInvalidInput where one is missing.
+Expected<std::vector<Piece>> SortPieces(const std::vector<RowFileReader>& readers) {
+  std::vector<Piece> pieces;
+  for (std::size_t i = 0; i < readers.size(); ++i) {
+    for (const RowBlockPlace& place : readers[i].blocks()) pieces.push_back({i, place});
+  }
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [](const Piece& a, const Piece& b) { return a.place.number < b.place.number; });
+  const auto same = [](const Piece& a, const Piece& b) { return a.place.number == b.place.number; };
+  pieces.erase(std::unique(pieces.begin(), pieces.end(), same), pieces.end());
+  const std::uint64_t expected = ExpectedBlocks(readers[0].configuration());
+  if (pieces.size() == expected) return pieces;
+  std::uint64_t missing = 0;
+  while (missing < pieces.size() && pieces[missing].place.number == missing) ++missing;
+  return MakeError(ErrorCode::kInvalidInput,
+                   fmt::format("{} of {} blocks are in none of the files, the first is number {}; "
+                               "run the shards to their end, and name all of them",
+                               expected - pieces.size(), expected, missing));
+}
+
+}  // namespace
+
+Expected<void> MergeRowFiles(const std::vector<std::filesystem::path>& shards,
+                             const std::filesystem::path& merged) {
+  if (shards.empty()) return MakeError(ErrorCode::kMissingData, "no row files to merge");
+  for (const std::filesystem::path& shard : shards) {
+    std::error_code ignored;
+    if (!std::filesystem::equivalent(shard, merged, ignored)) continue;
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("'{}' is itself one of the files to merge; name another folder",
+                                 merged.string()));
+  }
+  const Expected<std::vector<RowFileReader>> readers = OpenAll(shards);
+  if (!readers) return tl::unexpected<Error>(readers.error());
+  const Expected<std::vector<Piece>> pieces = SortPieces(*readers);
+  if (!pieces) return tl::unexpected<Error>(pieces.error());
+  Expected<RowFileWriter> writer =
+      RowFileWriter::Open(merged, readers->front().configuration(), /*fresh=*/true);
+  if (!writer) return tl::unexpected<Error>(writer.error());
+  for (const Piece& piece : *pieces) {
+    const Expected<std::string> bytes = (*readers)[piece.file].ReadBytes(piece.place);
+    if (!bytes) return tl::unexpected<Error>(bytes.error());
+    if (Expected<void> ok = writer->Append(*bytes); !ok) return ok;
+  }
+  return writer->Flush();
+}
+
+}  // namespace sextant

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "eval/experiment/run/row_checksum.h"
+#include "eval/experiment/run/row_file.h"
+#include "io/text/number_text.h"
+
+namespace sextant {
+namespace {
+
+constexpr std::uint64_t kMostHeader = std::uint64_t{64} << 20U;
+
+tl::unexpected<Error> Unreadable(const std::filesystem::path& path) {
+  return MakeError(
+      ErrorCode::kIo,
+      fmt::format("cannot read '{}': {}", Printable(path.string(), 300),
+                  errno == 0 ? "it ends too early" : std::generic_category().message(errno)));
+}
+
+tl::unexpected<Error> Damaged(const std::filesystem::path& path) {
+  return MakeError(
+      ErrorCode::kParse,
+      fmt::format("{}: expected the rows of an experiment, and its beginning is not theirs; "
+                  "was another file named?",
+                  Printable(path.string(), 300)));
+}
+
+std::size_t CountMetrics(const std::string& configuration) {
+  const auto json = nlohmann::json::parse(configuration, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || !json.contains("metrics") || !json["metrics"].is_array()) return 0;
+  return json["metrics"].size();
+}
+
+}  // namespace
+
+RowFileReader::~RowFileReader() {
+  if (fd_ >= 0) close(fd_);
+}
+
+RowFileReader::RowFileReader(RowFileReader&& other) noexcept
+    : path_(std::move(other.path_)),
+      fd_(std::exchange(other.fd_, -1)),
+      configuration_(std::move(other.configuration_)),
+      columns_(other.columns_),
+      blocks_(std::move(other.blocks_)),
+      whole_bytes_(other.whole_bytes_),
+      file_bytes_(other.file_bytes_) {}
+
+bool RowFileReader::ReadAt(std::uint64_t offset, void* bytes, std::size_t size) const {
+  char* to = static_cast<char*>(bytes);
+  while (size > 0) {
+    errno = 0;
+    const ssize_t got = pread(fd_, to, size, static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    to += got;
+    offset += static_cast<std::uint64_t>(got);
+    size -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+Expected<RowFileReader> RowFileReader::Open(const std::filesystem::path& path) {
+  RowFileReader reader;
+  reader.path_ = path;
+  reader.fd_ = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  struct stat status {};
+  if (reader.fd_ < 0 || fstat(reader.fd_, &status) != 0) return Unreadable(path);
+  if (!S_ISREG(status.st_mode)) return Damaged(path);
+  reader.file_bytes_ = static_cast<std::uint64_t>(status.st_size);
+  if (Expected<void> ok = reader.ReadHeader(); !ok) {
+    return tl::unexpected<Error>(std::move(ok.error()));
+  }
+  reader.FindBlocks();
+  return reader;
+}
+
+Expected<void> RowFileReader::ReadHeader() {
+  std::string head(16, '\0');
+  if (file_bytes_ < head.size() || !ReadAt(0, head.data(), head.size())) return Damaged(path_);
+  std::uint64_t size = 0;
+  std::memcpy(&size, head.data() + 8, 8);
+  if (!head.starts_with(kRowFileMark) || size > kMostHeader || size % 8 != 0 ||
+      file_bytes_ < head.size() + size + 8) {
+    return Damaged(path_);
+  }
+  configuration_.resize(size);
+  if (!ReadAt(16, configuration_.data(), size)) return Unreadable(path_);
+  std::uint64_t checksum = 0;
+  if (!ReadAt(16 + size, &checksum, 8)) return Unreadable(path_);
+  if (checksum != RowChecksum(head + configuration_)) return Damaged(path_);
+  configuration_.erase(configuration_.find_last_not_of(' ') + 1);
+  columns_ = CountMetrics(configuration_);
+  if (columns_ == 0 || columns_ > kMostMetrics) return Damaged(path_);
+  whole_bytes_ = 16 + size + 8;
+  return {};
+}
+
+void RowFileReader::FindBlocks() {
+  std::string bytes;
+  while (whole_bytes_ + kRowBlockHead + 8 <= file_bytes_) {
+    std::uint64_t head[3];
+    if (!ReadAt(whole_bytes_, head, sizeof head)) return;
+    const std::string_view mark(reinterpret_cast<const char*>(head), 8);
+    const std::uint64_t left = file_bytes_ - whole_bytes_;
+    if (mark != kRowBlockMark || head[2] > left / 8 || BytesOfBlock(head[2], columns_) > left) {
+      return;
+    }
+    bytes.resize(BytesOfBlock(head[2], columns_));
+    if (!ReadAt(whole_bytes_, bytes.data(), bytes.size())) return;
+    std::uint64_t checksum = 0;
+    std::memcpy(&checksum, bytes.data() + bytes.size() - 8, 8);
+    if (checksum != RowChecksum(std::string_view{bytes}.substr(0, bytes.size() - 8))) return;
+    blocks_.push_back({.number = head[1], .rows = head[2], .offset = whole_bytes_});
+    whole_bytes_ += bytes.size();
+  }
+}
+
+Expected<std::vector<std::uint64_t>> RowFileReader::ReadKeys(const RowBlockPlace& block) const {
+  std::vector<std::uint64_t> keys(block.rows);
+  if (!ReadAt(block.offset + kRowBlockHead, keys.data(), 8 * keys.size())) return Unreadable(path_);
+  return keys;
+}
+
+Expected<std::vector<double>> RowFileReader::ReadColumn(const RowBlockPlace& block,
+                                                        std::size_t column) const {
+  std::vector<double> values(block.rows);
+  const std::uint64_t offset = block.offset + kRowBlockHead + 8 * block.rows * (1 + column);
+  if (!ReadAt(offset, values.data(), 8 * values.size())) return Unreadable(path_);
+  return values;
+}
+
+Expected<std::string> RowFileReader::ReadBytes(const RowBlockPlace& block) const {
+  std::string bytes(BytesOfBlock(block.rows, columns_), '\0');
+  if (!ReadAt(block.offset, bytes.data(), bytes.size())) return Unreadable(path_);
+  return bytes;
+}
+
+}  // namespace sextant

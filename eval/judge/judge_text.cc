@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "base/units.h"
+#include "eval/judge/judge.h"
+
+namespace sextant {
+namespace {
+
+constexpr std::array<const char*, kCornersPerBoard> kCornerNames = {"top", "right", "bottom",
+                                                                    "left"};
+
+std::string CornerName(int corner) {
+  if (corner < 0 || corner >= kCornersPerBoard) return std::to_string(corner);
+  return kCornerNames[static_cast<std::size_t>(corner)];
+}
+
+std::string Describe(const OrderFinding& order) {
+  const std::string given = std::isfinite(order.rmse_as_given_m)
+                                ? fmt::format("RMSE {:.4f} m", order.rmse_as_given_m)
+                                : "no rotation fits";
+  return fmt::format(
+      "order: another order of the LiDAR's corners{} fits far better: {} as given, RMSE {:.4f} m "
+      "with {} of {} pairs changed; --reorder takes it",
+      order.boards_swapped ? " and boards" : "", given, order.rmse_reordered_m, order.moved.size(),
+      order.lidar_index.size());
+}
+
+std::string Describe(const EdgeFinding& edge) {
+  const std::string known =
+      edge.known_m ? fmt::format(", the board's own {:.3f} m", *edge.known_m) : std::string();
+  return fmt::format(
+      "edges: board {} of view {}, {} to {}: camera {:.3f} m, LiDAR {:.3f} m{}; one of its corners "
+      "is off by about {:.0f} mm",
+      edge.board, edge.view, CornerName(edge.edge), CornerName((edge.edge + 1) % kCornersPerBoard),
+      edge.in_cam_m, edge.in_lidar_m, known,
+      1e3 * std::max(std::abs(edge.in_cam_m - edge.in_lidar_m),
+                     edge.known_m ? std::abs(edge.in_lidar_m - *edge.known_m) : 0.0));
+}
+
+std::string Describe(const WeakDirection& weak) {
+  const double scale = weak.is_rotation ? 1.0 / kRadPerDeg : 1e3;
+  return fmt::format(
+      "weak: the {} {} ({:.2f}, {:.2f}, {:.2f}) in the camera frame is known to {:.3g} {}, the "
+      "best "
+      "direction to {:.3g}; spread the boards more widely across it",
+      weak.is_rotation ? "rotation about" : "translation along", "axis", weak.axis_in_cam.x(),
+      weak.axis_in_cam.y(), weak.axis_in_cam.z(), weak.sigma * scale,
+      weak.is_rotation ? "deg" : "mm", weak.best_sigma * scale);
+}
+
+}  // namespace
+
+std::vector<std::string> Describe(const Judgement& judgement) {
+  std::vector<std::string> lines;
+  if (judgement.order) lines.push_back(Describe(*judgement.order));
+  if (judgement.mirrored_rmse_m) {
+    lines.push_back(fmt::format(
+        "mirrored: a reflection would fit with RMSE {:.4f} m, less than half of what any rotation "
+        "reaches; check the corners' order and the sign of the axes",
+        *judgement.mirrored_rmse_m));
+  }
+  for (const EdgeFinding& edge : judgement.edges) lines.push_back(Describe(edge));
+  if (judgement.weak_rotation) lines.push_back(Describe(*judgement.weak_rotation));
+  if (judgement.weak_translation) lines.push_back(Describe(*judgement.weak_translation));
+  return lines;
+}
+
+}  // namespace sextant

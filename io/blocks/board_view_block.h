@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geometry/board.h"
+#include "geometry/board_view.h"
+#include "io/text/yaml_fields.h"
+#include "io/text/yaml_text.h"
+
+namespace sextant {
+
+/// The list `board_views` of a problem file, checked by CheckBoardViews against the file's boards.
+/// Errors go to `in`, at the line of the field or the view.
+std::vector<BoardView> ReadBoardViews(YamlFields& in, const YamlNode& list,
+                                      std::span<const Board> boards);
+
+/// A view as an item of that list; reading it again gives the same bits.
+void WriteBoardView(YamlText& out, const BoardView& view);
+
+}  // namespace sextant

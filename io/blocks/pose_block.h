@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+#include "geometry/rigid3d.h"
+#include "io/text/yaml_fields.h"
+
+namespace sextant {
+
+/// A pose in the files of this project: the map with translation_m and quaternion_wxyz (unit length
+/// to 1e-5), or with matrix, four rows of four. Errors go to `in`; `what` names it in them.
+/// WriteYamlPose writes it.
+Rigid3d ReadPoseBlock(YamlFields& in, const YamlNode& node, std::string_view what);
+
+}  // namespace sextant

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/boards/board_file.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "geometry/board_check.h"
+#include "io/blocks/board_block.h"
+#include "io/text/line_reader.h"
+#include "io/text/text_file.h"
+
+namespace sextant {
+namespace {
+
+// Only marker_coordinates.txt begins with a number alone.
+bool IsMarkerCoordinates(std::string_view text, const std::string& file) {
+  LineReader in(file, text);
+  return in.Next() && in.field_count() == 1 && ParseFinite(in.Field(0), {}).has_value();
+}
+
+Expected<std::vector<Board>> ParseMarkerBoards(std::string_view text, const std::string& file) {
+  const auto markers = ParseMarkerCoordinates(text, file);
+  if (!markers) return tl::unexpected<Error>(markers.error());
+  return BoardsWithTags(*markers).map_error([&](Error&& error) {
+    return Error{error.code, ToString(Place{.file = file}) + ": " + error.message};
+  });
+}
+
+Expected<std::vector<Board>> ParseBoardYaml(std::string_view text, const std::string& file) {
+  static const std::vector<std::string> kKeys = {"boards"};
+  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
+  if (!root) return tl::unexpected<Error>(root.error());
+  YamlFields in(file);
+  std::vector<const YamlNode*> nodes;
+  const YamlNode* list = root->Find("boards");
+  if (list == nullptr && root->Find("top_right_m") != nullptr) {
+    nodes.push_back(&*root);
+  } else if (in.IsMap(*root, "boards", kKeys) &&
+             in.IsSequence(in.Require(*root, "boards"), "boards")) {
+    for (const YamlNode& item : list->items) nodes.push_back(&item);
+    if (nodes.empty()) in.Fail(list->line, "boards", "expected at least one board");
+  }
+  std::vector<Board> boards;
+  for (const YamlNode* node : nodes) boards.push_back(ReadBoardBlock(in, *node));
+  RequireDistinctBoards(in, nodes, boards);
+  if (!in.ok()) return in.TakeError();
+  return boards;
+}
+
+}  // namespace
+
+Expected<std::vector<Board>> ReadBoards(const std::filesystem::path& path) {
+  return ReadWith(path, ParseBoards);
+}
+
+Expected<std::vector<Board>> ParseBoards(std::string_view text, const std::string& file) {
+  return IsMarkerCoordinates(text, file) ? ParseMarkerBoards(text, file)
+                                         : ParseBoardYaml(text, file);
+}
+
+std::string FormatBoards(std::span<const Board> boards) {
+  YamlText out;
+  out.Line("boards:");
+  for (const Board& board : boards) WriteBoardBlock(out, "  ", board);
+  return out.Take();
+}
+
+Expected<std::vector<Board>> BoardsWithTags(const std::vector<MarkerBoard>& markers,
+                                            std::span<const int> ids) {
+  std::vector<Board> boards = BoardsOf(markers);
+  if (ids.size() != boards.size()) {
+    return MakeError(ErrorCode::kInvalidInput,
+                     fmt::format("expected the id of one tag a board, {} in all, got {}; write a "
+                                 "board file (YAML) where they are others than 26 and 582",
+                                 boards.size(), ids.size()));
+  }
+  for (std::size_t i = 0; i < boards.size(); ++i) {
+    const MarkerBoard& marker = markers[i];
+    const double half = 0.5 * marker.marker_m;
+    boards[i].tags = {{.family = "aruco_original",
+                       .id = ids[i],
+                       .edge_m = marker.marker_m,
+                       .center_in_board_m = {-0.5 * marker.side2_m + marker.border2_m + half,
+                                             0.5 * marker.side1_m - marker.border1_m - half},
+                       .rotation_rad = 0.5 * std::numbers::pi}};
+    if (const std::optional<BoardFault> fault = FindBoardFault(boards[i])) {
+      return MakeError(ErrorCode::kInvalidInput,
+                       fmt::format("board {}{}{}: {}", i + 1, fault->field.empty() ? "" : ": ",
+                                   fault->field, fault->message));
+    }
+  }
+  return boards;
+}
+
+}  // namespace sextant

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <initializer_list>
+
+#include "io/blocks/camera_block.h"
+#include "io/cameras/camera_file.h"
+#include "io/cameras/camera_parts.h"
+#include "io/text/number_text.h"
+#include "io/text/yaml_fields.h"
+
+namespace sextant {
+namespace {
+
+constexpr int kMostPixels = 1'000'000;
+
+// Tools do not agree on the names.
+const YamlNode* FindAny(const YamlNode& map, std::initializer_list<std::string_view> keys) {
+  for (const std::string_view key : keys) {
+    if (const YamlNode* found = map.Find(key)) return found;
+  }
+  return nullptr;
+}
+
+// A list of numbers, or a matrix {rows, cols, data}.
+std::vector<double> ReadNumbers(YamlFields& in, const YamlNode& node, std::string_view name) {
+  constexpr std::size_t kMost = 14;
+  const bool is_matrix = node.kind == YamlNode::Kind::kMap;
+  return in.RealList(is_matrix ? in.Require(node, "data") : node, name, kMost);
+}
+
+int ReadSize(YamlFields& in, const YamlNode& root, std::string_view key, std::string_view other) {
+  const std::string_view present = root.Find(key) != nullptr ? key : other;
+  return root.Find(present) != nullptr ? in.IntegerAt(root, present, 0, kMostPixels) : 0;
+}
+
+// fx, fy, cx, cy, k1, k2, p1, p2, k3 as keys of their own.
+void ReadFlat(YamlFields& in, const YamlNode& root, CameraParts& parts,
+              std::vector<double>& distortion) {
+  parts.matrix = {in.RealAt(root, "fx"),
+                  0,
+                  in.RealAt(root, "cx"),
+                  0,
+                  in.RealAt(root, "fy"),
+                  in.RealAt(root, "cy"),
+                  0,
+                  0,
+                  1};
+  for (const std::string_view key : {"k1", "k2", "p1", "p2", "k3"}) {
+    distortion.push_back(in.RealAt(root, key, 0.0));
+  }
+}
+
+void ReadMatrices(YamlFields& in, const YamlNode& root, const YamlNode& matrix, CameraParts& parts,
+                  std::vector<double>& distortion) {
+  const std::vector<double> k = ReadNumbers(in, matrix, "camera matrix");
+  if (in.ok() && k.size() != parts.matrix.size()) {
+    in.Fail(matrix.line, "camera matrix", fmt::format("expected 9 numbers, got {}", k.size()));
+  }
+  if (in.ok()) std::copy(k.begin(), k.end(), parts.matrix.begin());
+  if (const YamlNode* d = FindAny(root, {"distortion_coefficients", "D", "d"})) {
+    distortion = ReadNumbers(in, *d, "distortion coefficients");
+  }
+}
+
+}  // namespace
+
+Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file) {
+  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
+  if (!root) return tl::unexpected<Error>(root.error());
+  YamlFields in(file);
+  if (const YamlNode* block = root->Find("camera")) {
+    const Camera camera = ReadCameraBlock(in, *block);
+    if (!in.ok()) return in.TakeError();
+    return camera;
+  }
+  CameraParts parts;
+  std::vector<double> distortion;
+  if (const YamlNode* matrix = FindAny(*root, {"camera_matrix", "K", "k"})) {
+    ReadMatrices(in, *root, *matrix, parts, distortion);
+  } else if (root->Find("fx") != nullptr) {
+    ReadFlat(in, *root, parts, distortion);
+  } else {
+    in.Fail(root->line, {},
+            "expected a camera: camera_matrix, K, fx or camera; none of them is there");
+  }
+  parts.width_px = ReadSize(in, *root, "width", "image_width");
+  parts.height_px = ReadSize(in, *root, "height", "image_height");
+  std::string model;
+  if (root->Find("distortion_model") != nullptr) model = in.TextAt(*root, "distortion_model");
+  if (!in.ok()) return in.TakeError();
+  parts.distortion = distortion;
+  parts.model = model;
+  return CameraFromParts(parts).map_error([&](Error&& error) {
+    return Error{error.code, ToString(Place{.file = file}) + ": " + error.message};
+  });
+}
+
+}  // namespace sextant

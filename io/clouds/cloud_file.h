@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+#include "geometry/point_cloud.h"
+
+namespace sextant {
+
+/// One scan from a file of any of these formats: PCD and PLY by their first line; KITTI .bin and
+/// CSV (.csv, .txt) by their extension. Infinite and NaN coordinates mean no return and become NaN;
+/// rings are numbered from the lowest (OrderRings of io/clouds/cloud_builder.h). Errors: kIo;
+/// kParse; kNonFinite: with the file, the line or the byte, and the field.
+Expected<PointCloud> ReadCloud(const std::filesystem::path& path);
+/// The extension of `file` tells what its first bytes do not.
+Expected<PointCloud> ParseCloud(std::string_view bytes, const std::string& file);
+
+}  // namespace sextant

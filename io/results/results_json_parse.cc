@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "io/blocks/camera_block.h"
+#include "io/results/results_json.h"
+#include "io/text/number_text.h"
+#include "io/text/text_file.h"
+
+namespace sextant {
+namespace {
+
+using ParsedJson = nlohmann::json;
+
+// A wrong value, reported as the JSON library reports a wrong type.
+[[noreturn]] void Refuse(const std::string& message) {
+  throw nlohmann::detail::other_error::create(501, message, nullptr);
+}
+
+// The library's own message of a wrong type does not name the key.
+template <class T>
+T Get(const ParsedJson& map, const char* key) {
+  const ParsedJson& value = map.at(key);
+  try {
+    return value.get<T>();
+  } catch (const ParsedJson::type_error& error) {
+    Refuse(fmt::format("key '{}': {}", key, error.what()));
+  }
+}
+
+std::optional<double> GetOptional(const ParsedJson& map, const char* key) {
+  if (map.at(key).is_null()) return std::nullopt;
+  return Get<double>(map, key);
+}
+
+template <int kSize>
+Eigen::Matrix<double, kSize, 1> GetVector(const ParsedJson& map, const char* key) {
+  const auto values = Get<std::vector<double>>(map, key);
+  if (values.size() != kSize) Refuse(fmt::format("key '{}': expected {} numbers", key, kSize));
+  return Eigen::Map<const Eigen::Matrix<double, kSize, 1>>(values.data());
+}
+
+Rigid3d ParsePose(const ParsedJson& json) {
+  const Eigen::Vector4d wxyz = GetVector<4>(json, "quaternion_wxyz");
+  if (!(std::abs(wxyz.norm() - 1.0) < 1e-5)) {
+    Refuse("key 'quaternion_wxyz': expected a quaternion of length 1");
+  }
+  return {Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]),
+          GetVector<3>(json, "translation_m")};
+}
+
+std::optional<Matrix6d> GetCovariance(const ParsedJson& map) {
+  if (map.at("covariance").is_null()) return std::nullopt;
+  const auto rows = Get<std::vector<std::array<double, 6>>>(map, "covariance");
+  if (rows.size() != 6) Refuse("key 'covariance': expected 6 rows");
+  Matrix6d covariance;
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) {
+      covariance(i, j) = rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+    }
+  }
+  return covariance;
+}
+
+std::vector<double> GetResiduals(const ParsedJson& map, const char* key) {
+  std::vector<double> residuals;
+  for (const ParsedJson& value : Get<std::vector<ParsedJson>>(map, key)) {
+    residuals.push_back(value.is_null() ? std::numeric_limits<double>::infinity()
+                                        : value.get<double>());
+  }
+  return residuals;
+}
+
+std::vector<EstimatedNumber> ParseNumbers(const ParsedJson& list) {
+  std::vector<EstimatedNumber> numbers;
+  for (const ParsedJson& number : list) {
+    numbers.push_back({Get<std::string>(number, "name"), Get<double>(number, "value"),
+                       GetOptional(number, "sigma")});
+  }
+  return numbers;
+}
+
+CameraEstimate ParseCameraEstimate(const ParsedJson& json) {
+  CameraEstimate estimate;
+  Camera& camera = estimate.camera;
+  const auto name = Get<std::string>(json, "model");
+  const std::optional<CameraModel> model = CameraModelNamed(name);
+  if (!model) Refuse(fmt::format("key 'model': unknown value {}", Quoted(name)));
+  camera.model = *model;
+  camera.width_px = Get<int>(json, "width_px");
+  camera.height_px = Get<int>(json, "height_px");
+  camera.fx_px = Get<double>(json, "fx_px");
+  camera.fy_px = Get<double>(json, "fy_px");
+  camera.cx_px = Get<double>(json, "cx_px");
+  camera.cy_px = Get<double>(json, "cy_px");
+  camera.distortion = Get<std::array<double, 8>>(json, "distortion");
+  estimate.estimated = ParseNumbers(json.at("estimated"));
+  return estimate;
+}
+
+ObservationCount ParseCount(const ParsedJson& map, const char* key) {
+  const auto counts = Get<std::array<int, 2>>(map, key);
+  return {counts[0], counts[1]};
+}
+
+std::vector<BoardViewFit> ParseBoardViews(const ParsedJson& list) {
+  std::vector<BoardViewFit> fits;
+  for (const ParsedJson& json : list) {
+    BoardViewFit fit;
+    fit.view = Get<int>(json, "view");
+    fit.board = Get<int>(json, "board");
+    fit.used = Get<bool>(json, "used");
+    fit.cam_from_board = ParsePose(json.at("cam_from_board"));
+    fit.printed = ParseCount(json, "printed");
+    fit.face = ParseCount(json, "face");
+    fit.edges = ParseCount(json, "edges");
+    fit.rms = Get<double>(json, "rms");
+    fits.push_back(fit);
+  }
+  return fits;
+}
+
+template <class Enum>
+Enum GetEnum(const ParsedJson& map, const char* key, Enum last) {
+  const auto name = Get<std::string>(map, key);
+  for (int i = 0; i <= static_cast<int>(last); ++i) {
+    if (ToString(static_cast<Enum>(i)) == name) return static_cast<Enum>(i);
+  }
+  Refuse(fmt::format("key '{}': unknown value {}", key, Quoted(name)));
+}
+
+SolveReport ParseReport(const ParsedJson& json) {
+  SolveReport report;
+  report.solver = Get<std::string>(json, "solver");
+  report.cam_from_lidar = ParsePose(json.at("cam_from_lidar"));
+  report.covariance = GetCovariance(json);
+  // Files written before these keys were there have none.
+  if (json.contains("camera") && !json.at("camera").is_null()) {
+    report.camera = ParseCameraEstimate(json.at("camera"));
+  }
+  if (json.contains("extras")) report.extras = ParseNumbers(json.at("extras"));
+  if (json.contains("warnings")) {
+    report.warnings = Get<std::vector<std::string>>(json, "warnings");
+  }
+  if (json.contains("board_views")) {
+    report.board_views = ParseBoardViews(json.at("board_views"));
+  }
+  report.evaluation.rmse_m = GetOptional(json, "rmse_m");
+  report.evaluation.rmse_px = GetOptional(json, "rmse_px");
+  report.evaluation.per_pair_m = GetResiduals(json, "per_pair_m");
+  report.evaluation.per_pair_px = GetResiduals(json, "per_pair_px");
+  report.inliers = Get<std::vector<int>>(json, "inliers");
+  for (const ParsedJson& pose : json.at("alternatives"))
+    report.alternatives.push_back(ParsePose(pose));
+  report.iterations = Get<int>(json, "iterations");
+  report.termination = GetEnum(json, "termination", Termination::kMaxIterations);
+  report.wall_time_us = Get<double>(json, "wall_time_us");
+  return report;
+}
+
+SolverResult ParseResult(const ParsedJson& json) {
+  SolverResult result{Get<std::string>(json, "solver"), SolveReport{}};
+  if (Get<bool>(json, "ok")) {
+    result.report = ParseReport(json);
+  } else {
+    result.report =
+        MakeError(GetEnum(json, "error_code", ErrorCode::kIo), Get<std::string>(json, "error"));
+  }
+  return result;
+}
+
+ResultFile ParseFile(const ParsedJson& json) {
+  ResultFile file;
+  file.version = Get<std::string>(json, "sextant");
+  const ParsedJson& input = json.at("input");
+  file.input = {.path = Get<std::string>(input, "path"),
+                .format = Get<std::string>(input, "format"),
+                .pairs_3d3d = Get<int>(input, "pairs_3d3d"),
+                .pairs_2d3d = Get<int>(input, "pairs_2d3d"),
+                .points_in_cam = Get<int>(input, "points_in_cam"),
+                .points_in_lidar = Get<int>(input, "points_in_lidar")};
+  for (const ParsedJson& result : json.at("results")) file.results.push_back(ParseResult(result));
+  return file;
+}
+
+}  // namespace
+
+Expected<ResultFile> ReadResults(const std::filesystem::path& path) {
+  return ReadWith(path, ParseResults);
+}
+
+Expected<ResultFile> ParseResults(std::string_view text, const std::string& file) {
+  try {
+    return ParseFile(ParsedJson::parse(text));
+  } catch (const ParsedJson::exception& error) {
+    return MakeError(ErrorCode::kParse,
+                     fmt::format("{}: not a sextant result file: {}", ToString(Place{.file = file}),
+                                 Printable(error.what(), 200)));
+  }
+}
+
+}  // namespace sextant

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "io/text/yaml_node.h"
+
+namespace sextant {
+
+/// Takes values out of a YamlNode and keeps the first error, as LineReader does for lines: after
+/// an error every call returns zeros or nothing.
+class YamlFields {
+ public:
+  explicit YamlFields(std::string file) : file_(std::move(file)) {}
+
+  /// Whether `node` is a map with no keys but `known`; an unknown key names the nearest known.
+  bool IsMap(const YamlNode& node, std::string_view what, std::span<const std::string> known);
+  bool IsSequence(const YamlNode& node, std::string_view what);
+
+  /// The value of a key of a map; an error where it is absent.
+  const YamlNode& Require(const YamlNode& map, std::string_view key);
+
+  double Real(const YamlNode& node, std::string_view name);
+  double RealAt(const YamlNode& map, std::string_view key) { return Real(Require(map, key), key); }
+  double RealAt(const YamlNode& map, std::string_view key, double otherwise);
+  /// As RealAt; an error below zero.
+  double NonNegativeAt(const YamlNode& map, std::string_view key, double otherwise);
+  int IntegerAt(const YamlNode& map, std::string_view key, int low, int high);
+  int IntegerAt(const YamlNode& map, std::string_view key, int low, int high, int otherwise);
+  std::string TextAt(const YamlNode& map, std::string_view key);
+
+  /// A sequence of exactly values.size() numbers.
+  void Reals(const YamlNode& node, std::string_view name, std::span<double> values);
+  /// A sequence of at most `most` numbers.
+  std::vector<double> RealList(const YamlNode& node, std::string_view name, std::size_t most);
+  Eigen::Vector3d Point(const YamlNode& node, std::string_view name);
+  Eigen::Vector2d Point2At(const YamlNode& map, std::string_view key,
+                           const Eigen::Vector2d& otherwise);
+  Eigen::Vector3d PointAt(const YamlNode& map, std::string_view key) {
+    return Point(Require(map, key), key);
+  }
+
+  void Fail(int line, std::string_view name, std::string_view message);
+  void Fail(Error error);
+  bool ok() const { return !error_; }
+  const std::string& file() const { return file_; }
+  /// The first error. Requires !ok().
+  tl::unexpected<Error> TakeError() { return tl::unexpected<Error>(*error_); }
+
+ private:
+  std::string file_;
+  std::optional<Error> error_;
+};
+
+}  // namespace sextant

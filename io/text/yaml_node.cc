@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/text/yaml_node.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "io/text/number_text.h"
+
+namespace sextant {
+namespace {
+
+// Builds the tree from the parser's events; refuses by the exception that the parser itself uses.
+class TreeBuilder final : public YAML::EventHandler {
+ public:
+  YamlNode TakeRoot() { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
+    Add(mark, YamlNode::Kind::kNull, {});
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    Refuse(mark, "aliases (*name) are not supported; write the value out");
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                const std::string& value) override {
+    Add(mark, YamlNode::Kind::kText, value);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    Open(mark, YamlNode::Kind::kSequence);
+  }
+  void OnSequenceEnd() override { open_.pop_back(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    Open(mark, YamlNode::Kind::kMap);
+  }
+  void OnMapEnd() override { open_.pop_back(); }
+
+ private:
+  [[noreturn]] static void Refuse(const YAML::Mark& mark, const std::string& why) {
+    throw YAML::ParserException(mark, why);
+  }
+
+  static bool ExpectsKey(const YamlNode& node) {
+    return node.kind == YamlNode::Kind::kMap && node.keys.size() == node.items.size();
+  }
+
+  void AddKey(const YAML::Mark& mark, YamlNode& map, const std::string& key) {
+    if (std::find(map.keys.begin(), map.keys.end(), key) != map.keys.end()) {
+      Refuse(mark, "the key " + Quoted(key) + " stands here a second time");
+    }
+    constexpr std::size_t kMostKeys = 256;
+    if (map.keys.size() == kMostKeys) Refuse(mark, "more than 256 keys in one map");
+    map.keys.push_back(key);
+  }
+
+  YamlNode* Add(const YAML::Mark& mark, YamlNode::Kind kind, const std::string& text) {
+    YamlNode* node = &root_;
+    if (!open_.empty()) {
+      // Only the last item of a node is ever open, so its address holds until it is closed.
+      YamlNode& parent = *open_.back();
+      if (ExpectsKey(parent)) {
+        if (kind != YamlNode::Kind::kText) Refuse(mark, "expected a plain key");
+        AddKey(mark, parent, text);
+        return nullptr;
+      }
+      node = &parent.items.emplace_back();
+    }
+    node->kind = kind;
+    node->line = mark.line + 1;
+    node->text = text;
+    return node;
+  }
+
+  void Open(const YAML::Mark& mark, YamlNode::Kind kind) {
+    if (open_.size() == kMaxYamlDepth) {
+      Refuse(mark, fmt::format("nested deeper than {} levels", kMaxYamlDepth));
+    }
+    open_.push_back(Add(mark, kind, {}));
+  }
+
+  YamlNode root_;
+  std::vector<YamlNode*> open_;
+};
+
+}  // namespace
+
+const YamlNode* YamlNode::Find(std::string_view key) const {
+  const auto found = std::find(keys.begin(), keys.end(), key);
+  return found == keys.end() ? nullptr : &items[static_cast<std::size_t>(found - keys.begin())];
+}
+
+Expected<YamlNode> ParseYaml(const std::string& text, const std::string& file) {
+  if (text.size() > kMaxYamlBytes) {
+    return MakeError(ErrorCode::kParse,
+                     fmt::format("{}: expected at most {} bytes of YAML, got {}",
+                                 ToString(Place{.file = file}), kMaxYamlBytes, text.size()));
+  }
+  // yaml-cpp takes a NUL for the end of the file.
+  if (text.find('\0') != std::string::npos) {
+    const auto line =
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find('\0')), '\n');
+    return MakeError(
+        ErrorCode::kParse,
+        fmt::format("{}: expected text, got a zero byte; is it a binary file?",
+                    ToString(Place{.file = file, .line = static_cast<int>(line) + 1})));
+  }
+  try {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    TreeBuilder tree;
+    if (!parser.HandleNextDocument(tree)) {
+      return MakeError(ErrorCode::kParse, fmt::format("{}:1: the file is empty, expected YAML",
+                                                      ToString(Place{.file = file})));
+    }
+    TreeBuilder second;
+    if (parser.HandleNextDocument(second)) {
+      return MakeError(ErrorCode::kParse,
+                       fmt::format("{}:{}: expected one YAML document, got a second",
+                                   ToString(Place{.file = file}), second.TakeRoot().line));
+    }
+    return tree.TakeRoot();
+  } catch (const YAML::Exception& error) {
+    return MakeError(ErrorCode::kParse,
+                     fmt::format("{}: not valid YAML: {}",
+                                 ToString(Place{.file = file, .line = error.mark.line + 1}),
+                                 Printable(error.msg, 200)));
+  }
+}
+
+}  // namespace sextant

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/plot.h"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <system_error>
+
+namespace sextant {
+namespace {
+
+Expected<std::string> TerminalFor(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension == ".svg") return "svg size 960,480 background 'white' font 'sans,13'";
+  if (extension == ".png") return "pngcairo size 960,480 font 'sans,11'";
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("{}: expected a plot that ends in .svg or .png", path.string()));
+}
+
+// In gnuplot's single quotes a quote is doubled and nothing else is special.
+std::string Quote(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  return quoted + "'";
+}
+
+struct Residuals {
+  std::vector<PairId> ids;
+  std::string unit;
+  double scale = 1.0;
+  bool in_pixels = false;
+
+  const std::vector<double>& Of(const SolveReport& report) const {
+    return in_pixels ? report.evaluation.per_pair_px : report.evaluation.per_pair_m;
+  }
+};
+
+Residuals ResidualsOf(const CalibrationProblem& problem) {
+  Residuals residuals;
+  if (!problem.pairs_3d3d.empty()) {
+    residuals.unit = "mm";
+    residuals.scale = 1e3;
+    for (const Pair3d3d& pair : problem.pairs_3d3d) residuals.ids.push_back(pair.id);
+  } else {
+    residuals.unit = "px";
+    residuals.in_pixels = true;
+    for (const Pair2d3d& pair : problem.pairs_2d3d) residuals.ids.push_back(pair.id);
+  }
+  return residuals;
+}
+
+std::string Ticks(const std::vector<PairId>& ids) {
+  constexpr std::size_t kMostLabels = 40;
+  const std::size_t step = ids.size() / kMostLabels + 1;
+  std::vector<std::string> ticks;
+  for (std::size_t i = 0; i < ids.size(); i += step) {
+    ticks.push_back(fmt::format("'{}.{}.{}' {}", ids[i].view, ids[i].board, ids[i].corner, i));
+  }
+  return fmt::format("set xtics ({})\n", fmt::join(ticks, ", "));
+}
+
+}  // namespace
+
+Expected<void> DrawPlot(const std::string& commands, const std::filesystem::path& path) {
+  const Expected<std::string> terminal = TerminalFor(path);
+  if (!terminal) return tl::unexpected<Error>(terminal.error());
+  std::filesystem::path temporary = path;
+  temporary += ".part";
+  const std::string script = fmt::format("set terminal {}\nset output {}\n{}\nset output\n",
+                                         *terminal, Quote(temporary.string()), commands);
+  FILE* gnuplot = popen("gnuplot", "w");
+  const bool written =
+      gnuplot != nullptr && std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
+  const int status = gnuplot != nullptr ? pclose(gnuplot) : -1;
+  std::error_code error;
+  if (written && status == 0) {
+    std::filesystem::rename(temporary, path, error);
+    if (!error) return {};
+  }
+  std::filesystem::remove(temporary, error);
+  constexpr int kCommandNotFound = 127;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kCommandNotFound) {
+    return MakeError(ErrorCode::kIo, "plots need gnuplot: install the package gnuplot-nox");
+  }
+  return MakeError(ErrorCode::kIo,
+                   fmt::format("{}: gnuplot could not write the plot; is the folder "
+                               "there and writable?",
+                               path.string()));
+}
+
+std::string ResidualPlot(const CalibrationProblem& problem,
+                         const std::vector<ComparisonRow>& rows) {
+  const Residuals residuals = ResidualsOf(problem);
+  std::string data;
+  std::vector<std::string> series;
+  std::vector<const SolveReport*> answers;
+  for (const ComparisonRow& row : rows) {
+    if (row.report) answers.push_back(&*row.report);
+  }
+  for (std::size_t k = 0; k < answers.size(); ++k) {
+    data += fmt::format("$answer{} << EOD\n", k);
+    const std::vector<double>& of_answer = residuals.Of(*answers[k]);
+    // Side by side within each pair's unit of the axis, so that equal residuals stay visible.
+    const double offset =
+        0.7 * ((static_cast<double>(k) + 0.5) / static_cast<double>(answers.size()) - 0.5);
+    for (std::size_t i = 0; i < of_answer.size(); ++i) {
+      data +=
+          fmt::format("{} {}\n", static_cast<double>(i) + offset, of_answer[i] * residuals.scale);
+    }
+    data += "EOD\n";
+    series.push_back(
+        fmt::format("$answer{} using 1:2 with impulses lw 3 lc {} notitle, "
+                    "$answer{} using 1:2 with points pt 7 ps 0.7 lc {} title {}",
+                    k, k + 1, k, k + 1, Quote(answers[k]->solver)));
+  }
+  return fmt::format(
+      "{}{}set key above horizontal noenhanced\nset grid ytics\nset offsets 0, 0, graph 0.05, "
+      "0\nset yrange [0:*]\n"
+      "set xrange [-0.6:{}]\nset xlabel 'pair (view.board.corner)'\nset ylabel 'residual [{}]'\n"
+      "plot {}\n",
+      data, Ticks(residuals.ids), static_cast<double>(residuals.ids.size()) - 0.4, residuals.unit,
+      fmt::join(series, ", \\\n  "));
+}
+
+}  // namespace sextant

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/report_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "eval/statistics/text_table.h"
+
+namespace sextant::cli {
+namespace {
+
+// More residuals than a screen shows go to the JSON only.
+constexpr std::size_t kMostResiduals = 64;
+
+std::string DescribePose(const Rigid3d& pose) {
+  std::string text = "  cam_from_lidar\n";
+  const Eigen::Matrix4d m = pose.Matrix();
+  for (int row = 0; row < 4; ++row) {
+    text += fmt::format("    {:12.8f} {:12.8f} {:12.8f} {:12.8f}\n", m(row, 0), m(row, 1),
+                        m(row, 2), m(row, 3));
+  }
+  const Eigen::Vector3d& t = pose.translation;
+  const Eigen::Quaterniond& q = pose.rotation;
+  const double sign = q.w() < 0.0 ? -1.0 : 1.0;
+  const EulerZyx euler = ToEulerZyx(q);
+  text += fmt::format("  translation x y z          {:.6f} {:.6f} {:.6f} m\n", t.x(), t.y(), t.z());
+  text += fmt::format("  quaternion w x y z         {:.8f} {:.8f} {:.8f} {:.8f}\n", sign * q.w(),
+                      sign * q.x(), sign * q.y(), sign * q.z());
+  text += fmt::format("  yaw pitch roll (ZYX)       {:.4f} {:.4f} {:.4f} deg\n",
+                      euler.yaw * kDegPerRad, euler.pitch * kDegPerRad, euler.roll * kDegPerRad);
+  return text;
+}
+
+std::string DescribeUncertainty(const SolveReport& report) {
+  if (!report.covariance) {
+    return "  1 sigma                    not known: no residual is left to judge by\n";
+  }
+  const Vector6d sigma = report.covariance->diagonal().cwiseMax(0.0).cwiseSqrt();
+  return fmt::format(
+      "  1 sigma, about x y z       {:.4f} {:.4f} {:.4f} deg\n"
+      "  1 sigma, along x y z       {:.2f} {:.2f} {:.2f} mm\n",
+      sigma[0] * kDegPerRad, sigma[1] * kDegPerRad, sigma[2] * kDegPerRad, sigma[3] * kMmPerM,
+      sigma[4] * kMmPerM, sigma[5] * kMmPerM);
+}
+
+std::string DescribeNumbers(const char* title, const std::vector<EstimatedNumber>& numbers) {
+  std::string text = fmt::format("  {}\n", title);
+  for (const EstimatedNumber& number : numbers) {
+    const std::string sigma = number.sigma ? fmt::format("{:.2g}", *number.sigma) : "not known";
+    text += fmt::format("    {:<24} {:.6g}, 1 sigma {}\n", number.name, number.value, sigma);
+  }
+  return text;
+}
+
+std::string DescribeBoardViews(const std::vector<BoardViewFit>& fits) {
+  TextTable table({"  board views", "board", "used", "printed", "face", "edges", "rms [sigma]"});
+  const auto of = [](const ObservationCount& count) {
+    return fmt::format("{}/{}", count.used, count.of);
+  };
+  for (const BoardViewFit& fit : fits) {
+    table.AddRow({fmt::format("  {}", fit.view), std::to_string(fit.board), fit.used ? "yes" : "no",
+                  of(fit.printed), of(fit.face), of(fit.edges),
+                  fit.used ? Fixed(fit.rms, 2) : "-"});
+  }
+  return table.Plain();
+}
+
+// `inliers` is null where the solver does not say which pairs of this kind it used.
+template <class Pair>
+std::string DescribeResiduals(const std::vector<Pair>& pairs, const std::vector<double>& residuals,
+                              const std::vector<int>* inliers, const char* unit, double scale) {
+  if (residuals.empty()) return {};
+  if (residuals.size() > kMostResiduals) {
+    return fmt::format("  residuals of {} pairs: see --json\n", residuals.size());
+  }
+  TextTable table(
+      {"  pair", "view", "board", "corner", fmt::format("residual [{}]", unit), "used"});
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    const bool used = inliers != nullptr &&
+                      std::binary_search(inliers->begin(), inliers->end(), static_cast<int>(i));
+    table.AddRow({fmt::format("  {}", i + 1), std::to_string(pairs[i].id.view),
+                  std::to_string(pairs[i].id.board), std::to_string(pairs[i].id.corner),
+                  fmt::format("{:.2f}", residuals[i] * scale),
+                  inliers == nullptr ? "-" : (used ? "yes" : "no")});
+  }
+  return table.Plain();
+}
+
+std::string Milli(const std::optional<double>& metres) {
+  return metres ? fmt::format("{:.2f}", *metres * kMmPerM) : "-";
+}
+
+std::string Pixels(const std::optional<double>& pixels) {
+  return pixels ? fmt::format("{:.3f}", *pixels) : "-";
+}
+
+std::string TranslationText(const std::optional<PoseDistance>& distance) {
+  return distance ? Fixed(distance->translation_m * kMmPerM, 2) : "-";
+}
+
+std::string RotationText(const std::optional<PoseDistance>& distance) {
+  return distance ? Fixed(distance->rotation_rad * kDegPerRad, 4) : "-";
+}
+
+bool Any(const std::vector<ComparisonRow>& rows, bool (*has)(const ComparisonRow&)) {
+  return std::any_of(rows.begin(), rows.end(), has);
+}
+
+}  // namespace
+
+std::string DescribeAnswer(const SolveReport& report) {
+  const Evaluation& evaluation = report.evaluation;
+  std::string text = report.solver + "\n" + DescribePose(report.cam_from_lidar);
+  if (evaluation.rmse_m) {
+    text += fmt::format("  RMSE                       {:.8f} m over {} pairs\n", *evaluation.rmse_m,
+                        evaluation.per_pair_m.size());
+  }
+  if (evaluation.rmse_px) {
+    text += fmt::format("  reprojection RMSE          {:.4f} px over {} pairs\n",
+                        *evaluation.rmse_px, evaluation.per_pair_px.size());
+  }
+  text += DescribeUncertainty(report);
+  if (report.camera) text += DescribeNumbers("camera, estimated too", report.camera->estimated);
+  if (!report.extras.empty()) text += DescribeNumbers("estimated too", report.extras);
+  for (const std::string& warning : report.warnings) {
+    text += fmt::format("  note: {}\n", warning);
+  }
+  text += fmt::format("  {}, {} iterations, {:.1f} us\n", ToString(report.termination),
+                      report.iterations, report.wall_time_us);
+  for (const Rigid3d& other : report.alternatives) {
+    const Eigen::Vector3d& t = other.translation;
+    const EulerZyx euler = ToEulerZyx(other.rotation);
+    text += fmt::format(
+        "  also explains the data     t {:.6f} {:.6f} {:.6f} m, yaw pitch roll {:.4f} {:.4f} "
+        "{:.4f} "
+        "deg\n",
+        t.x(), t.y(), t.z(), euler.yaw * kDegPerRad, euler.pitch * kDegPerRad,
+        euler.roll * kDegPerRad);
+  }
+  return text;
+}
+
+std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& spec,
+                           const SolveReport& report) {
+  const Evaluation& evaluation = report.evaluation;
+  std::string text = DescribeAnswer(report);
+  if (!report.board_views.empty()) text += DescribeBoardViews(report.board_views);
+  // The inliers are of one kind only; see Estimate.
+  const bool of_points = spec.needs.pairs_3d3d > 0;
+  const std::vector<int>* point_inliers = of_points ? &report.inliers : nullptr;
+  const std::vector<int>* pixel_inliers =
+      !of_points && spec.needs.pairs_2d3d > 0 ? &report.inliers : nullptr;
+  text +=
+      DescribeResiduals(problem.pairs_3d3d, evaluation.per_pair_m, point_inliers, "mm", kMmPerM);
+  text += DescribeResiduals(problem.pairs_2d3d, evaluation.per_pair_px, pixel_inliers, "px", 1.0);
+  return text;
+}
+
+std::string DescribeComparison(const std::vector<ComparisonRow>& rows) {
+  const bool metres =
+      Any(rows, [](const auto& r) { return r.report && r.report->evaluation.rmse_m; });
+  const bool pixels =
+      Any(rows, [](const auto& r) { return r.report && r.report->evaluation.rmse_px; });
+  const bool truth = Any(rows, [](const auto& r) { return r.from_truth.has_value(); });
+  std::vector<std::string> header = {"solver",    "x [m]", "y [m]", "z [m]",
+                                     "yaw [deg]", "pitch", "roll"};
+  if (metres) header.emplace_back("RMSE [mm]");
+  if (pixels) header.emplace_back("RMSE [px]");
+  header.insert(header.end(), {"used", "to first [mm]", "[deg]"});
+  if (truth) header.insert(header.end(), {"error [mm]", "[deg]"});
+  header.emplace_back("time [us]");
+
+  TextTable table(header);
+  std::string failures;
+  for (const ComparisonRow& row : rows) {
+    if (!row.report) {
+      failures += fmt::format("no answer of {}: {}\n", row.solver, row.report.error().message);
+      continue;
+    }
+    const SolveReport& report = *row.report;
+    const Eigen::Vector3d& t = report.cam_from_lidar.translation;
+    const EulerZyx euler = ToEulerZyx(report.cam_from_lidar.rotation);
+    std::vector<std::string> cells = {report.solver};
+    for (const double v : {t.x(), t.y(), t.z()}) cells.push_back(Fixed(v, 4));
+    for (const double v : {euler.yaw, euler.pitch, euler.roll}) {
+      cells.push_back(Fixed(v * kDegPerRad, 3));
+    }
+    if (metres) cells.push_back(Milli(report.evaluation.rmse_m));
+    if (pixels) cells.push_back(Pixels(report.evaluation.rmse_px));
+    cells.push_back(report.inliers.empty() ? "-" : std::to_string(report.inliers.size()));
+    cells.push_back(TranslationText(row.from_first));
+    cells.push_back(RotationText(row.from_first));
+    if (truth) {
+      cells.push_back(TranslationText(row.from_truth));
+      cells.push_back(RotationText(row.from_truth));
+    }
+    cells.push_back(fmt::format("{:.1f}", report.wall_time_us));
+    table.AddRow(std::move(cells));
+  }
+  return table.Plain() + failures;
+}
+
+}  // namespace sextant::cli

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+#include "simulator/scene/scene.h"
+
+namespace sextant {
+
+inline constexpr std::size_t kMostSceneBoards = 1000;
+inline constexpr std::size_t kMostSceneCameras = 16;
+inline constexpr std::size_t kMostSceneShapes = 10'000;  ///< Of walls, boxes or cylinders.
+
+/// A scene from YAML (docs/formats.md); not yet checked by ValidateScene.
+/// Errors: kIo; kParse and kNonFinite with file, line and field: unknown keys, boards that
+/// contradict themselves, lists that are too long.
+Expected<Scene> ReadScene(const std::filesystem::path& path);
+Expected<Scene> ParseScene(std::string_view text, const std::string& file);
+
+}  // namespace sextant

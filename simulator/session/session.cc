@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/session/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/nearest_name.h"
+#include "base/version.h"
+#include "io/boards/board_file.h"
+#include "io/cameras/camera_file.h"
+#include "io/clouds/pcd_file.h"
+#include "io/problems/problem_yaml.h"
+#include "io/text/yaml_text.h"
+#include "simulator/camera/render.h"
+#include "simulator/lidar/lidar_model.h"
+#include "simulator/lidar/scan.h"
+#include "simulator/scene/camera_model.h"
+#include "simulator/scene/truth_yaml.h"
+#include "simulator/session/session_folder.h"
+#include "simulator/session/validate_scene.h"
+
+namespace sextant {
+namespace {
+
+constexpr int kMostScans = 100'000;
+
+const std::array<std::string, 3>& LevelNames() {
+  static const std::array<std::string, 3> names = {"full", "corners", "pairs"};
+  return names;
+}
+
+const std::string& NameOf(SessionLevel level) {
+  return LevelNames()[static_cast<std::size_t>(level)];
+}
+
+Expected<void> CheckOptions(const SessionOptions& options) {
+  const CornerNoise& noise = options.noise;
+  if (options.scans < 1 || options.scans > kMostScans) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("expected 1 to {} scans, got {}", kMostScans, options.scans));
+  }
+  if (!(options.interval_s >= 0.0) || !std::isfinite(options.interval_s)) {
+    return MakeError(ErrorCode::kInvalidOption, "expected an interval of zero or more seconds");
+  }
+  for (const double sigma : {noise.lidar_sigma_m, noise.camera_lateral_sigma_m,
+                             noise.camera_depth_sigma_m, noise.pixel_sigma_px}) {
+    if (!(sigma > 0.0) || !std::isfinite(sigma)) {
+      return MakeError(ErrorCode::kInvalidOption,
+                       fmt::format("expected positive noise of the corners, got {}", sigma));
+    }
+  }
+  return {};
+}
+
+// All that decides the bytes of the files besides the scene; not the number of scans.
+std::string Configuration(const SessionOptions& options) {
+  YamlText out;
+  out.Line("sextant_simulation: 1");
+  out.Line("version: {}", YamlQuoted(std::string(Version())));
+  out.Line("level: {}", NameOf(options.level));
+  out.Line("seed: {}", options.seed);
+  out.Line("interval_s: {}", options.interval_s);
+  if (options.level == SessionLevel::kFull) {
+    out.Line("ideal: {}", options.ideal);
+    out.Line("encoding: {}", ToString(options.encoding));
+  } else {
+    const CornerNoise& noise = options.noise;
+    out.Line("lidar_sigma_m: {}", noise.lidar_sigma_m);
+    out.Line("camera_lateral_sigma_m: {}", noise.camera_lateral_sigma_m);
+    out.Line("camera_depth_sigma_m: {}", noise.camera_depth_sigma_m);
+    out.Line("pixel_sigma_px: {}", noise.pixel_sigma_px);
+  }
+  return out.Take();
+}
+
+class Session {
+ public:
+  Session(const Scene& scene, const SessionOptions& options, LidarModel lidar, SessionFolder folder)
+      : scene_(scene), options_(options), lidar_(std::move(lidar)), folder_(std::move(folder)) {}
+
+  Expected<SessionReport> Run() {
+    Expected<void> ok = WriteBoardsAndCameras();
+    for (int scan = 0; scan < options_.scans; ++scan) truths_.push_back(TruthOf(scan));
+    if (options_.level == SessionLevel::kFull) {
+      for (const ScanTruth& truth : truths_) {
+        if (ok) ok = WriteScan(truth);
+      }
+    } else {
+      for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
+        if (ok) ok = WriteProblem(i);
+      }
+    }
+    if (ok) ok = folder_.Write("truth.yaml", FormatTruth(scene_, options_.seed, truths_));
+    if (!ok) return tl::unexpected<Error>(ok.error());
+    report_.scans = std::move(truths_);
+    return std::move(report_);
+  }
+
+ private:
+  std::uint64_t SeedOf(std::size_t camera, int scan) const {
+    return DeriveSeed(options_.seed, "session: " + NameOf(options_.level), camera,
+                      static_cast<std::uint64_t>(scan));
+  }
+
+  ScanTruth TruthOf(int scan) const {
+    ScanTruth truth;
+    truth.index = scan;
+    truth.start_time_s = scan * options_.interval_s;
+    truth.image_time_s = truth.start_time_s + 0.5 * lidar_.turn_period_s;
+    for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
+      truth.image_seeds.push_back(SeedOf(i, scan));
+    }
+    if (options_.level == SessionLevel::kFull) {
+      truth.scan_file = fmt::format("scan_{:03}.pcd", scan);
+      for (const SceneCamera& camera : scene_.cameras) {
+        truth.image_files.push_back(fmt::format("{}_{:03}.png", camera.name, scan));
+      }
+    }
+    truth.boards = BoardsAt(scene_, truth.image_time_s);
+    return truth;
+  }
+
+  Expected<void> WriteBoardsAndCameras() {
+    Expected<void> ok = folder_.Write("boards.yaml", FormatBoards(Boards()));
+    for (const SceneCamera& camera : scene_.cameras) {
+      const std::string text = FormatCameraInfo(*ToldCamera(camera), camera.name);
+      if (ok) ok = folder_.Write(camera.name + "_info.yaml", text);
+    }
+    return ok;
+  }
+
+  std::vector<Board> Boards() const {
+    std::vector<Board> boards;
+    for (const SceneBoard& board : scene_.boards) boards.push_back(board.board);
+    return boards;
+  }
+
+  Expected<void> Complete(const std::string& name,
+                          const std::function<Expected<std::string>()>& make) {
+    const Expected<bool> written = folder_.Complete(name, make);
+    if (!written) return tl::unexpected<Error>(written.error());
+    *written ? ++report_.written : ++report_.kept;
+    if (options_.step) options_.step();
+    return {};
+  }
+
+  Expected<void> WriteScan(const ScanTruth& truth) {
+    Expected<void> ok =
+        Complete(truth.scan_file, [&]() -> Expected<std::string> { return ScanFile(truth); });
+    for (std::size_t i = 0; ok && i < scene_.cameras.size(); ++i) {
+      ok = Complete(truth.image_files[i],
+                    [&]() -> Expected<std::string> { return ImageFile(truth, i); });
+    }
+    return ok;
+  }
+
+  Expected<std::string> ScanFile(const ScanTruth& truth) const {
+    const bool real = !options_.ideal;
+    const Expected<SimulatedScan> scan = SimulateScan(scene_, lidar_,
+                                                      {.seed = options_.seed,
+                                                       .scan_index = truth.index,
+                                                       .start_time_s = truth.start_time_s,
+                                                       .noise = real,
+                                                       .quantisation = real,
+                                                       .divergence = real,
+                                                       .dropouts = real});
+    if (!scan) return tl::unexpected<Error>(scan.error());
+    return FormatPcd(scan->cloud, options_.encoding);
+  }
+
+  Expected<std::string> ImageFile(const ScanTruth& truth, std::size_t camera) const {
+    ImageOptions ideal;
+    ideal.time_s = truth.image_time_s;
+    const ImageOptions image_options =
+        options_.ideal ? ideal : UsualImageOptions(truth.image_seeds[camera], truth.image_time_s);
+    const Expected<cv::Mat> image = RenderImage(scene_, static_cast<int>(camera), image_options);
+    if (!image) return tl::unexpected<Error>(image.error());
+    return options_.encode_image(*image);
+  }
+
+  // More scans than an earlier run had change this file, so it is written anew.
+  Expected<void> WriteProblem(std::size_t camera) {
+    const SceneCamera& scene_camera = scene_.cameras[camera];
+    ProblemFile file;
+    file.problem.camera = *ToldCamera(scene_camera);
+    file.problem.boards = Boards();
+    file.true_cam_from_lidar = CamFromLidar(scene_, scene_camera);
+    file.comment = fmt::format("simulated: scene {}, seed {}, {} scans", scene_.name, options_.seed,
+                               options_.scans);
+    for (const ScanTruth& truth : truths_) AddView(truth, camera, file.problem);
+    if (options_.level == SessionLevel::kPairs) file.problem.pairs_3d3d.clear();
+    file.problem.point_sets = WithholdPairing(file.problem.pairs_3d3d);
+    const std::string name = fmt::format("{}_{}.yaml", NameOf(options_.level), scene_camera.name);
+    Expected<void> ok = folder_.Write(name, FormatProblemYaml(file));
+    ++report_.written;
+    if (options_.step) options_.step();
+    return ok;
+  }
+
+  void AddView(const ScanTruth& truth, std::size_t camera, CalibrationProblem& problem) const {
+    Random random(truth.image_seeds[camera]);
+    for (const BoardTruth& board : truth.boards) {
+      for (std::size_t i = 0; i < board.corners.size(); ++i) {
+        const CornerTruth& corner = board.corners[i];
+        if (!corner.pixel[camera]) continue;
+        AddMeasuredCorner(options_.noise, {truth.index, board.id, static_cast<int>(i)},
+                          corner.in_cam[camera], corner.in_lidar, *corner.pixel[camera], random,
+                          problem);
+      }
+    }
+  }
+
+  const Scene& scene_;
+  const SessionOptions& options_;
+  LidarModel lidar_;
+  SessionFolder folder_;
+  std::vector<ScanTruth> truths_;
+  SessionReport report_;
+};
+
+}  // namespace
+
+Expected<SessionLevel> FindSessionLevel(std::string_view name) {
+  const auto found = std::find(LevelNames().begin(), LevelNames().end(), name);
+  if (found != LevelNames().end()) {
+    return static_cast<SessionLevel>(found - LevelNames().begin());
+  }
+  return MakeError(ErrorCode::kUnknownName,
+                   fmt::format("no level '{}'; {}", name, SuggestName(name, LevelNames())));
+}
+
+long CountSessionFiles(const Scene& scene, const SessionOptions& options) {
+  const auto cameras = static_cast<long>(scene.cameras.size());
+  return options.level == SessionLevel::kFull ? options.scans * (1 + cameras) : cameras;
+}
+
+Expected<SessionReport> SimulateSession(const Scene& scene, std::string_view scene_text,
+                                        const SessionOptions& options) {
+  if (Expected<void> ok = CheckOptions(options); !ok) return tl::unexpected<Error>(ok.error());
+  if (Expected<void> ok = ValidateScene(scene); !ok) return tl::unexpected<Error>(ok.error());
+  Expected<LidarModel> lidar = FindLidarModel(scene.lidar.model);
+  if (!lidar) return tl::unexpected<Error>(lidar.error());
+  Expected<SessionFolder> folder =
+      SessionFolder::Open(options.folder, scene_text, Configuration(options));
+  if (!folder) return tl::unexpected<Error>(folder.error());
+  return Session(scene, options, std::move(*lidar), std::move(*folder)).Run();
+}
+
+}  // namespace sextant

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/session/session_folder.h"
+
+#include <fmt/format.h>
+
+#include <system_error>
+#include <vector>
+
+#include "io/text/text_file.h"
+
+namespace sextant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSceneFile = "scene.yaml";
+constexpr const char* kConfigurationFile = "simulation.yaml";
+
+bool IsHalfWritten(const std::string& name) {
+  return name.starts_with('.') && name.ends_with(".tmp");
+}
+
+Error FolderError(const fs::path& path, const std::error_code& reason) {
+  return {ErrorCode::kIo,
+          fmt::format("cannot use the folder '{}': {}", path.string(), reason.message())};
+}
+
+Expected<void> RequireSame(const fs::path& path, std::string_view expected) {
+  const Expected<std::string> text = ReadTextFile(path);
+  if (!text) return tl::unexpected<Error>(text.error());
+  if (*text == expected) return {};
+  return MakeError(ErrorCode::kInvalidInput,
+                   fmt::format("{}: the folder holds another simulation; remove it, or name "
+                               "another folder",
+                               path.string()));
+}
+
+}  // namespace
+
+Expected<SessionFolder> SessionFolder::Open(const fs::path& path, std::string_view scene_text,
+                                            std::string_view configuration) {
+  std::error_code failed;
+  fs::create_directories(path, failed);
+  if (failed) return tl::unexpected<Error>(FolderError(path, failed));
+  std::vector<fs::path> half_written;
+  std::string stranger;
+  bool is_ours = false;
+  for (fs::directory_iterator entry(path, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    const std::string name = entry->path().filename().string();
+    if (IsHalfWritten(name)) {
+      half_written.push_back(entry->path());
+    } else if (name == kConfigurationFile) {
+      is_ours = true;
+    } else if (name != kSceneFile) {
+      stranger = name;
+    }
+  }
+  if (failed) return tl::unexpected<Error>(FolderError(path, failed));
+  if (!is_ours && !stranger.empty()) {
+    return MakeError(ErrorCode::kInvalidInput,
+                     fmt::format("the folder '{}' holds '{}' and no {}: expected an empty folder "
+                                 "or one of an earlier simulation",
+                                 path.string(), stranger, kConfigurationFile));
+  }
+  const SessionFolder folder(path);
+  if (is_ours) {
+    // In this order: the scene decides more often.
+    if (auto same = RequireSame(path / kSceneFile, scene_text); !same) {
+      return tl::unexpected<Error>(same.error());
+    }
+    if (auto same = RequireSame(path / kConfigurationFile, configuration); !same) {
+      return tl::unexpected<Error>(same.error());
+    }
+  }
+  for (const fs::path& leftover : half_written) fs::remove(leftover, failed);
+  if (is_ours) return folder;
+  // The configuration last: a folder with it is whole.
+  if (auto ok = folder.Write(kSceneFile, scene_text); !ok) {
+    return tl::unexpected<Error>(ok.error());
+  }
+  if (auto ok = folder.Write(kConfigurationFile, configuration); !ok) {
+    return tl::unexpected<Error>(ok.error());
+  }
+  return folder;
+}
+
+Expected<bool> SessionFolder::Complete(const std::string& name,
+                                       const std::function<Expected<std::string>()>& make) const {
+  std::error_code ignored;
+  if (fs::is_regular_file(path_ / name, ignored)) return false;
+  const Expected<std::string> text = make();
+  if (!text) return tl::unexpected<Error>(text.error());
+  if (auto ok = Write(name, *text); !ok) return tl::unexpected<Error>(ok.error());
+  return true;
+}
+
+Expected<void> SessionFolder::Write(const std::string& name, std::string_view text) const {
+  return WriteFileAtomically(path_ / name, text);
+}
+
+}  // namespace sextant

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "solvers/core/registry.h"
+
+namespace sextant {
+
+/// Every solver of this library; the table stands in builtin_solvers.cc.
+SolverRegistry BuiltinSolvers();
+
+}  // namespace sextant

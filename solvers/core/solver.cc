@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/core/solver.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+#include "solvers/core/board_view_check.h"
+#include "solvers/core/subset.h"
+
+namespace sextant {
+namespace {
+
+Expected<void> CheckCount(std::size_t have, int need, const char* what, const std::string& solver) {
+  if (need == 0 || have >= static_cast<std::size_t>(need)) return {};
+  if (have == 0) {
+    return MakeError(ErrorCode::kMissingData,
+                     fmt::format("{} needs {}, and the problem has none", solver, what));
+  }
+  return MakeError(ErrorCode::kTooFewPairs,
+                   fmt::format("{} needs at least {} {}, got {}", solver, need, what, have));
+}
+
+bool IsSymmetricPositive(const Eigen::Matrix3d& m) {
+  return m.isApprox(m.transpose(), 1e-9) && Eigen::LLT<Eigen::Matrix3d>(m).info() == Eigen::Success;
+}
+
+// Whether all pairs are finite and state a sigma, or none, which is nearly always so and seen
+// without a branch a number: 0 x is 0 of every finite x. False is no verdict.
+bool AreOrdinary(std::span<const Pair3d3d> pairs) {
+  double zero = 0.0;
+  bool alike = true;
+  for (const Pair3d3d& pair : pairs) {
+    const Eigen::Vector3d sum = pair.point_in_cam + pair.point_in_lidar;
+    zero += 0.0 * (sum.x() + sum.y() + (sum.z() + pair.sigma_m));
+    alike = alike && !pair.covariance_in_cam && pair.sigma_m >= 0.0 &&
+            (pair.sigma_m > 0.0) == (pairs[0].sigma_m > 0.0);
+  }
+  return alike && zero == 0.0;
+}
+
+Expected<void> CheckPairs(std::span<const Pair3d3d> pairs) {
+  if (AreOrdinary(pairs)) return {};
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Pair3d3d& pair = pairs[i];
+    const auto where = [&] { return fmt::format("3D-3D pair {} of {}", i + 1, pairs.size()); };
+    if (!pair.point_in_cam.allFinite() || !pair.point_in_lidar.allFinite() ||
+        !std::isfinite(pair.sigma_m)) {
+      return MakeError(ErrorCode::kNonFinite, where() + " has a NaN or infinite number");
+    }
+    if (pair.sigma_m < 0.0) {
+      return MakeError(
+          ErrorCode::kInvalidInput,
+          fmt::format("{} has sigma {} m, expected > 0, or 0 for unknown", where(), pair.sigma_m));
+    }
+    if (pair.covariance_in_cam && !IsSymmetricPositive(*pair.covariance_in_cam)) {
+      return MakeError(ErrorCode::kInvalidInput,
+                       where() + " has a covariance that is not symmetric positive definite");
+    }
+    if (HasKnownNoise(pair) != HasKnownNoise(pairs[0])) {
+      return MakeError(ErrorCode::kInvalidInput,
+                       where() +
+                           " differs from the first in whether it states its noise; state it "
+                           "for every pair or for none");
+    }
+  }
+  return {};
+}
+
+bool AreOrdinary(std::span<const Pair2d3d> pairs) {
+  double zero = 0.0;
+  bool alike = true;
+  for (const Pair2d3d& pair : pairs) {
+    const Eigen::Vector3d& point = pair.point_in_lidar;
+    zero += 0.0 * ((pair.pixel.x() + pair.pixel.y()) + (point.x() + point.y()) +
+                   (point.z() + pair.sigma_px));
+    alike &= pair.sigma_px >= 0.0;
+    alike &= (pair.sigma_px > 0.0) == (pairs[0].sigma_px > 0.0);
+  }
+  return alike && zero == 0.0;
+}
+
+Expected<void> CheckPairs(std::span<const Pair2d3d> pairs) {
+  if (AreOrdinary(pairs)) return {};
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Pair2d3d& pair = pairs[i];
+    const auto where = [&] { return fmt::format("2D-3D pair {} of {}", i + 1, pairs.size()); };
+    if (!pair.pixel.allFinite() || !pair.point_in_lidar.allFinite() ||
+        !std::isfinite(pair.sigma_px)) {
+      return MakeError(ErrorCode::kNonFinite, where() + " has a NaN or infinite number");
+    }
+    if (pair.sigma_px < 0.0) {
+      return MakeError(ErrorCode::kInvalidInput,
+                       fmt::format("{} has sigma {} px, expected > 0, or 0 for unknown", where(),
+                                   pair.sigma_px));
+    }
+    if (HasKnownNoise(pair) != HasKnownNoise(pairs[0])) {
+      return MakeError(ErrorCode::kInvalidInput,
+                       where() +
+                           " differs from the first in whether it states its noise; state it "
+                           "for every pair or for none");
+    }
+  }
+  return {};
+}
+
+Expected<void> CheckPoints(std::span<const Eigen::Vector3d> points, const char* frame) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].allFinite()) {
+      return MakeError(ErrorCode::kNonFinite,
+                       fmt::format("point {} of {} of the {} set has a NaN or infinite number",
+                                   i + 1, points.size(), frame));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string_view ToString(Termination termination) {
+  switch (termination) {
+    case Termination::kClosedForm:
+      return "closed_form";
+    case Termination::kConverged:
+      return "converged";
+    case Termination::kMaxIterations:
+      return "max_iterations";
+  }
+  return "unknown";
+}
+
+Expected<void> CheckProblem(const CalibrationProblem& problem, const SolverSpec& spec) {
+  const DataNeeds& needs = spec.needs;
+  const PointSets& sets = problem.point_sets;
+  const std::size_t smaller_set = std::min(sets.in_cam.size(), sets.in_lidar.size());
+  Expected<void> ok;
+  const auto check = [&ok](auto&& next) {
+    if (ok) ok = next();
+  };
+  check([&] {
+    return CheckCount(problem.pairs_3d3d.size(), needs.pairs_3d3d, "3D-3D pairs", spec.name);
+  });
+  check([&] {
+    return CheckCount(problem.pairs_2d3d.size(), needs.pairs_2d3d, "2D-3D pairs", spec.name);
+  });
+  check([&] {
+    return CheckCount(smaller_set, needs.points_per_set, "points in each frame", spec.name);
+  });
+  check([&] {
+    return CheckCount(problem.board_views.size(), needs.board_views, "raw views of boards",
+                      spec.name);
+  });
+  check([&]() -> Expected<void> {
+    if (needs.pairs_2d3d == 0 && needs.board_views == 0) return {};
+    if (!problem.camera) {
+      return MakeError(ErrorCode::kMissingData,
+                       spec.name +
+                           " needs the camera's intrinsics, and the problem has none; give them "
+                           "in the problem or with --camera");
+    }
+    return ValidateCamera(*problem.camera);
+  });
+  check([&]() -> Expected<void> {
+    if (!problem.initial_cam_from_lidar) {
+      if (!needs.initial_pose) return {};
+      return MakeError(ErrorCode::kMissingData, spec.name + " needs an initial cam_from_lidar");
+    }
+    if (!problem.initial_cam_from_lidar->IsFinite()) {
+      return MakeError(ErrorCode::kNonFinite, "the initial cam_from_lidar is not finite");
+    }
+    return {};
+  });
+  if (needs.pairs_3d3d > 0) check([&] { return CheckPairs(problem.pairs_3d3d); });
+  if (needs.pairs_2d3d > 0) check([&] { return CheckPairs(problem.pairs_2d3d); });
+  if (needs.points_per_set > 0) {
+    check([&] { return CheckPoints(sets.in_cam, "camera"); });
+    check([&] { return CheckPoints(sets.in_lidar, "LiDAR"); });
+  }
+  if (needs.board_views > 0) {
+    check([&] { return CheckBoardViews(problem.board_views, problem.boards); });
+  }
+  return ok;
+}
+
+Expected<SolveReport> Solver::Solve(const CalibrationProblem& problem) const {
+  const auto start = std::chrono::steady_clock::now();
+  if (Expected<void> ok = CheckProblem(problem, spec_); !ok) {
+    return tl::unexpected<Error>(std::move(ok.error()));
+  }
+  Expected<Estimate> estimate = DoSolve(problem);
+  const auto end = std::chrono::steady_clock::now();
+  if (!estimate) return tl::unexpected<Error>(std::move(estimate.error()));
+  if (!estimate->cam_from_lidar.IsFinite()) {
+    return MakeError(ErrorCode::kNonFinite,
+                     spec_.name + ": the arithmetic overflowed; are the coordinates in metres?");
+  }
+  SolveReport report;
+  static_cast<Estimate&>(report) = std::move(*estimate);
+  report.solver = spec_.name;
+  report.wall_time_us = std::chrono::duration<double, std::micro>(end - start).count();
+  if (report.camera) {
+    CalibrationProblem with_camera = problem;
+    with_camera.camera = report.camera->camera;
+    report.evaluation = Evaluate(with_camera, report.cam_from_lidar);
+  } else {
+    report.evaluation = Evaluate(problem, report.cam_from_lidar);
+  }
+  return report;
+}
+
+void Solver::DoHypothesize(const CalibrationProblem& problem, std::span<const int> sample,
+                           std::vector<Rigid3d>& poses) const {
+  const Expected<Estimate> estimate = DoSolve(SubsetOf(problem, spec_.needs, sample));
+  if (!estimate) return;
+  poses.push_back(estimate->cam_from_lidar);
+  poses.insert(poses.end(), estimate->alternatives.begin(), estimate->alternatives.end());
+}
+
+}  // namespace sextant

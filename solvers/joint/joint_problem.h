@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "geometry/calibration_problem.h"
+#include "geometry/intrinsics.h"
+#include "solvers/joint/board_view_information.h"
+#include "solvers/refine/refine_ceres.h"
+
+namespace sextant {
+
+enum class JointBoardSize { kGiven, kScale, kSides };
+
+/// Which numbers all views share, and their order: (dphi, dt) of cam_from_lidar, then the range
+/// bias, then the size of the boards (one scale, or (top_right_m, right_bottom_m) of each board),
+/// then intrinsics.
+struct JointUnknowns {
+  bool range_bias = false;
+  JointBoardSize board_size = JointBoardSize::kGiven;
+  std::vector<int> sized_boards;  ///< Ids of which both sides are estimated; with kSides only.
+  std::vector<int> intrinsics;    ///< Into IntrinsicsOf, ascending.
+
+  int Bias() const { return 6; }
+  int Size() const { return 6 + (range_bias ? 1 : 0); }
+  int Intrinsic() const { return Size() + SizeCount(); }
+  int SizeCount() const;
+  int Count() const { return Intrinsic() + static_cast<int>(intrinsics.size()); }
+};
+
+/// A robust loss for each kind of observation. A BoardPoints of n points counts as one observation,
+/// its norm measured from the sqrt(2 n) that it has on average.
+struct JointLosses {
+  RobustLoss printed;
+  RobustLoss face;
+  RobustLoss edges;
+};
+
+/// What is estimated.
+struct JointState {
+  Rigid3d cam_from_lidar;
+  std::vector<Rigid3d> cam_from_board;  ///< Of each view.
+  double range_bias_m = 0.0;            ///< Added by the LiDAR to every range.
+  Eigen::VectorXd size;                 ///< Growth [m], or of the scale; see JointUnknowns.
+  Camera camera;
+};
+
+/// What one view says, to first order; `b` is its board's pose, `s` what all share.
+struct JointViewSystem {
+  Matrix6d bb = Matrix6d::Zero();
+  Eigen::Matrix<double, 6, Eigen::Dynamic> bs;
+  Vector6d b = Vector6d::Zero();  ///< Gradient.
+};
+
+struct JointSystem {
+  std::vector<JointViewSystem> views;
+  Eigen::MatrixXd ss;
+  Eigen::VectorXd s;  ///< Gradient.
+  double cost = 0.0;  ///< 1/2 sum rho
+};
+
+/// One view made ready for a set of unknowns.
+struct JointView {
+  BoardViewTerms terms;
+  int sized_board = -1;  ///< Into JointUnknowns::sized_boards; -1: none.
+};
+
+// Range bias, then size along x and y, or the scale.
+inline constexpr int kLidarExtras = 3;
+
+struct JointRay {
+  RayResidual residual;
+  Eigen::Matrix<double, 1, kLidarExtras> by_extras;
+};
+
+/// The residual of a ray where the LiDAR's bias and the board's size are estimated too.
+class JointRayModel {
+ public:
+  JointRayModel(const JointView& view, const JointUnknowns& unknowns, const JointState& state)
+      : view_(view), unknowns_(unknowns), state_(state) {}
+
+  /// False where the ray does not meet the plane.
+  bool Differentiate(const FaceTerm& term, const BoardPlane& plane, JointRay& out) const;
+  bool Differentiate(const EdgeTerm& term, const BoardPlane& plane, JointRay& out) const;
+
+  /// Where an extra stands among the shared unknowns; -1 where it is none.
+  int PlaceOf(int lidar_extra) const;
+
+ private:
+  const JointView& view_;
+  const JointUnknowns& unknowns_;
+  const JointState& state_;
+};
+
+/// rho(s) and its slope for s = |r|^2; kNone, kHuber and kCauchy.
+struct LossValue {
+  double rho = 0.0;
+  double slope = 1.0;
+};
+LossValue WeighLoss(LossKind kind, double scale, double squared);
+
+/// How far a BoardPoints may be from its mean norm at `sigmas`: the norm of 2n whitened normal
+/// numbers has a standard deviation of 1/sqrt(2) about sqrt(2n) (Fisher 1922).
+double PrintedLimit(std::size_t points, double sigmas);
+
+/// Residuals, derivatives and cost at `state`, the residuals weighed by rho' (iteratively
+/// reweighted least squares). None where an observation has no residual there.
+std::optional<JointSystem> Linearise(const std::vector<JointView>& views,
+                                     const JointUnknowns& unknowns, const JointLosses& losses,
+                                     const JointState& state);
+
+/// The state moved by a step of the shared unknowns and one of each view's board.
+JointState Moved(const JointState& state, const JointUnknowns& unknowns,
+                 const Eigen::VectorXd& shared, const std::vector<Vector6d>& boards);
+
+}  // namespace sextant

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/kernels/cloud_sums.h"
+
+#include <algorithm>
+
+#include "base/lanes.h"
+
+namespace sextant {
+namespace {
+
+// Eight of the vectors, coordinate by coordinate; `beyond` where there are no more.
+template <std::size_t kSize>
+struct Coordinates {
+  Lanes of[kSize];
+};
+
+template <std::size_t kSize>
+SEXTANT_INLINE Coordinates<kSize> LoadFull(const double* from) {
+  Coordinates<kSize> out;
+  for (std::size_t axis = 0; axis < kSize; ++axis) {
+    const double* p = from + axis;
+    out.of[axis] = Lanes{p[0],         p[kSize],     p[2 * kSize], p[3 * kSize],
+                         p[4 * kSize], p[5 * kSize], p[6 * kSize], p[7 * kSize]};
+  }
+  return out;
+}
+
+template <std::size_t kSize>
+SEXTANT_INLINE Coordinates<kSize> LoadCoordinates(const double* data, std::size_t at, std::size_t count,
+                                       const double* beyond) {
+  if (at + kLanes <= count) return LoadFull<kSize>(data + kSize * at);
+  double rest[kSize * kLanes];
+  const std::size_t left = count - at;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const double* from = i < left ? data + kSize * (at + i) : beyond;
+    for (std::size_t axis = 0; axis < kSize; ++axis) rest[kSize * i + axis] = from[axis];
+  }
+  return LoadFull<kSize>(rest);
+}
+
+constexpr double kZero[3] = {};
+
+template <std::size_t kSize>
+SEXTANT_INLINE void SumCoordinates(const double* data, std::size_t count, double (&sums)[kSize]) {
+  Lanes lanes[kSize] = {};
+  for (std::size_t at = 0; at < count; at += kLanes) {
+    const Coordinates<kSize> c = LoadCoordinates<kSize>(data, at, count, kZero);
+    for (std::size_t axis = 0; axis < kSize; ++axis) lanes[axis] += c.of[axis];
+  }
+  for (std::size_t axis = 0; axis < kSize; ++axis) sums[axis] = SumLanes(lanes[axis]);
+}
+
+SEXTANT_MULTIVERSION
+void SumOf2(const double* data, std::size_t count, double (&sums)[2]) {
+  SumCoordinates<2>(data, count, sums);
+}
+
+SEXTANT_MULTIVERSION
+void SumOf3(const double* data, std::size_t count, double (&sums)[3]) {
+  SumCoordinates<3>(data, count, sums);
+}
+
+// What is beyond the last point is at the centre and adds nothing.
+SEXTANT_MULTIVERSION
+void SumOuter(const double* data, std::size_t count, const double (&centre)[3], double (&sums)[6]) {
+  Lanes lanes[6] = {};
+  for (std::size_t at = 0; at < count; at += kLanes) {
+    const Coordinates<3> p = LoadCoordinates<3>(data, at, count, centre);
+    const Lanes x = p.of[0] - centre[0];
+    const Lanes y = p.of[1] - centre[1];
+    const Lanes z = p.of[2] - centre[2];
+    lanes[0] += x * x;
+    lanes[1] += x * y;
+    lanes[2] += x * z;
+    lanes[3] += y * y;
+    lanes[4] += y * z;
+    lanes[5] += z * z;
+  }
+  for (int i = 0; i < 6; ++i) sums[i] = SumLanes(lanes[i]);
+}
+
+struct MomentFrame {
+  double mean[2];
+  double centroid[3];
+  double axes[9];  // Column by column.
+};
+
+SEXTANT_MULTIVERSION
+void AddMoments(const double* image, const double* points, std::size_t count,
+                const MomentFrame& frame, MomentSums& sums) {
+  Lanes u_sums[10] = {};
+  Lanes v_sums[10] = {};
+  Lanes w_sums[10] = {};
+  for (std::size_t at = 0; at < count; at += kLanes) {
+    const Coordinates<2> uv = LoadCoordinates<2>(image, at, count, frame.mean);
+    const Coordinates<3> p = LoadCoordinates<3>(points, at, count, frame.centroid);
+    const Lanes u = uv.of[0] - frame.mean[0];
+    const Lanes v = uv.of[1] - frame.mean[1];
+    const Lanes w = u * u + v * v;
+    Lanes offset[3];
+    for (int axis = 0; axis < 3; ++axis) offset[axis] = p.of[axis] - frame.centroid[axis];
+    Lanes h[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double* a = frame.axes + 3 * axis;
+      h[axis] = a[0] * offset[0] + a[1] * offset[1] + a[2] * offset[2];
+    }
+    u_sums[0] += u;
+    v_sums[0] += v;
+    w_sums[0] += w;
+    for (int k = 0; k < 3; ++k) {
+      u_sums[1 + k] += u * h[k];
+      v_sums[1 + k] += v * h[k];
+      w_sums[1 + k] += w * h[k];
+    }
+    int entry = 4;
+    for (int j = 0; j < 3; ++j) {
+      for (int k = j; k < 3; ++k, ++entry) {
+        const Lanes product = h[j] * h[k];
+        u_sums[entry] += u * product;
+        v_sums[entry] += v * product;
+        w_sums[entry] += w * product;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < 10; ++i) {
+    sums.u[i] = SumLanes(u_sums[i]);
+    sums.v[i] = SumLanes(v_sums[i]);
+    sums.w[i] = SumLanes(w_sums[i]);
+  }
+}
+
+struct FitPose {
+  double r[9];  // Column by column.
+  double t[3];
+};
+
+SEXTANT_MULTIVERSION
+void AddFit(const double* image, const double* points, std::size_t count, const FitPose& pose,
+            double (&sums)[2]) {
+  const double* r = pose.r;
+  Lanes squares = {};
+  Lanes in_front = {};
+  for (std::size_t at = 0; at < count; at += kLanes) {
+    // Beyond the last point the first is taken, and then not counted.
+    const Coordinates<2> uv = LoadCoordinates<2>(image, at, count, image);
+    const Coordinates<3> p = LoadCoordinates<3>(points, at, count, points);
+    const Lanes x = r[0] * p.of[0] + r[3] * p.of[1] + r[6] * p.of[2] + pose.t[0];
+    const Lanes y = r[1] * p.of[0] + r[4] * p.of[1] + r[7] * p.of[2] + pose.t[1];
+    const Lanes z = r[2] * p.of[0] + r[5] * p.of[1] + r[8] * p.of[2] + pose.t[2];
+    const Lanes inverse = 1.0 / (z > 0.0 ? z : AllLanes(1.0));
+    const Lanes du = x * inverse - uv.of[0];
+    const Lanes dv = y * inverse - uv.of[1];
+    Lanes given;
+    for (std::size_t i = 0; i < kLanes; ++i) given[i] = at + i < count ? 1.0 : 0.0;
+    const Lanes weight = z > 0.0 ? given : Lanes{};
+    squares += weight * (du * du + dv * dv);
+    in_front += weight;
+  }
+  sums[0] = SumLanes(squares);
+  sums[1] = SumLanes(in_front);
+}
+
+}  // namespace
+
+Eigen::Vector2d MeanOf(std::span<const Eigen::Vector2d> image_points) {
+  double sums[2];
+  SumOf2(image_points.front().data(), image_points.size(), sums);
+  return Eigen::Vector2d(sums[0], sums[1]) / static_cast<double>(image_points.size());
+}
+
+Eigen::Vector3d MeanOf(std::span<const Eigen::Vector3d> points) {
+  double sums[3];
+  SumOf3(points.front().data(), points.size(), sums);
+  return Eigen::Vector3d(sums[0], sums[1], sums[2]) / static_cast<double>(points.size());
+}
+
+Eigen::Matrix3d ScatterAbout(const Eigen::Vector3d& centre,
+                             std::span<const Eigen::Vector3d> points) {
+  double s[6];
+  SumOuter(points.front().data(), points.size(), {centre.x(), centre.y(), centre.z()}, s);
+  Eigen::Matrix3d scatter;
+  scatter << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+  return scatter / static_cast<double>(points.size());
+}
+
+MomentSums SumMoments(std::span<const Eigen::Vector2d> image_points, const Eigen::Vector2d& mean,
+                      std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& centroid,
+                      const Eigen::Matrix3d& axes) {
+  MomentFrame frame = {{mean.x(), mean.y()}, {centroid.x(), centroid.y(), centroid.z()}, {}};
+  std::copy_n(axes.data(), 9, frame.axes);
+  MomentSums sums;
+  AddMoments(image_points.front().data(), points.front().data(), points.size(), frame, sums);
+  return sums;
+}
+
+ImageFit FitOf(std::span<const Eigen::Vector2d> image_points,
+               std::span<const Eigen::Vector3d> points, const Eigen::Matrix3d& rotation,
+               const Eigen::Vector3d& translation) {
+  FitPose pose;
+  std::copy_n(rotation.data(), 9, pose.r);
+  std::copy_n(translation.data(), 3, pose.t);
+  double sums[2];
+  AddFit(image_points.front().data(), points.front().data(), points.size(), pose, sums);
+  return {.behind = points.size() - static_cast<std::size_t>(sums[1]), .sum_squares = sums[0]};
+}
+
+}  // namespace sextant

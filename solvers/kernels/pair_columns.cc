@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/kernels/pair_columns.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "solvers/kernels/column_kernel.h"
+
+namespace sextant {
+namespace {
+
+constexpr int kColumns = 8;
+constexpr std::size_t kColumnBlock = PairColumns::kBlock;
+
+// Of the padded pairs too, whose residual is not a number and costs as an outlier's.
+SEXTANT_MULTIVERSION double SumTruncated(const PairColumns& pairs, const ColumnPose& pose,
+                                         double max_squared) {
+  const Lanes most = AllLanes(max_squared);
+  Lanes cost{};
+  for (std::size_t at = 0; at < pairs.padded(); at += kLanes) {
+    const Lanes squared = SquaredSigmas(pairs, pose, at);
+    cost += squared < most ? squared : most;
+  }
+  return SumLanes(cost);
+}
+
+SEXTANT_MULTIVERSION void MarkInliers(const PairColumns& pairs, const ColumnPose& pose,
+                                      double max_squared, std::uint64_t* bits_of_block) {
+  const LaneMask shifts = {0, 8, 16, 24, 32, 40, 48, 56};
+  for (std::size_t block = 0; block < pairs.padded(); block += kColumnBlock) {
+    LaneMask bits{};
+    for (std::size_t k = kLanes; k-- > 0;) {
+      const LaneMask is_inlier = SquaredSigmas(pairs, pose, block + kLanes * k) <= max_squared;
+      bits = bits + bits - is_inlier;
+    }
+    bits <<= shifts;
+    bits_of_block[block / kColumnBlock] = static_cast<std::uint64_t>(OrOfLanes(bits));
+  }
+}
+
+struct InlierSums {
+  double cost = 0.0;
+  double count = 0.0;
+};
+
+SEXTANT_MULTIVERSION void SumInliers(const PairColumns& pairs, const ColumnPose& pose,
+                                     double max_squared, InlierSums& result, ColumnFit& fit) {
+  const Lanes most = AllLanes(max_squared);
+  const Lanes none{};
+  PairMomentSums<Lanes> sums{};
+  Lanes cost{};
+  Lanes count{};
+  for (std::size_t at = 0; at < pairs.padded(); at += kLanes) {
+    const Lanes squared = SquaredSigmas(pairs, pose, at);
+    const LaneMask is_inlier = squared <= most;
+    cost += is_inlier ? squared : most;
+    count += is_inlier ? none + 1.0 : none;
+    fit.Add(pairs, at, is_inlier, LoadLanes(pairs.Column(kInverseVarianceColumn) + at), sums);
+  }
+  result.cost = SumLanes(cost);
+  result.count = SumLanes(count);
+  fit.Finish(sums);
+}
+
+double CostOfPadding(const PairColumns& pairs, double max_squared) {
+  return static_cast<double>(pairs.padded() - pairs.size()) * max_squared;
+}
+
+}  // namespace
+
+PairColumns::PairColumns(std::span<const Pair3d3d> pairs, const AssumedNoise& assumed)
+    : size_(pairs.size()),
+      padded_((pairs.size() + kColumnBlock - 1) / kColumnBlock * kColumnBlock),
+      numbers_(kColumns * padded_) {
+  const auto set = [this](int column, std::size_t place, double value) {
+    numbers_[static_cast<std::size_t>(column) * padded_ + place] = value;
+  };
+  for (std::size_t i = 0; i < size_; ++i) {
+    const Pair3d3d& pair = pairs[i];
+    const std::size_t place = Place(i);
+    for (int axis = 0; axis < 3; ++axis) {
+      set(kCamColumn + axis, place, pair.point_in_cam[axis]);
+      set(kLidarColumn + axis, place, pair.point_in_lidar[axis]);
+    }
+    const double sigma = pair.sigma_m > 0.0 ? pair.sigma_m : assumed.sigma_m;
+    set(kVarianceColumn, place, sigma * sigma);
+    set(kInverseVarianceColumn, place, 1.0 / (sigma * sigma));
+  }
+  for (std::size_t i = size_; i < padded_; ++i) {
+    for (int column = 0; column < kColumns; ++column) {
+      set(column, Place(i), std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+}
+
+double TruncatedCost(const PairColumns& pairs, const Rigid3d& cam_from_lidar, double max_squared) {
+  return SumTruncated(pairs, ColumnPoseOf(cam_from_lidar), max_squared) -
+         CostOfPadding(pairs, max_squared);
+}
+
+InlierFit FitInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar, double max_squared) {
+  InlierSums sum;
+  ColumnFit fit(pairs);
+  SumInliers(pairs, ColumnPoseOf(cam_from_lidar), max_squared, sum, fit);
+  InlierFit result;
+  result.cost = sum.cost - CostOfPadding(pairs, max_squared);
+  result.inliers = static_cast<int>(sum.count);
+  if (result.inliers < 3) return result;
+  const std::optional<Rigid3d> pose = fit.pose();
+  result.fitted = pose.has_value();
+  if (pose) result.cam_from_lidar = *pose;
+  return result;
+}
+
+std::vector<int> InliersOf(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
+                           double max_squared) {
+  std::vector<std::uint64_t> bits(pairs.padded() / kColumnBlock);
+  MarkInliers(pairs, ColumnPoseOf(cam_from_lidar), max_squared, bits.data());
+  std::vector<int> inliers;
+  inliers.reserve(pairs.size());
+  for (std::size_t block = 0; block < bits.size(); ++block) {
+    for (std::uint64_t left = bits[block]; left != 0; left &= left - 1) {
+      inliers.push_back(static_cast<int>(block * kColumnBlock) + std::countr_zero(left));
+    }
+  }
+  return inliers;
+}
+
+}  // namespace sextant

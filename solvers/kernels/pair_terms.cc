@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/kernels/pair_terms.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "solvers/kernels/pixel_pair_lanes.h"
+
+namespace sextant {
+namespace {
+
+// W with W^T W the inverse of the pair's covariance.
+Eigen::Matrix3d Whitener(const Pair3d3d& pair, double assumed_sigma_m) {
+  if (pair.covariance_in_cam) {
+    const Eigen::LLT<Eigen::Matrix3d> factor(*pair.covariance_in_cam);
+    return factor.matrixL().solve(Eigen::Matrix3d::Identity().eval());
+  }
+  return Eigen::Matrix3d::Identity() / (pair.sigma_m > 0.0 ? pair.sigma_m : assumed_sigma_m);
+}
+
+// Up to eight terms; whether all pairs state their noise.
+template <class L>
+SEXTANT_INLINE bool MakeBlockFor(std::span<const Pair2d3d> pairs, double assumed_sigma_px,
+                                 PixelBlock& block) {
+  const EightPixelPairs<L> eight = GatherPixelPairs<L>(pairs);
+  const MaskOf<L> known = eight.sigma > 0.0;
+  StoreLanes(eight.x, block.x);
+  StoreLanes(eight.y, block.y);
+  StoreLanes(eight.z, block.z);
+  StoreLanes(eight.u, block.u);
+  StoreLanes(eight.v, block.v);
+  StoreLanes(1.0 / Select(known, eight.sigma, All<L>(assumed_sigma_px)), block.inverse_sigma);
+  for (std::size_t k = pairs.size(); k < kLanes; ++k) block.inverse_sigma[k] = 0.0;
+  return !AnyLane(~known);
+}
+SEXTANT_FOR_LANES(bool, MakeBlock,
+                  (std::span<const Pair2d3d> pairs, double assumed_sigma_px, PixelBlock& block),
+                  (pairs, assumed_sigma_px, block))
+
+}  // namespace
+
+void PairTerms::Add(std::span<const Pair3d3d> pairs, const AssumedNoise& assumed) {
+  points.reserve(points.size() + pairs.size());
+  for (const Pair3d3d& pair : pairs) {
+    points.push_back({pair.point_in_cam, pair.point_in_lidar, Whitener(pair, assumed.sigma_m)});
+    noise_known = noise_known && HasKnownNoise(pair);
+  }
+}
+
+void PairTerms::Add(std::span<const Pair2d3d> pairs, const Camera& of_pairs,
+                    const AssumedNoise& assumed) {
+  camera = of_pairs;
+  pixels.reserve(pixels.size() + pairs.size());
+  // Those that fill a block begun before, then block by block.
+  for (; !pairs.empty() && pixels.size() % kLanes != 0; pairs = pairs.subspan(1)) {
+    const Pair2d3d& pair = pairs.front();
+    const double sigma = pair.sigma_px > 0.0 ? pair.sigma_px : assumed.sigma_px;
+    pixels.push_back({pair.pixel, pair.point_in_lidar, 1.0 / sigma});
+    noise_known = noise_known && HasKnownNoise(pair);
+  }
+  PixelBlock block;
+  while (!pairs.empty()) {
+    const std::size_t count = std::min(kLanes, pairs.size());
+    if (!MakeBlock(pairs.first(count), assumed.sigma_px, block)) noise_known = false;
+    pixels.AppendBlock(block, count);
+    pairs = pairs.subspan(count);
+  }
+}
+
+void PairTerms::AssignSubset(const PairTerms& all, std::span<const int> indices) {
+  points.clear();
+  pixels.clear();
+  camera = all.camera;
+  noise_known = all.noise_known;
+  for (const int i : indices) {
+    const auto index = static_cast<std::size_t>(i);
+    if (all.pixels.empty()) {
+      points.push_back(all.points[index]);
+    } else {
+      pixels.push_back(all.pixels[index]);
+    }
+  }
+}
+
+PairTerms MakeTerms(const CalibrationProblem& problem, PairKind kind, const AssumedNoise& assumed) {
+  PairTerms terms;
+  if (kind == PairKind::k3d3d) {
+    terms.Add(problem.pairs_3d3d, assumed);
+  } else {
+    terms.Add(problem.pairs_2d3d, *problem.camera, assumed);
+  }
+  return terms;
+}
+
+}  // namespace sextant

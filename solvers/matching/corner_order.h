@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "base/error.h"
+#include "geometry/rigid3d.h"
+
+namespace sextant {
+
+/// The corners of one board as each sensor lists them: both go round the board, but may start at
+/// another corner and turn the other way. Equally many, at least 3; metres.
+struct CornerGroup {
+  std::vector<Eigen::Vector3d> in_b;
+  std::vector<Eigen::Vector3d> in_a;
+};
+
+/// One of the 2n ways to go round n corners.
+struct CornerOrder {
+  int first = 0;  ///< Corner of a that is corner 0 of b.
+  bool reversed = false;
+
+  /// Index in a of corner k of b.
+  int IndexInA(int k, int corners) const {
+    return (first + (reversed ? corners - k : k)) % corners;
+  }
+  friend bool operator==(const CornerOrder&, const CornerOrder&) = default;
+};
+
+struct CornerOrderFit {
+  std::vector<CornerOrder> orders;  ///< One for each group.
+  Rigid3d b_from_a;
+  double rmse_m = 0.0;  ///< Over all corners.
+};
+
+/// The pose and the orders of all groups together that minimise the sum of squared distances.
+///
+/// The corners of one board fit under any of its orders, as a board has symmetries; that one pose
+/// must serve all groups is what tells them apart (solvers/matching/object_match.h, each group a
+/// view that may be taken in any order). Starts: the fit of the groups' centroids, which no order
+/// changes, and every order of the groups. With one group, or groups that share a symmetry, the
+/// orders are not determined: those nearest to the order as listed are returned. Errors:
+/// kTooFewPairs (no group); kInvalidInput (uneven or short groups); kDegenerate.
+Expected<CornerOrderFit> ResolveCornerOrders(std::span<const CornerGroup> groups);
+
+}  // namespace sextant

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/pnp/p3p_solver.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "geometry/residuals.h"
+#include "solvers/core/registry.h"
+#include "solvers/kernels/p3p.h"
+#include "solvers/pnp/triple_covariance.h"
+
+namespace sextant {
+namespace {
+
+// More points give little: the triples of the outermost five hold one close to the best.
+constexpr std::size_t kMaxCorners = 5;
+
+// Pairs far apart in the image: the one farthest from the centre, then whichever is farthest from
+// those chosen; the first of equals.
+std::vector<std::size_t> SpreadPairs(std::span<const Pair2d3d> pairs) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Pair2d3d& pair : pairs) sum += pair.pixel;
+  const Eigen::Vector2d centre = sum / static_cast<double>(pairs.size());
+  std::vector<double> distances;
+  distances.reserve(pairs.size());
+  for (const Pair2d3d& pair : pairs) distances.push_back((pair.pixel - centre).norm());
+  std::vector<std::size_t> chosen;
+  while (chosen.size() < std::min(kMaxCorners, pairs.size())) {
+    const auto farthest = std::max_element(distances.begin(), distances.end());
+    chosen.push_back(static_cast<std::size_t>(farthest - distances.begin()));
+    const Eigen::Vector2d& pixel = pairs[chosen.back()].pixel;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const double distance = (pairs[i].pixel - pixel).norm();
+      distances[i] = chosen.size() == 1 ? distance : std::min(distances[i], distance);
+    }
+    for (const std::size_t i : chosen) distances[i] = -1.0;
+  }
+  return chosen;
+}
+
+std::vector<Triple> TriplesOf(const std::vector<std::size_t>& chosen) {
+  std::vector<Triple> triples;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    for (std::size_t j = i + 1; j < chosen.size(); ++j) {
+      for (std::size_t k = j + 1; k < chosen.size(); ++k) {
+        triples.push_back({chosen[i], chosen[j], chosen[k]});
+      }
+    }
+  }
+  return triples;
+}
+
+// Whether the points of a triple leave the turn about a line to rounding, as SolveP3p judges it.
+bool IsFlat(std::span<const Pair2d3d> pairs, const Triple& triple) {
+  const Eigen::Vector3d& origin = pairs[triple[0]].point_in_lidar;
+  const Eigen::Vector3d a = pairs[triple[1]].point_in_lidar - origin;
+  const Eigen::Vector3d b = pairs[triple[2]].point_in_lidar - origin;
+  return !(a.cross(b).norm() > 1e-6 * std::max(a.squaredNorm(), b.squaredNorm()));
+}
+
+// How badly a pose explains the pairs: points that it does not project, then squared pixels. Only
+// that it is worse where it is worse than `give_up`.
+using Misfit = std::pair<int, double>;
+
+Misfit MisfitOf(const CalibrationProblem& problem, const Rigid3d& pose, const Misfit& give_up) {
+  Misfit misfit{0, 0.0};
+  for (const Pair2d3d& pair : problem.pairs_2d3d) {
+    const auto residual = ReprojectionResidual(*problem.camera, pose, pair);
+    if (residual) {
+      misfit.second += residual->squaredNorm();
+    } else {
+      ++misfit.first;
+    }
+    if (misfit > give_up) break;
+  }
+  return misfit;
+}
+
+struct TriplePoses {
+  std::array<Rigid3d, kMaxP3pPoses> poses;
+  int count = 0;
+};
+
+template <class Indices>
+TriplePoses SolveTriple(const CalibrationProblem& problem, const Indices& indices) {
+  TriplePoses found;
+  std::array<Eigen::Vector3d, 3> rays;
+  std::array<Eigen::Vector3d, 3> points;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Pair2d3d& pair = problem.pairs_2d3d[static_cast<std::size_t>(indices[i])];
+    const std::optional<Eigen::Vector3d> ray = Unproject(*problem.camera, pair.pixel);
+    if (!ray) return found;
+    rays[i] = *ray;
+    points[i] = pair.point_in_lidar;
+  }
+  found.count = SolveP3p(rays, points, found.poses);
+  return found;
+}
+
+// The triple whose pixel noise disturbs the projections of all pairs least, at a pose near the
+// answer. It does not look at residuals, so the covariance of its solution stays honest.
+Triple SteadiestTriple(const CalibrationProblem& problem, const std::vector<Triple>& triples,
+                       const Rigid3d& near_answer) {
+  const Camera& camera = *problem.camera;
+  const std::vector<Pair2d3d>& pairs = problem.pairs_2d3d;
+  Triple best = triples.front();
+  const auto information = ProjectionInformation(camera, pairs, near_answer);
+  if (!information) return best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Triple& triple : triples) {
+    const auto covariance = RelativeTripleCovariance(camera, pairs, triple, near_answer);
+    if (!covariance) continue;
+    const double variance = covariance->cwiseProduct(*information).sum();
+    if (variance < least) {
+      least = variance;
+      best = triple;
+    }
+  }
+  return best;
+}
+
+/// Of the outermost pairs, the three that fix the pose best are solved; the others only choose
+/// among the solutions. With exactly three pairs the alternatives are as good as the answer.
+class P3pSolver final : public Solver {
+ public:
+  explicit P3pSolver(const std::string& name)
+      : Solver({.name = name, .needs = {.pairs_2d3d = 3}}) {}
+
+ private:
+  Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
+    const std::vector<Triple> triples = TriplesOf(SpreadPairs(problem.pairs_2d3d));
+    std::vector<Rigid3d> poses;
+    for (const Triple& triple : triples) Append(SolveTriple(problem, triple), poses);
+    if (poses.empty()) return Refusal(problem, triples);
+    Triple triple = triples.front();
+    if (triples.size() > 1) {
+      triple = SteadiestTriple(problem, triples, Best(problem, poses));
+      std::vector<Rigid3d> steady;
+      Append(SolveTriple(problem, triple), steady);
+      if (!steady.empty()) poses = {Best(problem, steady)};
+    }
+    Estimate estimate;
+    estimate.cam_from_lidar = poses.front();
+    estimate.alternatives.assign(poses.begin() + 1, poses.end());
+    estimate.inliers.resize(problem.pairs_2d3d.size());
+    std::iota(estimate.inliers.begin(), estimate.inliers.end(), 0);
+    estimate.covariance =
+        TripleCovariance(*problem.camera, problem.pairs_2d3d, triple, estimate.cam_from_lidar);
+    return estimate;
+  }
+
+  static void Append(const TriplePoses& found, std::vector<Rigid3d>& poses) {
+    poses.insert(poses.end(), found.poses.begin(), found.poses.begin() + found.count);
+  }
+
+  static Rigid3d Best(const CalibrationProblem& problem, const std::vector<Rigid3d>& poses) {
+    const Rigid3d* best = &poses.front();
+    Misfit least{std::numeric_limits<int>::max(), 0.0};
+    for (const Rigid3d& pose : poses) {
+      const Misfit misfit = MisfitOf(problem, pose, least);
+      if (!(misfit < least)) continue;
+      least = misfit;
+      best = &pose;
+    }
+    return *best;
+  }
+
+  void DoHypothesize(const CalibrationProblem& problem, std::span<const int> sample,
+                     std::vector<Rigid3d>& poses) const override {
+    if (sample.size() > 3) {
+      Solver::DoHypothesize(problem, sample, poses);
+      return;
+    }
+    Append(SolveTriple(problem, sample), poses);
+  }
+
+  tl::unexpected<Error> Refusal(const CalibrationProblem& problem,
+                                const std::vector<Triple>& triples) const {
+    if (std::all_of(triples.begin(), triples.end(),
+                    [&](const Triple& triple) { return IsFlat(problem.pairs_2d3d, triple); })) {
+      return MakeError(ErrorCode::kDegenerate,
+                       spec().name +
+                           ": the points coincide or lie on one line, which leaves a rotation "
+                           "undetermined; use points that span a plane");
+    }
+    return MakeError(ErrorCode::kNoConsensus,
+                     spec().name +
+                         ": no pose in front of the camera sees the outermost points at their "
+                         "pixels; check the pairing, the units and the camera");
+  }
+};
+
+}  // namespace
+
+bool IsP3pOfPinhole(const Solver& solver, const CalibrationProblem& problem) {
+  return problem.camera && problem.camera->model == CameraModel::kPinhole &&
+         dynamic_cast<const P3pSolver*>(&solver) != nullptr;
+}
+
+SolverEntry P3pEntry() {
+  return {
+      .name = "p3p",
+      .summary =
+          "exact pose of the three best placed pixels; the others choose among its solutions",
+      .needs = "3 or more 2D-3D pairs, not on one line; with 3 the answer is ambiguous",
+      .reference = "Ding et al. 2023 (CVPR), Persson and Nordberg 2018 (ECCV)",
+      .example = "p3p",
+      .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
+        return std::make_shared<P3pSolver>(arguments.name);
+      },
+  };
+}
+
+}  // namespace sextant

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/pnp/pnp_solver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "geometry/so3.h"
+#include "solvers/pnp/image_noise.h"
+#include "solvers/pnp/moment_covariance.h"
+#include "solvers/pnp/object_space_covariance.h"
+#include "solvers/pnp/plane_frame.h"
+#include "solvers/pnp/reprojection_covariance.h"
+
+namespace sextant {
+namespace {
+
+// Rays more than 84 deg off the view's axis would dwarf the others on its image plane.
+constexpr double kMinRayZ = 0.1;
+
+/// Unit rays onto the image plane of a view that sees them all; how the camera is turned to it.
+Expected<Eigen::Quaterniond> ProjectRays(std::span<const Eigen::Vector3d> rays,
+                                         std::span<Eigen::Vector2d> image_points) {
+  Eigen::Quaterniond cam_from_view = Eigen::Quaterniond::Identity();
+  const auto is_wide = [&](const Eigen::Vector3d& ray) {
+    return !((cam_from_view.conjugate() * ray).z() > kMinRayZ);
+  };
+  if (std::any_of(rays.begin(), rays.end(), is_wide)) {
+    const Eigen::Vector3d sum =
+        std::accumulate(rays.begin(), rays.end(), Eigen::Vector3d(Eigen::Vector3d::Zero()));
+    cam_from_view = RotationBetween(Eigen::Vector3d::UnitZ(), sum);
+  }
+  if (std::any_of(rays.begin(), rays.end(), is_wide)) {
+    return MakeError(ErrorCode::kInvalidInput,
+                     "the pixels span more than 168 deg of view, which this solver cannot put on "
+                     "one image plane; use p3p or ransac(p3p)");
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    image_points[i] = (cam_from_view.conjugate() * rays[i]).hnormalized();
+  }
+  return cam_from_view;
+}
+
+/// What the kernel works on, and how the camera is turned from it.
+struct View {
+  Eigen::Quaterniond cam_from_view = Eigen::Quaterniond::Identity();
+  std::vector<Eigen::Vector2d> image_points = {};
+  std::vector<Eigen::Vector3d> points = {};
+};
+
+Expected<View> MakeView(const Camera& camera, std::span<const Pair2d3d> pairs) {
+  View view;
+  view.image_points.resize(pairs.size());
+  view.points.resize(pairs.size());
+  std::vector<Eigen::Vector3d> rays(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::optional<Eigen::Vector3d> ray = Unproject(camera, pairs[i].pixel);
+    if (!ray) {
+      return MakeError(ErrorCode::kInvalidInput,
+                       fmt::format("2D-3D pair {} of {}: no ray of the camera model meets pixel "
+                                   "({:g}, {:g}); check the pixel and the distortion",
+                                   i + 1, pairs.size(), pairs[i].pixel.x(), pairs[i].pixel.y()));
+    }
+    rays[i] = *ray;
+    view.points[i] = pairs[i].point_in_lidar;
+  }
+  const Expected<Eigen::Quaterniond> cam_from_view = ProjectRays(rays, view.image_points);
+  if (!cam_from_view) return tl::unexpected<Error>(cam_from_view.error());
+  view.cam_from_view = *cam_from_view;
+  return view;
+}
+
+Rigid3d Turned(const Eigen::Quaterniond& turn, const Rigid3d& pose) {
+  return Rigid3d{turn, Eigen::Vector3d::Zero()} * pose;
+}
+
+double FocalLengthPx(const Camera& camera) { return 0.5 * (camera.fx_px + camera.fy_px); }
+
+/// The covariance through the moments; none of four different points, of which the kernel also
+/// looks at the pixels.
+std::optional<Matrix6d> ThroughChain(const MomentsKernel& of_moments, const View& view,
+                                     std::span<const Eigen::Matrix2d> image_covariances,
+                                     const Rigid3d& view_from_lidar) {
+  constexpr std::size_t kMinDifferent = 5;
+  const Expected<Correspondences> data =
+      PrepareCorrespondences(view.image_points, view.points, kMinDifferent);
+  if (!data) return std::nullopt;
+  const PoseOfMoments estimate = of_moments(*data, view_from_lidar);
+  if (!estimate) return std::nullopt;
+  return ChainedMomentCovariance(*data, image_covariances, estimate);
+}
+
+/// The covariance through the kernel, whose answer `view_from_lidar` is.
+std::optional<Matrix6d> ThroughMoments(const PnpKernel& kernel, double focal_length_px,
+                                       const View& view,
+                                       std::span<const Eigen::Matrix2d> image_covariances,
+                                       const Rigid3d& view_from_lidar) {
+  const auto estimate = [&](std::span<const Eigen::Vector2d> image) -> std::optional<Rigid3d> {
+    const Expected<PnpPoses> found =
+        kernel({image, view.points, focal_length_px, {.near = &view_from_lidar}});
+    if (!found) return std::nullopt;
+    // Of several poses, the one that continues the answer.
+    const auto distance = [&](const Rigid3d& pose) {
+      return PoseDifference(pose, view_from_lidar).squaredNorm();
+    };
+    return *std::min_element(
+        found->poses.begin(), found->poses.begin() + found->count,
+        [&](const Rigid3d& a, const Rigid3d& b) { return distance(a) < distance(b); });
+  };
+  return MomentCovariance(view.image_points, image_covariances, view.points, estimate);
+}
+
+/// In the camera's frame; the view that the kernel worked in is taken as given.
+std::optional<Matrix6d> KernelCovariance(const PnpKernel& kernel, PnpCovariance kind,
+                                         const MomentsKernel& of_moments, const Camera& camera,
+                                         std::span<const Pair2d3d> pairs, const View& view,
+                                         const Rigid3d& cam_from_lidar) {
+  const auto unstated = UnstatedVariance(camera, pairs, cam_from_lidar);
+  if (!unstated) return std::nullopt;
+  const auto image_covariances =
+      ImageCovariances(camera, pairs, view.image_points, view.cam_from_view, *unstated);
+  if (!image_covariances) return std::nullopt;
+  const Rigid3d view_from_lidar = Turned(view.cam_from_view.conjugate(), cam_from_lidar);
+  std::optional<Matrix6d> in_view;
+  if (kind == PnpCovariance::kObjectSpace) {
+    in_view =
+        ObjectSpaceCovariance(view.image_points, *image_covariances, view.points, view_from_lidar);
+  } else if (of_moments) {
+    in_view = ThroughChain(of_moments, view, *image_covariances, view_from_lidar);
+  }
+  if (!in_view && kind == PnpCovariance::kMoments) {
+    in_view =
+        ThroughMoments(kernel, FocalLengthPx(camera), view, *image_covariances, view_from_lidar);
+  }
+  if (!in_view) return std::nullopt;
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() =
+      view.cam_from_view.toRotationMatrix();
+  return Matrix6d(turn * *in_view * turn.transpose());
+}
+
+}  // namespace
+
+PnpSolver::PnpSolver(SolverSpec spec, PnpKernel kernel, PnpCovariance covariance)
+    : Solver(std::move(spec)), kernel_(std::move(kernel)), covariance_(covariance) {}
+
+PnpSolver::PnpSolver(SolverSpec spec, PnpKernel kernel, MomentsKernel of_moments)
+    : Solver(std::move(spec)),
+      kernel_(std::move(kernel)),
+      covariance_(PnpCovariance::kMoments),
+      of_moments_(std::move(of_moments)) {}
+
+Expected<Estimate> PnpSolver::DoSolve(const CalibrationProblem& problem) const {
+  const Camera& camera = *problem.camera;
+  const std::vector<Pair2d3d>& pairs = problem.pairs_2d3d;
+  Expected<View> view = MakeView(camera, pairs);
+  if (!view) return tl::unexpected<Error>(Named(view.error()));
+  Expected<PnpPoses> found = kernel_({view->image_points, view->points, FocalLengthPx(camera)});
+  if (!found) return tl::unexpected<Error>(Named(found.error()));
+  for (Rigid3d& pose : found->poses) pose = Turned(view->cam_from_view, pose);
+  Estimate estimate;
+  estimate.cam_from_lidar = found->poses[0];
+  estimate.alternatives.assign(found->poses.begin() + 1, found->poses.begin() + found->count);
+  estimate.iterations = found->iterations;
+  estimate.inliers = std::move(found->inliers);
+  if (estimate.inliers.empty()) {
+    estimate.inliers.resize(pairs.size());
+    std::iota(estimate.inliers.begin(), estimate.inliers.end(), 0);
+  }
+  const Rigid3d& pose = estimate.cam_from_lidar;
+  if (covariance_ == PnpCovariance::kTriple) {
+    estimate.covariance = TripleCovariance(camera, pairs, found->fixed_by.value(), pose);
+  } else if (covariance_ == PnpCovariance::kLeastSquares) {
+    std::vector<Pair2d3d> used;
+    for (const int i : estimate.inliers) used.push_back(pairs[static_cast<std::size_t>(i)]);
+    estimate.covariance = ReprojectionCovariance(camera, used, pose);
+  } else {
+    if (spec().needs.points_on_plane) FlattenOntoPlane(view->points);
+    estimate.covariance =
+        KernelCovariance(kernel_, covariance_, of_moments_, camera, pairs, *view, pose);
+  }
+  return estimate;
+}
+
+Error PnpSolver::Named(Error error) const {
+  error.message = spec().name + ": " + error.message;
+  return error;
+}
+
+void PnpSolver::DoHypothesize(const CalibrationProblem& problem, std::span<const int> sample,
+                              std::vector<Rigid3d>& poses) const {
+  constexpr std::size_t kMostOnStack = 64;
+  const Camera& camera = *problem.camera;
+  const auto pair = [&](std::size_t i) -> const Pair2d3d& {
+    return problem.pairs_2d3d[static_cast<std::size_t>(sample[i])];
+  };
+  const auto append = [&](std::span<const Eigen::Vector2d> image_points,
+                          std::span<const Eigen::Vector3d> points,
+                          const Eigen::Quaterniond& cam_from_view) {
+    const Expected<PnpPoses> found =
+        kernel_({image_points, points, FocalLengthPx(camera), {.unchecked = true}});
+    for (int i = 0; found && i < found->count; ++i) {
+      poses.push_back(Turned(cam_from_view, found->poses[static_cast<std::size_t>(i)]));
+    }
+  };
+  if (sample.size() > kMostOnStack) {
+    std::vector<Pair2d3d> pairs;
+    for (std::size_t i = 0; i < sample.size(); ++i) pairs.push_back(pair(i));
+    const Expected<View> view = MakeView(camera, pairs);
+    if (view) append(view->image_points, view->points, view->cam_from_view);
+    return;
+  }
+  std::array<Eigen::Vector3d, kMostOnStack> rays;
+  std::array<Eigen::Vector3d, kMostOnStack> points;
+  std::array<Eigen::Vector2d, kMostOnStack> image_points;
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    const std::optional<Eigen::Vector3d> ray = Unproject(camera, pair(i).pixel);
+    if (!ray) return;
+    rays[i] = *ray;
+    points[i] = pair(i).point_in_lidar;
+  }
+  const std::span<Eigen::Vector2d> image(image_points.data(), sample.size());
+  const auto cam_from_view = ProjectRays(std::span(rays).first(sample.size()), image);
+  if (cam_from_view) append(image, std::span(points).first(sample.size()), *cam_from_view);
+}
+
+}  // namespace sextant

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/pnp/reprojection_covariance.h"
+
+#include "geometry/residuals.h"
+#include "geometry/symmetric.h"
+
+namespace sextant {
+namespace {
+
+// Degrees of freedom of a pose.
+constexpr double kPoseFreedom = 6.0;
+
+}  // namespace
+
+std::optional<Eigen::Matrix<double, 2, 6>> ReprojectionJacobian(const Camera& camera,
+                                                                const Rigid3d& pose,
+                                                                const Pair2d3d& pair) {
+  const Eigen::Vector3d arm = pose.rotation * pair.point_in_lidar;
+  const auto projection = ProjectWithJacobian(camera, arm + pose.translation);
+  if (!projection) return std::nullopt;
+  Eigen::Matrix<double, 2, 6> jacobian;
+  jacobian << -projection->pixel_by_point * Hat(arm), projection->pixel_by_point;
+  return jacobian;
+}
+
+std::optional<double> UnstatedVariance(const Camera& camera, std::span<const Pair2d3d> pairs,
+                                       const Rigid3d& pose) {
+  if (pairs.empty()) return std::nullopt;
+  if (HasKnownNoise(pairs.front())) return 0.0;
+  const double freedom = 2.0 * static_cast<double>(pairs.size()) - kPoseFreedom;
+  if (freedom <= 0.0) return std::nullopt;
+  double squares = 0.0;
+  for (const Pair2d3d& pair : pairs) {
+    const auto residual = ReprojectionResidual(camera, pose, pair);
+    if (!residual) return std::nullopt;
+    squares += residual->squaredNorm();
+  }
+  return squares / freedom;
+}
+
+std::optional<Matrix6d> ReprojectionCovariance(const Camera& camera,
+                                               std::span<const Pair2d3d> pairs,
+                                               const Rigid3d& pose) {
+  const std::optional<double> unstated = UnstatedVariance(camera, pairs, pose);
+  if (!unstated) return std::nullopt;
+  Matrix6d information = Matrix6d::Zero();
+  for (const Pair2d3d& pair : pairs) {
+    const auto jacobian = ReprojectionJacobian(camera, pose, pair);
+    if (!jacobian) return std::nullopt;
+    // Of unit variance first, where it is common: that of exact data is zero and must not divide.
+    const double variance = HasKnownNoise(pair) ? pair.sigma_px * pair.sigma_px : 1.0;
+    information += jacobian->transpose() * *jacobian / variance;
+  }
+  const std::optional<Matrix6d> inverse = InvertSymmetric(information);
+  if (!inverse) return std::nullopt;
+  const double scale = HasKnownNoise(pairs.front()) ? 1.0 : *unstated;
+  return Matrix6d(scale * *inverse);
+}
+
+}  // namespace sextant

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "solvers/core/inner_solver.h"
+#include "solvers/core/registry.h"
+#include "solvers/robust/consensus.h"
+
+namespace sextant {
+namespace {
+
+struct DropWorstOptions : InlierOptions {
+  int keep = 0;
+};
+
+/// Solves, leaves out the pair of the largest residual, and solves again: the paper's elimination
+/// by hand (20 points, then 11, then 8) as a method.
+///
+/// Ends with `keep` pairs; with keep=0 as soon as every pair left is within the threshold, and then
+/// the pairs left must be a consensus (see CheckConsensus). Residuals are in sigmas, so that a pair
+/// known to be poor is not dropped for it. Errors: kNoConsensus, kTooFewPairs (fewer than `keep`),
+/// those of the inner solver.
+class DropWorstSolver final : public Solver {
+ public:
+  DropWorstSolver(const SolverArguments& arguments, PairKind kind, const DropWorstOptions& options)
+      : Solver({.name = arguments.name,
+                .needs = WithKept(arguments.inner->spec().needs, kind, options.keep),
+                .estimates_rotation = arguments.inner->spec().estimates_rotation,
+                .is_global = arguments.inner->spec().is_global}),
+        inner_(arguments.inner),
+        kind_(kind),
+        options_(options) {}
+
+ private:
+  static DataNeeds WithKept(const DataNeeds& inner, PairKind kind, int keep) {
+    DataNeeds needs = NeedsOfConsensus(inner, kind);
+    if (keep > 0) (kind == PairKind::k3d3d ? needs.pairs_3d3d : needs.pairs_2d3d) = keep;
+    return needs;
+  }
+
+  Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
+    const PairTerms terms = MakeTerms(problem, kind_, options_.Assumed());
+    const PoseScorer scorer(terms, options_.MaxSquared(kind_));
+    std::vector<double> squared(terms.size());
+    std::vector<int> kept(terms.size());
+    std::iota(kept.begin(), kept.end(), 0);
+    const int least = options_.keep > 0 ? options_.keep : LeastPairs(inner_->spec().needs);
+    bool all_within = false;
+    int solves = 0;
+    while (true) {
+      ++solves;
+      const Expected<Rigid3d> pose = PoseOfSubset(*inner_, problem, terms, kept);
+      if (!pose) return tl::unexpected<Error>(pose.error());
+      scorer.SquaredResiduals(*pose, squared);
+      const auto worst = std::max_element(kept.begin(), kept.end(), [&](int a, int b) {
+        return squared[static_cast<std::size_t>(a)] < squared[static_cast<std::size_t>(b)];
+      });
+      all_within = squared[static_cast<std::size_t>(*worst)] <= scorer.max_squared();
+      if (static_cast<int>(kept.size()) <= least || (options_.keep == 0 && all_within)) break;
+      kept.erase(worst);
+    }
+    if (options_.keep == 0) {
+      const std::span<const int> agreeing = all_within ? kept : std::span<const int>();
+      if (Expected<void> ok = CheckConsensus(terms, scorer, agreeing, LeastPairs(spec().needs));
+          !ok) {
+        return tl::unexpected<Error>(std::move(ok.error()));
+      }
+    }
+    Expected<Estimate> estimate = SolveSubset(*inner_, problem, kept);
+    if (!estimate) return estimate;
+    estimate->iterations = solves;
+    estimate->termination = Termination::kConverged;
+    return estimate;
+  }
+
+  SolverPtr inner_;
+  PairKind kind_;
+  DropWorstOptions options_;
+};
+
+OptionSet<DropWorstOptions> DropWorstOptionSet() {
+  OptionSet<DropWorstOptions> options;
+  options.Count("keep", &DropWorstOptions::keep, 0, 1'000'000'000,
+                "pairs left at the end; 0: as many as are within the threshold");
+  return AddInlierOptions(options);
+}
+
+}  // namespace
+
+SolverEntry DropWorstEntry() {
+  return {
+      .name = "drop_worst",
+      .summary =
+          "leaves out the pair of the largest residual and solves again, until keep are left",
+      .needs = "keep pairs, or what the inner solver needs and at least one pair more",
+      .reference = "the manual elimination of the paper (20 to 11 to 8 points)",
+      .example = "drop_worst(kabsch)",
+      .wraps_solver = true,
+      .options = DropWorstOptionSet().Describe(),
+      .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
+        const Expected<DropWorstOptions> options = DropWorstOptionSet().Parse(arguments.options);
+        if (!options) return tl::unexpected<Error>(options.error());
+        const Expected<PairKind> kind = KindOfPairs(*arguments.inner, "drop_worst");
+        if (!kind) return tl::unexpected<Error>(kind.error());
+        const int least = LeastPairs(arguments.inner->spec().needs);
+        if (options->keep > 0 && options->keep < least) {
+          return MakeError(ErrorCode::kInvalidOption,
+                           fmt::format("option keep={}: '{}' needs at least {} pairs",
+                                       options->keep, arguments.inner->spec().name, least));
+        }
+        return std::make_shared<DropWorstSolver>(arguments, *kind, *options);
+      },
+  };
+}
+
+}  // namespace sextant

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "geometry/camera.h"
+#include "geometry/rigid3d.h"
+#include "solvers/kernels/pixel_terms.h"
+
+namespace sextant {
+
+struct P3pConsensusOptions {
+  double max_squared = 9.210340371976184;  ///< Largest r^2 of an inlier [sigma^2].
+  double confidence = 0.999;
+  int max_samples = 10000;
+  int local_rounds = 10;  ///< Of least squares on the inliers of a new best; 0: none.
+  std::uint64_t seed = 1;
+};
+
+struct P3pConsensus {
+  Rigid3d cam_from_lidar;
+  double cost = 0.0;  ///< sum_i min(r_i^2, max_squared)
+  int samples = 0;    ///< Triples drawn.
+  bool found = false;
+};
+
+/// Random sample consensus (Fischler and Bolles 1981) on pixels of a pinhole camera: triples in
+/// batches of eight, SolveP3pBatch on them, the MSAC cost (Torr and Zisserman 2000) of each pose
+/// eight terms at a time in random order, given up as soon as it exceeds the best or inliers are so
+/// few that the sequential test of Matas and Chum 2005 speaks against it; least squares on the
+/// inliers of a batch's best where that is a new best (Lebeda, Matas and Chum 2012). Ends when a
+/// triple of inliers has been drawn with `confidence`.
+///
+/// Refined: a minimum of the cost, to a step of 1e-10 rad and m. The same seed gives the same bits.
+/// Allocates before the search and not in it.
+P3pConsensus FindP3pConsensus(PixelTermsView terms, const Camera& camera,
+                              const P3pConsensusOptions& options);
+
+}  // namespace sextant
