@@ -11,7 +11,7 @@
 namespace sextant {
 namespace {
 
-constexpr double kMostError_m = 0.02;
+constexpr double kMaxError_m = 0.02;
 
 Expected<std::vector<LidarCorners>> Extract(const PointCloud& cloud,
                                             const std::vector<Board>& boards,
@@ -45,7 +45,7 @@ void TwoBoards(benchmark::State& state, const char* lidar) {
     const SceneBoard& board = scene.boards[static_cast<std::size_t>(corners.board)];
     for (int i = 0; i < kCornersPerBoard; ++i) {
       const Eigen::Vector3d& corner = corners.in_lidar[static_cast<std::size_t>(i)];
-      if ((corner - TrueCorner(board, i)).norm() > kMostError_m) {
+      if ((corner - TrueCorner(board, i)).norm() > kMaxError_m) {
         return state.SkipWithError("a corner is off");
       }
     }

@@ -22,7 +22,7 @@ extern "C" {
 namespace sextant {
 namespace {
 
-constexpr double kMostError_px = 0.1;
+constexpr double kMaxError_px = 0.1;
 
 struct Photo {
   cv::Mat image;
@@ -102,7 +102,7 @@ void Ours(benchmark::State& state, const Photo& (*the_photo)(), const char* dete
     for (std::size_t k = 0; k < 4; ++k) {
       const Eigen::Vector3d point(corners[k].x(), corners[k].y(), 0.0);
       const auto truth = Project(photo.camera, photo.cam_from_board * point);
-      if (!tag.refined || (tag.refined->corners_px[k] - *truth).norm() > kMostError_px) {
+      if (!tag.refined || (tag.refined->corners_px[k] - *truth).norm() > kMaxError_px) {
         return state.SkipWithError("a corner is off");
       }
     }

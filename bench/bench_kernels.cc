@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
-#include "base/lanes.h"
 #include "base/random.h"
+#include "base/simd.h"
 #include "bench/check.h"
 #include "geometry/random_vectors.h"
 #include "geometry/so3.h"
@@ -164,11 +164,11 @@ void KabschElongated(benchmark::State& state) {
 }
 
 SEXTANT_MULTIVERSION double ReadAll(const double* numbers, std::size_t count) {
-  Lanes sums[4] = {};
-  for (std::size_t i = 0; i + 4 * kLanes <= count; i += 4 * kLanes) {
-    for (std::size_t k = 0; k < 4; ++k) sums[k] += LoadLanes(numbers + i + k * kLanes);
+  Vec8d sums[4] = {};
+  for (std::size_t i = 0; i + 4 * kSimdWidth <= count; i += 4 * kSimdWidth) {
+    for (std::size_t k = 0; k < 4; ++k) sums[k] += LoadVec(numbers + i + k * kSimdWidth);
   }
-  return SumLanes((sums[0] + sums[1]) + (sums[2] + sums[3]));
+  return HorizontalSum((sums[0] + sums[1]) + (sums[2] + sums[3]));
 }
 
 // What the memory allows: the same arrays, read once.

@@ -17,8 +17,8 @@
 namespace sextant {
 namespace {
 
-constexpr double kMostError_m = 0.1;  // Two boards, 2 m away, seen once.
-constexpr double kMostError_rad = 0.05;
+constexpr double kMaxError_m = 0.1;  // Two boards, 2 m away, seen once.
+constexpr double kMaxError_rad = 0.05;
 
 SceneBoard Hang(int id, double y_m, double yaw_rad) {
   SceneBoard hung;
@@ -83,7 +83,7 @@ void CalibrateOnePair(benchmark::State& state) {
     return;
   }
   const PoseDistance error = DistanceBetween(report->cam_from_lidar, recording.cam_from_lidar);
-  if (error.translation_m > kMostError_m || error.rotation_rad > kMostError_rad) {
+  if (error.translation_m > kMaxError_m || error.rotation_rad > kMaxError_rad) {
     state.SkipWithError("wrong answer");
     return;
   }

@@ -32,11 +32,11 @@ struct Settings {
 };
 
 // The next point would take ten times as long.
-constexpr double kMostSeconds = 0.3;
+constexpr double kMaxSeconds = 0.3;
 
 // Far more than the noise of the fewest points, so that only a wrong answer is not timed.
-constexpr double kMostRadians = 0.1;
-constexpr double kMostMetres = 0.3;
+constexpr double kMaxRadians = 0.1;
+constexpr double kMaxMetres = 0.3;
 
 // Returns whether the answer is right.
 bool MeasureSolve(const Solver& solver, const CalibrationProblem& problem, const Rigid3d& truth,
@@ -48,7 +48,7 @@ bool MeasureSolve(const Solver& solver, const CalibrationProblem& problem, const
   });
   if (!answer) return false;
   const PoseDistance off = DistanceBetween(*answer, truth);
-  return off.rotation_rad < kMostRadians && off.translation_m < kMostMetres;
+  return off.rotation_rad < kMaxRadians && off.translation_m < kMaxMetres;
 }
 
 void Tell(const std::string& curve, double x, const std::optional<Cost>& cost) {
@@ -81,7 +81,7 @@ Curve SolverCurve(const std::string& spec, const std::vector<SceneAt>& places) {
     });
     Tell(spec, at.x, cost);
     if (cost) curve.points.push_back({at.x, *cost});
-    if (cost && cost->seconds > kMostSeconds) break;
+    if (cost && cost->seconds > kMaxSeconds) break;
   }
   return curve;
 }

@@ -21,7 +21,7 @@ namespace {
 // farther off. A minimal solver is honestly far from the truth now and then (p3p over 0.1 m in 3
 // percent of these scenes), so that its own covariance, which the contract tests hold to be
 // honest, is the measure; where there is none, the Cramer-Rao bound.
-constexpr double kMostSquaredSigmas = 38.26;
+constexpr double kMaxSquaredSigmas = 38.26;
 
 bool CheckAnswer(benchmark::State& state, const Solver& solver, const SolveReport& report,
                  const RandomScene& scene) {
@@ -39,11 +39,11 @@ bool CheckAnswer(benchmark::State& state, const Solver& solver, const SolveRepor
   const double squared = solver.spec().estimates_rotation
                              ? SquaredMahalanobis(error, *covariance)
                              : SquaredMahalanobis<3>(shift, covariance->bottomRightCorner<3, 3>());
-  if (squared <= kMostSquaredSigmas) return true;
+  if (squared <= kMaxSquaredSigmas) return true;
   char message[160];
   std::snprintf(message, sizeof(message),
                 "wrong: %.3g squared sigmas from the truth, allowed %.4g (%.3g rad, %.3g m)",
-                squared, kMostSquaredSigmas, error.head<3>().norm(), shift.norm());
+                squared, kMaxSquaredSigmas, error.head<3>().norm(), shift.norm());
   state.SkipWithError(message);
   return false;
 }
@@ -79,7 +79,7 @@ void Solve(benchmark::State& state, const SolverPtr& solver) {
   }
 }
 
-int LeastPairs(const DataNeeds& needs) {
+int MinPairs(const DataNeeds& needs) {
   return std::max({needs.pairs_3d3d, needs.pairs_2d3d, needs.points_per_set});
 }
 
@@ -93,7 +93,7 @@ void RegisterAll() {
         ("solve/" + (*solver)->spec().name).c_str(),
         [solver = *solver](benchmark::State& state) { Solve(state, solver); });
     for (const int pairs : {8, 20, 100, 1000}) {
-      if (pairs >= LeastPairs((*solver)->spec().needs)) benchmark->Arg(pairs);
+      if (pairs >= MinPairs((*solver)->spec().needs)) benchmark->Arg(pairs);
     }
   }
 }

@@ -11,7 +11,7 @@
 namespace sextant::bench {
 namespace {
 
-constexpr double kLeastNoise = 0.03;
+constexpr double kMinNoise = 0.03;
 
 const char* NameOf(Change change) {
   switch (change) {
@@ -35,7 +35,7 @@ Difference CompareOne(const std::string& name, const Timing& before, const Timin
   Difference difference{.name = name};
   difference.old_ns = before.median_ns.value_or(0.0);
   difference.new_ns = after.median_ns.value_or(0.0);
-  difference.noise = std::max(kLeastNoise, 3.0 * std::hypot(before.spread, after.spread));
+  difference.noise = std::max(kMinNoise, 3.0 * std::hypot(before.spread, after.spread));
   if (before.median_ns && after.median_ns) {
     const double ratio = *after.median_ns / *before.median_ns;
     if (ratio > 1.0 + difference.noise) difference.change = Change::kSlower;

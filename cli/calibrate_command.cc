@@ -21,7 +21,7 @@
 #include "cli/pose_argument.h"
 #include "cli/progress.h"
 #include "cli/search_options.h"
-#include "eval/judge/judge.h"
+#include "eval/diagnostics/pair_diagnostics.h"
 #include "eval/metrics/compare.h"
 #include "io/boards/board_file.h"
 #include "io/cameras/camera_file.h"
@@ -171,7 +171,7 @@ std::vector<std::string> FindingsOf(const Job& job, const std::vector<SessionVie
   const Rigid3d& pose =
       report != nullptr ? report->cam_from_lidar : assembly.matching.cam_from_lidar;
   for (const std::string& line : Diagnose(views, assembly, pose)) lines.push_back(line);
-  for (const std::string& line : Describe(JudgePairs(assembly.problem))) lines.push_back(line);
+  for (const std::string& line : Describe(DiagnosePairs(assembly.problem))) lines.push_back(line);
   return lines;
 }
 
@@ -246,23 +246,23 @@ std::string ErrorAgainstTruth(const Job& job, const SolveReport& report) {
 }
 
 // What each view tells of the answer, and what the views say of it when held against each other.
-void HoldAgainstItself(const CalibrateOptions& options, const Assembly& assembly,
-                       const Solver& solver, const SolveReport& report, CalibrationResult& result) {
+void CrossValidate(const CalibrateOptions& options, const Assembly& assembly, const Solver& solver,
+                   const SolveReport& report, CalibrationResult& result) {
   AddInformation(assembly.problem, result);
   if (options.bootstrap == 0) return;
   const Expected<Trust> trust =
-      JudgeTrust(assembly.problem, solver, report,
-                 {.bootstrap_samples = options.bootstrap, .seed = options.search.seed});
+      AssessTrust(assembly.problem, solver, report,
+                  {.bootstrap_samples = options.bootstrap, .seed = options.search.seed});
   if (trust) AddTrust(*trust, result);
 }
 
 // What the first scans that show no board show instead.
 std::string OtherSizes(const Job& job, const std::vector<SessionView>& views) {
-  constexpr int kMostScans = 3;
+  constexpr int kMaxScans = 3;
   int looked = 0;
   for (const SessionView& view : views) {
     if (!view.seen || !view.seen->in_scan.empty() || view.cloud_path.empty()) continue;
-    if (++looked > kMostScans) break;
+    if (++looked > kMaxScans) break;
     const Expected<PointCloud> cloud = ReadCloud(view.cloud_path);
     if (!cloud) continue;
     const std::vector<std::string> lines = ProbeSizes(*cloud, job.boards, job.observe.search);
@@ -300,7 +300,7 @@ int RunCalibrate(const CalibrateOptions& options) {
                                         {.seed = options.search.seed,
                                          .configuration = ConfigurationOf(options, *job),
                                          .warnings = findings});
-  HoldAgainstItself(options, *assembly, *job->solvers.front(), *report, result);
+  CrossValidate(options, *assembly, *job->solvers.front(), *report, result);
   std::string text = DescribeViews(views, *assembly, report, result.views) + "\n";
   text += DescribeAnswer(*report);
   text += ErrorAgainstTruth(*job, *report);

@@ -47,7 +47,7 @@ Expected<LoadedInput> Load(const InputOptions& options) {
   if (Expected<void> ok = AddNamedFiles(options, problem); !ok) {
     return tl::unexpected<Error>(std::move(ok.error()));
   }
-  input.judgement = JudgePairs(problem);
+  input.judgement = DiagnosePairs(problem);
   if (options.reorder && input.judgement.order) {
     problem = Reordered(problem, *input.judgement.order);
   }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "eval/judge/judge.h"
+#include "eval/diagnostics/pair_diagnostics.h"
 #include "io/problems/problem_yaml.h"
 #include "io/results/results_json.h"
 
@@ -14,7 +14,7 @@ namespace sextant::cli {
 /// The input of `solve` and `compare`, ready for the solvers.
 struct LoadedInput {
   ProblemFile file;
-  Judgement judgement;             ///< Of the pairs as the file gives them.
+  PairDiagnostics judgement;       ///< Of the pairs as the file gives them.
   std::vector<std::string> notes;  ///< What was put right while reading.
   ResultInput summary;
 };

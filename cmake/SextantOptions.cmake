@@ -40,7 +40,7 @@ target_compile_options(sextant_options INTERFACE
   # Nobody reads errno or traps: square roots are one instruction, and both arms of a choice may be
   # computed. No result changes.
   -fno-math-errno -fno-trapping-math
-  # Wide vectors (base/lanes.h) never cross a call.
+  # Wide vectors (base/simd.h) never cross a call.
   -Wno-psabi
   $<$<BOOL:${SEXTANT_WARNINGS_AS_ERRORS}>:-Werror>)
 if(SEXTANT_NATIVE)

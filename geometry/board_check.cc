@@ -99,8 +99,8 @@ std::optional<BoardFault> FindPlaceFault(const Board& board, Part part, int tag,
 
 std::optional<BoardFault> FindCheckerFault(const Board& board) {
   const BoardChecker& checker = *board.checker;
-  constexpr int kMostCorners = 1000;
-  const auto is_count = [](int count) { return count >= 2 && count <= kMostCorners; };
+  constexpr int kMaxCorners = 1000;
+  const auto is_count = [](int count) { return count >= 2 && count <= kMaxCorners; };
   if (!is_count(checker.inner_columns)) {
     return BoardFault{Part::kChecker, 0, "inner_columns", "expected 2 to 1000 inner corners"};
   }

@@ -200,7 +200,7 @@ cv::Mat DrawAdvice(const CalibrationResult& result, const SensorPair& sensors,
     const std::string label = next.size() == 1 ? "next" : fmt::format("next {}", i + 1);
     top.DrawBoard(next[i], kNext, label);
     image.DrawBoard(next[i], kNext, 3);
-    if (const auto view = ForeseeView(sensors, *next[i].board, next[i].cam_from_board)) {
+    if (const auto view = PredictView(sensors, *next[i].board, next[i].cam_from_board)) {
       image.DrawReturns(view->face_in_lidar, sensors.cam_from_lidar);
     }
     image.Label(CornersOf(next[i])[0], label);

@@ -18,7 +18,7 @@ constexpr double kPoints_a_m = 72.0 / 0.0254;
 constexpr double kBorder_m = 0.02;
 constexpr double kLine_m = 0.0003;
 constexpr double kRuler_m = 0.1;
-constexpr double kMostPngPixels = 2e8;
+constexpr double kMaxPngPixels = 2e8;
 
 using Surface = std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)>;
 using Context = std::unique_ptr<cairo_t, void (*)(cairo_t*)>;
@@ -147,7 +147,7 @@ Expected<std::string> DrawBoards(const std::vector<Board>& boards, const std::st
   }
   const double units_a_m = format == DrawingFormat::kPng ? png_dpi / 0.0254 : kPoints_a_m;
   if (format == DrawingFormat::kPng &&
-      PageWidth(boards[0]) * PageHeight(boards[0]) * units_a_m * units_a_m > kMostPngPixels) {
+      PageWidth(boards[0]) * PageHeight(boards[0]) * units_a_m * units_a_m > kMaxPngPixels) {
     return MakeError(
         ErrorCode::kInvalidInput,
         fmt::format("{}: the board has too many pixels at {:g} dpi; lower --dpi", source, png_dpi));

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostRejected = 3;  // In text; JSON has them all.
+constexpr std::size_t kMaxRejected = 3;  // In text; JSON has them all.
 
 std::string NameOf(const Board& board) {
   return board.name.empty() ? fmt::format("board {}", board.id)
@@ -84,7 +84,7 @@ std::string DescribeMissing(const ScanReport& report, const std::vector<Board>& 
     return text + "  nothing flat of about its size stands free in the scan\n";
   }
   text += "  what is flat and nearest to it in size, and why it is none:\n";
-  for (std::size_t i = 0; i < std::min(kMostRejected, report.search.rejected.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kMaxRejected, report.search.rejected.size()); ++i) {
     const RejectedPatch& patch = report.search.rejected[i];
     text += fmt::format("    at ({:.2f}, {:.2f}, {:.2f}) m, {} returns on {} rings: {}\n",
                         patch.center_in_lidar.x(), patch.center_in_lidar.y(),

@@ -52,8 +52,8 @@ Residuals ResidualsOf(const CalibrationProblem& problem) {
 }
 
 std::string Ticks(const std::vector<PairId>& ids) {
-  constexpr std::size_t kMostLabels = 40;
-  const std::size_t step = ids.size() / kMostLabels + 1;
+  constexpr std::size_t kMaxLabels = 40;
+  const std::size_t step = ids.size() / kMaxLabels + 1;
   std::vector<std::string> ticks;
   for (std::size_t i = 0; i < ids.size(); i += step) {
     ticks.push_back(fmt::format("'{}.{}.{}' {}", ids[i].view, ids[i].board, ids[i].corner, i));

@@ -13,7 +13,7 @@ namespace sextant::cli {
 namespace {
 
 // More residuals than a screen shows go to the JSON only.
-constexpr std::size_t kMostResiduals = 64;
+constexpr std::size_t kMaxResiduals = 64;
 
 std::string DescribePose(const Rigid3d& pose) {
   std::string text = "  cam_from_lidar\n";
@@ -73,7 +73,7 @@ template <class Pair>
 std::string DescribeResiduals(const std::vector<Pair>& pairs, const std::vector<double>& residuals,
                               const std::vector<int>* inliers, const char* unit, double scale) {
   if (residuals.empty()) return {};
-  if (residuals.size() > kMostResiduals) {
+  if (residuals.size() > kMaxResiduals) {
     return fmt::format("  residuals of {} pairs: see --json\n", residuals.size());
   }
   TextTable table(

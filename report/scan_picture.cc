@@ -17,8 +17,8 @@ namespace sextant::cli {
 namespace {
 
 constexpr int kWidth_px = 1400;
-constexpr int kLeastHeight_px = 300;
-constexpr int kMostHeight_px = 1400;
+constexpr int kMinHeight_px = 300;
+constexpr int kMaxHeight_px = 1400;
 constexpr int kLegend_px = 44;
 constexpr double kMargin_rad = 6.0 * std::numbers::pi / 180.0;
 const cv::Scalar kOutline = {255, 255, 255};
@@ -31,7 +31,7 @@ class Panorama {
     const Eigen::Vector2d extent = high - low;
     scale_ = kWidth_px / extent.x();
     const int height =
-        std::clamp(static_cast<int>(scale_ * extent.y()), kLeastHeight_px, kMostHeight_px);
+        std::clamp(static_cast<int>(scale_ * extent.y()), kMinHeight_px, kMaxHeight_px);
     canvas_ = cv::Mat(height + kLegend_px, kWidth_px, CV_8UC3, cv::Scalar(24, 20, 20));
   }
 

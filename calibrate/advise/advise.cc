@@ -55,7 +55,7 @@ std::vector<Candidate> GridOf(const std::vector<Board>& boards, const Camera& ca
 
 std::optional<Matrix6d> InformationAt(const SensorPair& sensors, const Board& board,
                                       const Rigid3d& cam_from_board) {
-  const std::optional<BoardView> view = ForeseeView(sensors, board, cam_from_board);
+  const std::optional<BoardView> view = PredictView(sensors, board, cam_from_board);
   if (!view) return std::nullopt;
   const Expected<Matrix6d> information =
       InformationOfView(*view, board, sensors.camera, sensors.cam_from_lidar, cam_from_board);
@@ -181,7 +181,7 @@ Expected<Advice> Advise(const CalibrationResult& result, const SensorPair& senso
   }
   advice.proposal = {.board = chosen.board,
                      .cam_from_board = chosen.cam_from_board,
-                     .rings = RingsOn(*ForeseeView(sensors, board, chosen.cam_from_board)),
+                     .rings = RingsOn(*PredictView(sensors, board, chosen.cam_from_board)),
                      .covariance = *covariance,
                      .sentence = DescribePlacement(board, chosen.cam_from_board)};
   return advice;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "calibrate/advise/foresee.h"
+#include "calibrate/advise/predict_view.h"
 #include "io/results/calibration_result.h"
 
 namespace sextant {
@@ -27,7 +27,7 @@ struct KnownAfter {
 };
 
 struct Advice {
-  std::optional<Matrix6d> covariance{};  ///< Foreseen from the views there are; none: too little.
+  std::optional<Matrix6d> covariance{};  ///< Predicted from the views there are; none: too little.
   int views = 0;                         ///< That it rests on.
   std::vector<KnownAfter> after{};       ///< Of each of them from which on the pose is determined.
   BoardProposal proposal{};

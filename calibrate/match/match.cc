@@ -16,7 +16,7 @@ namespace sextant {
 namespace {
 
 constexpr double kNumbersPerBoard = 3.0 * kCornersPerBoard;
-constexpr double kMostSigmas = 4.0;
+constexpr double kMaxSigmas = 4.0;
 constexpr double kAsLikely = 9.2;  // -2 ln of 1 %.
 
 // A view as the matcher takes it, and what each of its pairings stands for.
@@ -137,7 +137,7 @@ Expected<Matching> MatchViews(std::span<const Observation> views, const MatchSet
     pairings.push_back(PairingsOf(views[i], static_cast<int>(i), settings.floor_m));
     match_views.push_back(pairings.back().view);
   }
-  MatchOptions options{.cap = kMostSigmas * kMostSigmas * kNumbersPerBoard};
+  MatchOptions options{.cap = kMaxSigmas * kMaxSigmas * kNumbersPerBoard};
   Expected<std::vector<MatchExplanation>> found = MatchObjects(match_views, options);
   if (!found && found.error().code == ErrorCode::kTooFewPairs) {
     return MakeError(

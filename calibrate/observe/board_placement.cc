@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRefused = 100.0;
 constexpr double kOtherSize = 0.12;  // Of a side; some sensors stretch boards by 7 percent.
-constexpr double kMostMisfit = 25.0;
+constexpr double kMaxMisfit = 25.0;
 constexpr double kOutlier = 16.0;  // What an edge point on no side adds: FitRectangle's 4 sigma.
 
 double ChiSquare(const RectangleFit& fit) {
@@ -120,7 +120,7 @@ Expected<std::vector<BoardPlacement>> PlaceBoards(const BoardPatch& patch,
     return placement.misfit > kRefused && !AreAlike(LookOf(placement, boards), likeliest);
   });
   for (BoardPlacement& placement : placements) {
-    placement.misfit = std::min(placement.misfit, kMostMisfit);
+    placement.misfit = std::min(placement.misfit, kMaxMisfit);
   }
   return placements;
 }

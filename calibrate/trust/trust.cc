@@ -186,8 +186,8 @@ std::vector<double> ErrorsUnder(const CalibrationProblem& problem, const std::ve
 std::vector<bool> MarkOutliers(const CalibrationProblem& problem, const Solver& solver,
                                const std::vector<int>& views, const Trust& trust) {
   std::vector<bool> marked = OutlyingViews(HeldOutErrors(trust));
-  constexpr int kMostRounds = 10;
-  for (int round = 0; round < kMostRounds; ++round) {
+  constexpr int kMaxRounds = 10;
+  for (int round = 0; round < kMaxRounds; ++round) {
     std::vector<int> rest;
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (!marked[i]) rest.push_back(views[i]);
@@ -204,8 +204,8 @@ std::vector<bool> MarkOutliers(const CalibrationProblem& problem, const Solver& 
 
 }  // namespace
 
-Expected<Trust> JudgeTrust(const CalibrationProblem& problem, const Solver& solver,
-                           const SolveReport& answer, const TrustOptions& options) {
+Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& solver,
+                            const SolveReport& answer, const TrustOptions& options) {
   const std::vector<int> views = ViewsOf(problem);
   if (views.empty()) {
     return MakeError(ErrorCode::kMissingData,

@@ -48,8 +48,8 @@ struct Trust {
 ///
 /// In parallel; the same on any number of threads. One view alone leaves the figures empty but for
 /// the covariance's. Errors: kMissingData where the problem has no view.
-Expected<Trust> JudgeTrust(const CalibrationProblem& problem, const Solver& solver,
-                           const SolveReport& answer, const TrustOptions& options = {});
+Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& solver,
+                            const SolveReport& answer, const TrustOptions& options = {});
 
 /// Writes the figures into the result and into those of its views that are judged, and a warning
 /// for each that does not belong.

@@ -13,8 +13,8 @@
 namespace sextant::cli {
 namespace {
 
-constexpr std::size_t kMostUndo = 1000;
-constexpr int kFewestRings = 2;        // A line needs two.
+constexpr std::size_t kMaxUndo = 1000;
+constexpr int kMinRings = 2;           // A line needs two.
 constexpr double kThinnest_px2 = 4.0;  // Less is a slip of the mouse.
 constexpr std::array<const char*, 4> kEdgeNames = {"top-left", "top-right", "bottom-right",
                                                    "bottom-left"};
@@ -94,7 +94,7 @@ int MarkSession::FirstEmptySlot() const {
 }
 
 void MarkSession::BeginChange(bool of_marks) {
-  if (undo_.size() == kMostUndo) undo_.erase(undo_.begin());
+  if (undo_.size() == kMaxUndo) undo_.erase(undo_.begin());
   state_.revision = revision_;
   undo_.push_back(state_);
   redo_.clear();
@@ -270,8 +270,8 @@ std::vector<std::string> MarkSession::Warnings() const {
   for (const MarkedBoard& board : state_.marks.boards) {
     for (std::size_t i = 0; i < board.edges.size(); ++i) {
       const ReturnCount count = CountReturns(returns_, board.edges[i]);
-      const bool few_rings = count.rings > 0 && count.rings < kFewestRings;
-      if (count.returns >= kFewestRings && !few_rings) continue;
+      const bool few_rings = count.rings > 0 && count.rings < kMinRings;
+      if (count.returns >= kMinRings && !few_rings) continue;
       warnings.push_back(
           fmt::format("board {}: its {} edge holds returns of {} of the 2 rings that a line needs",
                       board.id, kEdgeNames[i], few_rings ? count.rings : count.returns));

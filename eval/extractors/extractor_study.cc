@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kExperiment = "extractors";
 constexpr double kNearest_m = 1.2;
 constexpr double kFurthest_m = 4.2;  // The rooms' walls are 5 m away.
-constexpr double kMostOff = 1.0 / 3.0;
+constexpr double kMaxOff = 1.0 / 3.0;
 enum Part : std::uint64_t { kAccuracy, kPlacement, kRoom };
 
 struct Trial {
@@ -116,7 +116,7 @@ class Study {
     const SceneBoard& board = scene.boards[static_cast<std::size_t>(patch.board)];
     const double off =
         (patch.plane.At(patch.fit.center) - board.world_from_board.translation).norm();
-    return off < kMostOff * board.board.top_right_m;
+    return off < kMaxOff * board.board.top_right_m;
   }
 
   static void Count(const Scene& scene, const SimulatedScan& scan, const BoardSearch& search,

@@ -18,19 +18,19 @@ struct Metric {
   std::string meaning;  ///< One line.
 };
 
-inline constexpr std::size_t kMostMetrics = 64;
+inline constexpr std::size_t kMaxMetrics = 64;
 
 /// The values of one row by metric, NaN until set; those that nobody asked for need not be.
 class MetricValues {
  public:
-  MetricValues(std::bitset<kMostMetrics> wanted, std::span<double> values)
+  MetricValues(std::bitset<kMaxMetrics> wanted, std::span<double> values)
       : wanted_(wanted), values_(values) {}
 
   bool Wants(int metric) const { return wanted_[static_cast<std::size_t>(metric)]; }
   void Set(int metric, double value) { values_[static_cast<std::size_t>(metric)] = value; }
 
  private:
-  std::bitset<kMostMetrics> wanted_;
+  std::bitset<kMaxMetrics> wanted_;
   std::span<double> values_;
 };
 

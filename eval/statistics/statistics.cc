@@ -17,12 +17,12 @@ constexpr double kNormalQuantile975 = 1.959963984540054;
 // fast for x below (a + 1) / (a + b + 2).
 double BetaFraction(double a, double b, double x) {
   constexpr double kTiny = 1e-300;
-  constexpr int kMostTerms = 10000;
+  constexpr int kMaxTerms = 10000;
   const auto not_zero = [](double v) { return std::abs(v) < kTiny ? kTiny : v; };
   double c = 1.0;
   double d = 1.0 / not_zero(1.0 - (a + b) * x / (a + 1.0));
   double value = d;
-  for (int m = 1; m < kMostTerms; ++m) {
+  for (int m = 1; m < kMaxTerms; ++m) {
     const double even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
     d = 1.0 / not_zero(1.0 + even * d);
     c = not_zero(1.0 + even / c);

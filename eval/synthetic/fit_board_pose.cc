@@ -47,12 +47,12 @@ std::optional<Normal> NormalInLidar(const BoardViewTerms& terms, const Rigid3d& 
 
 template <class NormalAt>
 Expected<BoardPoseFit> Fit(const NormalAt& normal_at, const Rigid3d& start) {
-  constexpr int kMostIterations = 100;
+  constexpr int kMaxIterations = 100;
   constexpr double kSmallestStep = 1e-10;
   std::optional<Normal> now = normal_at(start);
   Rigid3d pose = start;
   double damping = 1e-6;
-  for (int i = 0; now && i < kMostIterations; ++i) {
+  for (int i = 0; now && i < kMaxIterations; ++i) {
     Matrix6d damped = now->matrix;
     damped.diagonal() *= 1.0 + damping;
     const Vector6d step = -SolveSymmetric(damped, now->gradient);

@@ -21,7 +21,7 @@ std::vector<Board> PaperBoards() {
 }
 
 // Corners in the camera frame, top, right, bottom, left as the camera sees the board.
-std::vector<Eigen::Vector3d> HangBoard(const Board& board, int index, Random& random) {
+std::vector<Eigen::Vector3d> PlaceBoardInRoom(const Board& board, int index, Random& random) {
   const double turn = random.Uniform(-25.0, 25.0) * kRadPerDeg;
   const double lean = random.Uniform(-15.0, 15.0) * kRadPerDeg;
   const double roll = 45.0 * kRadPerDeg + random.Uniform(-5.0, 5.0) * kRadPerDeg;
@@ -99,7 +99,7 @@ Expected<SimulatedSession> SimulatePairs(const PairSimulation& simulation) {
     Random random(
         DeriveSeed(simulation.seed, "simulate pairs: view", static_cast<std::uint64_t>(view), 0));
     for (const Board& board : boards) {
-      const std::vector<Eigen::Vector3d> in_cam = HangBoard(board, board.id, random);
+      const std::vector<Eigen::Vector3d> in_cam = PlaceBoardInRoom(board, board.id, random);
       for (int corner = 0; corner < kCornersPerBoard; ++corner) {
         const Eigen::Vector3d& point = in_cam[static_cast<std::size_t>(corner)];
         AddMeasuredCorner(NoiseOf(simulation), {view, board.id, corner}, point,

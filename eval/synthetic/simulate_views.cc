@@ -137,10 +137,10 @@ bool IsInImage(const Camera& camera, const Board& board, const Rigid3d& cam_from
 
 // Two rays of each side are what fixes the rectangle in its plane.
 bool HasAllSides(const BoardView& view) {
-  constexpr int kLeastRays = 2;
+  constexpr int kMinRays = 2;
   std::array<int, kCornersPerBoard> count{};
   for (const EdgeRay& ray : view.edges) ++count[static_cast<std::size_t>(ray.side)];
-  return *std::min_element(count.begin(), count.end()) >= kLeastRays;
+  return *std::min_element(count.begin(), count.end()) >= kMinRays;
 }
 
 void AddTag(const ViewSimulation& simulation, const Camera& camera, const Board& board,
@@ -250,17 +250,17 @@ Expected<SimulatedViews> SimulateViews(const ViewSimulation& simulation) {
   session.problem.camera = ZedLikeCamera();
   Random pose_random(DeriveSeed(simulation.seed, "simulate views: extrinsic", 0, 0));
   session.true_cam_from_lidar = DrawExtrinsic(pose_random);
-  constexpr int kMostAttempts = 1000;
+  constexpr int kMaxAttempts = 1000;
   for (int view = 0; view < simulation.views; ++view) {
     Random random(
         DeriveSeed(simulation.seed, "simulate views: view", static_cast<std::uint64_t>(view), 0));
     int attempts = 0;
     while (!TryView(simulation, view, random, session)) {
-      if (++attempts < kMostAttempts) continue;
+      if (++attempts < kMaxAttempts) continue;
       return MakeError(ErrorCode::kInvalidOption,
                        fmt::format("in {} attempts no board of {} m was in view of both sensors; "
                                    "try a larger or nearer one, or more rings",
-                                   kMostAttempts, simulation.board_side_m));
+                                   kMaxAttempts, simulation.board_side_m));
     }
   }
   session.problem.point_sets = WithholdPairing(session.problem.pairs_3d3d);

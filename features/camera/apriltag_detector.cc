@@ -40,11 +40,11 @@ OptionSet<AprilTagOptions> Options() {
 
 // The library makes a table of three slots of 16 bytes for each code with each set of wrong bits.
 int AffordableHamming(const apriltag_family_t& family) {
-  constexpr double kMostBytes = 32e6;
+  constexpr double kMaxBytes = 32e6;
   const double bits = family.nbits;
   const double bytes_a_set = 48.0 * family.ncodes;
-  if (bytes_a_set * (1.0 + bits + 0.5 * bits * (bits - 1.0)) < kMostBytes) return 2;
-  return bytes_a_set * (1.0 + bits) < kMostBytes ? 1 : 0;
+  if (bytes_a_set * (1.0 + bits + 0.5 * bits * (bits - 1.0)) < kMaxBytes) return 2;
+  return bytes_a_set * (1.0 + bits) < kMaxBytes ? 1 : 0;
 }
 
 // The library's detector works on one image at a time.
@@ -83,8 +83,8 @@ class Engine {
 int LeastRange(double noise_grey) {
   constexpr double kSigmas = 6.5;
   constexpr int kUsual = 5;
-  constexpr int kMost = 32;
-  return std::clamp(static_cast<int>(kSigmas * noise_grey), kUsual, kMost);
+  constexpr int kMax = 32;
+  return std::clamp(static_cast<int>(kSigmas * noise_grey), kUsual, kMax);
 }
 
 class AprilTagDetector final : public TagDetector {

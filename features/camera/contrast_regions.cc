@@ -11,8 +11,8 @@ namespace {
 constexpr int kReduction = 4;
 constexpr int kTile = 4;  ///< Reduced pixels.
 constexpr int kTile_px = kReduction * kTile;
-constexpr int kLeastSide_px = 160;
-constexpr double kMostShare = 0.7;  ///< Of the image: a detector's call for each region costs too.
+constexpr int kMinSide_px = 160;
+constexpr double kMaxShare = 0.7;  ///< Of the image: a detector's call for each region costs too.
 
 // Least and largest of the reduced image within each tile and the tiles round it.
 cv::Mat RangesOfTiles(const cv::Mat& grey) {
@@ -76,7 +76,7 @@ void Merge(std::vector<cv::Rect>& rectangles) {
 
 std::vector<cv::Rect> ContrastRegions(const cv::Mat& grey) {
   const cv::Rect whole(0, 0, grey.cols, grey.rows);
-  if (std::min(grey.cols, grey.rows) < kLeastSide_px) return {whole};
+  if (std::min(grey.cols, grey.rows) < kMinSide_px) return {whole};
   std::vector<cv::Rect> regions = BoundsOfParts(RangesOfTiles(grey));
   Merge(regions);
   double area = 0.0;
@@ -89,7 +89,7 @@ std::vector<cv::Rect> ContrastRegions(const cv::Mat& grey) {
     region &= whole;
     area += region.area();
   }
-  if (area > kMostShare * whole.area()) return {whole};
+  if (area > kMaxShare * whole.area()) return {whole};
   return regions;
 }
 

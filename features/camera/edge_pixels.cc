@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/lanes.h"
+#include "base/simd.h"
 
 namespace sextant {
 namespace {
@@ -19,7 +19,7 @@ struct Band {
   double outward_px = 0.0;
 };
 
-constexpr double kLeastOutward_px = 0.75;
+constexpr double kMinOutward_px = 0.75;
 constexpr double kBlurOfMargin_px = 1.5;  ///< What lies behind the margin shines in this far.
 
 std::array<Band, 4> BandsOf(const Quad& corners, const TagPattern& pattern,
@@ -34,7 +34,7 @@ std::array<Band, 4> BandsOf(const Quad& corners, const TagPattern& pattern,
                                                  line.normal.dot(corners[(k + 3) % 4]));
     const double known_cells = options.margin_cells + pattern.edge_first;
     const double known_px = known_cells * depth_px / pattern.edge_cells - kBlurOfMargin_px;
-    bands[k] = {line, std::clamp(known_px, kLeastOutward_px, options.band_px)};
+    bands[k] = {line, std::clamp(known_px, kMinOutward_px, options.band_px)};
   }
   return bands;
 }
@@ -72,7 +72,7 @@ class Collector {
   }
 
   EdgePixels Take() {
-    while (last_ && pixels_.x.size() % kLanes != 0) Add(*last_, pixels_.grey.back());
+    while (last_ && pixels_.x.size() % kSimdWidth != 0) Add(*last_, pixels_.grey.back());
     return std::move(pixels_);
   }
 
@@ -99,7 +99,7 @@ class Collector {
       }
     }
     const std::optional<Undistortion::Point> straight =
-        last_ ? undistortion_.StraightenNear(at, last_px_, *last_) : undistortion_.Straighten(at);
+        last_ ? undistortion_.UndistortNear(at, last_px_, *last_) : undistortion_.Undistort(at);
     if (!straight) return;
     last_ = straight;
     last_px_ = at;

@@ -11,7 +11,7 @@
 namespace sextant {
 
 /// Pixels near the edges of a tag, structure of arrays, filled up with copies of the last to a
-/// multiple of kLanes.
+/// multiple of kSimdWidth.
 struct EdgePixels {
   std::vector<double> x, y;            ///< Where they are in the undistorted image [px].
   std::vector<double> x_by_u, x_by_v;  ///< Derivatives by the pixel: they map the blur there.

@@ -18,16 +18,16 @@ namespace sextant {
 namespace {
 
 constexpr double kHuber = 2.5;
-constexpr double kFirstBlur_px = 1.0;   ///< Wide, so that a start far off still feels the edges.
-constexpr double kLeastBlur_px = 0.25;  ///< A pixel alone blurs by 0.29.
-constexpr double kMostBlur_px = 6.0;
-constexpr double kLeastContrast = 5.0;
+constexpr double kFirstBlur_px = 1.0;  ///< Wide, so that a start far off still feels the edges.
+constexpr double kMinBlur_px = 0.25;   ///< A pixel alone blurs by 0.29.
+constexpr double kMaxBlur_px = 6.0;
+constexpr double kMinContrast = 5.0;
 constexpr double kLastStep = 5e-5;  ///< Of the homography, in half sides of the tag.
 constexpr double kStalledStep =
     1e-4;  ///< Of a minimum that only rounding and the blur's derivative hide.
 constexpr double kFirstLook = 2e-3;  ///< A step that tells whether the pixels fit.
 constexpr double kPixelsStillFit_px = 0.7;
-constexpr int kLeastPixelsAnEdge = 6;
+constexpr int kMinPixelsAnEdge = 6;
 
 constexpr double kSquareX[] = {-1.0, 1.0, 1.0, -1.0};
 constexpr double kSquareY[] = {-1.0, -1.0, 1.0, 1.0};
@@ -122,8 +122,8 @@ class Fit {
     sizes_ = model_.residuals().cwiseAbs();
     const auto middle = sizes_.begin() + sizes_.size() / 2;
     std::nth_element(sizes_.begin(), middle, sizes_.end());
-    constexpr double kLeast = 0.3;  // Rounding to whole grey levels alone.
-    return std::max(1.4826 * *middle, kLeast);
+    constexpr double kMin = 0.3;  // Rounding to whole grey levels alone.
+    return std::max(1.4826 * *middle, kMin);
   }
 
   static TagState Moved(const TagState& state, const TagRow& step) {
@@ -134,7 +134,7 @@ class Fit {
     TagState moved = state;
     moved.tag_from_straight = change * state.tag_from_straight;
     moved.blur_px = std::clamp(state.blur_px * std::exp(std::clamp(step[kTagBlur], -0.5, 0.5)),
-                               kLeastBlur_px, kMostBlur_px);
+                               kMinBlur_px, kMaxBlur_px);
     moved.gain += step.segment<3>(kTagGain);
     moved.offset += step.segment<3>(kTagOffset);
     return moved;
@@ -152,7 +152,7 @@ std::optional<Eigen::Matrix3d> TagFromStraight(const Quad& corners_px,
                                                const Undistortion& undistortion) {
   Quad straight;
   for (std::size_t k = 0; k < 4; ++k) {
-    const auto point = undistortion.Straighten(corners_px[k]);
+    const auto point = undistortion.Undistort(corners_px[k]);
     if (!point) return std::nullopt;
     straight[k] = point->straight_px;
   }
@@ -169,7 +169,7 @@ bool CornersOf(const TagState& state, const Undistortion& undistortion, Quad& co
   const Eigen::Matrix3d straight_from_tag = state.tag_from_straight.inverse();
   for (std::size_t k = 0; k < 4; ++k) {
     const Eigen::Vector2d tag(kSquareX[k], kSquareY[k]);
-    const auto bent = undistortion.Bend((straight_from_tag * tag.homogeneous()).hnormalized());
+    const auto bent = undistortion.Distort((straight_from_tag * tag.homogeneous()).hnormalized());
     if (!bent) return false;
     corners_px[k] = bent->pixel;
     by_homography.middleRows<2>(2 * static_cast<Eigen::Index>(k)) =
@@ -180,11 +180,11 @@ bool CornersOf(const TagState& state, const Undistortion& undistortion, Quad& co
 
 Expected<void> CheckPixels(const EdgePixels& pixels) {
   for (std::size_t edge = 0; edge < 4; ++edge) {
-    if (pixels.on_edge[edge] < kLeastPixelsAnEdge) {
+    if (pixels.on_edge[edge] < kMinPixelsAnEdge) {
       return MakeError(ErrorCode::kDegenerate,
                        fmt::format("edge {} of the tag has {} pixels to look at, expected {} or "
                                    "more: it is too small, or cut by the image's border",
-                                   edge, pixels.on_edge[edge], kLeastPixelsAnEdge));
+                                   edge, pixels.on_edge[edge], kMinPixelsAnEdge));
     }
   }
   return {};
@@ -239,11 +239,11 @@ Expected<RefinedTag> RefineTag(const cv::Mat& grey, const Quad& start, const Tag
   }
   refined.blur_px = state.blur_px;
   refined.contrast_grey = state.gain.x();
-  if (refined.contrast_grey < kLeastContrast) {
+  if (refined.contrast_grey < kMinContrast) {
     return MakeError(ErrorCode::kNoConvergence,
                      fmt::format("the tag's white is {:.1f} grey levels above its black, expected "
                                  "at least {}",
-                                 refined.contrast_grey, kLeastContrast));
+                                 refined.contrast_grey, kMinContrast));
   }
   return refined;
 }

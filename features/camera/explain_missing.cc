@@ -17,11 +17,11 @@ namespace sextant {
 namespace {
 
 constexpr double kSmallest_px = 16.0;
-constexpr double kLeastMargin = 20.0;
-constexpr double kLeastVisible_grey = 2.0;
-constexpr double kMostWrongShare = 0.1;
-constexpr int kMostSideForTrials_px = 1600;
-constexpr double kMostPixelsToEnlarge = 6e6;
+constexpr double kMinMargin = 20.0;
+constexpr double kMinVisible_grey = 2.0;
+constexpr double kMaxWrongShare = 0.1;
+constexpr int kMaxSideForTrials_px = 1600;
+constexpr double kMaxPixelsToEnlarge = 6e6;
 
 double MeanSide(const Quad& quad) {
   double sum = 0.0;
@@ -53,7 +53,7 @@ MissingTag FromPose(const cv::Mat& grey, const BoardTag& tag, const Camera& came
   const TagPattern pattern = *MakeTagPattern(tag.family, tag.id);
   const TagReading reading = ReadTag(grey, corners, pattern);
   const int cells = (pattern.edge_cells - 2) * (pattern.edge_cells - 2);
-  if (reading.margin > kLeastVisible_grey && reading.wrong_cells <= kMostWrongShare * cells) {
+  if (reading.margin > kMinVisible_grey && reading.wrong_cells <= kMaxWrongShare * cells) {
     return {MissingCause::kOverlooked,
             fmt::format("it is where the board's other tags put it, {} of its {} cells are read "
                         "rightly, by {:.0f} grey levels, but the detector passed it over: its "
@@ -75,7 +75,7 @@ std::optional<TagDetection> FindIn(const cv::Mat& grey, const BoardTag& tag) {
   const Expected<Detections> found = (*detector)->Detect(grey);
   if (!found) return std::nullopt;
   for (const TagDetection& detection : found->tags) {
-    if (detection.id == tag.id && detection.decision_margin > kLeastMargin) return detection;
+    if (detection.id == tag.id && detection.decision_margin > kMinMargin) return detection;
   }
   return std::nullopt;
 }
@@ -97,7 +97,7 @@ MissingTag ByTrial(const cv::Mat& grey, const BoardTag& tag) {
     return {MissingCause::kMirrored,
             "it is there as its mirror image: printed, or the image flipped, the wrong way round"};
   }
-  if (static_cast<double>(grey.total()) < kMostPixelsToEnlarge) {
+  if (static_cast<double>(grey.total()) < kMaxPixelsToEnlarge) {
     cv::resize(grey, changed, {}, 2.0, 2.0, cv::INTER_CUBIC);
     if (const auto found = FindIn(changed, tag)) {
       return {MissingCause::kTooSmall,
@@ -126,7 +126,7 @@ std::vector<int> ReliableIds(const std::string& family, const cv::Mat& grey) {
   if (!found) return {};
   std::vector<int> ids;
   for (const TagDetection& tag : found->tags) {
-    if (tag.hamming == 0 && tag.decision_margin > kLeastMargin) ids.push_back(tag.id);
+    if (tag.hamming == 0 && tag.decision_margin > kMinMargin) ids.push_back(tag.id);
   }
   std::ranges::sort(ids);
   return ids;
@@ -168,8 +168,8 @@ std::vector<FamilyMatch> FindOtherFamilies(const cv::Mat& grey, const std::strin
                                            std::span<const int> wanted_ids) {
   cv::Mat small = grey;
   const int side = std::max(grey.cols, grey.rows);
-  if (side > kMostSideForTrials_px) {
-    const double scale = static_cast<double>(kMostSideForTrials_px) / side;
+  if (side > kMaxSideForTrials_px) {
+    const double scale = static_cast<double>(kMaxSideForTrials_px) / side;
     cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
   }
   std::vector<FamilyMatch> matches;

@@ -8,7 +8,7 @@
 namespace sextant {
 namespace {
 
-constexpr int kLeastSide = 16;
+constexpr int kMinSide = 16;
 
 cv::Mat ToEightBits(const cv::Mat& image) {
   double brightest = 0.0;
@@ -23,10 +23,10 @@ cv::Mat ToEightBits(const cv::Mat& image) {
 }  // namespace
 
 Expected<cv::Mat> ToGrey(const cv::Mat& image) {
-  if (image.cols < kLeastSide || image.rows < kLeastSide) {
+  if (image.cols < kMinSide || image.rows < kMinSide) {
     return MakeError(ErrorCode::kInvalidInput,
                      fmt::format("the image has {} x {} pixels, expected at least {} x {}",
-                                 image.cols, image.rows, kLeastSide, kLeastSide));
+                                 image.cols, image.rows, kMinSide, kMinSide));
   }
   const bool depth_known = image.depth() == CV_8U || image.depth() == CV_16U;
   const int channels = image.channels();

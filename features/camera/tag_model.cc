@@ -5,25 +5,26 @@
 #include <cstdint>
 #include <numbers>
 
-#include "base/lanes.h"
+#include "base/simd.h"
 
 namespace sextant {
 namespace {
 
-constexpr double kReach = 4.0;          ///< Standard deviations beyond which a step is over.
-constexpr std::size_t kMostCells = 24;  ///< Along one axis within reach.
+constexpr double kReach = 4.0;         ///< Standard deviations beyond which a step is over.
+constexpr std::size_t kMaxCells = 24;  ///< Along one axis within reach.
 
 // e^x for -700 < x <= 0: 2^k times a polynomial on half an octave to both sides, to 3e-10.
-SEXTANT_INLINE Lanes Exp(const Lanes& x) {
-  const Lanes shift = AllLanes(6755399441055744.0);  // 1.5 * 2^52: the integer is in the low bits.
-  const Lanes shifted = x * (1.0 / std::numbers::ln2) + shift;
-  const Lanes r = x - (shifted - shift) * std::numbers::ln2;
-  LaneMask bits;
+SEXTANT_INLINE Vec8d Exp(const Vec8d& x) {
+  const Vec8d shift =
+      BroadcastVec(6755399441055744.0);  // 1.5 * 2^52: the integer is in the low bits.
+  const Vec8d shifted = x * (1.0 / std::numbers::ln2) + shift;
+  const Vec8d r = x - (shifted - shift) * std::numbers::ln2;
+  Mask8 bits;
   std::memcpy(&bits, &shifted, sizeof bits);
   bits = (bits + 1023) << 52;
-  Lanes power;
+  Vec8d power;
   std::memcpy(&power, &bits, sizeof power);
-  Lanes sum = AllLanes(1.0 / 40320.0);
+  Vec8d sum = BroadcastVec(1.0 / 40320.0);
   for (const double c : {1.0 / 5040.0, 1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0}) {
     sum = sum * r + c;
   }
@@ -33,21 +34,21 @@ SEXTANT_INLINE Lanes Exp(const Lanes& x) {
 // Phi(h), and phi(h) He_n(h) for n = 0 to 3 (Hermite's polynomials, each the derivative of the one
 // before but for its sign).
 struct Step {
-  Lanes value{};
-  std::array<Lanes, 4> hermite{};
+  Vec8d value{};
+  std::array<Vec8d, 4> hermite{};
 };
 
-SEXTANT_INLINE Step StepAt(const Lanes& h) {
-  const LaneMask is_in = (h > -kReach) & (h < kReach);
-  const Lanes inside = is_in ? h : AllLanes(0.0);
-  const Lanes density =
+SEXTANT_INLINE Step StepAt(const Vec8d& h) {
+  const Mask8 is_in = (h > -kReach) & (h < kReach);
+  const Vec8d inside = is_in ? h : BroadcastVec(0.0);
+  const Vec8d density =
       Exp(-0.5 * inside * inside) * (0.5 * std::numbers::inv_sqrtpi * std::numbers::sqrt2);
-  const Lanes t = 1.0 / (1.0 + 0.2316419 * Abs(inside));
-  const Lanes tail =
+  const Vec8d t = 1.0 / (1.0 + 0.2316419 * Abs(inside));
+  const Vec8d tail =
       density * t *
       (0.319381530 + t * (-0.356563782 + t * (1.781477937 + t * (-1.821255978 + t * 1.330274429))));
-  const Lanes outside = h > 0.0 ? AllLanes(1.0) : AllLanes(0.0);
-  const Lanes lanes_density = is_in ? density : AllLanes(0.0);
+  const Vec8d outside = h > 0.0 ? BroadcastVec(1.0) : BroadcastVec(0.0);
+  const Vec8d lanes_density = is_in ? density : BroadcastVec(0.0);
   Step step;
   step.value = is_in ? (inside > 0.0 ? 1.0 - tail : tail) : outside;
   step.hermite = {lanes_density, inside * lanes_density, (inside * inside - 1.0) * lanes_density,
@@ -57,9 +58,9 @@ SEXTANT_INLINE Step StepAt(const Lanes& h) {
 
 // How much of each cell from `first` the blur sees: differences over its two sides.
 struct Weights {
-  std::array<std::int32_t, kLanes> first;
+  std::array<std::int32_t, kSimdWidth> first;
   std::size_t count = 0;
-  std::array<Step, kMostCells> cells;
+  std::array<Step, kMaxCells> cells;
 };
 
 SEXTANT_INLINE std::int32_t Floor(double value) {
@@ -67,19 +68,19 @@ SEXTANT_INLINE std::int32_t Floor(double value) {
   return value < whole ? whole - 1 : whole;
 }
 
-SEXTANT_INLINE void WeightsAt(const Lanes& point, const Lanes& blur, Weights& weights) {
-  const Lanes low = point - kReach * blur;
-  const Lanes high = point + kReach * blur;
-  Lanes begin_at;
+SEXTANT_INLINE void WeightsAt(const Vec8d& point, const Vec8d& blur, Weights& weights) {
+  const Vec8d low = point - kReach * blur;
+  const Vec8d high = point + kReach * blur;
+  Vec8d begin_at;
   std::int32_t most = 0;
-  for (std::size_t i = 0; i < kLanes; ++i) {
+  for (std::size_t i = 0; i < kSimdWidth; ++i) {
     weights.first[i] = Floor(low[i]);
     begin_at[i] = weights.first[i];
     most = std::max(most, Floor(high[i]) - weights.first[i]);
   }
-  weights.count = std::min(static_cast<std::size_t>(most) + 1, kMostCells);
-  const Lanes by_blur = 1.0 / blur;
-  Step begin{.value = AllLanes(1.0), .hermite = {}};
+  weights.count = std::min(static_cast<std::size_t>(most) + 1, kMaxCells);
+  const Vec8d by_blur = 1.0 / blur;
+  Step begin{.value = BroadcastVec(1.0), .hermite = {}};
   for (std::size_t i = 0; i < weights.count; ++i) {
     Step end;
     if (i + 1 < weights.count)
@@ -92,10 +93,10 @@ SEXTANT_INLINE void WeightsAt(const Lanes& point, const Lanes& blur, Weights& we
 }
 
 // 1 for the lanes whose cell is black.
-SEXTANT_INLINE Lanes BlackAt(const TagModel::Cells& cells, const Weights& us, const Weights& vs,
+SEXTANT_INLINE Vec8d BlackAt(const TagModel::Cells& cells, const Weights& us, const Weights& vs,
                              std::size_t column, std::size_t row) {
-  Lanes black;
-  for (std::size_t i = 0; i < kLanes; ++i) {
+  Vec8d black;
+  for (std::size_t i = 0; i < kSimdWidth; ++i) {
     const std::int32_t u =
         std::clamp(us.first[i] + static_cast<std::int32_t>(column), -1, cells.side) + 1;
     const std::int32_t v =
@@ -106,25 +107,25 @@ SEXTANT_INLINE Lanes BlackAt(const TagModel::Cells& cells, const Weights& us, co
 }
 
 struct Blurred {
-  Lanes white;
-  std::array<Lanes, 2> by_step;  // Derivatives by the point in blurs.
-  Lanes by_blur;
+  Vec8d white;
+  std::array<Vec8d, 2> by_step;  // Derivatives by the point in blurs.
+  Vec8d by_blur;
 };
 
 // Black cells are taken from white: most of the surroundings need no term then.
 SEXTANT_INLINE Blurred BlurAt(const TagModel::Cells& cells, const Weights& us, const Weights& vs,
-                              const Lanes& correlation) {
-  const std::array<Lanes, 3> series = {correlation, 0.5 * correlation * correlation,
+                              const Vec8d& correlation) {
+  const std::array<Vec8d, 3> series = {correlation, 0.5 * correlation * correlation,
                                        correlation * correlation * correlation / 6.0};
-  Blurred sum{.white = AllLanes(1.0), .by_step = {}, .by_blur = {}};
+  Blurred sum{.white = BroadcastVec(1.0), .by_step = {}, .by_blur = {}};
   for (std::size_t row = 0; row < vs.count; ++row) {
     const Step& v = vs.cells[row];
     for (std::size_t column = 0; column < us.count; ++column) {
-      const Lanes black = BlackAt(cells, us, vs, column, row);
-      if (SumLanes(black) == 0.0) continue;
+      const Vec8d black = BlackAt(cells, us, vs, column, row);
+      if (HorizontalSum(black) == 0.0) continue;
       const Step& u = us.cells[column];
-      Lanes share = u.value * v.value;
-      std::array<Lanes, 2> by_step = {u.hermite[0] * v.value, u.value * v.hermite[0]};
+      Vec8d share = u.value * v.value;
+      std::array<Vec8d, 2> by_step = {u.hermite[0] * v.value, u.value * v.hermite[0]};
       for (std::size_t n = 0; n < series.size(); ++n) {
         share += series[n] * u.hermite[n] * v.hermite[n];
         by_step[0] -= series[n] * u.hermite[n + 1] * v.hermite[n];
@@ -144,42 +145,42 @@ void ModelPixels(const TagModel::Cells& cells, const EdgePixels& pixels, const T
   const Eigen::Matrix3d& h = state.tag_from_straight;
   Weights us;
   Weights vs;
-  for (std::size_t i = 0; i < pixels.x.size(); i += kLanes) {
-    const Lanes px = LoadLanes(pixels.x.data() + i);
-    const Lanes py = LoadLanes(pixels.y.data() + i);
-    const Lanes scale = 1.0 / (h(2, 0) * px + h(2, 1) * py + h(2, 2));
-    const Lanes x = (h(0, 0) * px + h(0, 1) * py + h(0, 2)) * scale;
-    const Lanes y = (h(1, 0) * px + h(1, 1) * py + h(1, 2)) * scale;
-    const Lanes x_by_px = (h(0, 0) - x * h(2, 0)) * scale;
-    const Lanes x_by_py = (h(0, 1) - x * h(2, 1)) * scale;
-    const Lanes y_by_px = (h(1, 0) - y * h(2, 0)) * scale;
-    const Lanes y_by_py = (h(1, 1) - y * h(2, 1)) * scale;
-    const Lanes j00 = LoadLanes(pixels.x_by_u.data() + i);
-    const Lanes j01 = LoadLanes(pixels.x_by_v.data() + i);
-    const Lanes j10 = LoadLanes(pixels.y_by_u.data() + i);
-    const Lanes j11 = LoadLanes(pixels.y_by_v.data() + i);
-    const Lanes x_by_u = x_by_px * j00 + x_by_py * j10;
-    const Lanes x_by_v = x_by_px * j01 + x_by_py * j11;
-    const Lanes y_by_u = y_by_px * j00 + y_by_py * j10;
-    const Lanes y_by_v = y_by_px * j01 + y_by_py * j11;
-    const Lanes x_spread = Sqrt(x_by_u * x_by_u + x_by_v * x_by_v);
-    const Lanes y_spread = Sqrt(y_by_u * y_by_u + y_by_v * y_by_v);
-    const Lanes correlation = (x_by_u * y_by_u + x_by_v * y_by_v) / (x_spread * y_spread);
+  for (std::size_t i = 0; i < pixels.x.size(); i += kSimdWidth) {
+    const Vec8d px = LoadVec(pixels.x.data() + i);
+    const Vec8d py = LoadVec(pixels.y.data() + i);
+    const Vec8d scale = 1.0 / (h(2, 0) * px + h(2, 1) * py + h(2, 2));
+    const Vec8d x = (h(0, 0) * px + h(0, 1) * py + h(0, 2)) * scale;
+    const Vec8d y = (h(1, 0) * px + h(1, 1) * py + h(1, 2)) * scale;
+    const Vec8d x_by_px = (h(0, 0) - x * h(2, 0)) * scale;
+    const Vec8d x_by_py = (h(0, 1) - x * h(2, 1)) * scale;
+    const Vec8d y_by_px = (h(1, 0) - y * h(2, 0)) * scale;
+    const Vec8d y_by_py = (h(1, 1) - y * h(2, 1)) * scale;
+    const Vec8d j00 = LoadVec(pixels.x_by_u.data() + i);
+    const Vec8d j01 = LoadVec(pixels.x_by_v.data() + i);
+    const Vec8d j10 = LoadVec(pixels.y_by_u.data() + i);
+    const Vec8d j11 = LoadVec(pixels.y_by_v.data() + i);
+    const Vec8d x_by_u = x_by_px * j00 + x_by_py * j10;
+    const Vec8d x_by_v = x_by_px * j01 + x_by_py * j11;
+    const Vec8d y_by_u = y_by_px * j00 + y_by_py * j10;
+    const Vec8d y_by_v = y_by_px * j01 + y_by_py * j11;
+    const Vec8d x_spread = Sqrt(x_by_u * x_by_u + x_by_v * x_by_v);
+    const Vec8d y_spread = Sqrt(y_by_u * y_by_u + y_by_v * y_by_v);
+    const Vec8d correlation = (x_by_u * y_by_u + x_by_v * y_by_v) / (x_spread * y_spread);
     const double blur = state.blur_px * cells.a_unit;
     WeightsAt((x + 1.0) * cells.a_unit + cells.first, blur * x_spread, us);
     WeightsAt((y + 1.0) * cells.a_unit + cells.first, blur * y_spread, vs);
     const Blurred blurred = BlurAt(cells, us, vs, correlation);
-    const Lanes gain = state.gain[0] + state.gain[1] * x + state.gain[2] * y;
-    const Lanes offset = state.offset[0] + state.offset[1] * x + state.offset[2] * y;
-    StoreLanes(x, out.x.data() + i);
-    StoreLanes(y, out.y.data() + i);
-    StoreLanes(blurred.white, out.white.data() + i);
+    const Vec8d gain = state.gain[0] + state.gain[1] * x + state.gain[2] * y;
+    const Vec8d offset = state.offset[0] + state.offset[1] * x + state.offset[2] * y;
+    StoreVec(x, out.x.data() + i);
+    StoreVec(y, out.y.data() + i);
+    StoreVec(blurred.white, out.white.data() + i);
     // A blur's width in cells is blur times the spread; the cells by the square cancel.
-    StoreLanes(gain * blurred.by_step[0] / (state.blur_px * x_spread), out.by_x.data() + i);
-    StoreLanes(gain * blurred.by_step[1] / (state.blur_px * y_spread), out.by_y.data() + i);
-    StoreLanes(gain * blurred.by_blur, out.by_blur.data() + i);
-    const Lanes grey = LoadLanes(pixels.grey.data() + i);
-    StoreLanes(grey - (gain * blurred.white + offset), out.residual.data() + i);
+    StoreVec(gain * blurred.by_step[0] / (state.blur_px * x_spread), out.by_x.data() + i);
+    StoreVec(gain * blurred.by_step[1] / (state.blur_px * y_spread), out.by_y.data() + i);
+    StoreVec(gain * blurred.by_blur, out.by_blur.data() + i);
+    const Vec8d grey = LoadVec(pixels.grey.data() + i);
+    StoreVec(grey - (gain * blurred.white + offset), out.residual.data() + i);
   }
 }
 
@@ -194,33 +195,42 @@ struct Sums {
 // Weights of the pixels that only fill up the last lanes are 0.
 SEXTANT_MULTIVERSION
 void Accumulate(const TagModel::Modelled& modelled, std::size_t count, double most, Sums& sums) {
-  std::array<Lanes, kUpper> normal{};
-  std::array<Lanes, kRows> right{};
-  for (std::size_t i = 0; i < count; i += kLanes) {
-    const Lanes x = LoadLanes(modelled.x.data() + i);
-    const Lanes y = LoadLanes(modelled.y.data() + i);
-    const Lanes by_x = LoadLanes(modelled.by_x.data() + i);
-    const Lanes by_y = LoadLanes(modelled.by_y.data() + i);
-    const Lanes white = LoadLanes(modelled.white.data() + i);
-    const Lanes residual = LoadLanes(modelled.residual.data() + i);
-    const Lanes along = x * by_x + y * by_y;
-    const std::array<Lanes, kRows> row = {
-        x * by_x,      y * by_x,   by_x,
-        x * by_y,      y * by_y,   by_y,
-        -x * along,    -y * along, LoadLanes(modelled.by_blur.data() + i),
-        white,         white * x,  white * y,
-        AllLanes(1.0), x,          y};
-    Lanes weight = Min(AllLanes(1.0), most / Max(Abs(residual), AllLanes(1e-12)));
-    for (std::size_t k = count - i; k < kLanes; ++k) weight[k] = 0.0;
+  std::array<Vec8d, kUpper> normal{};
+  std::array<Vec8d, kRows> right{};
+  for (std::size_t i = 0; i < count; i += kSimdWidth) {
+    const Vec8d x = LoadVec(modelled.x.data() + i);
+    const Vec8d y = LoadVec(modelled.y.data() + i);
+    const Vec8d by_x = LoadVec(modelled.by_x.data() + i);
+    const Vec8d by_y = LoadVec(modelled.by_y.data() + i);
+    const Vec8d white = LoadVec(modelled.white.data() + i);
+    const Vec8d residual = LoadVec(modelled.residual.data() + i);
+    const Vec8d along = x * by_x + y * by_y;
+    const std::array<Vec8d, kRows> row = {x * by_x,
+                                          y * by_x,
+                                          by_x,
+                                          x * by_y,
+                                          y * by_y,
+                                          by_y,
+                                          -x * along,
+                                          -y * along,
+                                          LoadVec(modelled.by_blur.data() + i),
+                                          white,
+                                          white * x,
+                                          white * y,
+                                          BroadcastVec(1.0),
+                                          x,
+                                          y};
+    Vec8d weight = Min(BroadcastVec(1.0), most / Max(Abs(residual), BroadcastVec(1e-12)));
+    for (std::size_t k = count - i; k < kSimdWidth; ++k) weight[k] = 0.0;
     std::size_t next = 0;
     for (std::size_t a = 0; a < kRows; ++a) {
-      const Lanes weighted = weight * row[a];
+      const Vec8d weighted = weight * row[a];
       right[a] += weighted * residual;
       for (std::size_t b = a; b < kRows; ++b) normal[next++] += weighted * row[b];
     }
   }
-  for (std::size_t k = 0; k < kUpper; ++k) sums.normal[k] = SumLanes(normal[k]);
-  for (std::size_t k = 0; k < kRows; ++k) sums.right[k] = SumLanes(right[k]);
+  for (std::size_t k = 0; k < kUpper; ++k) sums.normal[k] = HorizontalSum(normal[k]);
+  for (std::size_t k = 0; k < kRows; ++k) sums.right[k] = HorizontalSum(right[k]);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 namespace sextant {
 
-std::optional<Undistortion::Point> Undistortion::Straighten(const Eigen::Vector2d& pixel) const {
+std::optional<Undistortion::Point> Undistortion::Undistort(const Eigen::Vector2d& pixel) const {
   if (!camera_ || camera_->model == CameraModel::kPinhole) {
     return Point{.straight_px = pixel, .straight_by_pixel = Eigen::Matrix2d::Identity()};
   }
@@ -17,45 +17,46 @@ std::optional<Undistortion::Point> Undistortion::Straighten(const Eigen::Vector2
   const Eigen::Vector2d focal(camera_->fx_px, camera_->fy_px);
   const Eigen::Vector2d centre(camera_->cx_px, camera_->cy_px);
   const Eigen::Vector2d undistorted = ray->hnormalized();
-  const std::optional<Distorted> distorted = Distort(*camera_, undistorted);
+  const std::optional<Distorted> distorted = sextant::Distort(*camera_, undistorted);
   if (!distorted) return std::nullopt;
   return Point{.straight_px = focal.cwiseProduct(undistorted) + centre,
                .straight_by_pixel = focal.asDiagonal() * distorted->by_undistorted.inverse() *
                                     focal.cwiseInverse().asDiagonal()};
 }
 
-std::optional<Undistortion::Point> Undistortion::StraightenNear(const Eigen::Vector2d& pixel,
-                                                                const Eigen::Vector2d& near_px,
-                                                                const Point& near) const {
-  if (!camera_ || camera_->model == CameraModel::kPinhole) return Straighten(pixel);
+std::optional<Undistortion::Point> Undistortion::UndistortNear(const Eigen::Vector2d& pixel,
+                                                               const Eigen::Vector2d& near_px,
+                                                               const Point& near) const {
+  if (!camera_ || camera_->model == CameraModel::kPinhole) return Undistort(pixel);
   // A Newton step of s leaves s^2 times half the lens's curvature, at most 0.01 a px.
   constexpr double kShortStep_px = 0.1;
-  constexpr int kMostSteps = 3;
+  constexpr int kMaxSteps = 3;
   Point point{.straight_px = near.straight_px + near.straight_by_pixel * (pixel - near_px),
               .straight_by_pixel = near.straight_by_pixel};
-  for (int i = 0; i < kMostSteps; ++i) {
-    const std::optional<Bent> bent = Bend(point.straight_px);
+  for (int i = 0; i < kMaxSteps; ++i) {
+    const std::optional<DistortedPoint> bent = Distort(point.straight_px);
     if (!bent) break;
     point.straight_by_pixel = bent->pixel_by_straight.inverse();
     const Eigen::Vector2d step = point.straight_by_pixel * (pixel - bent->pixel);
     point.straight_px += step;
     if (step.squaredNorm() < kShortStep_px * kShortStep_px) return point;
   }
-  return Straighten(pixel);
+  return Undistort(pixel);
 }
 
-std::optional<Undistortion::Bent> Undistortion::Bend(const Eigen::Vector2d& straight_px) const {
+std::optional<Undistortion::DistortedPoint> Undistortion::Distort(
+    const Eigen::Vector2d& straight_px) const {
   if (!camera_ || camera_->model == CameraModel::kPinhole) {
-    return Bent{.pixel = straight_px, .pixel_by_straight = Eigen::Matrix2d::Identity()};
+    return DistortedPoint{.pixel = straight_px, .pixel_by_straight = Eigen::Matrix2d::Identity()};
   }
   const Eigen::Vector2d focal(camera_->fx_px, camera_->fy_px);
   const Eigen::Vector2d centre(camera_->cx_px, camera_->cy_px);
   const std::optional<Distorted> distorted =
-      Distort(*camera_, (straight_px - centre).cwiseQuotient(focal));
+      sextant::Distort(*camera_, (straight_px - centre).cwiseQuotient(focal));
   if (!distorted) return std::nullopt;
-  return Bent{.pixel = focal.cwiseProduct(distorted->point) + centre,
-              .pixel_by_straight = focal.asDiagonal() * distorted->by_undistorted *
-                                   focal.cwiseInverse().asDiagonal()};
+  return DistortedPoint{.pixel = focal.cwiseProduct(distorted->point) + centre,
+                        .pixel_by_straight = focal.asDiagonal() * distorted->by_undistorted *
+                                             focal.cwiseInverse().asDiagonal()};
 }
 
 }  // namespace sextant

@@ -21,18 +21,18 @@ class Undistortion {
   };
 
   /// None outside the lens model's domain.
-  std::optional<Point> Straighten(const Eigen::Vector2d& pixel) const;
+  std::optional<Point> Undistort(const Eigen::Vector2d& pixel) const;
 
-  /// As Straighten to 1e-4 px, in a fraction of its time, for a pixel some px from `near_px`, whose
+  /// As Undistort to 1e-4 px, in a fraction of its time, for a pixel some px from `near_px`, whose
   /// straight place is `near`.
-  std::optional<Point> StraightenNear(const Eigen::Vector2d& pixel, const Eigen::Vector2d& near_px,
-                                      const Point& near) const;
+  std::optional<Point> UndistortNear(const Eigen::Vector2d& pixel, const Eigen::Vector2d& near_px,
+                                     const Point& near) const;
 
-  struct Bent {
+  struct DistortedPoint {
     Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
     Eigen::Matrix2d pixel_by_straight = Eigen::Matrix2d::Identity();
   };
-  std::optional<Bent> Bend(const Eigen::Vector2d& straight_px) const;
+  std::optional<DistortedPoint> Distort(const Eigen::Vector2d& straight_px) const;
 
  private:
   std::optional<Camera> camera_;

@@ -11,17 +11,17 @@ namespace sextant {
 namespace {
 
 constexpr double kBand_m = 0.08;  // Around the board, where its plane must end.
-constexpr double kLeastFilled = 0.9;
-constexpr double kMostContinued = 0.12;  // Hands and stands: up to 0.08; furniture: 0.16 and more.
-constexpr double kLeastContained = 0.8;
-constexpr double kLeastVisible = 0.5;
-constexpr double kLeastShare = 0.6;
-constexpr double kMostRms = 2.8;  // Sigmas; a board of the wrong size has more.
-constexpr double kLeastDensity = 0.3;
-constexpr int kFewestSides = 3;
-constexpr int kFewestEdgePoints = 8;
-constexpr int kFewestEdgePointsOnFewestRings = 12;  // Furniture there has up to 11 by chance.
-constexpr int kFewestPointsOfBoard = 16;
+constexpr double kMinFilled = 0.9;
+constexpr double kMaxContinued = 0.12;  // Hands and stands: up to 0.08; furniture: 0.16 and more.
+constexpr double kMinContained = 0.8;
+constexpr double kMinVisible = 0.5;
+constexpr double kMinShare = 0.6;
+constexpr double kMaxRms = 2.8;  // Sigmas; a board of the wrong size has more.
+constexpr double kMinDensity = 0.3;
+constexpr int kMinSides = 3;
+constexpr int kMinEdgePoints = 8;
+constexpr int kMinEdgePointsOnMinRings = 12;  // Furniture there has up to 11 by chance.
+constexpr int kMinPointsOfBoard = 16;
 
 // How far a point is beyond the rectangle's nearest side; negative inside.
 double Beyond(const Eigen::Vector2d& point, double width, double height) {
@@ -98,47 +98,46 @@ BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const
 
 std::optional<std::string> WhyNot(const BoardPatch& patch, const Board& board) {
   const BoardAgreement& agreement = patch.agreement;
-  if (agreement.rings < kFewestRings) {
+  if (agreement.rings < kMinRings) {
     return fmt::format(
         "only {} rings cross it, {} are needed: hold it nearer or use a sensor with "
         "more rings",
-        agreement.rings, kFewestRings);
+        agreement.rings, kMinRings);
   }
   const int fewest_edge_points =
-      agreement.rings == kFewestRings ? kFewestEdgePointsOnFewestRings : kFewestEdgePoints;
+      agreement.rings == kMinRings ? kMinEdgePointsOnMinRings : kMinEdgePoints;
   if (static_cast<int>(patch.edges.size()) < fewest_edge_points) {
     return fmt::format("only {} edge points on {} rings, {} are needed", patch.edges.size(),
                        agreement.rings, fewest_edge_points);
   }
-  if (agreement.points < kFewestPointsOfBoard) {
-    return fmt::format("only {} returns on it, {} are needed", agreement.points,
-                       kFewestPointsOfBoard);
+  if (agreement.points < kMinPointsOfBoard) {
+    return fmt::format("only {} returns on it, {} are needed", agreement.points, kMinPointsOfBoard);
   }
-  if (agreement.density < kLeastDensity) {
+  if (agreement.density < kMinDensity) {
     return fmt::format("only {:.0f} % of the returns that a board there would give",
                        100.0 * agreement.density);
   }
-  if (patch.fit.sides_seen < kFewestSides) {
+  if (patch.fit.sides_seen < kMinSides) {
     return fmt::format("edges were seen on {} of its sides, {} are needed", patch.fit.sides_seen,
-                       kFewestSides);
+                       kMinSides);
   }
-  if (patch.fit.share < kLeastShare || patch.fit.rms > kMostRms) {
+  if (patch.fit.share < kMinShare || patch.fit.rms > kMaxRms) {
     return fmt::format(
         "its outline is not {:.3f} x {:.3f} m: {:.0f} % of the edge points fit, {:.1f} sigma rms",
         board.top_right_m, board.right_bottom_m, 100.0 * patch.fit.share, patch.fit.rms);
   }
-  if (agreement.contained < kLeastContained) {
+  if (agreement.contained < kMinContained) {
     return fmt::format("{:.0f} % of its flat surface lies beyond a board of {:.3f} x {:.3f} m",
                        100.0 * (1.0 - agreement.contained), board.top_right_m,
                        board.right_bottom_m);
   }
-  if (agreement.filled < kLeastFilled) {
+  if (agreement.filled < kMinFilled) {
     return fmt::format("{:.0f} % of the rays pass through it", 100.0 * (1.0 - agreement.filled));
   }
-  if (agreement.visible < kLeastVisible) {
+  if (agreement.visible < kMinVisible) {
     return fmt::format("something nearer hides {:.0f} % of it", 100.0 * (1.0 - agreement.visible));
   }
-  if (agreement.continued > kMostContinued) {
+  if (agreement.continued > kMaxContinued) {
     return fmt::format("its plane goes on beyond it ({:.0f} % around it), as a wall's does",
                        100.0 * agreement.continued);
   }

@@ -17,10 +17,10 @@ namespace {
 
 constexpr double kHeldBy = 1.6;       // A hand or a stand may lengthen a run beyond the board.
 constexpr int kPlanesPerCluster = 3;  // A person who holds a board is flat in places too.
-constexpr int kFewestInCluster = 10;
+constexpr int kMinInCluster = 10;
 constexpr double kAround_m = 0.05;
 constexpr double kNearlyAll = 0.97;  // Of a patch; the rest may be what holds the board.
-constexpr double kLeastJump_m = 0.06;
+constexpr double kMinJump_m = 0.06;
 constexpr double kJumpSigmas = 4.5;  // Two returns differ by sqrt 2 sigma; three of these.
 // Of the board's diagonal, that the box round a patch's points may span: half where the last rings
 // miss its corners, sqrt 2 where it hangs from a corner, more with a hand or a stand.
@@ -50,7 +50,7 @@ class Finder {
     for (const Board& board : boards_) longest = std::max(longest, Diagonal(board));
     const ClusterOptions options{
         .longest_run_m = kHeldBy * longest,
-        .jump_m = std::max(kLeastJump_m, kJumpSigmas * scan_.range_sigma_m())};
+        .jump_m = std::max(kMinJump_m, kJumpSigmas * scan_.range_sigma_m())};
     for (const RingCluster& cluster : ClusterRings(scan_, options)) {
       if (cluster.front().ring < cluster.back().ring) SearchCluster(cluster);
     }
@@ -74,7 +74,7 @@ class Finder {
     }
     std::ranges::sort(places);
     for (int i = 0; i < kPlanesPerCluster; ++i) {
-      if (static_cast<int>(places.size()) < kFewestInCluster) return;
+      if (static_cast<int>(places.size()) < kMinInCluster) return;
       if (!SearchPlane(places)) return;
     }
   }
@@ -195,7 +195,7 @@ class Finder {
   }
 
   PlaneSearch PlaneSearchOf() const {
-    return {.threshold_m = std::max(kLeastThreshold_m, kPlaneSigmas * scan_.range_sigma_m()),
+    return {.threshold_m = std::max(kMinThreshold_m, kPlaneSigmas * scan_.range_sigma_m()),
             .iterations = 60,
             .smallest_share = 0.25};
   }

@@ -64,7 +64,7 @@ struct BoardSearch {
   std::vector<RejectedPatch> rejected{};  ///< Those with most points first.
 };
 
-inline constexpr int kFewestRings = 4;  ///< A board seen by fewer has too few edge points.
+inline constexpr int kMinRings = 4;  ///< A board seen by fewer has too few edge points.
 
 /// Boards of known size among everything else: clusters of the scan no wider than a board, the
 /// plane that most of each lies on, the rectangle that its edges fit. Boards of nearly the same

@@ -14,7 +14,7 @@ namespace sextant {
 namespace {
 
 constexpr double kThreshold_m = 0.01;  // The paper's.
-constexpr double kLeastCosine = 0.2;  // Of a ring to a side's normal: along a side it tells little.
+constexpr double kMinCosine = 0.2;  // Of a ring to a side's normal: along a side it tells little.
 
 struct Line3d {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -170,7 +170,7 @@ Eigen::MatrixXd CovarianceOf(LineCorners& corners, const BoardPatch& patch) {
       const double range_sigma = patch.plane.sigma_m / std::abs(patch.plane.normal.dot(ray));
       const Eigen::VectorXd by_range = corners.MovedBy(side, k, ray) * range_sigma;
       const Eigen::VectorXd by_place = corners.MovedBy(side, k, along);
-      const double cosine = std::max(kLeastCosine, normals[side].dot(edge.outward));
+      const double cosine = std::max(kMinCosine, normals[side].dot(edge.outward));
       const double spot = edge.SpotAcross(normals[side]) / cosine;
       const double variance =
           edge.step_m * edge.step_m / 12.0 + std::pow(edge.beam.edge_sigma * spot, 2);

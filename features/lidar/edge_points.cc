@@ -27,7 +27,7 @@ class EdgeFinder {
     AddEdge(ring, places.front(), -1, false, edges);
     for (std::size_t i = 1; options_.hollow && i < places.size(); ++i) {
       const double gap = Azimuth(places[i]) - Azimuth(places[i - 1]);
-      if (gap <= kMostGapSteps * scan_.azimuth_step_rad()) continue;
+      if (gap <= kMaxGapSteps * scan_.azimuth_step_rad()) continue;
       AddEdge(ring, places[i - 1], +1, true, edges);
       AddEdge(ring, places[i], -1, true, edges);
     }
@@ -47,7 +47,7 @@ class EdgeFinder {
     const auto on = MeetTurned(last, 0.0);
     const auto off = MeetTurned(beyond, -gap);
     if (!on || !off || (*off - *on).norm() < 1e-9) return;
-    if (std::abs(gap) < kMostGapSteps * scan_.azimuth_step_rad()) {
+    if (std::abs(gap) < kMaxGapSteps * scan_.azimuth_step_rad()) {
       const double distance = std::abs(plane_.normal.dot(beyond.point - plane_.origin));
       if (Hides(beyond) || distance < 0.01 + 3.0 * plane_.sigma_m) return;
     }
@@ -87,7 +87,7 @@ class EdgeFinder {
         first +
         (place - first + count + static_cast<std::size_t>(sign > 0 ? 1 : count - 1)) % count;
     const double gap = std::abs(Azimuth(next) - Azimuth(place));
-    if (next == place || gap > kMostGapSteps * scan_.azimuth_step_rad()) return std::nullopt;
+    if (next == place || gap > kMaxGapSteps * scan_.azimuth_step_rad()) return std::nullopt;
     return scan_.points()[next];
   }
 

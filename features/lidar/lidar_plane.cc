@@ -12,10 +12,10 @@
 namespace sextant {
 namespace {
 
-constexpr int kFewestPointsOfPlane = 6;
-constexpr std::size_t kMostCounted = 300;  // Enough to tell which of two planes holds more.
-constexpr double kLeastSigma_m = 1e-6;     // Noise-free scans.
-constexpr double kLeastIncidence = 0.139;  // sin 8 deg: closer to edge-on the edges mean nothing.
+constexpr int kMinPointsOfPlane = 6;
+constexpr std::size_t kMaxCounted = 300;  // Enough to tell which of two planes holds more.
+constexpr double kMinSigma_m = 1e-6;      // Noise-free scans.
+constexpr double kMinIncidence = 0.139;   // sin 8 deg: closer to edge-on the edges mean nothing.
 
 struct HalfSpace {
   Eigen::Vector3d normal;
@@ -62,15 +62,14 @@ std::optional<LidarPlane> FitPlane(std::span<const Eigen::Vector3d> points,
   plane.origin = mean;
   plane.normal = eigen.vectors.col(0);
   if (plane.normal.dot(mean) < 0.0) plane.normal = -plane.normal;
-  if (plane.normal.dot(mean.normalized()) < kLeastIncidence) return std::nullopt;
+  if (plane.normal.dot(mean.normalized()) < kMinIncidence) return std::nullopt;
   // Down as far as the plane allows; a level plane takes what is away from the sensor for up.
   const Eigen::Vector3d down = std::abs(plane.normal.z()) < 0.95
                                    ? Eigen::Vector3d(-Eigen::Vector3d::UnitZ())
                                    : Eigen::Vector3d(-mean);
   plane.x_axis = down.cross(plane.normal).normalized();
   plane.y_axis = plane.normal.cross(plane.x_axis);
-  plane.sigma_m =
-      std::max(kLeastSigma_m, std::sqrt(std::max(0.0, eigen.values(0)) / (count - 3.0)));
+  plane.sigma_m = std::max(kMinSigma_m, std::sqrt(std::max(0.0, eigen.values(0)) / (count - 3.0)));
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   for (const int i : inliers) {
     const Eigen::Vector3d d = points[static_cast<std::size_t>(i)] - mean;
@@ -93,11 +92,11 @@ std::optional<Eigen::Vector2d> LidarPlane::Meet(const Eigen::Vector3d& direction
 std::optional<FoundPlane> FindPlane(std::span<const Eigen::Vector3d> points,
                                     const PlaneSearch& search, Random& random) {
   const int count = static_cast<int>(points.size());
-  if (count < kFewestPointsOfPlane) return std::nullopt;
+  if (count < kMinPointsOfPlane) return std::nullopt;
   std::optional<HalfSpace> best;
   std::size_t most = 0;
   std::array<int, 3> sample{};
-  const std::size_t stride = 1 + points.size() / kMostCounted;
+  const std::size_t stride = 1 + points.size() / kMaxCounted;
   for (int i = 0; i < search.iterations; ++i) {
     random.Sample(count, sample);
     const std::optional<HalfSpace> plane = ThroughThree(points, sample);
@@ -116,7 +115,7 @@ std::optional<FoundPlane> FindPlane(std::span<const Eigen::Vector3d> points,
   FoundPlane found;
   found.inliers = Within(points, *best, search.threshold_m);
   for (int round = 0; round < 4; ++round) {
-    if (static_cast<int>(found.inliers.size()) < kFewestPointsOfPlane) return std::nullopt;
+    if (static_cast<int>(found.inliers.size()) < kMinPointsOfPlane) return std::nullopt;
     const std::optional<LidarPlane> plane = FitPlane(points, found.inliers);
     if (!plane) return std::nullopt;
     found.plane = *plane;

@@ -20,8 +20,8 @@ namespace {
 
 constexpr std::array<const char*, 4> kEdgeNames = {"top-left", "top-right", "bottom-right",
                                                    "bottom-left"};
-constexpr int kMostPlanes = 4;         // Board, what is behind it, and what is behind that.
-constexpr double kLeastOutward = 0.1;  // Cosine; a ring along an edge does not leave the board.
+constexpr int kMaxPlanes = 4;        // Board, what is behind it, and what is behind that.
+constexpr double kMinOutward = 0.1;  // Cosine; a ring along an edge does not leave the board.
 constexpr double kSquare_m = 0.005;
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -118,11 +118,11 @@ class MarkedPatch {
     std::vector<std::size_t> left(places_.size());
     for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
     bool any = false;
-    for (int k = 0; k < kMostPlanes; ++k) {
+    for (int k = 0; k < kMaxPlanes; ++k) {
       std::vector<Eigen::Vector3d> points;
       for (const std::size_t i : left) points.push_back(scan_.points()[places_[i]].point);
       const PlaneSearch search{
-          .threshold_m = std::max(kLeastThreshold_m, kPlaneSigmas * scan_.range_sigma_m()),
+          .threshold_m = std::max(kMinThreshold_m, kPlaneSigmas * scan_.range_sigma_m()),
           .iterations = 200,
           .smallest_share = 0.1};
       const std::optional<FoundPlane> found = FindPlane(points, search, random);
@@ -164,7 +164,7 @@ class MarkedPatch {
     std::vector<EdgePoint> ends =
         FindEdgePoints(scan_, patch.plane, in_area, EdgeOptionsFor(false));
     std::erase_if(ends, [&](const EdgePoint& end) {
-      return end.across || end.outward.dot(outward) < kLeastOutward * outward.norm() ||
+      return end.across || end.outward.dot(outward) < kMinOutward * outward.norm() ||
              GoesOn(end, patch.plane);
     });
     return ends;
@@ -184,7 +184,7 @@ class MarkedPatch {
       const std::optional<Eigen::Vector2d> there = plane.Meet(other.point);
       const bool outside = here && there && (*there - *here).dot(end.outward) > 0.0;
       const double angle = std::abs(WrapAngle(other.azimuth_rad - last->azimuth_rad));
-      if (outside && angle < kMostGapSteps * scan_.azimuth_step_rad() &&
+      if (outside && angle < kMaxGapSteps * scan_.azimuth_step_rad() &&
           std::abs(plane.normal.dot(other.point - plane.origin)) < 3.0 * plane.sigma_m) {
         return true;
       }

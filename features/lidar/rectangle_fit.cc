@@ -24,8 +24,8 @@ constexpr double kFirstReach = 1e9;  // Sigmas beyond which an edge point has no
 constexpr double kReach = 8.0;       // in the end those of a hand or a stand.
 constexpr double kReachesFurther = 1.15;  // Than a board does.
 constexpr double kAngleSlack_rad = 0.02;
-constexpr int kFewestEdges = 4;
-constexpr std::size_t kMostSides = 8;  // Of a hollow board.
+constexpr int kMinEdges = 4;
+constexpr std::size_t kMaxSides = 8;  // Of a hollow board.
 
 // Outward normals of the sides 0 to 3 in the board's frame: y = -h/2 is the first.
 const std::array<Eigen::Vector2d, 4> kNormals = {Eigen::Vector2d(0, -1), Eigen::Vector2d(1, 0),
@@ -45,9 +45,9 @@ struct SidePlace {
 struct Sums {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d by_growth = Eigen::Vector3d::Zero();
-  std::array<SharedStep, kMostSides> shared{};
-  std::array<Eigen::Vector3d, kMostSides> by_side{};  // Of an offset of all points of a side.
-  std::array<int, kMostSides> of_side{};
+  std::array<SharedStep, kMaxSides> shared{};
+  std::array<Eigen::Vector3d, kMaxSides> by_side{};  // Of an offset of all points of a side.
+  std::array<int, kMaxSides> of_side{};
   double by_size = 0.0;
   double size_weight = 0.0;
   double chi2 = 0.0;
@@ -81,7 +81,7 @@ struct Sums {
     const Eigen::Vector3d by_all = inverse * by_growth;  // Nothing where opposite sides cancel.
     Eigen::Matrix3d covariance =
         (chi2 + kPrior) / (used - 3 + kPrior) * inverse + by_all * by_all.transpose();
-    for (std::size_t side = 0; side < kMostSides; ++side) {
+    for (std::size_t side = 0; side < kMaxSides; ++side) {
       const Eigen::Vector3d by_offset = inverse * by_side[side];
       covariance += shared[side].Variance() * by_offset * by_offset.transpose();
     }
@@ -197,7 +197,7 @@ class Fitter {
       fit.on_edge.push_back(edge.in_plane - place.grown);
       if (belongs) sums.Add(place, half_);
     }
-    if (sums.used < kFewestEdges) return std::nullopt;
+    if (sums.used < kMinEdges) return std::nullopt;
     // Angles in units of the board's half diagonal, so that both kinds of unknowns compare.
     Eigen::Vector3d scale(1.0, 1.0, 1.0 / half_.norm());
     const Eigen::Matrix3d scaled = scale.asDiagonal() * sums.information * scale.asDiagonal();
@@ -272,7 +272,7 @@ void Improve(const Fitter& fitter, int iterations, double reach, Candidate& cand
 }  // namespace
 
 std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const Board& board) {
-  if (static_cast<int>(edges.size()) < kFewestEdges) return std::nullopt;
+  if (static_cast<int>(edges.size()) < kMinEdges) return std::nullopt;
   const Fitter fitter(edges, board);
   const double hanging =
       std::numbers::pi / 2.0 - std::atan2(board.right_bottom_m, board.top_right_m);

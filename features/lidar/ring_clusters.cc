@@ -14,13 +14,13 @@ constexpr double kSlopeWithinRing = 3.73;    // tan 75 deg.
 constexpr double kSlopeBetweenRings = 1.73;  // tan 60 deg.
 constexpr double kJumpsBetweenRings = 2.0;  // Rings have biases of their own: 8 cm apart were seen.
 constexpr int kPlaces = 5;
-constexpr double kMostGapStepsInSurface = 3.5;  // A few drop-outs do not part a surface.
-constexpr double kMostGapSpacings = 6.0;        // A rosette's loops leave gaps between them.
+constexpr double kMaxGapStepsInSurface = 3.5;  // A few drop-outs do not part a surface.
+constexpr double kMaxGapSpacings = 6.0;        // A rosette's loops leave gaps between them.
 
 // Between returns of one ring that belong together.
 double MostGap(const ScanRings& scan) {
-  if (scan.has_rings()) return kMostGapStepsInSurface * scan.azimuth_step_rad();
-  return kMostGapSpacings * std::sqrt(scan.azimuth_step_rad() * scan.elevation_step_rad());
+  if (scan.has_rings()) return kMaxGapStepsInSurface * scan.azimuth_step_rad();
+  return kMaxGapSpacings * std::sqrt(scan.azimuth_step_rad() * scan.elevation_step_rad());
 }
 
 bool Continues(const RingPoint& a, const RingPoint& b, double most_gap_rad,

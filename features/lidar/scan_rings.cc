@@ -12,8 +12,8 @@ namespace sextant {
 namespace {
 
 constexpr double kNearest_m = 0.01;  // Sensors write zeros for what did not return.
-constexpr int kMostRings = 256;
-constexpr int kFewestRepeating = 4;  // Fewer rings are told by being narrow.
+constexpr int kMaxRings = 256;
+constexpr int kMinRepeating = 4;  // Fewer rings are told by being narrow.
 constexpr double kNarrow_rad = 0.0035;
 constexpr double kNeighbour_cos = 0.99985;  // 1 degree.
 
@@ -43,8 +43,8 @@ std::vector<int> RingsOfElevations(const std::vector<double>& elevations) {
       widest = std::max(widest, elevation - lows.back());
       rings[order[i]] = static_cast<int>(lows.size()) - 1;
     }
-    if (lows.size() < kFewestRepeating && widest < kNarrow_rad) return rings;
-    if (lows.size() < kFewestRepeating || lows.size() > kMostRings) continue;
+    if (lows.size() < kMinRepeating && widest < kNarrow_rad) return rings;
+    if (lows.size() < kMinRepeating || lows.size() > kMaxRings) continue;
     std::vector<double> steps;
     for (std::size_t i = 1; i < lows.size(); ++i) steps.push_back(lows[i] - lows[i - 1]);
     const double least = *std::ranges::min_element(steps);
@@ -68,7 +68,7 @@ Bands BandsOf(const std::vector<RingPoint>& points, const std::vector<double>& e
   const double area = std::max((high - low) * (right.azimuth_rad - left.azimuth_rad), 1e-12);
   const double area_per_point = area / static_cast<double>(points.size());
   Bands bands;
-  bands.height_rad = std::max(3.0 * std::sqrt(area_per_point), (high - low) / kMostRings + 1e-9);
+  bands.height_rad = std::max(3.0 * std::sqrt(area_per_point), (high - low) / kMaxRings + 1e-9);
   bands.step_rad = area_per_point / bands.height_rad;
   bands.of_point.reserve(points.size());
   for (const double elevation : elevations) {

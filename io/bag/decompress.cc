@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kStep = std::size_t{1} << 20;
 constexpr std::size_t kFree = std::size_t{64} << 20;
-constexpr std::size_t kMostRatio = 256;
+constexpr std::size_t kMaxRatio = 256;
 
 /// What one call of a decoder did.
 struct DecoderStep {
@@ -29,10 +29,10 @@ struct DecoderStep {
 // Feeds `decode(input, room)` until its stream ends. The output grows by what was produced.
 template <class Decode>
 Expected<std::string> Run(std::string_view input, std::size_t size, Decode decode) {
-  if (size > kFree && size / kMostRatio > input.size()) {
+  if (size > kFree && size / kMaxRatio > input.size()) {
     return MakeError(ErrorCode::kParse,
                      fmt::format("{} bytes claim to hold {}, more than {} times as many",
-                                 input.size(), size, kMostRatio));
+                                 input.size(), size, kMaxRatio));
   }
   std::string output;
   std::size_t filled = 0;

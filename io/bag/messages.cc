@@ -35,8 +35,8 @@ struct CloudLayout {
 };
 
 std::vector<PointField> ReadPointFields(MessageReader& in) {
-  constexpr std::size_t kLeastSize = 13;  // Length of an empty name, offset, type, count.
-  std::vector<PointField> fields(in.Length(kLeastSize, "fields"));
+  constexpr std::size_t kMinSize = 13;  // Length of an empty name, offset, type, count.
+  std::vector<PointField> fields(in.Length(kMinSize, "fields"));
   for (PointField& field : fields) {
     field.name = in.String("fields.name");
     field.offset = in.Take<std::uint32_t>("fields.offset");
@@ -140,7 +140,7 @@ Expected<CloudMessage> DecodePointCloud(const BagMessage& message) {
 }
 
 Expected<ImageMessage> DecodeImage(const BagMessage& message) {
-  constexpr std::uint32_t kMostSide = 1U << 20;
+  constexpr std::uint32_t kMaxSide = 1U << 20;
   MessageReader in(message);
   ImageMessage decoded;
   decoded.header = in.Header();
@@ -150,7 +150,7 @@ Expected<ImageMessage> DecodeImage(const BagMessage& message) {
   decoded.big_endian = in.Take<std::uint8_t>("is_bigendian") != 0;
   decoded.row_bytes = in.Take<std::uint32_t>("step");
   const std::string_view data = in.ByteSequence("data");
-  if (in.ok() && (width > kMostSide || height > kMostSide || decoded.row_bytes < width ||
+  if (in.ok() && (width > kMaxSide || height > kMaxSide || decoded.row_bytes < width ||
                   height * decoded.row_bytes != data.size())) {
     in.Fail(ErrorCode::kParse, "data",
             fmt::format("has {} bytes, expected {} rows of {} bytes for {} pixels each",
@@ -174,7 +174,7 @@ Expected<EncodedImageMessage> DecodeEncodedImage(const BagMessage& message) {
 }
 
 Expected<CameraInfoMessage> DecodeCameraInfo(const BagMessage& message) {
-  constexpr std::int64_t kMostSide = 1 << 20;
+  constexpr std::int64_t kMaxSide = 1 << 20;
   MessageReader in(message);
   CameraInfoMessage decoded;
   decoded.header = in.Header();
@@ -185,7 +185,7 @@ Expected<CameraInfoMessage> DecodeCameraInfo(const BagMessage& message) {
   for (double& value : distortion) value = in.Take<double>("D");
   CameraParts parts{.distortion = distortion, .model = model};
   for (double& value : parts.matrix) value = in.Take<double>("K");
-  if (in.ok() && (width > kMostSide || height > kMostSide)) {
+  if (in.ok() && (width > kMaxSide || height > kMaxSide)) {
     in.Fail(ErrorCode::kParse, "width",
             fmt::format("expected a size of an image, got {} x {}", width, height));
   }

@@ -15,7 +15,7 @@
 namespace sextant {
 namespace {
 
-constexpr std::size_t kMostTags = 10'000;
+constexpr std::size_t kMaxTags = 10'000;
 
 BoardTag ReadTag(YamlFields& in, const YamlNode& node) {
   static const std::vector<std::string> kKeys = {"family", "id", "edge_m", "center_in_board_m",
@@ -23,7 +23,7 @@ BoardTag ReadTag(YamlFields& in, const YamlNode& node) {
   BoardTag tag;
   if (!in.IsMap(node, "tag", kKeys)) return tag;
   tag.family = in.TextAt(node, "family");
-  tag.id = in.IntegerAt(node, "id", 0, kMostId);
+  tag.id = in.IntegerAt(node, "id", 0, kMaxId);
   tag.edge_m = in.RealAt(node, "edge_m");
   tag.center_in_board_m = in.Point2At(node, "center_in_board_m", Eigen::Vector2d::Zero());
   tag.rotation_rad = kRadPerDeg * in.RealAt(node, "rotation_deg", 0.0);
@@ -35,8 +35,8 @@ BoardChecker ReadChecker(YamlFields& in, const YamlNode& node) {
                                                  "center_in_board_m"};
   BoardChecker checker;
   if (!in.IsMap(node, "checker", kKeys)) return checker;
-  checker.inner_columns = in.IntegerAt(node, "inner_columns", 0, kMostId);
-  checker.inner_rows = in.IntegerAt(node, "inner_rows", 0, kMostId);
+  checker.inner_columns = in.IntegerAt(node, "inner_columns", 0, kMaxId);
+  checker.inner_rows = in.IntegerAt(node, "inner_rows", 0, kMaxId);
   checker.square_m = in.RealAt(node, "square_m");
   checker.center_in_board_m = in.Point2At(node, "center_in_board_m", Eigen::Vector2d::Zero());
   return checker;
@@ -44,8 +44,8 @@ BoardChecker ReadChecker(YamlFields& in, const YamlNode& node) {
 
 void ReadTags(YamlFields& in, const YamlNode& node, Board& board) {
   if (!in.IsSequence(node, "tags")) return;
-  if (node.items.size() > kMostTags) {
-    in.Fail(node.line, "tags", fmt::format("expected at most {} tags", kMostTags));
+  if (node.items.size() > kMaxTags) {
+    in.Fail(node.line, "tags", fmt::format("expected at most {} tags", kMaxTags));
     return;
   }
   for (const YamlNode& item : node.items) board.tags.push_back(ReadTag(in, item));
@@ -96,7 +96,7 @@ Board ReadBoardBlock(YamlFields& in, const YamlNode& node) {
       "id", "name", "top_right_m", "right_bottom_m", "thickness_m", "hole", "tags", "checker"};
   Board board;
   if (!in.IsMap(node, "board", kKeys)) return board;
-  board.id = in.IntegerAt(node, "id", 0, kMostId);
+  board.id = in.IntegerAt(node, "id", 0, kMaxId);
   if (node.Find("name") != nullptr) board.name = in.TextAt(node, "name");
   board.top_right_m = in.RealAt(node, "top_right_m");
   board.right_bottom_m = in.RealAt(node, "right_bottom_m");

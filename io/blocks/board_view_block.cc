@@ -11,14 +11,14 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-constexpr int kMostId = 1'000'000'000;
-constexpr std::size_t kMostPrinted = 1000;  ///< Points of one tag or checkerboard.
+constexpr int kMaxId = 1'000'000'000;
+constexpr std::size_t kMaxPrinted = 1000;  ///< Points of one tag or checkerboard.
 
 // x0, y0, x1, y1, ...
 std::vector<Eigen::Vector2d> ReadPoints2(YamlFields& in, const YamlNode& map,
                                          std::string_view key) {
   const YamlNode& node = in.Require(map, key);
-  const std::vector<double> numbers = in.RealList(node, key, 2 * kMostPrinted);
+  const std::vector<double> numbers = in.RealList(node, key, 2 * kMaxPrinted);
   std::vector<Eigen::Vector2d> points;
   if (numbers.size() % 2 != 0) {
     in.Fail(node.line, key,
@@ -61,8 +61,8 @@ BoardView ReadView(YamlFields& in, const YamlNode& node) {
                              "printed", "range_sigma_m", "face_in_lidar",  "edges"};
   BoardView view;
   if (!in.IsMap(node, "board_views", kKeys)) return view;
-  view.view = in.IntegerAt(node, "view", 0, kMostId);
-  view.board = in.IntegerAt(node, "board", 0, kMostId);
+  view.view = in.IntegerAt(node, "view", 0, kMaxId);
+  view.board = in.IntegerAt(node, "board", 0, kMaxId);
   view.cam_from_board = ReadPoseBlock(in, in.Require(node, "cam_from_board"), "cam_from_board");
   view.lidar_from_board =
       ReadPoseBlock(in, in.Require(node, "lidar_from_board"), "lidar_from_board");

@@ -40,11 +40,11 @@ Camera ReadCameraBlock(YamlFields& in, const YamlNode& node) {
     in.Fail(node.line, "model",
             fmt::format("expected {}, got {}", fmt::join(kModelNames, " or "), Quoted(model)));
   }
-  constexpr int kMostPixels = 1'000'000;
+  constexpr int kMaxPixels = 1'000'000;
   if (node.Find("width_px") != nullptr)
-    camera.width_px = in.IntegerAt(node, "width_px", 0, kMostPixels);
+    camera.width_px = in.IntegerAt(node, "width_px", 0, kMaxPixels);
   if (node.Find("height_px") != nullptr)
-    camera.height_px = in.IntegerAt(node, "height_px", 0, kMostPixels);
+    camera.height_px = in.IntegerAt(node, "height_px", 0, kMaxPixels);
   camera.fx_px = in.RealAt(node, "fx_px");
   camera.fy_px = in.RealAt(node, "fy_px");
   camera.cx_px = in.RealAt(node, "cx_px");

@@ -43,7 +43,7 @@ DetectedMarker ReadMarker(LineReader& in) {
   if (!in.HasFields(10, "id=(u,v) (u,v) (u,v) (u,v) Txyz=x y z Rxyz=x y z")) return marker;
   const std::string_view first = in.Field(0);
   const std::size_t equals = std::min(first.find('='), first.size() - 1);
-  marker.id = static_cast<int>(in.IntegerOf(first.substr(0, equals), 0, 0, kMostId, "id"));
+  marker.id = static_cast<int>(in.IntegerOf(first.substr(0, equals), 0, 0, kMaxId, "id"));
   marker.corners_px[0] = ReadPixel(in, first.substr(equals + 1), 0);
   for (std::size_t i = 1; i < 4; ++i) marker.corners_px[i] = ReadPixel(in, in.Field(i), i);
   marker.translation_m = ReadVector(in, "Txyz=", 4);
@@ -69,7 +69,7 @@ Expected<std::vector<MarkerBoard>> ParseMarkerCoordinates(std::string_view text,
   LineReader in(file, text);
   std::int64_t count = 0;
   if (in.Require("the number of boards") && in.HasFields(1, "the number of boards alone")) {
-    count = in.Integer(0, 1, kMostId, "number of boards");
+    count = in.Integer(0, 1, kMaxId, "number of boards");
   }
   std::vector<MarkerBoard> boards;
   for (std::int64_t i = 0; i < count && in.ok(); ++i) {

@@ -19,7 +19,7 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-constexpr int kMostCorner = 7;  // 4 to 7 are those of a hollow board's opening.
+constexpr int kMaxCorner = 7;  // 4 to 7 are those of a hollow board's opening.
 constexpr std::size_t kEdges = 4;
 
 Eigen::Vector2d ReadPixel(YamlFields& in, const YamlNode& node, std::string_view what) {
@@ -61,7 +61,7 @@ void ReadPolygonBoards(YamlFields& in, const YamlNode& list, std::vector<MarkedB
   for (const YamlNode& node : list.items) {
     if (!in.IsMap(node, "boards", kKeys)) return;
     MarkedBoard board;
-    board.id = in.IntegerAt(node, "id", 0, kMostId);
+    board.id = in.IntegerAt(node, "id", 0, kMaxId);
     const YamlNode& edges = in.Require(node, "edges");
     if (!in.ok() || !IsList(in, edges, "edges", kEdges)) return;
     for (const YamlNode& edge : edges.items) board.edges.push_back(ReadQuadrilateral(in, edge));
@@ -78,8 +78,8 @@ void ReadCorners(YamlFields& in, const YamlNode& list, std::vector<ClickedCorner
   for (const YamlNode& node : list.items) {
     if (!in.IsMap(node, "corners", kKeys)) return;
     ClickedCorner corner;
-    corner.board = in.IntegerAt(node, "board", 0, kMostId);
-    corner.corner = in.IntegerAt(node, "corner", 0, kMostCorner);
+    corner.board = in.IntegerAt(node, "board", 0, kMaxId);
+    corner.corner = in.IntegerAt(node, "corner", 0, kMaxCorner);
     corner.pixel = ReadPixel(in, in.Require(node, "pixel"), "pixel");
     const auto same = [&corner](const ClickedCorner& other) {
       return other.board == corner.board && other.corner == corner.corner;

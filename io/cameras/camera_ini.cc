@@ -11,11 +11,11 @@
 namespace sextant {
 namespace {
 
-constexpr int kMostIniPixels = 1'000'000;
+constexpr int kMaxIniPixels = 1'000'000;
 
 int ReadSize(LineReader& in, const std::string& name) {
   if (!in.Require(name) || !in.HasFields(1, name)) return 0;
-  return static_cast<int>(in.Integer(0, 0, kMostIniPixels, name));
+  return static_cast<int>(in.Integer(0, 0, kMaxIniPixels, name));
 }
 
 std::vector<double> ReadRows(LineReader& in, int rows, std::size_t cols, const std::string& name) {

@@ -13,7 +13,7 @@
 namespace sextant {
 namespace {
 
-constexpr int kMostPixels = 1'000'000;
+constexpr int kMaxPixels = 1'000'000;
 
 // Tools do not agree on the names.
 const YamlNode* FindAny(const YamlNode& map, std::initializer_list<std::string_view> keys) {
@@ -25,14 +25,14 @@ const YamlNode* FindAny(const YamlNode& map, std::initializer_list<std::string_v
 
 // A list of numbers, or a matrix {rows, cols, data}.
 std::vector<double> ReadNumbers(YamlFields& in, const YamlNode& node, std::string_view name) {
-  constexpr std::size_t kMost = 14;
+  constexpr std::size_t kMax = 14;
   const bool is_matrix = node.kind == YamlNode::Kind::kMap;
-  return in.RealList(is_matrix ? in.Require(node, "data") : node, name, kMost);
+  return in.RealList(is_matrix ? in.Require(node, "data") : node, name, kMax);
 }
 
 int ReadSize(YamlFields& in, const YamlNode& root, std::string_view key, std::string_view other) {
   const std::string_view present = root.Find(key) != nullptr ? key : other;
-  return root.Find(present) != nullptr ? in.IntegerAt(root, present, 0, kMostPixels) : 0;
+  return root.Find(present) != nullptr ? in.IntegerAt(root, present, 0, kMaxPixels) : 0;
 }
 
 // fx, fy, cx, cy, k1, k2, p1, p2, k3 as keys of their own.

@@ -19,10 +19,10 @@ const std::array<std::string, 3>& EncodingNames() {
   return names;
 }
 
-constexpr std::int64_t kMostPoints = 1'000'000'000;
-constexpr std::int64_t kMostCount = 1'000'000;
-constexpr std::size_t kMostPcdFields = 256;
-constexpr std::size_t kMostHeaderBytes = std::size_t{1} << 16;
+constexpr std::int64_t kMaxPoints = 1'000'000'000;
+constexpr std::int64_t kMaxCount = 1'000'000;
+constexpr std::size_t kMaxPcdFields = 256;
+constexpr std::size_t kMaxHeaderBytes = std::size_t{1} << 16;
 
 // What the lines say; absent ones are empty.
 struct Lines {
@@ -37,7 +37,7 @@ struct Lines {
 
 // Just behind the line DATA; npos where there is none.
 std::size_t FindBody(std::string_view text) {
-  const std::string_view head = text.substr(0, kMostHeaderBytes);
+  const std::string_view head = text.substr(0, kMaxHeaderBytes);
   std::size_t line = 0;
   while (line < head.size()) {
     const std::size_t end = head.find('\n', line);
@@ -49,8 +49,8 @@ std::size_t FindBody(std::string_view text) {
 }
 
 void ReadNames(LineReader& in, Lines& lines) {
-  if (in.field_count() < 2 || in.field_count() > kMostPcdFields + 1) {
-    in.Fail(ErrorCode::kParse, fmt::format("expected FIELDS and 1 to {} names", kMostPcdFields));
+  if (in.field_count() < 2 || in.field_count() > kMaxPcdFields + 1) {
+    in.Fail(ErrorCode::kParse, fmt::format("expected FIELDS and 1 to {} names", kMaxPcdFields));
     return;
   }
   for (std::size_t i = 1; i < in.field_count(); ++i) {
@@ -104,13 +104,13 @@ void ReadTypes(LineReader& in, Lines& lines) {
 void ReadCounts(LineReader& in, Lines& lines) {
   if (!HasOneAField(in, lines)) return;
   for (std::size_t i = 0; i < lines.fields.size(); ++i) {
-    lines.fields[i].count = static_cast<std::size_t>(in.Integer(i + 1, 1, kMostCount, "COUNT"));
+    lines.fields[i].count = static_cast<std::size_t>(in.Integer(i + 1, 1, kMaxCount, "COUNT"));
   }
 }
 
 std::optional<std::int64_t> ReadNumber(LineReader& in, std::string_view name) {
   if (!in.HasFields(2, name)) return std::nullopt;
-  return in.Integer(1, 0, kMostPoints, name);
+  return in.Integer(1, 0, kMaxPoints, name);
 }
 
 void ReadEncoding(LineReader& in, Lines& lines) {
@@ -163,9 +163,9 @@ void RequireWhole(LineReader& in, const Lines& lines) {
 std::size_t PointCount(LineReader& in, const Lines& lines) {
   if (!lines.width) return static_cast<std::size_t>(lines.points.value_or(0));
   const std::int64_t product = *lines.width * lines.height.value_or(1);
-  if (product > kMostPoints) {
+  if (product > kMaxPoints) {
     in.Fail(ErrorCode::kParse,
-            fmt::format("expected at most {} points, WIDTH x HEIGHT is {}", kMostPoints, product));
+            fmt::format("expected at most {} points, WIDTH x HEIGHT is {}", kMaxPoints, product));
   }
   if (lines.points && *lines.points != product) {
     in.Fail(ErrorCode::kParse, fmt::format("the header contradicts itself: POINTS is {}, WIDTH x "

@@ -65,9 +65,9 @@ Expected<CloudFields> FindFields(const PcdHeader& header, const std::string& fil
 
 // NaN for what a float cannot be.
 float ToFloat(double value) {
-  constexpr double kMost = std::numeric_limits<float>::max();
-  return std::abs(value) <= kMost ? static_cast<float>(value)
-                                  : std::numeric_limits<float>::quiet_NaN();
+  constexpr double kMax = std::numeric_limits<float>::max();
+  return std::abs(value) <= kMax ? static_cast<float>(value)
+                                 : std::numeric_limits<float>::quiet_NaN();
 }
 
 // Gathers points and judges their values; the first error is kept by its caller.
@@ -221,10 +221,10 @@ Expected<PointCloud> ReadValues(const PcdHeader& header, const CloudFields& fiel
 Expected<PointCloud> ReadBinary(const PcdHeader& header, const CloudFields& fields,
                                 std::string_view text, const std::string& file) {
   // The library that defines the format fills up its files to whole pages.
-  constexpr std::size_t kMostPadding = std::size_t{1} << 16;
+  constexpr std::size_t kMaxPadding = std::size_t{1} << 16;
   const std::string_view data = text.substr(header.body);
   const std::size_t expected = header.points * header.point_bytes;
-  if (data.size() < expected || data.size() > expected + kMostPadding) {
+  if (data.size() < expected || data.size() > expected + kMaxPadding) {
     return Refuse(file, 0,
                   fmt::format("the header promises {} points of {} bytes, {} bytes in "
                               "all; the file has {} after its header",
@@ -237,7 +237,7 @@ Expected<PointCloud> ReadBinary(const PcdHeader& header, const CloudFields& fiel
 Expected<PointCloud> ReadCompressed(const PcdHeader& header, const CloudFields& fields,
                                     std::string_view text, const std::string& file) {
   constexpr std::size_t kSizes = 2 * sizeof(std::uint32_t);
-  constexpr std::size_t kMostGrowth = 132;  // Three bytes stand for at most 264.
+  constexpr std::size_t kMaxGrowth = 132;  // Three bytes stand for at most 264.
   const std::string_view body = text.substr(header.body);
   const std::size_t expected = header.points * header.point_bytes;
   if (body.size() < kSizes) return Refuse(file, 0, "the file ends before its compressed data");
@@ -250,7 +250,7 @@ Expected<PointCloud> ReadCompressed(const PcdHeader& header, const CloudFields& 
                               "all; the compressed data claims {}",
                               header.points, header.point_bytes, expected, unpacked));
   }
-  if (packed > body.size() - kSizes || unpacked > kMostGrowth * packed) {
+  if (packed > body.size() - kSizes || unpacked > kMaxGrowth * packed) {
     return Refuse(file, 0,
                   fmt::format("the compressed data claims {} bytes that stand for {}; the "
                               "file has {}",

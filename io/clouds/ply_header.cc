@@ -14,8 +14,8 @@
 namespace sextant {
 namespace {
 
-constexpr std::size_t kMostBytesOfLine = 1000;
-constexpr int kMostLines = 1000;
+constexpr std::size_t kMaxBytesOfLine = 1000;
+constexpr int kMaxLines = 1000;
 
 using Words = std::vector<std::string_view>;
 
@@ -82,12 +82,12 @@ class HeaderParser {
     words_.clear();
     if (error_) return false;
     const std::string_view rest = bytes_.substr(header_.size);
-    const std::size_t end = rest.substr(0, kMostBytesOfLine).find('\n');
-    if (rest.empty() || header_.lines == kMostLines) return false;
+    const std::size_t end = rest.substr(0, kMaxBytesOfLine).find('\n');
+    if (rest.empty() || header_.lines == kMaxLines) return false;
     ++header_.lines;
     if (end == std::string_view::npos) {
       Fail(fmt::format("expected a line of at most {} bytes that ends in a line feed",
-                       kMostBytesOfLine));
+                       kMaxBytesOfLine));
       return false;
     }
     header_.size += end + 1;

@@ -71,17 +71,17 @@ Expected<OriginalConfig> ReadOriginalConfig(const std::filesystem::path& path) {
 }
 
 Expected<OriginalConfig> ParseOriginalConfig(std::string_view text, const std::string& file) {
-  constexpr int kMost = 1'000'000;
+  constexpr int kMax = 1'000'000;
   const std::size_t count = CountNumbers(text);
   NumberStream in(file, text);
   OriginalConfig config;
-  config.width_px = in.Integer("width", 1, kMost);
-  config.height_px = in.Integer("height", 1, kMost);
+  config.width_px = in.Integer("width", 1, kMax);
+  config.height_px = in.Integer("height", 1, kMax);
   config.x_range_m = in.Range("x-", "x+");
   config.y_range_m = in.Range("y-", "y+");
   config.z_range_m = in.Range("z-", "z+");
   config.intensity_threshold = in.Real("intensity threshold");
-  config.markers = in.Integer("number of markers", 1, kMost);
+  config.markers = in.Integer("number of markers", 1, kMax);
   config.use_camera_info = in.Integer("use camera_info", 0, 1) == 1;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 4; ++j) {
@@ -89,7 +89,7 @@ Expected<OriginalConfig> ParseOriginalConfig(std::string_view text, const std::s
     }
   }
   if (count > kPlain) {
-    config.max_iterations = in.Integer("MAX_ITERS", 1, kMost);
+    config.max_iterations = in.Integer("MAX_ITERS", 1, kMax);
     config.initial_rotation_rad =
         in.Vector({"initial rotation x", "initial rotation y", "initial rotation z"});
   }

@@ -50,10 +50,10 @@ class Columns {
     return Has(name) ? Real(name) : otherwise;
   }
   int IntegerOr(std::string_view name, int otherwise) {
-    return Has(name) ? static_cast<int>(in_.Integer(Index(name), 0, kMostId, name)) : otherwise;
+    return Has(name) ? static_cast<int>(in_.Integer(Index(name), 0, kMaxId, name)) : otherwise;
   }
   int Part(std::string_view text, std::string_view name) {
-    return static_cast<int>(in_.IntegerOf(text, Index(name), 0, kMostId, name));
+    return static_cast<int>(in_.IntegerOf(text, Index(name), 0, kMaxId, name));
   }
   Eigen::Vector3d Point(const char* x, const char* y, const char* z) {
     const double px = Real(x);

@@ -37,11 +37,11 @@ Expected<CalibrationProblem> ReadPoints(const std::filesystem::path& path) {
 }
 
 Expected<CalibrationProblem> ParsePoints(std::string_view text, const std::string& file) {
-  constexpr std::int64_t kMostPoints = 1'000'000'000'000'000;
+  constexpr std::int64_t kMaxPoints = 1'000'000'000'000'000;
   LineReader in(file, text);
   std::int64_t count = 0;
   if (in.Require("the number of points") && in.HasFields(1, "the number of points alone")) {
-    count = in.Integer(0, 1, kMostPoints, "number of points");
+    count = in.Integer(0, 1, kMaxPoints, "number of points");
   }
   const std::vector<Eigen::Vector3d> in_lidar = ReadRows(in, count, "LiDAR");
   const std::vector<Eigen::Vector3d> in_cam = ReadRows(in, count, "camera");

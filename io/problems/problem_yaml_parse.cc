@@ -25,9 +25,9 @@ PairId ReadId(YamlFields& in, const YamlNode& pair, std::size_t index) {
   static const Keys kKeys = {"view", "board", "corner"};
   PairId id;
   if (!in.IsMap(*node, "id", kKeys)) return id;
-  if (node->Find("view") != nullptr) id.view = in.IntegerAt(*node, "view", 0, kMostId);
-  id.board = in.IntegerAt(*node, "board", 0, kMostId);
-  id.corner = in.IntegerAt(*node, "corner", 0, kMostId);
+  if (node->Find("view") != nullptr) id.view = in.IntegerAt(*node, "view", 0, kMaxId);
+  id.board = in.IntegerAt(*node, "board", 0, kMaxId);
+  id.corner = in.IntegerAt(*node, "corner", 0, kMaxId);
   return id;
 }
 
@@ -79,7 +79,7 @@ void ReadProblemBoards(YamlFields& in, const YamlNode& list, std::vector<Board>&
     in.Require(node, "top_right_m");
     in.Require(node, "right_bottom_m");
     Board board;
-    board.id = in.IntegerAt(node, "id", 0, kMostId);
+    board.id = in.IntegerAt(node, "id", 0, kMaxId);
     board.top_right_m = in.NonNegativeAt(node, "top_right_m", 0.0);
     board.right_bottom_m = in.NonNegativeAt(node, "right_bottom_m", 0.0);
     if (const YamlNode* hole = node.Find("hole")) board.hole = ReadHoleBlock(in, *hole);

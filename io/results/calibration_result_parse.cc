@@ -21,7 +21,7 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-constexpr std::size_t kMostNumbers = 100'000;
+constexpr std::size_t kMaxNumbers = 100'000;
 
 // Null, as JSON has it, is absent.
 const YamlNode* Present(const YamlNode& map, std::string_view key) {
@@ -143,7 +143,7 @@ LidarPattern ReadLidar(YamlFields& in, const YamlNode& node) {
   LidarPattern lidar;
   if (!in.IsMap(node, "lidar", kKeys)) return lidar;
   for (const double elevation :
-       in.RealList(in.Require(node, "elevations_deg"), "elevations_deg", kMostNumbers)) {
+       in.RealList(in.Require(node, "elevations_deg"), "elevations_deg", kMaxNumbers)) {
     lidar.elevations_rad.push_back(kRadPerDeg * elevation);
   }
   lidar.azimuth_step_rad = kRadPerDeg * in.NonNegativeAt(node, "azimuth_step_deg", 0.0);
@@ -170,7 +170,7 @@ void ReadBoardViews(YamlFields& in, const YamlNode& list, std::vector<ResultBoar
   for (const YamlNode& node : list.items) {
     if (!in.IsMap(node, "boards", kKeys)) return;
     ResultBoardView board;
-    board.board = in.IntegerAt(node, "board", 0, kMostId);
+    board.board = in.IntegerAt(node, "board", 0, kMaxId);
     board.residuals_m = ReadResiduals(in, node, "residuals_m");
     board.residuals_px = ReadResiduals(in, node, "residuals_px");
     board.cam_from_board = OptionalPose(in, node, "cam_from_board");
@@ -193,7 +193,7 @@ void ReadView(YamlFields& in, const YamlNode& node, ResultView& view) {
                              "rmse_m",       "rmse_px",      "held_out_m", "held_out_px",
                              "sigma_so_far", "information",  "boards"};
   if (!in.IsMap(node, "views", kKeys)) return;
-  view.view = in.IntegerAt(node, "view", 0, kMostId);
+  view.view = in.IntegerAt(node, "view", 0, kMaxId);
   view.name = OptionalText(in, node, "name");
   view.image_path = OptionalText(in, node, "image");
   view.cloud_path = OptionalText(in, node, "cloud");
@@ -219,8 +219,8 @@ BootstrapFigures ReadBootstrap(YamlFields& in, const YamlNode& node) {
   static const Keys kKeys = {"samples", "unanswered", "level", "low", "high"};
   BootstrapFigures bootstrap;
   if (!in.IsMap(node, "bootstrap", kKeys)) return bootstrap;
-  bootstrap.samples = in.IntegerAt(node, "samples", 0, kMostId);
-  bootstrap.unanswered = in.IntegerAt(node, "unanswered", 0, kMostId);
+  bootstrap.samples = in.IntegerAt(node, "samples", 0, kMaxId);
+  bootstrap.unanswered = in.IntegerAt(node, "unanswered", 0, kMaxId);
   bootstrap.level = in.RealAt(node, "level");
   bootstrap.low = ReadVector6(in, in.Require(node, "low"), "low");
   bootstrap.high = ReadVector6(in, in.Require(node, "high"), "high");
@@ -233,7 +233,7 @@ std::vector<int> ReadViewNumbers(YamlFields& in, const YamlNode& map, std::strin
   if (list == nullptr || !in.IsSequence(*list, key)) return views;
   for (const YamlNode& node : list->items) {
     const Expected<std::int64_t> number =
-        ParseInteger(node.text, 0, kMostId, {.file = in.file(), .line = node.line, .name = key});
+        ParseInteger(node.text, 0, kMaxId, {.file = in.file(), .line = node.line, .name = key});
     if (!number) in.Fail(number.error());
     views.push_back(static_cast<int>(number.value_or(0)));
   }
@@ -256,7 +256,7 @@ TrustFigures ReadTrust(YamlFields& in, const YamlNode& node) {
                              "verdict"};
   TrustFigures trust;
   if (!in.IsMap(node, "trust", kKeys)) return trust;
-  trust.folds = in.IntegerAt(node, "folds", 0, kMostId);
+  trust.folds = in.IntegerAt(node, "folds", 0, kMaxId);
   trust.fit_rmse_m = OptionalNonNegative(in, node, "fit_rmse_m");
   trust.fit_rmse_px = OptionalNonNegative(in, node, "fit_rmse_px");
   trust.held_out_rmse_m = OptionalNonNegative(in, node, "held_out_rmse_m");

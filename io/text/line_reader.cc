@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kBlank = " \t\r\f\v";
 // A line of nothing but commas would take sixteen times its size.
-constexpr std::size_t kMostFields = 1000;
+constexpr std::size_t kMaxFields = 1000;
 
 std::string_view Trim(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kBlank);
@@ -56,9 +56,9 @@ void LineReader::Split(std::string_view line) {
     const std::size_t end = commas ? line.find(',') : line.find_first_of(kBlank);
     fields_.push_back(Trim(line.substr(0, end)));
     if (end == std::string_view::npos) return;
-    if (fields_.size() == kMostFields) {
+    if (fields_.size() == kMaxFields) {
       return Fail(ErrorCode::kParse,
-                  fmt::format("expected at most {} fields in a line", kMostFields));
+                  fmt::format("expected at most {} fields in a line", kMaxFields));
     }
     line.remove_prefix(end + 1);
     if (!commas) line = Trim(line);

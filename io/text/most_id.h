@@ -4,6 +4,6 @@
 namespace sextant {
 
 /// Of boards, tags and views: leaves room for sums of two in an int.
-inline constexpr int kMostId = 1'000'000'000;
+inline constexpr int kMaxId = 1'000'000'000;
 
 }  // namespace sextant

@@ -55,8 +55,8 @@ class TreeBuilder final : public YAML::EventHandler {
     if (std::find(map.keys.begin(), map.keys.end(), key) != map.keys.end()) {
       Refuse(mark, "the key " + Quoted(key) + " stands here a second time");
     }
-    constexpr std::size_t kMostKeys = 256;
-    if (map.keys.size() == kMostKeys) Refuse(mark, "more than 256 keys in one map");
+    constexpr std::size_t kMaxKeys = 256;
+    if (map.keys.size() == kMaxKeys) Refuse(mark, "more than 256 keys in one map");
     map.keys.push_back(key);
   }
 

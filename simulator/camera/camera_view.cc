@@ -33,11 +33,11 @@ Expected<void> CheckAlbedo(const std::string& what, double albedo) {
 }
 
 Expected<void> CheckTiles(const SceneWall& wall) {
-  constexpr double kLeast_m = 1e-3;
-  if (wall.tile_m == 0.0 || (wall.tile_m >= kLeast_m && std::isfinite(wall.tile_m))) return {};
+  constexpr double kMin_m = 1e-3;
+  if (wall.tile_m == 0.0 || (wall.tile_m >= kMin_m && std::isfinite(wall.tile_m))) return {};
   return MakeError(ErrorCode::kInvalidInput,
                    fmt::format("wall {} has tiles of {} m, expected 0 for none, or {} and more",
-                               wall.name, wall.tile_m, kLeast_m));
+                               wall.name, wall.tile_m, kMin_m));
 }
 
 // The first that fails of checks that are all made.

@@ -9,7 +9,7 @@ namespace sextant {
 namespace {
 
 // As many as a person would describe, and more; each beam looks at every one.
-constexpr std::size_t kMostObjects = 10000;
+constexpr std::size_t kMaxObjects = 10000;
 
 Expected<void> CheckPoseAndSizes(const std::string& what, const Rigid3d& pose,
                                  const Eigen::VectorXd& sizes_m) {
@@ -55,10 +55,10 @@ Expected<void> CheckOutside(const LidarTarget& target, const std::string& what) 
 Expected<void> CheckLidarScene(const Scene& scene) {
   const std::size_t objects =
       scene.boards.size() + scene.walls.size() + scene.boxes.size() + scene.cylinders.size();
-  if (objects > kMostObjects) {
+  if (objects > kMaxObjects) {
     return MakeError(
         ErrorCode::kInvalidInput,
-        fmt::format("the scene has {} objects; {} at most are simulated", objects, kMostObjects));
+        fmt::format("the scene has {} objects; {} at most are simulated", objects, kMaxObjects));
   }
   if (!scene.lidar.world_from_lidar.IsFinite()) {
     return MakeError(ErrorCode::kNonFinite, "the LiDAR's pose is not finite");

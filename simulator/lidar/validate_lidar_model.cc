@@ -64,9 +64,9 @@ Expected<void> ValidateLidarModel(const LidarModel& model) {
     return Refuse(model, fmt::format("a turn of {} s does not hold a column of {} s",
                                      model.turn_period_s, model.column_period_s));
   }
-  constexpr double kMostBeams = 1e8;
+  constexpr double kMaxBeams = 1e8;
   const double beams = model.rosette ? 1.0 : static_cast<double>(model.rings.size());
-  if (beams * model.turn_period_s / model.column_period_s > kMostBeams) {
+  if (beams * model.turn_period_s / model.column_period_s > kMaxBeams) {
     return Refuse(model, "more than 100 million beams a scan");
   }
   for (std::size_t i = 0; i < model.rings.size(); ++i) {

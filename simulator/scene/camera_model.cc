@@ -99,7 +99,7 @@ Expected<Camera> RenderingCamera(const SceneCamera& camera) {
   return Checked(camera, *model);
 }
 
-Expected<Camera> ToldCamera(const SceneCamera& camera) {
+Expected<Camera> PublishedCamera(const SceneCamera& camera) {
   return camera.told_intrinsics ? Checked(camera, *camera.told_intrinsics)
                                 : RenderingCamera(camera);
 }

@@ -31,7 +31,7 @@ Expected<Camera> FindCameraModel(std::string_view name);
 Expected<Camera> RenderingCamera(const SceneCamera& camera);
 
 /// What the pipeline is told that camera is: `told_intrinsics`, else as RenderingCamera.
-Expected<Camera> ToldCamera(const SceneCamera& camera);
+Expected<Camera> PublishedCamera(const SceneCamera& camera);
 
 /// The right camera of a stereo pair: like `left`, `baseline_m` along the left one's x axis.
 SceneCamera StereoPartner(const SceneCamera& left, double baseline_m, const std::string& name);

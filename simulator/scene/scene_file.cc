@@ -151,7 +151,7 @@ std::vector<const YamlNode*> ItemsAt(YamlFields& in, const YamlNode& root, std::
 template <class T, class Read>
 void ReadList(YamlFields& in, const YamlNode& root, std::string_view key, Read read,
               std::vector<T>& list) {
-  for (const YamlNode* item : ItemsAt(in, root, key, kMostSceneShapes)) {
+  for (const YamlNode* item : ItemsAt(in, root, key, kMaxSceneShapes)) {
     list.push_back(read(in, *item));
   }
 }
@@ -159,7 +159,7 @@ void ReadList(YamlFields& in, const YamlNode& root, std::string_view key, Read r
 void ReadBoards(YamlFields& in, const YamlNode& root, Scene& scene) {
   std::vector<const YamlNode*> nodes;
   std::vector<Board> boards;
-  for (const YamlNode* item : ItemsAt(in, root, "boards", kMostSceneBoards)) {
+  for (const YamlNode* item : ItemsAt(in, root, "boards", kMaxSceneBoards)) {
     scene.boards.push_back(ReadBoard(in, *item));
     if (!in.ok()) return;
     boards.push_back(scene.boards.back().board);
@@ -183,7 +183,7 @@ Expected<Scene> ParseScene(std::string_view text, const std::string& file) {
     in.IntegerAt(*root, "sextant_scene", 1, 1);
     scene.name = NameAt(in, *root);
     scene.lidar = ReadLidar(in, in.Require(*root, "lidar"));
-    for (const YamlNode* item : ItemsAt(in, *root, "cameras", kMostSceneCameras)) {
+    for (const YamlNode* item : ItemsAt(in, *root, "cameras", kMaxSceneCameras)) {
       ReadCamera(in, *item, scene.cameras);
     }
     ReadBoards(in, *root, scene);

@@ -10,9 +10,9 @@
 
 namespace sextant {
 
-inline constexpr std::size_t kMostSceneBoards = 1000;
-inline constexpr std::size_t kMostSceneCameras = 16;
-inline constexpr std::size_t kMostSceneShapes = 10'000;  ///< Of walls, boxes or cylinders.
+inline constexpr std::size_t kMaxSceneBoards = 1000;
+inline constexpr std::size_t kMaxSceneCameras = 16;
+inline constexpr std::size_t kMaxSceneShapes = 10'000;  ///< Of walls, boxes or cylinders.
 
 /// A scene from YAML (docs/formats.md); not yet checked by ValidateScene.
 /// Errors: kIo; kParse and kNonFinite with file, line and field: unknown keys, boards that

@@ -26,7 +26,7 @@
 namespace sextant {
 namespace {
 
-constexpr int kMostScans = 100'000;
+constexpr int kMaxScans = 100'000;
 
 const std::array<std::string, 3>& LevelNames() {
   static const std::array<std::string, 3> names = {"full", "corners", "pairs"};
@@ -39,9 +39,9 @@ const std::string& NameOf(SessionLevel level) {
 
 Expected<void> CheckOptions(const SessionOptions& options) {
   const CornerNoise& noise = options.noise;
-  if (options.scans < 1 || options.scans > kMostScans) {
+  if (options.scans < 1 || options.scans > kMaxScans) {
     return MakeError(ErrorCode::kInvalidOption,
-                     fmt::format("expected 1 to {} scans, got {}", kMostScans, options.scans));
+                     fmt::format("expected 1 to {} scans, got {}", kMaxScans, options.scans));
   }
   if (!(options.interval_s >= 0.0) || !std::isfinite(options.interval_s)) {
     return MakeError(ErrorCode::kInvalidOption, "expected an interval of zero or more seconds");
@@ -127,7 +127,7 @@ class Session {
   Expected<void> WriteBoardsAndCameras() {
     Expected<void> ok = folder_.Write("boards.yaml", FormatBoards(Boards()));
     for (const SceneCamera& camera : scene_.cameras) {
-      const std::string text = FormatCameraInfo(*ToldCamera(camera), camera.name);
+      const std::string text = FormatCameraInfo(*PublishedCamera(camera), camera.name);
       if (ok) ok = folder_.Write(camera.name + "_info.yaml", text);
     }
     return ok;
@@ -186,7 +186,7 @@ class Session {
   Expected<void> WriteProblem(std::size_t camera) {
     const SceneCamera& scene_camera = scene_.cameras[camera];
     ProblemFile file;
-    file.problem.camera = *ToldCamera(scene_camera);
+    file.problem.camera = *PublishedCamera(scene_camera);
     file.problem.boards = Boards();
     file.true_cam_from_lidar = CamFromLidar(scene_, scene_camera);
     file.comment = fmt::format("simulated: scene {}, seed {}, {} scans", scene_.name, options_.seed,

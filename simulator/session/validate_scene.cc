@@ -75,11 +75,11 @@ class SceneCheck {
     const auto check = [&](const char* what, std::size_t count, std::size_t most) {
       Require(count <= most, what, fmt::format("expected at most {}, got {}", most, count));
     };
-    check("boards", scene_.boards.size(), kMostSceneBoards);
-    check("cameras", scene_.cameras.size(), kMostSceneCameras);
-    check("walls", scene_.walls.size(), kMostSceneShapes);
-    check("boxes", scene_.boxes.size(), kMostSceneShapes);
-    check("cylinders", scene_.cylinders.size(), kMostSceneShapes);
+    check("boards", scene_.boards.size(), kMaxSceneBoards);
+    check("cameras", scene_.cameras.size(), kMaxSceneCameras);
+    check("walls", scene_.walls.size(), kMaxSceneShapes);
+    check("boxes", scene_.boxes.size(), kMaxSceneShapes);
+    check("cylinders", scene_.cylinders.size(), kMaxSceneShapes);
     Require(!scene_.boards.empty(), "boards", "expected at least one board to calibrate with");
     Require(!scene_.cameras.empty(), "cameras", "expected at least one camera");
     Require(scene_.background_albedo >= 0.0 && scene_.background_albedo <= 1.0, "background_albedo",
@@ -107,7 +107,7 @@ class SceneCheck {
     Require(same == 1, what, "another camera has the same name");
     const Expected<Camera> rendering = RenderingCamera(camera);
     if (!rendering) return Fail(rendering.error());
-    const Expected<Camera> told = ToldCamera(camera);
+    const Expected<Camera> told = PublishedCamera(camera);
     if (!told) return Fail(told.error());
     Require(
         told->width_px == rendering->width_px && told->height_px == rendering->height_px, what,

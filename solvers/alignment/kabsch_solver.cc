@@ -11,7 +11,7 @@
 namespace sextant {
 namespace {
 
-double WeighedSquares(std::span<const Pair3d3d> pairs, const Rigid3d& pose) {
+double WeightedSquares(std::span<const Pair3d3d> pairs, const Rigid3d& pose) {
   double sum = 0.0;
   for (const Pair3d3d& pair : pairs) {
     sum += IsotropicWeight(pair) * PointResidual(pose, pair).squaredNorm();
@@ -27,7 +27,7 @@ std::optional<Matrix6d> CovarianceOf(std::span<const Pair3d3d> pairs, const Kabs
   }
   if (HasKnownNoise(pairs.front())) return KabschCovariance(moments, pose, 1.0);
   const double freedom = 3.0 * static_cast<double>(pairs.size()) - 6.0;
-  return KabschCovariance(moments, pose, WeighedSquares(pairs, pose) / freedom);
+  return KabschCovariance(moments, pose, WeightedSquares(pairs, pose) / freedom);
 }
 
 // The buffers hold as many as the sample, or more.
@@ -69,12 +69,12 @@ class KabschSolver final : public Solver {
 
   void DoHypothesize(const CalibrationProblem& problem, std::span<const int> sample,
                      std::vector<Rigid3d>& poses) const override {
-    constexpr std::size_t kMostOnStack = 64;
+    constexpr std::size_t kMaxOnStack = 64;
     std::optional<Rigid3d> pose;
-    if (sample.size() <= kMostOnStack) {
-      std::array<Eigen::Vector3d, kMostOnStack> in_cam;
-      std::array<Eigen::Vector3d, kMostOnStack> in_lidar;
-      std::array<double, kMostOnStack> weights;
+    if (sample.size() <= kMaxOnStack) {
+      std::array<Eigen::Vector3d, kMaxOnStack> in_cam;
+      std::array<Eigen::Vector3d, kMaxOnStack> in_lidar;
+      std::array<double, kMaxOnStack> weights;
       pose = FitSample(problem.pairs_3d3d, sample, in_cam, in_lidar, weights);
     } else {
       std::vector<Eigen::Vector3d> in_cam(sample.size());

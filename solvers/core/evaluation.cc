@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "geometry/residuals.h"
-#include "solvers/kernels/pair_lanes.h"
+#include "solvers/kernels/pair_simd.h"
 #include "solvers/kernels/pixel_sums.h"
 
 namespace sextant {
@@ -34,20 +34,20 @@ SEXTANT_INLINE double InverseVariance(const Pair3d3d& pair) {
 SEXTANT_MULTIVERSION PairSums SumResiduals(std::span<const Pair3d3d> pairs,
                                            const RotationMatrix<double>& r, const Point3<double>& t,
                                            double* distances) {
-  Lanes squares{};
-  Lanes whitened{};
+  Vec8d squares{};
+  Vec8d whitened{};
   std::size_t i = 0;
-  for (; i + kLanes <= pairs.size(); i += kLanes) {
+  for (; i + kSimdWidth <= pairs.size(); i += kSimdWidth) {
     const Pair3d3d* p = &pairs[i];
-    const Lanes squared = SquaredResidual(r, t, Gather<Lanes>(p, &Pair3d3d::point_in_lidar),
-                                          Gather<Lanes>(p, &Pair3d3d::point_in_cam));
-    StoreLanes(Sqrt(squared), distances + i);
-    const Lanes sigma = {p[0].sigma_m, p[1].sigma_m, p[2].sigma_m, p[3].sigma_m,
+    const Vec8d squared = SquaredResidual(r, t, Gather<Vec8d>(p, &Pair3d3d::point_in_lidar),
+                                          Gather<Vec8d>(p, &Pair3d3d::point_in_cam));
+    StoreVec(Sqrt(squared), distances + i);
+    const Vec8d sigma = {p[0].sigma_m, p[1].sigma_m, p[2].sigma_m, p[3].sigma_m,
                          p[4].sigma_m, p[5].sigma_m, p[6].sigma_m, p[7].sigma_m};
     squares += squared;
     whitened += sigma > 0.0 ? squared / (sigma * sigma) : squared;
   }
-  PairSums sums = {SumLanes(squares), SumLanes(whitened)};
+  PairSums sums = {HorizontalSum(squares), HorizontalSum(whitened)};
   for (; i < pairs.size(); ++i) {
     const double squared =
         SquaredResidual(r, t, PointAt(pairs[i].point_in_lidar), PointAt(pairs[i].point_in_cam));

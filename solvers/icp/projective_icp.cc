@@ -16,10 +16,10 @@ namespace {
 
 constexpr double kNearer = 0.6;   ///< Each iteration's gate over the last.
 constexpr double kAtRest = 3e-4;  ///< Steps [rad, m] below which matches are kept.
-constexpr int kLeastMatches = 30;
-constexpr std::size_t kLeastPatches = 30;
+constexpr int kMinMatches = 30;
+constexpr std::size_t kMinPatches = 30;
 /// Of the normal matrix, rotations scaled by the scene's size: a motion below it is free.
-constexpr double kLeastEigenvalue = 1e-4;
+constexpr double kMinEigenvalue = 1e-4;
 
 // Both ways of matching, and their sum by (dphi, dt) of target_from_source.
 class BothWays {
@@ -98,13 +98,13 @@ void TakeOffRingOffsets(ScanWindows& target, ScanWindows& source) {
 Expected<ScanSurfaces> SurfacesOf(const ScanWindows& windows, std::size_t points,
                                   const char* frame) {
   ScanSurfaces surfaces(windows);
-  if (surfaces.patch_count() < kLeastPatches) {
+  if (surfaces.patch_count() < kMinPatches) {
     return MakeError(
         ErrorCode::kDegenerate,
         fmt::format("projective icp finds {} flat cells among the {} points in the {} frame, "
                     "expected {} or more: it needs whole scans, seen from the frame's origin; "
                     "match=nearest takes any points",
-                    surfaces.patch_count(), points, frame, kLeastPatches));
+                    surfaces.patch_count(), points, frame, kMinPatches));
   }
   return surfaces;
 }
@@ -147,14 +147,14 @@ Expected<ProjectiveIcpFit> FitProjectiveIcp(std::span<const Eigen::Vector3d> tar
     ++fit.iterations;
     if (!at_rest) matches.Match(fit.target_from_source);
     equations = matches.Linearise(fit.target_from_source, gate_m);
-    if (equations.matches < kLeastMatches) {
+    if (equations.matches < kMinMatches) {
       return MakeError(ErrorCode::kNoConsensus,
                        fmt::format("projective icp, iteration {}: {} cells of one scan lie on "
                                    "surfaces of the other, expected {} or more; give a better "
                                    "start, or raise max_distance_m",
-                                   fit.iterations, equations.matches, kLeastMatches));
+                                   fit.iterations, equations.matches, kMinMatches));
     }
-    if (RelativeStiffness(equations.normal) < kLeastEigenvalue) {
+    if (RelativeStiffness(equations.normal) < kMinEigenvalue) {
       return MakeError(ErrorCode::kDegenerate,
                        fmt::format("projective icp, iteration {}: the surfaces that both scans "
                                    "show leave a motion free",

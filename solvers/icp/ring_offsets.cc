@@ -9,18 +9,18 @@
 namespace sextant {
 namespace {
 
-constexpr std::size_t kLeastWindows = 10;  ///< Of a row.
-constexpr std::size_t kLeastRows = 4;
-constexpr double kMostOfRow = 4.0;     ///< Of a row's variance, in that of the quieter rows.
-constexpr double kMostOfWindow = 2.0;  ///< Of a window's variance, in that of its row.
+constexpr std::size_t kMinWindows = 10;  ///< Of a row.
+constexpr std::size_t kMinRows = 4;
+constexpr double kMaxOfRow = 4.0;     ///< Of a row's variance, in that of the quieter rows.
+constexpr double kMaxOfWindow = 2.0;  ///< Of a window's variance, in that of its row.
 constexpr double kWindowsOfACell = 9.0;
-constexpr double kSameSlope = 0.25;  ///< In cells' heights: rows of two scans are the same ring.
-constexpr double kLeastStiffness = 2e-3;  ///< Of the stiffest: below, planes take an offset up.
-constexpr double kLeastSigma_m = 0.0005;
-constexpr double kMostSigma_m = 0.05;
+constexpr double kSameSlope = 0.25;     ///< In cells' heights: rows of two scans are the same ring.
+constexpr double kMinStiffness = 2e-3;  ///< Of the stiffest: below, planes take an offset up.
+constexpr double kMinSigma_m = 0.0005;
+constexpr double kMaxSigma_m = 0.05;
 constexpr double kNextSigma = 1.3;
-constexpr double kLeastEvidence = 20.0;     ///< Twice the logarithm of the likelihoods' ratio.
-constexpr double kMostContradiction = 0.1;  ///< Of what offsets of their own would explain.
+constexpr double kMinEvidence = 20.0;      ///< Twice the logarithm of the likelihoods' ratio.
+constexpr double kMaxContradiction = 0.1;  ///< Of what offsets of their own would explain.
 
 using Eigen::Index;
 
@@ -98,20 +98,20 @@ Equations EquationsOf(const ScanWindows& windows, std::span<const Index> ring_of
   std::vector<double> of_row;
   std::vector<double> told;
   for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) {
-    of_row.push_back(windows.NoiseVariance(row * columns, columns, kLeastWindows));
+    of_row.push_back(windows.NoiseVariance(row * columns, columns, kMinWindows));
     if (of_row.back() > 0.0) told.push_back(of_row.back());
   }
   Equations equations(rings);
-  if (told.size() < kLeastRows) return equations;
+  if (told.size() < kMinRows) return equations;
   const auto quiet = told.begin() + static_cast<std::ptrdiff_t>(told.size() / 4);
   std::nth_element(told.begin(), quiet, told.end());
   for (int row = 1; row + 1 < rows; ++row) {
     const auto r = static_cast<std::size_t>(row);
-    if (of_row[r] > kMostOfRow * *quiet) continue;
+    if (of_row[r] > kMaxOfRow * *quiet) continue;
     for (std::size_t column = 0; column < columns; ++column) {
       const std::size_t cell = r * columns + column;
       const bool is_flat = windows.TellsNoise(cell) &&
-                           windows.planes().range_variance[cell] < kMostOfWindow * of_row[r];
+                           windows.planes().range_variance[cell] < kMaxOfWindow * of_row[r];
       if (!is_flat) continue;
       const WindowShare share = ShareOf(windows, row, static_cast<int>(column), *quiet);
       for (int a = 0; a < 3; ++a) {
@@ -132,7 +132,7 @@ struct Modes {
   explicit Modes(const Equations& equations) {
     const SymmetricEigen<Eigen::Dynamic> eigen = EigenOf(equations.normal);
     const Eigen::VectorXd& stiffness = eigen.values;
-    const double least = kLeastStiffness * stiffness[stiffness.size() - 1];
+    const double least = kMinStiffness * stiffness[stiffness.size() - 1];
     Index first = 0;
     while (first < stiffness.size() && !(stiffness[first] > least)) ++first;
     const Index count = stiffness.size() - first;
@@ -151,8 +151,8 @@ struct Modes {
   // Zero where there is no evidence.
   Eigen::VectorXd Offsets() const {
     double likeliest_m = 0.0;
-    double most = kLeastEvidence;
-    for (double sigma_m = kLeastSigma_m; sigma_m < kMostSigma_m; sigma_m *= kNextSigma) {
+    double most = kMinEvidence;
+    for (double sigma_m = kMinSigma_m; sigma_m < kMaxSigma_m; sigma_m *= kNextSigma) {
       const double evidence = Evidence(sigma_m);
       if (evidence <= most) continue;
       most = evidence;
@@ -217,7 +217,7 @@ RingOffsets EstimateRingOffsets(const ScanWindows& target, const ScanWindows& so
   const Modes target_alone(of_target);
   const Modes source_alone(of_source);
   const double apart = target_alone.Explained() + source_alone.Explained();
-  if (apart - together.Explained() < kMostContradiction * apart) {
+  if (apart - together.Explained() < kMaxContradiction * apart) {
     return {.target_m = ByRow(shared, rings.of_target), .source_m = ByRow(shared, rings.of_source)};
   }
   return {.target_m = ByRow(target_alone.Offsets(), rings.of_target),

@@ -10,7 +10,7 @@
 #include "solvers/core/board_view_check.h"
 #include "solvers/core/inner_solver.h"
 #include "solvers/core/registry.h"
-#include "solvers/joint/joint_knowledge.h"
+#include "solvers/joint/joint_observability.h"
 #include "solvers/joint/joint_search.h"
 #include "solvers/kernels/pair_terms.h"
 #include "solvers/refine/refine_camera.h"
@@ -62,14 +62,14 @@ class JointSolver final : public Solver {
     std::vector<JointView> views = ViewsOf(problem, *unknowns);
     JointState state = StateAt(problem, start->cam_from_lidar, *unknowns, views);
     Estimate estimate;
-    LeaveOutUntold(problem, InformationAt(views, *unknowns, state), *unknowns, views, state,
-                   estimate.warnings);
+    FixUnobservable(problem, InformationAt(views, *unknowns, state), *unknowns, views, state,
+                    estimate.warnings);
     while (true) {
       Expected<JointAnswer> answer = SearchJointly(views, *unknowns, state, options_);
       if (!answer) return tl::unexpected<Error>(std::move(answer.error()));
       estimate.iterations += answer->iterations;
       const Eigen::MatrixXd information = SharedInformation(answer->minimum.system);
-      if (LeaveOutUntold(problem, information, *unknowns, views, state, estimate.warnings)) {
+      if (FixUnobservable(problem, information, *unknowns, views, state, estimate.warnings)) {
         continue;
       }
       if (Expected<void> ok = Report(problem, *unknowns, *answer, information, estimate); !ok) {
@@ -140,13 +140,13 @@ class JointSolver final : public Solver {
   }
 
   // Whether there was one. `state` is where the search starts, again after this.
-  static bool LeaveOutUntold(const CalibrationProblem& problem, Eigen::MatrixXd information,
-                             JointUnknowns& unknowns, std::vector<JointView>& views,
-                             JointState& state, std::vector<std::string>& warnings) {
+  static bool FixUnobservable(const CalibrationProblem& problem, Eigen::MatrixXd information,
+                              JointUnknowns& unknowns, std::vector<JointView>& views,
+                              JointState& state, std::vector<std::string>& warnings) {
     bool any = false;
-    while (const auto untold =
-               FindUntold(information, UsefulSigmas(views, unknowns, state, problem.boards))) {
-      warnings.push_back(DescribeUntold(*untold, unknowns, *problem.camera));
+    while (const auto untold = FindUnobservable(
+               information, UsefulSigmas(views, unknowns, state, problem.boards))) {
+      warnings.push_back(DescribeUnobservable(*untold, unknowns, *problem.camera));
       LeaveOut(untold->unknown, problem, unknowns, views, state);
       information = InformationAt(views, unknowns, state);
       any = true;

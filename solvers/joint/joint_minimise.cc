@@ -13,9 +13,9 @@ namespace {
 
 // Of the share of the diagonal that is added to it.
 constexpr double kFirstDamping = 1e-6;
-constexpr double kMostDamping = 1e12;
+constexpr double kMaxDamping = 1e12;
 // A step that more of it made short is no sign of a minimum.
-constexpr double kMostDampingAtEnd = 1e-2;
+constexpr double kMaxDampingAtEnd = 1e-2;
 // Steps under this that raise the cost by no more than this share of it.
 constexpr double kSmallStep = 1e-6;
 constexpr double kJointRounding = 1e-12;
@@ -75,7 +75,7 @@ JointMinimum MinimiseJointly(const std::vector<JointView>& views, const JointUnk
   best.state = start;
   best.system = *Linearise(views, unknowns, losses, start);
   double damping = kFirstDamping;
-  while (best.iterations < max_iterations && damping < kMostDamping) {
+  while (best.iterations < max_iterations && damping < kMaxDamping) {
     ++best.iterations;
     const JointStep step = Solve(best.system, damping);
     if (!step.IsFinite()) {
@@ -93,7 +93,7 @@ JointMinimum MinimiseJointly(const std::vector<JointView>& views, const JointUnk
     const bool lost_in_rounding =
         !better && step.Size() < kSmallStep && rise <= kJointRounding * best.system.cost;
     best.converged =
-        (step.Size() < step_tolerance && damping <= kMostDampingAtEnd) || lost_in_rounding;
+        (step.Size() < step_tolerance && damping <= kMaxDampingAtEnd) || lost_in_rounding;
     if (best.converged) break;
     damping *= better ? 0.1 : 10.0;
   }

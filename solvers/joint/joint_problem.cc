@@ -47,7 +47,7 @@ class ViewLineariser {
     for (const PrintedTerm& term : view_.terms.printed) {
       if (!Differentiate(term, state_.camera, cam_from_board, at)) return false;
       const double limit = PrintedLimit(term.pixels.size(), losses_.printed.scale);
-      const LossValue loss = WeighLoss(losses_.printed.kind, limit, at.value.squaredNorm());
+      const LossValue loss = ApplyLoss(losses_.printed.kind, limit, at.value.squaredNorm());
       cost_ += 0.5 * loss.rho;
       own.bb.noalias() += loss.slope * at.by_pose.transpose() * at.by_pose;
       own.b.noalias() += loss.slope * at.by_pose.transpose() * at.value;
@@ -96,7 +96,7 @@ class ViewLineariser {
 
   void AddRay(const JointRay& at, const RobustLoss& robust) {
     const double value = at.residual.value;
-    const LossValue loss = WeighLoss(robust.kind, robust.scale, value * value);
+    const LossValue loss = ApplyLoss(robust.kind, robust.scale, value * value);
     cost_ += 0.5 * loss.rho;
     const Eigen::Matrix<double, 1, 6> weighed = loss.slope * at.residual.by_pose;
     lidar_.pose.normal.noalias() += weighed.transpose() * at.residual.by_pose;
@@ -179,7 +179,7 @@ int JointRayModel::PlaceOf(int lidar_extra) const {
   return unknowns_.Size() + 2 * view_.sized_board + lidar_extra - 1;
 }
 
-LossValue WeighLoss(LossKind kind, double scale, double squared) {
+LossValue ApplyLoss(LossKind kind, double scale, double squared) {
   const double bend = scale * scale;
   if (kind == LossKind::kHuber && squared > bend) {
     const double root = std::sqrt(squared);

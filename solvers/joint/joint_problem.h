@@ -99,7 +99,7 @@ struct LossValue {
   double rho = 0.0;
   double slope = 1.0;
 };
-LossValue WeighLoss(LossKind kind, double scale, double squared);
+LossValue ApplyLoss(LossKind kind, double scale, double squared);
 
 /// How far a BoardPoints may be from its mean norm at `sigmas`: the norm of 2n whitened normal
 /// numbers has a standard deviation of 1/sqrt(2) about sqrt(2n) (Fisher 1922).

@@ -9,7 +9,7 @@
 namespace sextant {
 namespace {
 
-constexpr int kMostRounds = 10;
+constexpr int kMaxRounds = 10;
 // Losses need not follow the noise closer than this.
 constexpr double kSameNoise = 0.02;
 // Nor their minimum, where it is only the way to that of what is within the cut [rad, m].
@@ -75,7 +75,7 @@ class JointSearch {
     const double tolerance = options_.cut > 0.0 ? std::max(options_.step_tolerance, kNearEnough)
                                                 : options_.step_tolerance;
     JointNoise noise;
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
       const std::vector<BoardViewResiduals> residuals = Residuals();
       const JointNoise now = NoiseOf(residuals);
       JointSelection seen = SelectSeen(residuals);
@@ -89,7 +89,7 @@ class JointSearch {
   }
 
   Expected<void> Cut() {
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
       const std::vector<BoardViewResiduals> residuals = Residuals();
       JointSelection within = SelectWithin(views_, residuals, NoiseOf(residuals), options_.cut);
       LeaveOutOneSided(within);

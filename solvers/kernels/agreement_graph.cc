@@ -51,18 +51,18 @@ SEXTANT_INLINE std::uint64_t AgreementsInBlock(const PairColumns& pairs, std::si
   constexpr LaneBits kShifts = {0, 8, 16, 24, 32, 40, 48, 56};
   constexpr int kSign = 63;
   LaneBits bits{};
-  for (std::size_t k = kLanes; k-- > 0;) {
-    const std::size_t at = block + kLanes * k;
-    const Lanes c2 = SquaredLength(PointsAt(pairs, kCamColumn, at) - vertex.cam);
-    const Lanes l2 = SquaredLength(PointsAt(pairs, kLidarColumn, at) - vertex.lidar);
-    const Lanes t = max_squared * (LoadLanes(pairs.Column(kVarianceColumn) + at) + vertex.variance);
-    const Margins<Lanes> margins = MarginsOf(c2, l2, t);
+  for (std::size_t k = kSimdWidth; k-- > 0;) {
+    const std::size_t at = block + kSimdWidth * k;
+    const Vec8d c2 = SquaredLength(PointsAt(pairs, kCamColumn, at) - vertex.cam);
+    const Vec8d l2 = SquaredLength(PointsAt(pairs, kLidarColumn, at) - vertex.lidar);
+    const Vec8d t = max_squared * (LoadVec(pairs.Column(kVarianceColumn) + at) + vertex.variance);
+    const Margins<Vec8d> margins = MarginsOf(c2, l2, t);
     const LaneBits differ =
         __builtin_bit_cast(LaneBits, margins.alike) & __builtin_bit_cast(LaneBits, margins.near);
     bits = bits + bits + (differ >> kSign);
   }
   bits <<= kShifts;
-  return ~static_cast<std::uint64_t>(OrOfLanes(__builtin_bit_cast(LaneMask, bits)));
+  return ~static_cast<std::uint64_t>(HorizontalOr(__builtin_bit_cast(Mask8, bits)));
 }
 
 // Row i from the word `first` on.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/kernels/bit_graph.h"
 
-#include "base/lanes.h"
+#include "base/simd.h"
 
 namespace sextant {
 namespace {

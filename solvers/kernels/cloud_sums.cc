@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/lanes.h"
+#include "base/simd.h"
 
 namespace sextant {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 // Eight of the vectors, coordinate by coordinate; `beyond` where there are no more.
 template <std::size_t kSize>
 struct Coordinates {
-  Lanes of[kSize];
+  Vec8d of[kSize];
 };
 
 template <std::size_t kSize>
@@ -19,19 +19,19 @@ SEXTANT_INLINE Coordinates<kSize> LoadFull(const double* from) {
   Coordinates<kSize> out;
   for (std::size_t axis = 0; axis < kSize; ++axis) {
     const double* p = from + axis;
-    out.of[axis] = Lanes{p[0],         p[kSize],     p[2 * kSize], p[3 * kSize],
+    out.of[axis] = Vec8d{p[0],         p[kSize],     p[2 * kSize], p[3 * kSize],
                          p[4 * kSize], p[5 * kSize], p[6 * kSize], p[7 * kSize]};
   }
   return out;
 }
 
 template <std::size_t kSize>
-SEXTANT_INLINE Coordinates<kSize> LoadCoordinates(const double* data, std::size_t at, std::size_t count,
-                                       const double* beyond) {
-  if (at + kLanes <= count) return LoadFull<kSize>(data + kSize * at);
-  double rest[kSize * kLanes];
+SEXTANT_INLINE Coordinates<kSize> LoadCoordinates(const double* data, std::size_t at,
+                                                  std::size_t count, const double* beyond) {
+  if (at + kSimdWidth <= count) return LoadFull<kSize>(data + kSize * at);
+  double rest[kSize * kSimdWidth];
   const std::size_t left = count - at;
-  for (std::size_t i = 0; i < kLanes; ++i) {
+  for (std::size_t i = 0; i < kSimdWidth; ++i) {
     const double* from = i < left ? data + kSize * (at + i) : beyond;
     for (std::size_t axis = 0; axis < kSize; ++axis) rest[kSize * i + axis] = from[axis];
   }
@@ -42,12 +42,12 @@ constexpr double kZero[3] = {};
 
 template <std::size_t kSize>
 SEXTANT_INLINE void SumCoordinates(const double* data, std::size_t count, double (&sums)[kSize]) {
-  Lanes lanes[kSize] = {};
-  for (std::size_t at = 0; at < count; at += kLanes) {
+  Vec8d lanes[kSize] = {};
+  for (std::size_t at = 0; at < count; at += kSimdWidth) {
     const Coordinates<kSize> c = LoadCoordinates<kSize>(data, at, count, kZero);
     for (std::size_t axis = 0; axis < kSize; ++axis) lanes[axis] += c.of[axis];
   }
-  for (std::size_t axis = 0; axis < kSize; ++axis) sums[axis] = SumLanes(lanes[axis]);
+  for (std::size_t axis = 0; axis < kSize; ++axis) sums[axis] = HorizontalSum(lanes[axis]);
 }
 
 SEXTANT_MULTIVERSION
@@ -63,12 +63,12 @@ void SumOf3(const double* data, std::size_t count, double (&sums)[3]) {
 // What is beyond the last point is at the centre and adds nothing.
 SEXTANT_MULTIVERSION
 void SumOuter(const double* data, std::size_t count, const double (&centre)[3], double (&sums)[6]) {
-  Lanes lanes[6] = {};
-  for (std::size_t at = 0; at < count; at += kLanes) {
+  Vec8d lanes[6] = {};
+  for (std::size_t at = 0; at < count; at += kSimdWidth) {
     const Coordinates<3> p = LoadCoordinates<3>(data, at, count, centre);
-    const Lanes x = p.of[0] - centre[0];
-    const Lanes y = p.of[1] - centre[1];
-    const Lanes z = p.of[2] - centre[2];
+    const Vec8d x = p.of[0] - centre[0];
+    const Vec8d y = p.of[1] - centre[1];
+    const Vec8d z = p.of[2] - centre[2];
     lanes[0] += x * x;
     lanes[1] += x * y;
     lanes[2] += x * z;
@@ -76,7 +76,7 @@ void SumOuter(const double* data, std::size_t count, const double (&centre)[3], 
     lanes[4] += y * z;
     lanes[5] += z * z;
   }
-  for (int i = 0; i < 6; ++i) sums[i] = SumLanes(lanes[i]);
+  for (int i = 0; i < 6; ++i) sums[i] = HorizontalSum(lanes[i]);
 }
 
 struct MomentFrame {
@@ -88,18 +88,18 @@ struct MomentFrame {
 SEXTANT_MULTIVERSION
 void AddMoments(const double* image, const double* points, std::size_t count,
                 const MomentFrame& frame, MomentSums& sums) {
-  Lanes u_sums[10] = {};
-  Lanes v_sums[10] = {};
-  Lanes w_sums[10] = {};
-  for (std::size_t at = 0; at < count; at += kLanes) {
+  Vec8d u_sums[10] = {};
+  Vec8d v_sums[10] = {};
+  Vec8d w_sums[10] = {};
+  for (std::size_t at = 0; at < count; at += kSimdWidth) {
     const Coordinates<2> uv = LoadCoordinates<2>(image, at, count, frame.mean);
     const Coordinates<3> p = LoadCoordinates<3>(points, at, count, frame.centroid);
-    const Lanes u = uv.of[0] - frame.mean[0];
-    const Lanes v = uv.of[1] - frame.mean[1];
-    const Lanes w = u * u + v * v;
-    Lanes offset[3];
+    const Vec8d u = uv.of[0] - frame.mean[0];
+    const Vec8d v = uv.of[1] - frame.mean[1];
+    const Vec8d w = u * u + v * v;
+    Vec8d offset[3];
     for (int axis = 0; axis < 3; ++axis) offset[axis] = p.of[axis] - frame.centroid[axis];
-    Lanes h[3];
+    Vec8d h[3];
     for (int axis = 0; axis < 3; ++axis) {
       const double* a = frame.axes + 3 * axis;
       h[axis] = a[0] * offset[0] + a[1] * offset[1] + a[2] * offset[2];
@@ -115,7 +115,7 @@ void AddMoments(const double* image, const double* points, std::size_t count,
     int entry = 4;
     for (int j = 0; j < 3; ++j) {
       for (int k = j; k < 3; ++k, ++entry) {
-        const Lanes product = h[j] * h[k];
+        const Vec8d product = h[j] * h[k];
         u_sums[entry] += u * product;
         v_sums[entry] += v * product;
         w_sums[entry] += w * product;
@@ -123,9 +123,9 @@ void AddMoments(const double* image, const double* points, std::size_t count,
     }
   }
   for (std::size_t i = 0; i < 10; ++i) {
-    sums.u[i] = SumLanes(u_sums[i]);
-    sums.v[i] = SumLanes(v_sums[i]);
-    sums.w[i] = SumLanes(w_sums[i]);
+    sums.u[i] = HorizontalSum(u_sums[i]);
+    sums.v[i] = HorizontalSum(v_sums[i]);
+    sums.w[i] = HorizontalSum(w_sums[i]);
   }
 }
 
@@ -138,26 +138,26 @@ SEXTANT_MULTIVERSION
 void AddFit(const double* image, const double* points, std::size_t count, const FitPose& pose,
             double (&sums)[2]) {
   const double* r = pose.r;
-  Lanes squares = {};
-  Lanes in_front = {};
-  for (std::size_t at = 0; at < count; at += kLanes) {
+  Vec8d squares = {};
+  Vec8d in_front = {};
+  for (std::size_t at = 0; at < count; at += kSimdWidth) {
     // Beyond the last point the first is taken, and then not counted.
     const Coordinates<2> uv = LoadCoordinates<2>(image, at, count, image);
     const Coordinates<3> p = LoadCoordinates<3>(points, at, count, points);
-    const Lanes x = r[0] * p.of[0] + r[3] * p.of[1] + r[6] * p.of[2] + pose.t[0];
-    const Lanes y = r[1] * p.of[0] + r[4] * p.of[1] + r[7] * p.of[2] + pose.t[1];
-    const Lanes z = r[2] * p.of[0] + r[5] * p.of[1] + r[8] * p.of[2] + pose.t[2];
-    const Lanes inverse = 1.0 / (z > 0.0 ? z : AllLanes(1.0));
-    const Lanes du = x * inverse - uv.of[0];
-    const Lanes dv = y * inverse - uv.of[1];
-    Lanes given;
-    for (std::size_t i = 0; i < kLanes; ++i) given[i] = at + i < count ? 1.0 : 0.0;
-    const Lanes weight = z > 0.0 ? given : Lanes{};
+    const Vec8d x = r[0] * p.of[0] + r[3] * p.of[1] + r[6] * p.of[2] + pose.t[0];
+    const Vec8d y = r[1] * p.of[0] + r[4] * p.of[1] + r[7] * p.of[2] + pose.t[1];
+    const Vec8d z = r[2] * p.of[0] + r[5] * p.of[1] + r[8] * p.of[2] + pose.t[2];
+    const Vec8d inverse = 1.0 / (z > 0.0 ? z : BroadcastVec(1.0));
+    const Vec8d du = x * inverse - uv.of[0];
+    const Vec8d dv = y * inverse - uv.of[1];
+    Vec8d given;
+    for (std::size_t i = 0; i < kSimdWidth; ++i) given[i] = at + i < count ? 1.0 : 0.0;
+    const Vec8d weight = z > 0.0 ? given : Vec8d{};
     squares += weight * (du * du + dv * dv);
     in_front += weight;
   }
-  sums[0] = SumLanes(squares);
-  sums[1] = SumLanes(in_front);
+  sums[0] = HorizontalSum(squares);
+  sums[1] = HorizontalSum(in_front);
 }
 
 }  // namespace

@@ -19,9 +19,9 @@ inline constexpr int kVarianceColumn = 6;
 inline constexpr int kInverseVarianceColumn = 7;
 
 /// Eight points of the frame whose columns begin at `first`.
-SEXTANT_INLINE Point3<Lanes> PointsAt(const PairColumns& pairs, int first, std::size_t place) {
-  return {LoadLanes(pairs.Column(first) + place), LoadLanes(pairs.Column(first + 1) + place),
-          LoadLanes(pairs.Column(first + 2) + place)};
+SEXTANT_INLINE Point3<Vec8d> PointsAt(const PairColumns& pairs, int first, std::size_t place) {
+  return {LoadVec(pairs.Column(first) + place), LoadVec(pairs.Column(first + 1) + place),
+          LoadVec(pairs.Column(first + 2) + place)};
 }
 
 SEXTANT_INLINE Point3<double> PointOf(const PairColumns& pairs, int first, std::size_t place) {
@@ -42,14 +42,14 @@ inline ColumnPose ColumnPoseOf(const Rigid3d& cam_from_lidar) {
 }
 
 /// r_i^2 [sigma^2] of eight pairs; not a number where they fill up a block.
-SEXTANT_INLINE Lanes SquaredSigmas(const PairColumns& pairs, const ColumnPose& pose,
+SEXTANT_INLINE Vec8d SquaredSigmas(const PairColumns& pairs, const ColumnPose& pose,
                                    std::size_t at) {
-  const Point3<Lanes> cam = PointsAt(pairs, kCamColumn, at);
-  const Point3<Lanes> p = PointsAt(pairs, kLidarColumn, at);
-  const Lanes x = cam.x - (pose.r.xx * p.x + pose.r.xy * p.y + pose.r.xz * p.z + pose.t.x);
-  const Lanes y = cam.y - (pose.r.yx * p.x + pose.r.yy * p.y + pose.r.yz * p.z + pose.t.y);
-  const Lanes z = cam.z - (pose.r.zx * p.x + pose.r.zy * p.y + pose.r.zz * p.z + pose.t.z);
-  return (x * x + y * y + z * z) * LoadLanes(pairs.Column(kInverseVarianceColumn) + at);
+  const Point3<Vec8d> cam = PointsAt(pairs, kCamColumn, at);
+  const Point3<Vec8d> p = PointsAt(pairs, kLidarColumn, at);
+  const Vec8d x = cam.x - (pose.r.xx * p.x + pose.r.xy * p.y + pose.r.xz * p.z + pose.t.x);
+  const Vec8d y = cam.y - (pose.r.yx * p.x + pose.r.yy * p.y + pose.r.yz * p.z + pose.t.y);
+  const Vec8d z = cam.z - (pose.r.zx * p.x + pose.r.zy * p.y + pose.r.zz * p.z + pose.t.z);
+  return (x * x + y * y + z * z) * LoadVec(pairs.Column(kInverseVarianceColumn) + at);
 }
 
 /// Sums of weighed pairs about the first, and least squares on them.
@@ -59,17 +59,17 @@ class ColumnFit {
       : origin_a_(PointOf(pairs, kLidarColumn, 0)), origin_b_(PointOf(pairs, kCamColumn, 0)) {}
 
   /// Eight pairs with their weights, none where they are masked out.
-  SEXTANT_INLINE void Add(const PairColumns& pairs, std::size_t at, const LaneMask& counts,
-                          const Lanes& weights, PairMomentSums<Lanes>& sums) const {
-    const Lanes none{};
-    const Point3<Lanes> a = PointsAt(pairs, kLidarColumn, at) - origin_a_;
-    const Point3<Lanes> b = PointsAt(pairs, kCamColumn, at) - origin_b_;
+  SEXTANT_INLINE void Add(const PairColumns& pairs, std::size_t at, const Mask8& counts,
+                          const Vec8d& weights, PairMomentSums<Vec8d>& sums) const {
+    const Vec8d none{};
+    const Point3<Vec8d> a = PointsAt(pairs, kLidarColumn, at) - origin_a_;
+    const Point3<Vec8d> b = PointsAt(pairs, kCamColumn, at) - origin_b_;
     sums.Add<true, false>({counts ? a.x : none, counts ? a.y : none, counts ? a.z : none},
                           {counts ? b.x : none, counts ? b.y : none, counts ? b.z : none},
                           counts ? weights : none);
   }
 
-  SEXTANT_INLINE void Finish(const PairMomentSums<Lanes>& sums) {
+  SEXTANT_INLINE void Finish(const PairMomentSums<Vec8d>& sums) {
     const PairMomentSums<double> sum = SumOf<true, false>(sums);
     CentredMoments<double>& m = moments_;
     m = Centre<false>(sum, sum.weight);

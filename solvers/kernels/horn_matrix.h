@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "solvers/kernels/split_lanes.h"
+#include "solvers/kernels/simd_dispatch.h"
 
 namespace sextant {
 
-/// The algebra of Wahba's problem for one matrix (Real = double) or for eight side by side (Lanes),
+/// The algebra of Wahba's problem for one matrix (Real = double) or for eight side by side (Vec8d),
 /// without a branch. Inlined, so that it follows the instruction set of its caller.
 
 SEXTANT_INLINE double Sqrt(double x) { return std::sqrt(x); }

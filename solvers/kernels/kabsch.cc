@@ -36,18 +36,19 @@ SEXTANT_INLINE bool FitByFormulaFor(const PointSpans& points, CentredMoments<dou
 }
 
 template <class L>
-SEXTANT_INLINE bool FitByFormulaFor(const WeighedPairs& pairs, CentredMoments<double>& moments,
+SEXTANT_INLINE bool FitByFormulaFor(const WeightedPoints& pairs, CentredMoments<double>& moments,
                                     KernelFit& fit) {
   moments = ComputeMoments<L, true, true>(pairs);
   return FitMoments(moments, fit);
 }
 
-SEXTANT_FOR_LANES(bool, FitByFormula,
-                  (const PointSpans& points, CentredMoments<double>& moments, KernelFit& fit),
-                  (points, moments, fit))
-SEXTANT_FOR_LANES(bool, FitByFormula,
-                  (const WeighedPairs& pairs, CentredMoments<double>& moments, KernelFit& fit),
-                  (pairs, moments, fit))
+SEXTANT_SIMD_DISPATCH(bool, FitByFormula,
+                      (const PointSpans& points, CentredMoments<double>& moments, KernelFit& fit),
+                      (points, moments, fit))
+SEXTANT_SIMD_DISPATCH(bool, FitByFormula,
+                      (const WeightedPoints& pairs, CentredMoments<double>& moments,
+                       KernelFit& fit),
+                      (pairs, moments, fit))
 
 template <class Points>
 KabschOutcome Fit(const Points& points, CentredMoments<double>& moments) {
@@ -56,7 +57,7 @@ KabschOutcome Fit(const Points& points, CentredMoments<double>& moments) {
   if (!FitByFormula(points, moments, kernel) && !FitByEigensolver(moments, kernel)) {
     return tl::unexpected(ErrorCode::kDegenerate);
   }
-  return JudgeFit(kernel, moments.squares);
+  return CheckFit(kernel, moments.squares);
 }
 
 Eigen::Matrix3d Dense(const SymmetricMatrix<double>& s) {
@@ -82,7 +83,7 @@ bool FitByEigensolver(const CentredMoments<double>& m, KernelFit& fit) {
   return true;
 }
 
-KabschOutcome JudgeFit(const KernelFit& kernel, double squares) {
+KabschOutcome CheckFit(const KernelFit& kernel, double squares) {
   KabschFit fit;
   fit.sum_squares = std::max(0.0, squares - 2.0 * kernel.trace);
   fit.mirrored_sum_squares = std::max(0.0, squares - 2.0 * kernel.mirrored_trace);
@@ -103,7 +104,7 @@ KabschOutcome FitPoints(std::span<const Eigen::Vector3d> points_in_b,
 
 KabschOutcome FitPairs(std::span<const Pair3d3d> pairs, KabschMoments& moments) {
   CentredMoments<double> m;
-  KabschOutcome fit = Fit(WeighedPairs{pairs}, m);
+  KabschOutcome fit = Fit(WeightedPoints{pairs}, m);
   if (!fit) return fit;
   moments.weight = m.weight;
   moments.mean_in_lidar = {m.mean_a.x, m.mean_a.y, m.mean_a.z};

@@ -10,9 +10,9 @@
 namespace sextant {
 namespace {
 
-static_assert(PointBatch::kGroup == kLanes);
+static_assert(PointBatch::kGroup == kSimdWidth);
 
-using EightNumbers = std::array<double, kLanes>;
+using EightNumbers = std::array<double, kSimdWidth>;
 
 // Eight problems, taken apart by lane.
 struct GroupFit {
@@ -39,12 +39,12 @@ struct GroupFit {
   }
 
   std::array<EightNumbers, 25> numbers;
-  std::array<long long, kLanes> proven;  // -1 where the formula proved itself.
+  std::array<long long, kSimdWidth> proven;  // -1 where the formula proved itself.
 };
 
 template <class L>
 SEXTANT_INLINE Point3<L> LoadPoint(const double* from) {
-  return {Load<L>(from), Load<L>(from + kLanes), Load<L>(from + 2 * kLanes)};
+  return {Load<L>(from), Load<L>(from + kSimdWidth), Load<L>(from + 2 * kSimdWidth)};
 }
 
 template <class L>
@@ -55,12 +55,12 @@ SEXTANT_INLINE Point3<L> operator+(const Point3<L>& a, const Point3<L>& b) {
 template <class L>
 SEXTANT_INLINE CentredMoments<L> MomentsOf(const double* group, std::size_t points) {
   const Point3<L> origin_a = LoadPoint<L>(group);
-  const Point3<L> origin_b = LoadPoint<L>(group + 3 * kLanes);
+  const Point3<L> origin_b = LoadPoint<L>(group + 3 * kSimdWidth);
   PairMomentSums<L> sums{};
   for (std::size_t i = 1; i < points; ++i) {
-    const double* point = group + i * 6 * kLanes;
+    const double* point = group + i * 6 * kSimdWidth;
     sums.template Add<false, false>(LoadPoint<L>(point) - origin_a,
-                                    LoadPoint<L>(point + 3 * kLanes) - origin_b, L{});
+                                    LoadPoint<L>(point + 3 * kSimdWidth) - origin_b, L{});
   }
   CentredMoments<L> m = Centre<false>(sums, All<L>(static_cast<double>(points)));
   m.mean_a = m.mean_a + origin_a;
@@ -75,7 +75,7 @@ SEXTANT_INLINE MaskOf<L> FindRoot(const Quartic<L>& quartic, const L& bound, L& 
   constexpr int kMaxIterations = 8;
   x = bound;
   MaskOf<L> done{};
-  for (int i = 0; i < kMaxIterations && AnyLane(~done); ++i) {
+  for (int i = 0; i < kMaxIterations && AnyTrue(~done); ++i) {
     const L step = HouseholderStep(quartic, x);
     x = Select(done, x, x - step);
     done |= Abs(step) <= 1e-3 * bound;
@@ -90,9 +90,9 @@ SEXTANT_INLINE MaskOf<L> FindVector(const HornMatrix<L>& horn, const Invariants<
   const L none{};
   q = {none, none, none, none};
   MaskOf<L> done{};
-  for (int round = 0; round < kMaxRounds && AnyLane(~done); ++round) {
+  for (int round = 0; round < kMaxRounds && AnyTrue(~done); ++round) {
     Vector4<L> column = NullVector(horn, e1);
-    for (int polish = 0; polish < 2 && AnyLane(~done); ++polish) {
+    for (int polish = 0; polish < 2 && AnyTrue(~done); ++polish) {
       const EigenResidual<L> r = ResidualOf(horn, e1, column);
       const L scale = 1.0 / Sqrt(r.length2);
       q = Select(
@@ -111,7 +111,7 @@ SEXTANT_INLINE void Store(const CentredMoments<L>& m, GroupFit& fit) {
   const L all[] = {m.squares,  m.mean_a.x, m.mean_a.y, m.mean_a.z, m.mean_b.x, m.mean_b.y,
                    m.mean_b.z, m.cross.xx, m.cross.xy, m.cross.xz, m.cross.yx, m.cross.yy,
                    m.cross.yz, m.cross.zx, m.cross.zy, m.cross.zz};
-  for (std::size_t i = 0; i < 16; ++i) StoreLanes(all[i], fit.numbers[9 + i].data());
+  for (std::size_t i = 0; i < 16; ++i) StoreVec(all[i], fit.numbers[9 + i].data());
 }
 
 template <class L>
@@ -137,20 +137,20 @@ SEXTANT_INLINE void FitGroupFor(const double* group, std::size_t points, GroupFi
                    translation.z,
                    e1,
                    e1 - 2.0 * LeastSingularValue(r, m.cross)};
-  for (std::size_t i = 0; i < 9; ++i) StoreLanes(all[i], fit.numbers[i].data());
+  for (std::size_t i = 0; i < 9; ++i) StoreVec(all[i], fit.numbers[i].data());
   StoreMask(proven, fit.proven.data());
 }
 
-SEXTANT_FOR_LANES(void, FitGroup, (const double* group, std::size_t points, GroupFit& fit),
-                  (group, points, fit))
+SEXTANT_SIMD_DISPATCH(void, FitGroup, (const double* group, std::size_t points, GroupFit& fit),
+                      (group, points, fit))
 
 KabschOutcome OutcomeOf(const GroupFit& group, std::size_t lane) {
-  if (group.proven[lane] != 0) return JudgeFit(group.Kernel(lane), group.squares(lane));
+  if (group.proven[lane] != 0) return CheckFit(group.Kernel(lane), group.squares(lane));
   KernelFit kernel;
   if (!FitByEigensolver(group.Moments(lane), kernel)) {
     return tl::unexpected(ErrorCode::kDegenerate);
   }
-  return JudgeFit(kernel, group.squares(lane));
+  return CheckFit(kernel, group.squares(lane));
 }
 
 }  // namespace
@@ -166,9 +166,9 @@ void FitKabschBatch(const PointBatch& batch, std::span<KabschOutcome> fits) {
     return;
   }
   GroupFit group;
-  for (std::size_t first = 0; first < batch.problems(); first += kLanes) {
-    FitGroup(batch.Group(first / kLanes), batch.points_per_problem(), group);
-    const std::size_t count = std::min(kLanes, batch.problems() - first);
+  for (std::size_t first = 0; first < batch.problems(); first += kSimdWidth) {
+    FitGroup(batch.Group(first / kSimdWidth), batch.points_per_problem(), group);
+    const std::size_t count = std::min(kSimdWidth, batch.problems() - first);
     for (std::size_t lane = 0; lane < count; ++lane) fits[first + lane] = OutcomeOf(group, lane);
   }
 }

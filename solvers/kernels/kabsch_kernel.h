@@ -19,6 +19,6 @@ struct KernelFit {
 bool FitByEigensolver(const CentredMoments<double>& moments, KernelFit& fit);
 
 /// The fit, or kMirrored; `squares` is that of the moments.
-KabschOutcome JudgeFit(const KernelFit& kernel, double squares);
+KabschOutcome CheckFit(const KernelFit& kernel, double squares);
 
 }  // namespace sextant

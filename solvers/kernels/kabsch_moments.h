@@ -6,7 +6,7 @@
 
 #include "geometry/pair_noise.h"
 #include "solvers/kernels/horn_matrix.h"
-#include "solvers/kernels/pair_lanes.h"
+#include "solvers/kernels/pair_simd.h"
 
 namespace sextant {
 
@@ -57,15 +57,16 @@ SEXTANT_INLINE PairMomentSums<double> SumOf(const PairMomentSums<L>& s) {
   const L first = SumEach(s.squares, s.a.x, s.a.y, s.a.z, s.b.x, s.b.y, s.b.z, m.xx);
   const L second = SumEach(m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz);
   PairMomentSums<double> sum{};
-  if constexpr (kWeighted) sum.weight = SumLanes(s.weight);
+  if constexpr (kWeighted) sum.weight = HorizontalSum(s.weight);
   sum.squares = first[0];
   sum.a = {first[1], first[2], first[3]};
   sum.b = {first[4], first[5], first[6]};
   sum.cross = {first[7],  second[0], second[1], second[2], second[3],
                second[4], second[5], second[6], second[7]};
   if constexpr (kScatter) {
-    sum.scatter = {SumLanes(s.scatter.xx), SumLanes(s.scatter.yy), SumLanes(s.scatter.zz),
-                   SumLanes(s.scatter.xy), SumLanes(s.scatter.xz), SumLanes(s.scatter.yz)};
+    sum.scatter = {HorizontalSum(s.scatter.xx), HorizontalSum(s.scatter.yy),
+                   HorizontalSum(s.scatter.zz), HorizontalSum(s.scatter.xy),
+                   HorizontalSum(s.scatter.xz), HorizontalSum(s.scatter.yz)};
   }
   return sum;
 }
@@ -115,7 +116,7 @@ struct PointSpans {
 };
 
 /// Pairs, weighed by IsotropicWeight.
-struct WeighedPairs {
+struct WeightedPoints {
   SEXTANT_INLINE std::size_t size() const { return pairs.size(); }
   SEXTANT_INLINE Point3<double> a(std::size_t i) const { return PointAt(pairs[i].point_in_lidar); }
   SEXTANT_INLINE Point3<double> b(std::size_t i) const { return PointAt(pairs[i].point_in_cam); }
@@ -158,11 +159,11 @@ SEXTANT_INLINE auto FromOriginOfB(const PointSpans& points, const Point3<double>
   return SeenFromOrigin<L>(points.in_b, o);
 }
 template <class L>
-SEXTANT_INLINE auto FromOriginOfA(const WeighedPairs& points, const Point3<double>& o) {
+SEXTANT_INLINE auto FromOriginOfA(const WeightedPoints& points, const Point3<double>& o) {
   return PairsFromOrigin<L, &Pair3d3d::point_in_lidar>{points.pairs, o};
 }
 template <class L>
-SEXTANT_INLINE auto FromOriginOfB(const WeighedPairs& points, const Point3<double>& o) {
+SEXTANT_INLINE auto FromOriginOfB(const WeightedPoints& points, const Point3<double>& o) {
   return PairsFromOrigin<L, &Pair3d3d::point_in_cam>{points.pairs, o};
 }
 
@@ -172,7 +173,7 @@ SEXTANT_INLINE L EightWeights(const Points& points, std::size_t i) {
   const auto w = [&](std::size_t lane) __attribute__((always_inline)) {
     return points.weight(i + points.place(lane));
   };
-  return LanesOf<L>(w(0), w(1), w(2), w(3), w(4), w(5), w(6), w(7));
+  return VecOf<L>(w(0), w(1), w(2), w(3), w(4), w(5), w(6), w(7));
 }
 
 /// Which of the eight are the `place`-th or later.
@@ -181,7 +182,7 @@ SEXTANT_INLINE auto PlacesFrom(const Points& points, std::size_t place) {
   const auto at = [&](std::size_t lane) __attribute__((always_inline)) {
     return static_cast<long long>(points.place(lane));
   };
-  return LanesOf<MaskOf<L>>(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)) >=
+  return VecOf<MaskOf<L>>(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)) >=
          static_cast<long long>(place);
 }
 
@@ -193,7 +194,7 @@ SEXTANT_INLINE CentredMoments<double> ComputeMoments(const Points& points) {
   const Point3<double> origin_b = points.b(0);
   const std::size_t count = points.size();
   PairMomentSums<double> sums{};
-  if (count < kLanes) {
+  if (count < kSimdWidth) {
     for (std::size_t i = 0; i < count; ++i) {
       sums.Add<kWeighted, kScatter>(points.a(i) - origin_a, points.b(i) - origin_b,
                                     kWeighted ? points.weight(i) : 1.0);
@@ -203,14 +204,14 @@ SEXTANT_INLINE CentredMoments<double> ComputeMoments(const Points& points) {
     const auto all_b = FromOriginOfB<L>(points, origin_b);
     PairMomentSums<L> eight{};
     std::size_t i = 0;
-    for (; i + kLanes <= count; i += kLanes) {
+    for (; i + kSimdWidth <= count; i += kSimdWidth) {
       L weight{};
       if constexpr (kWeighted) weight = EightWeights<L>(points, i);
       eight.template Add<kWeighted, kScatter>(all_a.Eight(i), all_b.Eight(i), weight);
     }
     if (i < count) {
       // The last eight once more; those counted already stand at the origins, without weight.
-      const std::size_t last = count - kLanes;
+      const std::size_t last = count - kSimdWidth;
       const auto is_new = PlacesFrom<L>(points, i - last);
       const Point3<L> a = all_a.Eight(last);
       const Point3<L> b = all_b.Eight(last);

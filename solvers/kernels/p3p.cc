@@ -8,7 +8,7 @@
 namespace sextant {
 namespace {
 
-using p3p::FourLanes;
+using p3p::Vec4d;
 using p3p::Vector;
 
 // The candidates of one triple, side by side.
@@ -18,9 +18,7 @@ struct Candidates {
   double depth[kMaxP3pPoses];  // Not positive where it is no pose.
 };
 
-SEXTANT_INLINE FourLanes Together(const double (&a)[4]) {
-  return FourLanes{a[0], a[1], a[2], a[3]};
-}
+SEXTANT_INLINE Vec4d Together(const double (&a)[4]) { return Vec4d{a[0], a[1], a[2], a[3]}; }
 
 SEXTANT_MULTIVERSION
 void FindCandidates(const double* rays, const double* points, Candidates& out) {
@@ -33,46 +31,46 @@ void FindCandidates(const double* rays, const double* points, Candidates& out) {
   double ratio_x[4];
   double ratio_y[4];
   p3p::FindRatios(from.triangle, ratio_x, ratio_y);
-  Vector<FourLanes> d;
-  FourLanes depth = p3p::Polish(from.triangle, Together(ratio_x), Together(ratio_y), d);
-  if (!(from.squared_height > p3p::kMinSquaredHeight)) depth = FourLanes{} - 1.0;
-  FourLanes r[9];
-  FourLanes t[3];
+  Vector<Vec4d> d;
+  Vec4d depth = p3p::Polish(from.triangle, Together(ratio_x), Together(ratio_y), d);
+  if (!(from.squared_height > p3p::kMinSquaredHeight)) depth = Vec4d{} - 1.0;
+  Vec4d r[9];
+  Vec4d t[3];
   p3p::PoseAt(from, d, r, t);
   std::memcpy(out.rotation, r, sizeof r);
   std::memcpy(out.translation, t, sizeof t);
   std::memcpy(out.depth, &depth, sizeof depth);
 }
 
-SEXTANT_INLINE void LoadVectors(const double (&from)[9][kLanes], Vector<Lanes> (&to)[3]) {
+SEXTANT_INLINE void LoadVectors(const double (&from)[9][kSimdWidth], Vector<Vec8d> (&to)[3]) {
   for (int i = 0; i < 3; ++i) {
-    to[i] = {LoadLanes(from[3 * i]), LoadLanes(from[3 * i + 1]), LoadLanes(from[3 * i + 2])};
+    to[i] = {LoadVec(from[3 * i]), LoadVec(from[3 * i + 1]), LoadVec(from[3 * i + 2])};
   }
 }
 
 // A function of its own: of SolveP3pBatch, which is declared before, clang makes no versions.
 SEXTANT_MULTIVERSION
 void SolveEight(const P3pTriples& triples, P3pPoses& poses) {
-  Vector<Lanes> y[3];
-  Vector<Lanes> p[3];
+  Vector<Vec8d> y[3];
+  Vector<Vec8d> p[3];
   LoadVectors(triples.rays, y);
   LoadVectors(triples.points, p);
-  const p3p::Prepared<Lanes> from = p3p::Prepare(y, p);
-  Lanes ratio_x[4];
-  Lanes ratio_y[4];
+  const p3p::Prepared<Vec8d> from = p3p::Prepare(y, p);
+  Vec8d ratio_x[4];
+  Vec8d ratio_y[4];
   p3p::FindRatios(from.triangle, ratio_x, ratio_y);
   for (std::size_t c = 0; c < kMaxP3pPoses; ++c) {
-    Vector<Lanes> d;
-    Lanes depth = p3p::Polish(from.triangle, ratio_x[c], ratio_y[c], d);
-    depth = p3p::Select(from.squared_height > p3p::kMinSquaredHeight, depth, Lanes{});
-    const LaneMask exists = depth > 0.0;
+    Vector<Vec8d> d;
+    Vec8d depth = p3p::Polish(from.triangle, ratio_x[c], ratio_y[c], d);
+    depth = p3p::Select(from.squared_height > p3p::kMinSquaredHeight, depth, Vec8d{});
+    const Mask8 exists = depth > 0.0;
     std::memcpy(poses.exists[c], &exists, sizeof exists);
     if (!p3p::Any(exists)) continue;
-    Lanes r[9];
-    Lanes t[3];
+    Vec8d r[9];
+    Vec8d t[3];
     p3p::PoseAt(from, d, r, t);
-    for (int k = 0; k < 9; ++k) StoreLanes(r[k], poses.rotation[c][k]);
-    for (int k = 0; k < 3; ++k) StoreLanes(t[k], poses.translation[c][k]);
+    for (int k = 0; k < 9; ++k) StoreVec(r[k], poses.rotation[c][k]);
+    for (int k = 0; k < 3; ++k) StoreVec(t[k], poses.translation[c][k]);
   }
 }
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "base/lanes.h"
+#include "base/simd.h"
 #include "geometry/rigid3d.h"
 
 namespace sextant {
@@ -36,15 +36,15 @@ int SolveP3p(std::span<const Eigen::Vector3d, 3> rays_in_cam,
 
 /// Eight triples, coordinate by coordinate: rays[3 * i + axis][k] is of ray i of triple k.
 struct alignas(64) P3pTriples {
-  double rays[9][kLanes];
-  double points[9][kLanes];
+  double rays[9][kSimdWidth];
+  double points[9][kSimdWidth];
 };
 
 /// Their candidates: candidate c of triple k is a pose where exists[c][k] is not zero.
 struct alignas(64) P3pPoses {
-  double rotation[kMaxP3pPoses][9][kLanes];  ///< Row by row; orthonormal to 1e-9.
-  double translation[kMaxP3pPoses][3][kLanes];
-  long long exists[kMaxP3pPoses][kLanes];
+  double rotation[kMaxP3pPoses][9][kSimdWidth];  ///< Row by row; orthonormal to 1e-9.
+  double translation[kMaxP3pPoses][3][kSimdWidth];
+  long long exists[kMaxP3pPoses][kSimdWidth];
 
   Rigid3d Pose(std::size_t candidate, std::size_t triple) const;
 };

@@ -3,13 +3,13 @@
 
 #include <limits>
 
-#include "solvers/kernels/side_by_side.h"
+#include "solvers/kernels/eight_problems.h"
 
 namespace sextant::p3p {
 
-/// The equations of SolveP3p for one triple (T = double) and for eight side by side (T = Lanes),
+/// The equations of SolveP3p for one triple (T = double) and for eight side by side (T = Vec8d),
 /// without a branch that the numbers decide, so that both do the same arithmetic. From the four
-/// candidates on, U is what stands side by side: the candidates of one triple (FourLanes), or one
+/// candidates on, U is what stands side by side: the candidates of one triple (Vec4d), or one
 /// candidate of eight triples.
 
 /// A symmetric 3x3 matrix: the conic xx u^2 + 2 xy u v + yy v^2 + 2 xz u + 2 yz v + zz = 0.

@@ -17,26 +17,26 @@ constexpr std::size_t kColumnBlock = PairColumns::kBlock;
 // Of the padded pairs too, whose residual is not a number and costs as an outlier's.
 SEXTANT_MULTIVERSION double SumTruncated(const PairColumns& pairs, const ColumnPose& pose,
                                          double max_squared) {
-  const Lanes most = AllLanes(max_squared);
-  Lanes cost{};
-  for (std::size_t at = 0; at < pairs.padded(); at += kLanes) {
-    const Lanes squared = SquaredSigmas(pairs, pose, at);
+  const Vec8d most = BroadcastVec(max_squared);
+  Vec8d cost{};
+  for (std::size_t at = 0; at < pairs.padded(); at += kSimdWidth) {
+    const Vec8d squared = SquaredSigmas(pairs, pose, at);
     cost += squared < most ? squared : most;
   }
-  return SumLanes(cost);
+  return HorizontalSum(cost);
 }
 
 SEXTANT_MULTIVERSION void MarkInliers(const PairColumns& pairs, const ColumnPose& pose,
                                       double max_squared, std::uint64_t* bits_of_block) {
-  const LaneMask shifts = {0, 8, 16, 24, 32, 40, 48, 56};
+  const Mask8 shifts = {0, 8, 16, 24, 32, 40, 48, 56};
   for (std::size_t block = 0; block < pairs.padded(); block += kColumnBlock) {
-    LaneMask bits{};
-    for (std::size_t k = kLanes; k-- > 0;) {
-      const LaneMask is_inlier = SquaredSigmas(pairs, pose, block + kLanes * k) <= max_squared;
+    Mask8 bits{};
+    for (std::size_t k = kSimdWidth; k-- > 0;) {
+      const Mask8 is_inlier = SquaredSigmas(pairs, pose, block + kSimdWidth * k) <= max_squared;
       bits = bits + bits - is_inlier;
     }
     bits <<= shifts;
-    bits_of_block[block / kColumnBlock] = static_cast<std::uint64_t>(OrOfLanes(bits));
+    bits_of_block[block / kColumnBlock] = static_cast<std::uint64_t>(HorizontalOr(bits));
   }
 }
 
@@ -47,20 +47,20 @@ struct InlierSums {
 
 SEXTANT_MULTIVERSION void SumInliers(const PairColumns& pairs, const ColumnPose& pose,
                                      double max_squared, InlierSums& result, ColumnFit& fit) {
-  const Lanes most = AllLanes(max_squared);
-  const Lanes none{};
-  PairMomentSums<Lanes> sums{};
-  Lanes cost{};
-  Lanes count{};
-  for (std::size_t at = 0; at < pairs.padded(); at += kLanes) {
-    const Lanes squared = SquaredSigmas(pairs, pose, at);
-    const LaneMask is_inlier = squared <= most;
+  const Vec8d most = BroadcastVec(max_squared);
+  const Vec8d none{};
+  PairMomentSums<Vec8d> sums{};
+  Vec8d cost{};
+  Vec8d count{};
+  for (std::size_t at = 0; at < pairs.padded(); at += kSimdWidth) {
+    const Vec8d squared = SquaredSigmas(pairs, pose, at);
+    const Mask8 is_inlier = squared <= most;
     cost += is_inlier ? squared : most;
     count += is_inlier ? none + 1.0 : none;
-    fit.Add(pairs, at, is_inlier, LoadLanes(pairs.Column(kInverseVarianceColumn) + at), sums);
+    fit.Add(pairs, at, is_inlier, LoadVec(pairs.Column(kInverseVarianceColumn) + at), sums);
   }
-  result.cost = SumLanes(cost);
-  result.count = SumLanes(count);
+  result.cost = HorizontalSum(cost);
+  result.count = HorizontalSum(count);
   fit.Finish(sums);
 }
 

@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "solvers/kernels/pixel_pair_lanes.h"
+#include "solvers/kernels/pixel_pair_simd.h"
 
 namespace sextant {
 namespace {
@@ -24,18 +24,18 @@ SEXTANT_INLINE bool MakeBlockFor(std::span<const Pair2d3d> pairs, double assumed
                                  PixelBlock& block) {
   const EightPixelPairs<L> eight = GatherPixelPairs<L>(pairs);
   const MaskOf<L> known = eight.sigma > 0.0;
-  StoreLanes(eight.x, block.x);
-  StoreLanes(eight.y, block.y);
-  StoreLanes(eight.z, block.z);
-  StoreLanes(eight.u, block.u);
-  StoreLanes(eight.v, block.v);
-  StoreLanes(1.0 / Select(known, eight.sigma, All<L>(assumed_sigma_px)), block.inverse_sigma);
-  for (std::size_t k = pairs.size(); k < kLanes; ++k) block.inverse_sigma[k] = 0.0;
-  return !AnyLane(~known);
+  StoreVec(eight.x, block.x);
+  StoreVec(eight.y, block.y);
+  StoreVec(eight.z, block.z);
+  StoreVec(eight.u, block.u);
+  StoreVec(eight.v, block.v);
+  StoreVec(1.0 / Select(known, eight.sigma, All<L>(assumed_sigma_px)), block.inverse_sigma);
+  for (std::size_t k = pairs.size(); k < kSimdWidth; ++k) block.inverse_sigma[k] = 0.0;
+  return !AnyTrue(~known);
 }
-SEXTANT_FOR_LANES(bool, MakeBlock,
-                  (std::span<const Pair2d3d> pairs, double assumed_sigma_px, PixelBlock& block),
-                  (pairs, assumed_sigma_px, block))
+SEXTANT_SIMD_DISPATCH(bool, MakeBlock,
+                      (std::span<const Pair2d3d> pairs, double assumed_sigma_px, PixelBlock& block),
+                      (pairs, assumed_sigma_px, block))
 
 }  // namespace
 
@@ -52,7 +52,7 @@ void PairTerms::Add(std::span<const Pair2d3d> pairs, const Camera& of_pairs,
   camera = of_pairs;
   pixels.reserve(pixels.size() + pairs.size());
   // Those that fill a block begun before, then block by block.
-  for (; !pairs.empty() && pixels.size() % kLanes != 0; pairs = pairs.subspan(1)) {
+  for (; !pairs.empty() && pixels.size() % kSimdWidth != 0; pairs = pairs.subspan(1)) {
     const Pair2d3d& pair = pairs.front();
     const double sigma = pair.sigma_px > 0.0 ? pair.sigma_px : assumed.sigma_px;
     pixels.push_back({pair.pixel, pair.point_in_lidar, 1.0 / sigma});
@@ -60,7 +60,7 @@ void PairTerms::Add(std::span<const Pair2d3d> pairs, const Camera& of_pairs,
   }
   PixelBlock block;
   while (!pairs.empty()) {
-    const std::size_t count = std::min(kLanes, pairs.size());
+    const std::size_t count = std::min(kSimdWidth, pairs.size());
     if (!MakeBlock(pairs.first(count), assumed.sigma_px, block)) noise_known = false;
     pixels.AppendBlock(block, count);
     pairs = pairs.subspan(count);

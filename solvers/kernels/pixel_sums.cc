@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/kernels/pixel_pair_lanes.h"
+#include "solvers/kernels/pixel_pair_simd.h"
 
 namespace sextant {
 namespace {
@@ -19,7 +19,7 @@ constexpr int AtTriangle(int row, int column) {
 }
 
 // From the k-th on, 8 - k ones, then zeros.
-constexpr double kOnes[2 * kLanes] = {1, 1, 1, 1, 1, 1, 1, 1};
+constexpr double kOnes[2 * kSimdWidth] = {1, 1, 1, 1, 1, 1, 1, 1};
 
 template <class L>
 struct EightTerms {
@@ -100,11 +100,11 @@ template <class L>
 SEXTANT_INLINE void Collect(const L (&lanes)[kSums], PixelSums& sums) {
   for (int i = 0; i < 6; ++i) {
     for (int j = i; j < 6; ++j) {
-      sums.information(i, j) = sums.information(j, i) = SumLanes(lanes[AtTriangle(i, j)]);
+      sums.information(i, j) = sums.information(j, i) = HorizontalSum(lanes[AtTriangle(i, j)]);
     }
-    sums.gradient(i) = SumLanes(lanes[kGradient + i]);
+    sums.gradient(i) = HorizontalSum(lanes[kGradient + i]);
   }
-  sums.squares = SumLanes(lanes[kSquares]);
+  sums.squares = HorizontalSum(lanes[kSquares]);
 }
 
 template <class L>
@@ -118,13 +118,14 @@ SEXTANT_INLINE bool SumBlocksFor(std::span<const PixelBlock> blocks, const Pinho
     AddDerivatives(seen, lanes);
     lanes[kSquares] += seen.residual_u * seen.residual_u + seen.residual_v * seen.residual_v;
   }
-  if (AnyLane(behind)) return false;
+  if (AnyTrue(behind)) return false;
   Collect(lanes, sums);
   return true;
 }
-SEXTANT_FOR_LANES(bool, SumBlocks,
-                  (std::span<const PixelBlock> blocks, const PinholePose& pose, PixelSums& sums),
-                  (blocks, pose, sums))
+SEXTANT_SIMD_DISPATCH(bool, SumBlocks,
+                      (std::span<const PixelBlock> blocks, const PinholePose& pose,
+                       PixelSums& sums),
+                      (blocks, pose, sums))
 
 template <class L>
 SEXTANT_INLINE int SumBlocksWithinFor(PixelTermsView terms, const PinholePose& pose,
@@ -145,25 +146,26 @@ SEXTANT_INLINE int SumBlocksWithinFor(PixelTermsView terms, const PinholePose& p
   }
   Collect(lanes, sums);
   // Places beyond the last term have no residual.
-  const std::size_t beyond = kLanes * terms.blocks().size() - terms.size();
-  return static_cast<int>(SumLanes(count)) - static_cast<int>(beyond);
+  const std::size_t beyond = kSimdWidth * terms.blocks().size() - terms.size();
+  return static_cast<int>(HorizontalSum(count)) - static_cast<int>(beyond);
 }
-SEXTANT_FOR_LANES(int, SumBlocksWithin,
-                  (PixelTermsView terms, const PinholePose& pose, double max_squared,
-                   double cost_squared, PixelSums& sums),
-                  (terms, pose, max_squared, cost_squared, sums))
+SEXTANT_SIMD_DISPATCH(int, SumBlocksWithin,
+                      (PixelTermsView terms, const PinholePose& pose, double max_squared,
+                       double cost_squared, PixelSums& sums),
+                      (terms, pose, max_squared, cost_squared, sums))
 
 template <class L>
 SEXTANT_INLINE void SquareBlocksFor(std::span<const PixelBlock> blocks, const PinholePose& pose,
                                     double* squared) {
   for (const PixelBlock& block : blocks) {
-    StoreLanes(SquaresOf(See(LoadTerms<L>(block), pose)), squared);
-    squared += kLanes;
+    StoreVec(SquaresOf(See(LoadTerms<L>(block), pose)), squared);
+    squared += kSimdWidth;
   }
 }
-SEXTANT_FOR_LANES(void, SquareBlocks,
-                  (std::span<const PixelBlock> blocks, const PinholePose& pose, double* squared),
-                  (blocks, pose, squared))
+SEXTANT_SIMD_DISPATCH(void, SquareBlocks,
+                      (std::span<const PixelBlock> blocks, const PinholePose& pose,
+                       double* squared),
+                      (blocks, pose, squared))
 
 template <class L>
 SEXTANT_INLINE PixelErrors MeasurePairsFor(std::span<const Pair2d3d> pairs, const PinholePose& pose,
@@ -171,28 +173,29 @@ SEXTANT_INLINE PixelErrors MeasurePairsFor(std::span<const Pair2d3d> pairs, cons
   L count{};
   L squares_px2{};
   L squares{};
-  for (std::size_t at = 0; at < pairs.size(); at += kLanes) {
-    const std::size_t given = pairs.size() - at < kLanes ? pairs.size() - at : kLanes;
+  for (std::size_t at = 0; at < pairs.size(); at += kSimdWidth) {
+    const std::size_t given = pairs.size() - at < kSimdWidth ? pairs.size() - at : kSimdWidth;
     const EightPixelPairs<L> eight = GatherPixelPairs<L>(pairs.subspan(at));
     const EightTerms<L> terms = {eight.x, eight.y, eight.z, eight.u, eight.v, All<L>(1.0)};
     const L squared = SquaresOf(See(terms, pose));
     const L sigma = Select(eight.sigma > 0.0, eight.sigma, All<L>(1.0));
     const L projects = Select(squared < std::numeric_limits<double>::infinity(),
-                              Load<L>(kOnes + kLanes - given), L{});
+                              Load<L>(kOnes + kSimdWidth - given), L{});
     const L counted = Select(projects > 0.0, squared, L{});
     count += projects;
     squares_px2 += counted;
     squares += counted * (1.0 / (sigma * sigma));
-    double distances[kLanes];
-    StoreLanes(Sqrt(squared), distances);
+    double distances[kSimdWidth];
+    StoreVec(Sqrt(squared), distances);
     std::memcpy(&distances_px[at], distances, given * sizeof(double));
   }
-  return {static_cast<int>(SumLanes(count)), SumLanes(squares_px2), SumLanes(squares)};
+  return {static_cast<int>(HorizontalSum(count)), HorizontalSum(squares_px2),
+          HorizontalSum(squares)};
 }
-SEXTANT_FOR_LANES(PixelErrors, MeasurePairs,
-                  (std::span<const Pair2d3d> pairs, const PinholePose& pose,
-                   std::span<double> distances_px),
-                  (pairs, pose, distances_px))
+SEXTANT_SIMD_DISPATCH(PixelErrors, MeasurePairs,
+                      (std::span<const Pair2d3d> pairs, const PinholePose& pose,
+                       std::span<double> distances_px),
+                      (pairs, pose, distances_px))
 
 template <class L>
 SEXTANT_INLINE double TruncatedCostFor(std::span<const PixelBlock> blocks, const PinholePose& pose,
@@ -200,15 +203,15 @@ SEXTANT_INLINE double TruncatedCostFor(std::span<const PixelBlock> blocks, const
   double cost = 0.0;
   for (const PixelBlock& block : blocks) {
     // A residual that is not a number counts as an outlier's.
-    cost += SumLanes(Min(All<L>(max_squared), SquaresOf(See(LoadTerms<L>(block), pose))));
+    cost += HorizontalSum(Min(All<L>(max_squared), SquaresOf(See(LoadTerms<L>(block), pose))));
     if (!(cost < give_up)) break;
   }
   return cost;
 }
-SEXTANT_FOR_LANES(double, TruncatedCost,
-                  (std::span<const PixelBlock> blocks, const PinholePose& pose, double max_squared,
-                   double give_up),
-                  (blocks, pose, max_squared, give_up))
+SEXTANT_SIMD_DISPATCH(double, TruncatedCost,
+                      (std::span<const PixelBlock> blocks, const PinholePose& pose,
+                       double max_squared, double give_up),
+                      (blocks, pose, max_squared, give_up))
 
 template <class L>
 SEXTANT_INLINE double ScreenedCostFor(std::span<const PixelBlock> blocks, const PinholePose& pose,
@@ -219,18 +222,18 @@ SEXTANT_INLINE double ScreenedCostFor(std::span<const PixelBlock> blocks, const 
   for (const PixelBlock& block : blocks) {
     const L squares = SquaresOf(See(LoadTerms<L>(block), pose));
     const MaskOf<L> within = squares <= max_squared;
-    cost += SumLanes(Min(All<L>(max_squared), squares));
-    const double inliers = SumLanes(Keep(within, All<L>(1.0)));
+    cost += HorizontalSum(Min(All<L>(max_squared), squares));
+    const double inliers = HorizontalSum(Keep(within, All<L>(1.0)));
     evidence += inliers * screen.by_inlier + (8.0 - inliers) * screen.by_outlier;
     if (!(cost < give_up)) break;
     if (evidence > screen.give_up) return std::numeric_limits<double>::infinity();
   }
   return cost;
 }
-SEXTANT_FOR_LANES(double, ScreenedCost,
-                  (std::span<const PixelBlock> blocks, const PinholePose& pose, double max_squared,
-                   double give_up, const PixelScreen& screen),
-                  (blocks, pose, max_squared, give_up, screen))
+SEXTANT_SIMD_DISPATCH(double, ScreenedCost,
+                      (std::span<const PixelBlock> blocks, const PinholePose& pose,
+                       double max_squared, double give_up, const PixelScreen& screen),
+                      (blocks, pose, max_squared, give_up, screen))
 
 }  // namespace
 

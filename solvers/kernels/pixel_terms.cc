@@ -7,12 +7,12 @@ namespace sextant {
 
 void PixelTerms::AddBlock(const PixelTerm& term) {
   PixelBlock& block = blocks_.emplace_back();
-  std::fill_n(block.x, kLanes, term.in_lidar.x());
-  std::fill_n(block.y, kLanes, term.in_lidar.y());
-  std::fill_n(block.z, kLanes, term.in_lidar.z());
-  std::fill_n(block.u, kLanes, term.pixel.x());
-  std::fill_n(block.v, kLanes, term.pixel.y());
-  std::fill_n(block.inverse_sigma, kLanes, 0.0);
+  std::fill_n(block.x, kSimdWidth, term.in_lidar.x());
+  std::fill_n(block.y, kSimdWidth, term.in_lidar.y());
+  std::fill_n(block.z, kSimdWidth, term.in_lidar.z());
+  std::fill_n(block.u, kSimdWidth, term.pixel.x());
+  std::fill_n(block.v, kSimdWidth, term.pixel.y());
+  std::fill_n(block.inverse_sigma, kSimdWidth, 0.0);
 }
 
 }  // namespace sextant

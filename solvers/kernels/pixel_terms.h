@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "base/lanes.h"
+#include "base/simd.h"
 
 namespace sextant {
 
@@ -24,14 +24,14 @@ struct PixelTerm {
 /// repeat the first of their block with inverse_sigma zero: they project where it does, and add
 /// nothing.
 struct alignas(64) PixelBlock {
-  double x[kLanes], y[kLanes], z[kLanes];  ///< In the LiDAR frame [m].
-  double u[kLanes], v[kLanes];             ///< The pixel.
-  double inverse_sigma[kLanes];
+  double x[kSimdWidth], y[kSimdWidth], z[kSimdWidth];  ///< In the LiDAR frame [m].
+  double u[kSimdWidth], v[kSimdWidth];                 ///< The pixel.
+  double inverse_sigma[kSimdWidth];
 };
 
 inline PixelTerm TermAt(const PixelBlock* blocks, std::size_t i) {
-  const PixelBlock& b = blocks[i / kLanes];
-  const std::size_t k = i % kLanes;
+  const PixelBlock& b = blocks[i / kSimdWidth];
+  const std::size_t k = i % kSimdWidth;
   return {{b.u[k], b.v[k]}, {b.x[k], b.y[k], b.z[k]}, b.inverse_sigma[k]};
 }
 
@@ -69,7 +69,9 @@ class PixelTermsView {
   Iterator begin() const { return {blocks_, 0}; }
   Iterator end() const { return {blocks_, size_}; }
 
-  std::span<const PixelBlock> blocks() const { return {blocks_, (size_ + kLanes - 1) / kLanes}; }
+  std::span<const PixelBlock> blocks() const {
+    return {blocks_, (size_ + kSimdWidth - 1) / kSimdWidth};
+  }
 
  private:
   const PixelBlock* blocks_ = nullptr;
@@ -85,9 +87,9 @@ class PixelTerms {
     blocks_.clear();
     size_ = 0;
   }
-  void reserve(std::size_t count) { blocks_.reserve((count + kLanes - 1) / kLanes); }
+  void reserve(std::size_t count) { blocks_.reserve((count + kSimdWidth - 1) / kSimdWidth); }
   void push_back(const PixelTerm& term) {
-    const std::size_t k = size_ % kLanes;
+    const std::size_t k = size_ % kSimdWidth;
     if (k == 0) AddBlock(term);
     PixelBlock& block = blocks_.back();
     block.x[k] = term.in_lidar.x();
@@ -101,7 +103,7 @@ class PixelTerms {
 
   /// Up to eight terms more, where those before fill their blocks.
   void AppendBlock(const PixelBlock& block, std::size_t count) {
-    assert(size_ % kLanes == 0);
+    assert(size_ % kSimdWidth == 0);
     blocks_.push_back(block);
     size_ += count;
   }

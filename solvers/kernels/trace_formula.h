@@ -60,7 +60,7 @@ SEXTANT_INLINE double LaguerreStep(double value, double slope, double half_curva
 
 /// s3, the least root of x^3 - e1 x^2 + e2 x - e3, from below, to 1e-8; false where it is so nearly
 /// a multiple root that rounding moves it. Usual data takes two steps.
-SEXTANT_INLINE bool FindLeastRoot(double e1, double e2, double e3, double& x) {
+SEXTANT_INLINE bool FindSmallestRoot(double e1, double e2, double e3, double& x) {
   constexpr int kMaxIterations = 4;
   constexpr double kMinSlope = 1e-5;
   for (int i = 0; i < kMaxIterations; ++i) {
@@ -99,7 +99,7 @@ SEXTANT_INLINE std::optional<TraceMaximum> MaximizeTraceByFormula(const CrossMat
   const double least = kMinSeparation * bound * bound * bound;
   double separation = SeparationOf(v, e1);
   if (!(separation > least)) return std::nullopt;
-  bool has_s3 = FindLeastRoot(e1, 0.5 * (e1 * e1 - v.sum_squares), v.product, s3);
+  bool has_s3 = FindSmallestRoot(e1, 0.5 * (e1 * e1 - v.sum_squares), v.product, s3);
   has_s3 &= 400.0 * std::abs(step) * bound * bound <= separation;
   // A nearly exact eigenvalue gives the vector, whose Rayleigh quotient makes the value exact.
   for (int round = 0; round < kMaxRounds; ++round) {

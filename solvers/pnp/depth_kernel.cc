@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/lanes.h"
+#include "base/simd.h"
 #include "geometry/symmetric.h"
 #include "solvers/kernels/max_trace_rotation.h"
 

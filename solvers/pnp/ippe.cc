@@ -45,8 +45,8 @@ NullDirection FindNullDirection(const Eigen::Matrix3d& q) {
 // homography is the identity and its other candidates show in the upper left.
 bool FixHomography(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& centroid,
                    const Eigen::Matrix<double, 2, 3>& unit_from_points) {
-  constexpr double kLeastRelativeGap = 1e-12;
-  constexpr double kLeastReduced = 1e-6;
+  constexpr double kMinRelativeGap = 1e-12;
+  constexpr double kMinReduced = 1e-6;
   Eigen::Matrix3d u = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d v = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
@@ -60,8 +60,8 @@ bool FixHomography(std::span<const Eigen::Vector3d> points, const Eigen::Vector3
   const Eigen::Matrix3d reduced = square - (u * u + v * v) / static_cast<double>(points.size());
   const double determinant = reduced(0, 0) * reduced(1, 1) - reduced(0, 1) * reduced(1, 0);
   // What three points leave is rounding throughout.
-  const double size = std::max(reduced.trace(), kLeastReduced * square.trace());
-  return determinant > kLeastRelativeGap * size * size;
+  const double size = std::max(reduced.trace(), kMinReduced * square.trace());
+  return determinant > kMinRelativeGap * size * size;
 }
 
 // The two rotations of the plane z = 0 whose image at the plane's origin has value (h02, h12) / h22

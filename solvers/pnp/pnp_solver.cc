@@ -190,7 +190,7 @@ Error PnpSolver::Named(Error error) const {
 
 void PnpSolver::DoHypothesize(const CalibrationProblem& problem, std::span<const int> sample,
                               std::vector<Rigid3d>& poses) const {
-  constexpr std::size_t kMostOnStack = 64;
+  constexpr std::size_t kMaxOnStack = 64;
   const Camera& camera = *problem.camera;
   const auto pair = [&](std::size_t i) -> const Pair2d3d& {
     return problem.pairs_2d3d[static_cast<std::size_t>(sample[i])];
@@ -204,16 +204,16 @@ void PnpSolver::DoHypothesize(const CalibrationProblem& problem, std::span<const
       poses.push_back(Turned(cam_from_view, found->poses[static_cast<std::size_t>(i)]));
     }
   };
-  if (sample.size() > kMostOnStack) {
+  if (sample.size() > kMaxOnStack) {
     std::vector<Pair2d3d> pairs;
     for (std::size_t i = 0; i < sample.size(); ++i) pairs.push_back(pair(i));
     const Expected<View> view = MakeView(camera, pairs);
     if (view) append(view->image_points, view->points, view->cam_from_view);
     return;
   }
-  std::array<Eigen::Vector3d, kMostOnStack> rays;
-  std::array<Eigen::Vector3d, kMostOnStack> points;
-  std::array<Eigen::Vector2d, kMostOnStack> image_points;
+  std::array<Eigen::Vector3d, kMaxOnStack> rays;
+  std::array<Eigen::Vector3d, kMaxOnStack> points;
+  std::array<Eigen::Vector2d, kMaxOnStack> image_points;
   for (std::size_t i = 0; i < sample.size(); ++i) {
     const std::optional<Eigen::Vector3d> ray = Unproject(camera, pair(i).pixel);
     if (!ray) return;

@@ -13,14 +13,16 @@ namespace {
 
 constexpr std::size_t kMaxCorners = 5;
 constexpr std::size_t kMaxBlocks = 4;
-constexpr std::size_t kMaxTerms = kMaxBlocks * kLanes;
+constexpr std::size_t kMaxTerms = kMaxBlocks * kSimdWidth;
 
 // Of the triples of five, those that together use each corner about as often.
-constexpr std::size_t kTriples[kLanes][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3},
-                                             {0, 1, 4}, {0, 2, 4}, {1, 2, 4}, {0, 3, 4}};
+constexpr std::size_t kTriples[kSimdWidth][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3},
+                                                 {0, 1, 4}, {0, 2, 4}, {1, 2, 4}, {0, 3, 4}};
 
 // How many of them are of the first so many corners.
-std::size_t TriplesOf(std::size_t corners) { return corners < 4 ? 1 : corners == 4 ? 4 : kLanes; }
+std::size_t TriplesOf(std::size_t corners) {
+  return corners < 4 ? 1 : corners == 4 ? 4 : kSimdWidth;
+}
 
 // Some of the terms, evenly spread over all.
 struct FewTerms {
@@ -48,7 +50,7 @@ std::size_t SpreadTerms(PixelTermsView terms, std::array<std::size_t, kMaxCorner
     std::size_t i = 0;
     std::size_t farthest = 0;
     for (const PixelBlock& block : terms.blocks()) {
-      for (std::size_t k = 0; k < kLanes; ++k, ++i) {
+      for (std::size_t k = 0; k < kSimdWidth; ++k, ++i) {
         const double du = block.u[k] - u;
         const double dv = block.v[k] - v;
         const double squared = du * du + dv * dv;
@@ -61,8 +63,8 @@ std::size_t SpreadTerms(PixelTermsView terms, std::array<std::size_t, kMaxCorner
   double u = 0.0;
   double v = 0.0;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    u += terms.blocks()[i / kLanes].u[i % kLanes];
-    v += terms.blocks()[i / kLanes].v[i % kLanes];
+    u += terms.blocks()[i / kSimdWidth].u[i % kSimdWidth];
+    v += terms.blocks()[i / kSimdWidth].v[i % kSimdWidth];
   }
   const auto count = static_cast<double>(terms.size());
   std::size_t next = farthest_from(u / count, v / count, true);
@@ -93,7 +95,7 @@ std::optional<Rigid3d> StartFromTriples(PixelTermsView terms, const Camera& came
   std::array<std::size_t, kMaxCorners> corners{};
   const std::size_t triple_count = TriplesOf(SpreadTerms(few.view, corners));
   P3pTriples triples;
-  for (std::size_t k = 0; k < kLanes; ++k) {
+  for (std::size_t k = 0; k < kSimdWidth; ++k) {
     // Places to spare repeat a triple.
     const auto& triple = kTriples[k < triple_count ? k : 0];
     for (std::size_t to = 0; to < 3; ++to) {

@@ -22,11 +22,11 @@ namespace sextant {
 namespace {
 
 // Fewer pairs than this leave a direction undetermined whatever their places.
-constexpr int kLeastPairs = 3;
+constexpr int kMinPairs = 3;
 
 DataNeeds WithRefined(DataNeeds needs, RefineOn on) {
-  if (Uses3d3d(on)) needs.pairs_3d3d = std::max(needs.pairs_3d3d, kLeastPairs);
-  if (Uses2d3d(on)) needs.pairs_2d3d = std::max(needs.pairs_2d3d, kLeastPairs);
+  if (Uses3d3d(on)) needs.pairs_3d3d = std::max(needs.pairs_3d3d, kMinPairs);
+  if (Uses2d3d(on)) needs.pairs_2d3d = std::max(needs.pairs_2d3d, kMinPairs);
   return needs;
 }
 

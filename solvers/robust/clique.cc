@@ -8,7 +8,7 @@
 #include "solvers/core/registry.h"
 #include "solvers/robust/clique_listing.h"
 #include "solvers/robust/max_clique.h"
-#include "solvers/robust/pair_judge.h"
+#include "solvers/robust/pair_scorer.h"
 
 namespace sextant {
 namespace {
@@ -19,10 +19,10 @@ struct CliqueOptions : InlierOptions {
 
 // In a larger clique one false pair does little harm.
 constexpr std::size_t kSmallClique = 16;
-constexpr std::size_t kMostCliques = 300;
+constexpr std::size_t kMaxCliques = 300;
 
 // The graph, twice, takes 100 MB.
-constexpr std::size_t kMostPairs = 20'000;
+constexpr std::size_t kMaxPairs = 20'000;
 
 /// The largest set of 3D-3D pairs that agree on all distances, then the inner solver on it.
 ///
@@ -47,13 +47,13 @@ class CliqueSolver final : public Solver {
 
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
-    if (problem.pairs_3d3d.size() > kMostPairs) {
+    if (problem.pairs_3d3d.size() > kMaxPairs) {
       return MakeError(ErrorCode::kInvalidInput,
                        fmt::format("{} pairs, expected at most {}: the graph would not fit; use "
                                    "ransac or gnc",
-                                   problem.pairs_3d3d.size(), kMostPairs));
+                                   problem.pairs_3d3d.size(), kMaxPairs));
     }
-    const std::unique_ptr<PairJudge> judge = MakePairJudge(*inner_, problem, options_);
+    const std::unique_ptr<PairScorer> judge = MakePairScorer(*inner_, problem, options_);
     const BitGraph graph = judge->Graph();
     const Clique clique = FindMaximumClique(graph, options_.max_nodes);
     const int least = spec().needs.pairs_3d3d;
@@ -76,45 +76,45 @@ class CliqueSolver final : public Solver {
   // Distances do not tell a point from its mirror image: a false pair may have taken the place of
   // a true one, and as many of chance may agree. So where there are few, all cliques count that are
   // as large or lack one, and the cheapest pose is taken.
-  Expected<Rigid3d> PoseFrom(const CalibrationProblem& problem, const PairJudge& judge,
+  Expected<Rigid3d> PoseFrom(const CalibrationProblem& problem, const PairScorer& judge,
                              const BitGraph& graph, const Clique& clique) const {
     std::vector<std::vector<int>> cliques;
     if (clique.vertices.size() <= kSmallClique) {
-      const auto fewest = static_cast<std::size_t>(LeastPairs(inner_->spec().needs));
-      cliques = ListCliques(graph, std::max(clique.vertices.size() - 1, fewest), kMostCliques,
+      const auto fewest = static_cast<std::size_t>(MinPairs(inner_->spec().needs));
+      cliques = ListCliques(graph, std::max(clique.vertices.size() - 1, fewest), kMaxCliques,
                             options_.max_nodes);
     }
     // The first, should there be more than are listed.
     cliques.insert(cliques.begin(), clique.vertices);
-    std::vector<JudgedPose> poses;
+    std::vector<ScoredPose> poses;
     for (const std::vector<int>& vertices : cliques) AddPoses(problem, judge, vertices, poses);
     if (poses.empty()) return WhyNoPose(problem, clique);
     return BestOptimised(judge, std::move(poses));
   }
 
-  struct JudgedPose {
+  struct ScoredPose {
     double cost;
     Rigid3d pose;
   };
 
-  void AddPoses(const CalibrationProblem& problem, const PairJudge& judge,
-                std::span<const int> vertices, std::vector<JudgedPose>& judged) const {
+  void AddPoses(const CalibrationProblem& problem, const PairScorer& judge,
+                std::span<const int> vertices, std::vector<ScoredPose>& judged) const {
     std::vector<Rigid3d> poses;
     inner_->Hypothesize(problem, vertices, poses);
     for (const Rigid3d& pose : poses) judged.push_back({judge.Cost(pose), pose});
   }
 
   // Of the most promising.
-  Rigid3d BestOptimised(const PairJudge& judge, std::vector<JudgedPose> poses) const {
-    constexpr std::size_t kMostOptimised = 3;
-    const std::size_t optimised = std::min(kMostOptimised, poses.size());
-    const auto is_cheaper = [](const JudgedPose& a, const JudgedPose& b) {
+  Rigid3d BestOptimised(const PairScorer& judge, std::vector<ScoredPose> poses) const {
+    constexpr std::size_t kMaxOptimised = 3;
+    const std::size_t optimised = std::min(kMaxOptimised, poses.size());
+    const auto is_cheaper = [](const ScoredPose& a, const ScoredPose& b) {
       return a.cost < b.cost;
     };
     std::stable_sort(poses.begin(), poses.end(), is_cheaper);
     if (!spec().estimates_rotation) return poses.front().pose;
     poses.resize(optimised);
-    for (JudgedPose& judged : poses) {
+    for (ScoredPose& judged : poses) {
       judged.pose = judge.Optimise(judged.pose);
       judged.cost = judge.Cost(judged.pose);
     }

@@ -26,7 +26,7 @@ Rigid3d OptimiseOnInliers(const PairColumns& pairs, const Rigid3d& cam_from_lida
       });
 }
 
-double ChanceOfAgreement(const PairColumns& pairs, double max_squared) {
+double RandomAgreementProbability(const PairColumns& pairs, double max_squared) {
   Eigen::AlignedBox3d box;
   double sigmas = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -36,10 +36,10 @@ double ChanceOfAgreement(const PairColumns& pairs, double max_squared) {
     sigmas += std::sqrt(pairs.Column(kVarianceColumn)[place]);
   }
   const double radius = std::sqrt(max_squared) * sigmas / static_cast<double>(pairs.size());
-  return ChanceInBox(box, radius);
+  return RandomPointProbability(box, radius);
 }
 
-int LeastDistinct(const PairColumns& pairs, std::span<const int> indices) {
+int CountDistinctAtLeast(const PairColumns& pairs, std::span<const int> indices) {
   // Marks in a table of a sixteenth's occupation: two different pairs rarely meet.
   std::vector<bool> marked(std::bit_ceil(16 * pairs.size()));
   int distinct = 0;

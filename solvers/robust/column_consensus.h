@@ -13,10 +13,10 @@ namespace sextant {
 Rigid3d OptimiseOnInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
                           double max_squared, int rounds = 20);
 
-/// ChanceOfAgreement of consensus.h.
-double ChanceOfAgreement(const PairColumns& pairs, double max_squared);
+/// RandomAgreementProbability of consensus.h.
+double RandomAgreementProbability(const PairColumns& pairs, double max_squared);
 
 /// At most as many as `indices` has different pairs, and nearly as many.
-int LeastDistinct(const PairColumns& pairs, std::span<const int> indices);
+int CountDistinctAtLeast(const PairColumns& pairs, std::span<const int> indices);
 
 }  // namespace sextant

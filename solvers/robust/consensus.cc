@@ -72,7 +72,7 @@ int CountDistinct(const PairTerms& terms, std::span<const int> indices) {
 
 // Whether `inner` can work on so few.
 Expected<void> CheckEnough(const Solver& inner, std::size_t inlier_count) {
-  const int least = LeastPairs(inner.spec().needs);
+  const int least = MinPairs(inner.spec().needs);
   if (inlier_count >= static_cast<std::size_t>(least)) return {};
   return MakeError(ErrorCode::kNoConsensus,
                    fmt::format("{} pairs agree on a pose, expected at least {}; check the pairing "
@@ -88,19 +88,19 @@ double InlierOptions::MaxSquared(PairKind kind) const {
 }
 
 double InlierOptions::FinalMaxSquared(std::size_t count, double chance_at_9999) const {
-  constexpr double kMostFalsePairs = 0.05;
-  const bool is_safe = static_cast<double>(count) * chance_at_9999 < kMostFalsePairs;
+  constexpr double kMaxFalsePairs = 0.05;
+  const bool is_safe = static_cast<double>(count) * chance_at_9999 < kMaxFalsePairs;
   return threshold == 0.0 && is_safe ? kChiSquare3At9999 : MaxSquared(PairKind::k3d3d);
 }
 
-int LeastPairs(const DataNeeds& needs) { return std::max(needs.pairs_3d3d, needs.pairs_2d3d); }
+int MinPairs(const DataNeeds& needs) { return std::max(needs.pairs_3d3d, needs.pairs_2d3d); }
 
 DataNeeds NeedsOfConsensus(DataNeeds inner, PairKind kind) {
   ++(kind == PairKind::k3d3d ? inner.pairs_3d3d : inner.pairs_2d3d);
   return inner;
 }
 
-double ChanceOfAgreement(const PairTerms& terms, double max_squared) {
+double RandomAgreementProbability(const PairTerms& terms, double max_squared) {
   const double threshold = std::sqrt(max_squared);
   if (terms.pixels.empty()) {
     Eigen::AlignedBox3d box;
@@ -110,7 +110,7 @@ double ChanceOfAgreement(const PairTerms& terms, double max_squared) {
       radius += threshold / std::cbrt(std::abs(term.whitener.determinant()));
     }
     radius /= static_cast<double>(terms.points.size());
-    return ChanceInBox(box, radius);
+    return RandomPointProbability(box, radius);
   }
   Eigen::AlignedBox2d box;
   double radius = 0.0;
@@ -123,7 +123,7 @@ double ChanceOfAgreement(const PairTerms& terms, double max_squared) {
   return std::min(1.0, disc / (box.sizes().array() + 2.0 * radius).prod());
 }
 
-double ChanceInBox(const Eigen::AlignedBox3d& box, double radius) {
+double RandomPointProbability(const Eigen::AlignedBox3d& box, double radius) {
   const double ball = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
   return std::min(1.0, ball / (box.sizes().array() + 2.0 * radius).prod());
 }
@@ -144,7 +144,7 @@ Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer,
                               std::span<const int> inliers, int least) {
   return CheckConsensus(terms.pixels.empty() ? PairKind::k3d3d : PairKind::k2d3d,
                         CountDistinct(terms, inliers), static_cast<int>(terms.size()),
-                        ChanceOfAgreement(terms, scorer.max_squared()), least);
+                        RandomAgreementProbability(terms, scorer.max_squared()), least);
 }
 
 double WantedSamples(std::size_t count, std::size_t inliers, int sample_size, double confidence) {

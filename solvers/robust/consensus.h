@@ -66,13 +66,13 @@ Expected<void> CheckConsensus(const PairTerms& terms, const PoseScorer& scorer,
 Expected<void> CheckConsensus(PairKind kind, int distinct, int count, double chance, int least);
 
 /// The probability that a pair of chance agrees with a pose; see above.
-double ChanceOfAgreement(const PairTerms& terms, double max_squared);
+double RandomAgreementProbability(const PairTerms& terms, double max_squared);
 
 /// The probability that a point of chance in `box`, grown by `radius`, is within it of another.
-double ChanceInBox(const Eigen::AlignedBox3d& box, double radius);
+double RandomPointProbability(const Eigen::AlignedBox3d& box, double radius);
 
 /// The least pairs of one kind that `needs` states.
-int LeastPairs(const DataNeeds& needs);
+int MinPairs(const DataNeeds& needs);
 
 /// `inner` with one pair more of its kind, as a consensus takes.
 DataNeeds NeedsOfConsensus(DataNeeds inner, PairKind kind);

@@ -46,7 +46,7 @@ class DropWorstSolver final : public Solver {
     std::vector<double> squared(terms.size());
     std::vector<int> kept(terms.size());
     std::iota(kept.begin(), kept.end(), 0);
-    const int least = options_.keep > 0 ? options_.keep : LeastPairs(inner_->spec().needs);
+    const int least = options_.keep > 0 ? options_.keep : MinPairs(inner_->spec().needs);
     bool all_within = false;
     int solves = 0;
     while (true) {
@@ -63,7 +63,7 @@ class DropWorstSolver final : public Solver {
     }
     if (options_.keep == 0) {
       const std::span<const int> agreeing = all_within ? kept : std::span<const int>();
-      if (Expected<void> ok = CheckConsensus(terms, scorer, agreeing, LeastPairs(spec().needs));
+      if (Expected<void> ok = CheckConsensus(terms, scorer, agreeing, MinPairs(spec().needs));
           !ok) {
         return tl::unexpected<Error>(std::move(ok.error()));
       }
@@ -104,7 +104,7 @@ SolverEntry DropWorstEntry() {
         if (!options) return tl::unexpected<Error>(options.error());
         const Expected<PairKind> kind = KindOfPairs(*arguments.inner, "drop_worst");
         if (!kind) return tl::unexpected<Error>(kind.error());
-        const int least = LeastPairs(arguments.inner->spec().needs);
+        const int least = MinPairs(arguments.inner->spec().needs);
         if (options->keep > 0 && options->keep < least) {
           return MakeError(ErrorCode::kInvalidOption,
                            fmt::format("option keep={}: '{}' needs at least {} pairs",

@@ -12,7 +12,7 @@
 #include "solvers/kernels/gnc_columns.h"
 #include "solvers/least_squares/refine_pose.h"
 #include "solvers/robust/consensus.h"
-#include "solvers/robust/pair_judge.h"
+#include "solvers/robust/pair_scorer.h"
 
 namespace sextant {
 namespace {
@@ -98,7 +98,7 @@ class GncSolver final : public Solver {
     if (!annealed) return std::nullopt;
     std::optional<Estimate> estimate =
         RefitIfNoWorse(*inner_, problem, pairs, annealed->cam_from_lidar, max_squared);
-    const int least = LeastPairs(spec().needs);
+    const int least = MinPairs(spec().needs);
     if (!estimate || !CheckConsensus(pairs, max_squared, estimate->inliers, least)) {
       return std::nullopt;
     }
@@ -120,7 +120,7 @@ class GncSolver final : public Solver {
     if (!pose) return tl::unexpected<Error>(pose.error());
     Expected<Estimate> estimate = BetterOnInliers(*inner_, problem, terms, scorer, *pose);
     if (!estimate) return estimate;
-    const int least = LeastPairs(spec().needs);
+    const int least = MinPairs(spec().needs);
     if (Expected<void> ok = CheckConsensus(terms, scorer, estimate->inliers, least); !ok) {
       return tl::unexpected<Error>(std::move(ok.error()));
     }
@@ -180,7 +180,7 @@ class GncSolver final : public Solver {
       weighted.pairs_2d3d = WeightedPairs(problem.pairs_2d3d, weights, options_.Assumed());
     }
     const PairTerms terms = MakeTerms(weighted, kind_, options_.Assumed());
-    const int least = LeastPairs(inner_->spec().needs);
+    const int least = MinPairs(inner_->spec().needs);
     if (terms.size() < static_cast<std::size_t>(least)) {
       return MakeError(ErrorCode::kNoConsensus,
                        fmt::format("{} of {} pairs keep a weight, expected at least {}; check the "

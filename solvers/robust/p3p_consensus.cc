@@ -25,7 +25,7 @@ constexpr double kLocalStep = 1e-6;
 constexpr double kFinalStep = 1e-10;
 constexpr int kFinalRounds = 30;
 // The least inliers that least squares runs on.
-constexpr int kLeastInliers = 4;
+constexpr int kMinInliers = 4;
 
 class Search {
  public:
@@ -49,7 +49,7 @@ class Search {
     double wanted = options_.max_samples;
     while (samples_ < wanted && (found_ || samples_ < kMaxDegenerateSamples)) {
       DrawBatch();
-      drawn_ = std::min(static_cast<int>(kLanes), options_.max_samples - samples_);
+      drawn_ = std::min(static_cast<int>(kSimdWidth), options_.max_samples - samples_);
       samples_ += drawn_;
       SolveP3pBatch(triples_, candidates_);
       if (!TakeBestCandidate()) continue;
@@ -66,7 +66,7 @@ class Search {
   std::size_t Below(std::size_t count) { return ((random_.Bits() >> 32) * count) >> 32; }
 
   void DrawBatch() {
-    for (std::size_t k = 0; k < kLanes; ++k) {
+    for (std::size_t k = 0; k < kSimdWidth; ++k) {
       const std::size_t first = Below(count_);
       std::size_t second = Below(count_ - 1);
       std::size_t third = Below(count_ - 2);
@@ -123,7 +123,7 @@ class Search {
         best_ = pose;
         best_cost_ = sums.squares;
       }
-      if ((widening == 1.0 && !falls) || inliers < kLeastInliers) break;
+      if ((widening == 1.0 && !falls) || inliers < kMinInliers) break;
       const std::optional<Vector6d> step = DampedStep(sums.information, sums.gradient, 0.0);
       if (!step || !step->allFinite()) break;
       if (widening == 1.0 && SizeOf(*step, pose) < step_tolerance) break;

@@ -26,12 +26,12 @@ void PoseScorer::ForEach(const Rigid3d& cam_from_lidar, Visit&& visit) const {
     const PinholePose pose(camera, cam_from_lidar);
     std::size_t left = terms_->pixels.size();
     for (const PixelBlock& block : terms_->pixels.blocks()) {
-      double squared[kLanes];
+      double squared[kSimdWidth];
       SquarePixels(std::span(&block, 1), pose, squared);
-      for (std::size_t k = 0; k < std::min(left, kLanes); ++k) {
+      for (std::size_t k = 0; k < std::min(left, kSimdWidth); ++k) {
         if (!visit(squared[k])) return;
       }
-      left -= std::min(left, kLanes);
+      left -= std::min(left, kSimdWidth);
     }
     return;
   }

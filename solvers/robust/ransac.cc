@@ -9,7 +9,7 @@
 #include "solvers/core/registry.h"
 #include "solvers/pnp/p3p_solver.h"
 #include "solvers/robust/p3p_consensus.h"
-#include "solvers/robust/pair_judge.h"
+#include "solvers/robust/pair_scorer.h"
 #include "solvers/robust/sample_consensus.h"
 
 namespace sextant {
@@ -58,7 +58,7 @@ class RansacSolver final : public Solver {
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
     const SampleOptions sampling = {.sample_size = options_.sample_size > 0
                                                        ? options_.sample_size
-                                                       : LeastPairs(inner_->spec().needs),
+                                                       : MinPairs(inner_->spec().needs),
                                     .max_iterations = options_.max_iterations,
                                     .confidence = options_.confidence,
                                     .local_optimisation = options_.local_optimisation,
@@ -146,7 +146,7 @@ class RansacSolver final : public Solver {
   }
 
   int LeastInliers() const {
-    return std::max(options_.min_inliers, LeastPairs(inner_->spec().needs) + 1);
+    return std::max(options_.min_inliers, MinPairs(inner_->spec().needs) + 1);
   }
 
   static tl::unexpected<Error> NoPose(int samples, int sample_size) {
@@ -215,7 +215,7 @@ SolverEntry RansacEntry() {
         if (!options) return tl::unexpected<Error>(options.error());
         const Expected<PairKind> kind = KindOfPairs(*arguments.inner, "ransac");
         if (!kind) return tl::unexpected<Error>(kind.error());
-        const int least = LeastPairs(arguments.inner->spec().needs);
+        const int least = MinPairs(arguments.inner->spec().needs);
         if (options->sample_size > 0 && options->sample_size < least) {
           return MakeError(ErrorCode::kInvalidOption,
                            fmt::format("option sample_size={}: '{}' needs at least {} pairs",

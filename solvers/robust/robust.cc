@@ -11,7 +11,7 @@
 #include "solvers/kernels/pair_columns.h"
 #include "solvers/robust/column_consensus.h"
 #include "solvers/robust/consensus.h"
-#include "solvers/robust/pair_judge.h"
+#include "solvers/robust/pair_scorer.h"
 
 namespace sextant {
 
@@ -41,7 +41,7 @@ class TripleSearch {
   /// were the pairs of the best pose all the true ones.
   bool Settles() {
     const auto count = static_cast<double>(pairs_.size());
-    const double budget = std::max(kLeastBudget, count * count * kBudgetShare);
+    const double budget = std::max(kMinBudget, count * count * kBudgetShare);
     double wanted = budget;
     while (samples_ < wanted) {
       ++samples_;
@@ -58,7 +58,7 @@ class TripleSearch {
  private:
   // Then the graph of all pairs is the better choice: a sample costs what 20 to 50 of its pairs
   // cost.
-  static constexpr double kLeastBudget = 200.0;
+  static constexpr double kMinBudget = 200.0;
   static constexpr double kBudgetShare = 1.0 / 200.0;
 
   // Draws three pairs; the third only where the first two agree, which outliers hardly ever do.
@@ -138,8 +138,8 @@ class RobustSolver final : public Solver {
       const PairColumns pairs(problem.pairs_3d3d, options_.Assumed());
       TripleSearch search(*inner_, problem, pairs, options_);
       if (search.Settles()) {
-        const double max_squared =
-            options_.FinalMaxSquared(pairs.size(), ChanceOfAgreement(pairs, kChiSquare3At9999));
+        const double max_squared = options_.FinalMaxSquared(
+            pairs.size(), RandomAgreementProbability(pairs, kChiSquare3At9999));
         Expected<Estimate> estimate =
             RefitOnInliers(*inner_, problem, pairs, search.best(), max_squared);
         if (estimate && IsConsensus(problem, pairs, estimate->inliers)) {

@@ -66,14 +66,14 @@ Eigen::VectorXd RatiosOf(const Matrix6d& a, const Matrix6d& b) {
 
 // Rings begin at random azimuths there, so a return more or less on each ring is all the
 // difference.
-TEST(ForeseeView, TellsTheInformationOfTheSimulatedView) {
+TEST(PredictView, TellsTheInformationOfTheSimulatedView) {
   int seen = 0;
   constexpr int kViews = 40;
   const SimulatedViews session = Simulate(kViews, 3);
   const SensorPair sensors = SensorsOf(session);
   for (std::size_t i = 0; i < kViews; ++i) {
     const Rigid3d& pose = session.true_cam_from_board[i];
-    std::optional<BoardView> view = ForeseeView(sensors, session.problem.boards[0], pose);
+    std::optional<BoardView> view = PredictView(sensors, session.problem.boards[0], pose);
     if (!view) continue;
     ++seen;
     const BoardView& simulated = session.problem.board_views[i];
@@ -91,13 +91,13 @@ TEST(ForeseeView, TellsTheInformationOfTheSimulatedView) {
   EXPECT_GT(seen, kViews * 9 / 10);
 }
 
-TEST(ForeseeView, RefusesWhatASensorWouldNotFind) {
+TEST(PredictView, RefusesWhatASensorWouldNotFind) {
   const SimulatedViews session = Simulate(1, 1);
   const SensorPair sensors = SensorsOf(session);
   const Board& board = session.problem.boards[0];
   const auto at = [&](double turn_deg, const Eigen::Vector3d& where) {
     const Eigen::Quaterniond hung = ExpSo3({0.0, 0.0, 45.0 * kRadPerDeg});
-    return ForeseeView(sensors, board, {ExpSo3({0.0, turn_deg * kRadPerDeg, 0.0}) * hung, where})
+    return PredictView(sensors, board, {ExpSo3({0.0, turn_deg * kRadPerDeg, 0.0}) * hung, where})
         .has_value();
   };
   EXPECT_TRUE(at(0.0, {0.0, 0.0, 2.0}));
@@ -124,7 +124,7 @@ TEST(Advise, ShrinksTheCovarianceMoreThanARandomPose) {
     // Two views drawn at random, each alone besides the two.
     for (const std::size_t random : {2U, 3U}) {
       const auto view =
-          ForeseeView(sensors, session.problem.boards[0], session.true_cam_from_board[random]);
+          PredictView(sensors, session.problem.boards[0], session.true_cam_from_board[random]);
       if (!view) continue;
       const Matrix6d information =
           advice->covariance->inverse() + *InformationOfView(*view, session.problem.boards[0],

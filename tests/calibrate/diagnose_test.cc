@@ -24,7 +24,7 @@ FakedSession FakeSession(int views, Disturb disturb) {
   Random random(DeriveSeed(1, "diagnose", 0, 0));
   FakedSession faked;
   for (int i = 0; i < views; ++i) {
-    const std::vector<Rigid3d> poses = {HungByChance(random)};
+    const std::vector<Rigid3d> poses = {PlacedAtRandom(random)};
     SessionView view{.name = std::to_string(i)};
     view.seen = FakeObservation(faked.boards, poses, kFakeCamFromLidar, random);
     CameraSighting& sighting = view.seen->in_image[0];
@@ -103,7 +103,7 @@ TEST(Diagnose, OneViewAndViewsThatRepeatEachOther) {
               testing::ElementsAre(HasSubstr("one view only")));
   Random random(3);
   FakedSession same;
-  const std::vector<Rigid3d> poses = {HungByChance(random)};
+  const std::vector<Rigid3d> poses = {PlacedAtRandom(random)};
   for (int i = 0; i < 3; ++i) {
     SessionView view{.name = "same"};
     view.seen = FakeObservation(same.boards, poses, kFakeCamFromLidar, random);

@@ -21,7 +21,7 @@ std::vector<Board> Squares(int count) {
 std::vector<Rigid3d> Apart(std::size_t count, Random& random) {
   std::vector<Rigid3d> poses;
   for (std::size_t i = 0; i < count; ++i) {
-    poses.push_back(HungByChance(random));
+    poses.push_back(PlacedAtRandom(random));
     poses.back().translation.x() =
         1.2 * (static_cast<double>(i) - 0.5 * (static_cast<double>(count) - 1.0));
   }
@@ -132,7 +132,7 @@ TEST(Match, ARectangleLeavesHalfATurnOnly) {
   Board board = SquareBoard(0);
   board.right_bottom_m = 0.8;
   const std::vector<Board> boards = {board};
-  const std::vector<Rigid3d> poses = {HungByChance(random)};
+  const std::vector<Rigid3d> poses = {PlacedAtRandom(random)};
   const std::vector<Observation> views = {
       FakeObservation(boards, poses, kFakeCamFromLidar, random)};
   const Expected<Matching> matching = MatchViews(views);

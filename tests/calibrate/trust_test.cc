@@ -50,7 +50,7 @@ Trust TrustOf(const CalibrationProblem& problem, const TrustOptions& options = {
   const SolverPtr solver = Kabsch();
   const Expected<SolveReport> answer = solver->Solve(problem);
   EXPECT_TRUE(answer) << answer.error().message;
-  const Expected<Trust> trust = JudgeTrust(problem, *solver, *answer, options);
+  const Expected<Trust> trust = AssessTrust(problem, *solver, *answer, options);
   EXPECT_TRUE(trust) << trust.error().message;
   return *trust;
 }
@@ -131,7 +131,7 @@ TEST(Trust, FewViewsAreToldWhatTheyCannot) {
   EXPECT_TRUE(two.figures.held_out_rmse_m);
   EXPECT_THAT(two.figures.verdict, HasSubstr("too few for a bootstrap"));
   EXPECT_THAT(two.figures.outlier_views, IsEmpty());
-  const Expected<Trust> none = JudgeTrust({}, *Kabsch(), {}, {});
+  const Expected<Trust> none = AssessTrust({}, *Kabsch(), {}, {});
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, ErrorCode::kMissingData);
 }

@@ -36,7 +36,7 @@ constexpr double kSeconds = 20.0;  // For what takes a fraction of one on an idl
 
 // A scan of the paper's board, and the projection in which it is shown.
 struct Drawing {
-  Scene scene = test::HungBoards(1);
+  Scene scene = test::PlacedBoards(1);
   ScanMarks projection{.camera = AssumedCamera(1280, 720), .cam_from_lidar = AxesCamFromLidar()};
   MarkViewport view{kWidth, kHeight, cli::kMarkBar_px, 1280, 720};
   MarkedBoard board = test::DrawBoard(0, test::CornersOf(scene.boards[0], {}), projection, 0.05);

@@ -14,7 +14,7 @@ namespace {
 
 std::vector<double> Measure(const KnownProblem& known, const Expected<SolveReport>& report) {
   std::vector<double> values(PoseMetrics().size(), std::nan(""));
-  MeasurePose(known, report, {}, {std::bitset<kMostMetrics>().set(), values});
+  MeasurePose(known, report, {}, {std::bitset<kMaxMetrics>().set(), values});
   return values;
 }
 

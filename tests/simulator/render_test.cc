@@ -82,7 +82,7 @@ TEST(RenderImage, TakesTheIntrinsicsThatRenderNotThoseThatAreTold) {
   scene.cameras[0].told_intrinsics = kCamera;
   scene.cameras[0].told_intrinsics->fx_px *= 1.02;
   EXPECT_TRUE(SameBytes(*RenderImage(scene, 0, {}), true_image));
-  EXPECT_EQ(ToldCamera(scene.cameras[0])->fx_px, 1.02 * kCamera.fx_px);
+  EXPECT_EQ(PublishedCamera(scene.cameras[0])->fx_px, 1.02 * kCamera.fx_px);
   EXPECT_EQ(RenderingCamera(scene.cameras[0])->fx_px, kCamera.fx_px);
 }
 

@@ -176,9 +176,9 @@ double DifferenceOf(std::span<const Rigid3d> alone, const P3pPoses& together, st
 TEST_P(P3pAtDepth, EightTriplesSideBySideHaveThePosesOfEach) {
   Random random(10);
   for (int batch = 0; batch < 500; ++batch) {
-    std::array<TripleView, kLanes> views;
+    std::array<TripleView, kSimdWidth> views;
     P3pTriples triples;
-    for (std::size_t k = 0; k < kLanes; ++k) {
+    for (std::size_t k = 0; k < kSimdWidth; ++k) {
       Triple in_cam = RandomTriple(GetParam(), random);
       // Now and then one that has none: points on a line, or of one point twice.
       if (random.Uniform() < 0.05) in_cam[2] = 0.5 * (in_cam[0] + in_cam[1]);
@@ -192,7 +192,7 @@ TEST_P(P3pAtDepth, EightTriplesSideBySideHaveThePosesOfEach) {
     }
     P3pPoses together;
     SolveP3pBatch(triples, together);
-    for (std::size_t k = 0; k < kLanes; ++k) {
+    for (std::size_t k = 0; k < kSimdWidth; ++k) {
       std::array<Rigid3d, kMaxP3pPoses> alone;
       const int count = SolveP3p(views[k].rays, views[k].points, alone);
       EXPECT_LT(DifferenceOf(std::span(alone).first(static_cast<std::size_t>(count)), together, k),

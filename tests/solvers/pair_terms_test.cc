@@ -53,7 +53,7 @@ TEST(PairTerms, PlacesBeyondTheLastRepeatATermAndAddNothing) {
   terms.Add(pairs, {}, {});
   ASSERT_EQ(terms.pixels.blocks().size(), 2U);
   const PixelBlock& last = terms.pixels.blocks()[1];
-  for (std::size_t k = 3; k < kLanes; ++k) {
+  for (std::size_t k = 3; k < kSimdWidth; ++k) {
     EXPECT_EQ(last.x[k], last.x[0]);
     EXPECT_EQ(last.z[k], last.z[0]);
     EXPECT_EQ(last.inverse_sigma[k], 0.0);

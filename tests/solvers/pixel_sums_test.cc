@@ -111,7 +111,7 @@ TEST(PixelSums, SquaresAndCostAreThoseOfEveryTerm) {
     SumsCase c = MakeCase(pairs, random);
     if (pairs % 3 == 0) c.pose.translation.z() -= 3.0;
     const auto blocks = c.terms.pixels.blocks();
-    std::vector<double> squared(kLanes * blocks.size());
+    std::vector<double> squared(kSimdWidth * blocks.size());
     SquarePixels(blocks, c.Pose(), squared.data());
     for (std::size_t i = 0; i < c.terms.pixels.size(); ++i) {
       const double wanted = SquaredOf(c.terms.pixels[i], c);

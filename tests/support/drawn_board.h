@@ -52,7 +52,7 @@ inline MarkedBoard DrawBoard(int id, const BoardCorners& corners, const ScanMark
 
 /// The paper's boards: 0.48 m, hung from a corner 1.8 m before a LiDAR at the origin, a wall behind
 /// them.
-inline Scene HungBoards(int boards) {
+inline Scene PlacedBoards(int boards) {
   Scene scene;
   scene.name = "hung boards";
   for (int i = 0; i < boards; ++i) {

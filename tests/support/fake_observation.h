@@ -68,7 +68,7 @@ inline std::vector<BoardPlacement> EveryPlacement(const Board& seen, std::span<c
 }
 
 /// cam_from_board of a board by chance about 2 m before the camera, hung from corner 0.
-inline Rigid3d HungByChance(Random& random) {
+inline Rigid3d PlacedAtRandom(Random& random) {
   const Eigen::Vector3d lean = FakeNoise(random, 0.3);
   const double x = random.Uniform(-0.8, 0.8);
   const double y = random.Uniform(-0.3, 0.3);

@@ -60,7 +60,7 @@ struct Experiment {
   std::vector<std::string> axes;   ///< Of the grid.
   std::vector<Condition> conditions;
   std::vector<Metric> metrics;  ///< All of the kind.
-  std::bitset<kMostMetrics> wanted;
+  std::bitset<kMaxMetrics> wanted;
   std::vector<TableSpec> tables;
   std::vector<PlotSpec> plots;
 };

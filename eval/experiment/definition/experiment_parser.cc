@@ -16,8 +16,8 @@
 namespace sextant {
 namespace {
 
-constexpr std::int64_t kMostTrials = 1'000'000'000;
-constexpr std::size_t kMostConditions = 10'000;
+constexpr std::int64_t kMaxTrials = 1'000'000'000;
+constexpr std::size_t kMaxConditions = 10'000;
 
 const std::vector<std::string>& RootKeys() {
   static const std::vector<std::string> keys = {
@@ -85,7 +85,7 @@ void ExperimentParser::ParseCounts(const YamlNode& root, Experiment& experiment)
     const YamlNode* node = fields_.ok() ? root.Find(key) : nullptr;
     if (node == nullptr) return static_cast<std::uint64_t>(otherwise);
     const Expected<std::int64_t> value = ParseInteger(
-        node->text, low, kMostTrials, {.file = fields_.file(), .line = node->line, .name = key});
+        node->text, low, kMaxTrials, {.file = fields_.file(), .line = node->line, .name = key});
     if (!value) fields_.Fail(value.error());
     return static_cast<std::uint64_t>(value.value_or(low));
   };
@@ -220,9 +220,9 @@ std::vector<ExperimentParser::Draft> ExperimentParser::CrossWithGrid(const YamlN
         crossed.push_back(std::move(next));
       }
     }
-    if (crossed.empty() || crossed.size() > kMostConditions) {
+    if (crossed.empty() || crossed.size() > kMaxConditions) {
       fields_.Fail(values.line, key,
-                   fmt::format("expected 1 to {} conditions in all, got {}", kMostConditions,
+                   fmt::format("expected 1 to {} conditions in all, got {}", kMaxConditions,
                                crossed.size()));
       return {};
     }

@@ -21,7 +21,7 @@ std::vector<TimingRow> TimeSubjects(const Experiment& experiment,
                                experiment.metrics.begin());
   std::vector<TimingRow> timings;
   if (metric == experiment.metrics.size()) return timings;
-  std::bitset<kMostMetrics> wanted;
+  std::bitset<kMaxMetrics> wanted;
   wanted.set(metric);
   for (const Condition& condition : experiment.conditions) {
     TrialRows rows(experiment.metrics.size(), wanted);

@@ -18,7 +18,7 @@ namespace sextant {
 /// What the trials of an experiment measured, a row a subject (and step, for sequences).
 class TrialRows {
  public:
-  TrialRows(std::size_t metrics, std::bitset<kMostMetrics> wanted)
+  TrialRows(std::size_t metrics, std::bitset<kMaxMetrics> wanted)
       : metrics_(metrics), wanted_(wanted) {}
 
   struct Key {
@@ -42,7 +42,7 @@ class TrialRows {
 
  private:
   std::size_t metrics_;
-  std::bitset<kMostMetrics> wanted_;
+  std::bitset<kMaxMetrics> wanted_;
   std::uint64_t trial_ = 0;
   std::vector<Key> keys_;
   std::vector<double> values_;
@@ -82,7 +82,7 @@ struct TrialKind {
   std::string summary;  ///< What one trial is, in one line.
   bool takes_solvers = true;
   std::vector<OptionDoc> parameters = {};
-  std::vector<Metric> metrics = {};  ///< At most kMostMetrics.
+  std::vector<Metric> metrics = {};  ///< At most kMaxMetrics.
   /// Trials are stored in blocks of so many, and a kill loses the blocks in flight: fewer for
   /// trials that take long.
   int trials_per_block = 100;

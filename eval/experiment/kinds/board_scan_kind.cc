@@ -31,7 +31,7 @@ enum BoardScanMeasured : int {
   kFound,
   kRings,
   kEdgePoints,
-  kFewestEdgePoints,
+  kMinEdgePoints,
   kGapMm,
   kOffMm,
   kEdgeMm,
@@ -144,7 +144,7 @@ class BoardScanTrials final : public Trials {
     double points = 0.0;
     for (const int count : counts) points += count;
     values.Set(kEdgePoints, points / static_cast<double>(counts.size()));
-    values.Set(kFewestEdgePoints, *std::ranges::min_element(counts));
+    values.Set(kMinEdgePoints, *std::ranges::min_element(counts));
     double gap = 0.0;
     double edge = 0.0;
     double squares = 0.0;

@@ -90,7 +90,7 @@ class FusionTrials final : public Trials {
 
   Expected<UncertainPose> Calibrate(const SceneSight& sight, std::uint64_t seed, int scans) const {
     constexpr double kBetweenScans_s = 0.1;
-    const Scene scene = sight.HangBoards(seed);
+    const Scene scene = sight.PlaceBoardsInRoom(seed);
     std::vector<Rigid3d> answers;
     for (int scan = 0; scan < scans; ++scan) {
       const Expected<CalibrationProblem> seen =

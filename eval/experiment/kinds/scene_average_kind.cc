@@ -71,7 +71,7 @@ class AverageTrials final : public Trials {
 
   // The boards hang where they hang and the unit is the same one: what a trial averages is noise.
   void Run(const TrialId& id, TrialRows& rows) const override {
-    const Scene scene = sight_.HangBoards(id.seed);
+    const Scene scene = sight_.PlaceBoardsInRoom(id.seed);
     std::vector<Rigid3d> answers;
     std::vector<Eigen::Vector3d> in_cam;
     std::vector<Eigen::Vector3d> in_lidar;

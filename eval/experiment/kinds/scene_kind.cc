@@ -83,7 +83,7 @@ Expected<KnownProblem> MakeKnown(const SceneSight& sight, int views, const Trial
     const std::uint64_t hang_seed =
         DeriveSeed(id.seed, "view", static_cast<std::uint64_t>(view), 0);
     Expected<CalibrationProblem> seen =
-        sight.Look(sight.HangBoards(hang_seed), id.seed, view, kBetweenViews_s * view);
+        sight.Look(sight.PlaceBoardsInRoom(hang_seed), id.seed, view, kBetweenViews_s * view);
     if (!seen) return tl::unexpected<Error>(seen.error());
     if (view == 0) {
       known.problem = std::move(*seen);

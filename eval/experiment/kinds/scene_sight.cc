@@ -57,7 +57,7 @@ Expected<Rigid3d> ExtrinsicOf(const SceneSettings& settings, const Rigid3d& of_s
   return cam_from_lidar;
 }
 
-Expected<Camera> ToldCameraOf(const SceneSettings& settings, const Camera& true_camera) {
+Expected<Camera> PublishedCameraOf(const SceneSettings& settings, const Camera& true_camera) {
   Camera told = true_camera;
   if (!settings.told_intrinsics.empty()) {
     const auto numbers = ParseNumbers("told_intrinsics", settings.told_intrinsics, 4);
@@ -140,7 +140,7 @@ Expected<SceneSight> SceneSight::Make(const SceneSettings& settings,
     return MakeError(ErrorCode::kMissingData,
                      fmt::format("{}: camera {} can find no board", settings.scene, camera));
   }
-  const Expected<Camera> told = ToldCameraOf(settings, *ToldCamera(scene_camera));
+  const Expected<Camera> told = PublishedCameraOf(settings, *PublishedCamera(scene_camera));
   if (!told) return tl::unexpected<Error>(told.error());
   sight.told_ = *told;
   sight.lidar_ = *FindLidarModel(sight.scene_.lidar.model);
@@ -162,7 +162,7 @@ std::vector<Board> SceneSight::Boards() const {
   return boards;
 }
 
-Scene SceneSight::HangBoards(std::uint64_t seed) const {
+Scene SceneSight::PlaceBoardsInRoom(std::uint64_t seed) const {
   Scene scene = scene_;
   Random random(DeriveSeed(seed, "hang", 0, 0));
   for (SceneBoard& board : scene.boards) {

@@ -43,7 +43,7 @@ class SceneSight {
   std::vector<Board> Boards() const;
 
   /// The scene with its boards hung anew.
-  Scene HangBoards(std::uint64_t seed) const;
+  Scene PlaceBoardsInRoom(std::uint64_t seed) const;
 
   /// Pairs of one moment: 3D-3D for tags and images, 2D-3D for marked corners. `unit_seed`: of what
   /// stays the same in a session (biases of the rings); `view` tells its moments apart.

@@ -9,7 +9,7 @@ namespace sextant {
 namespace {
 
 // Two megabytes a column.
-constexpr std::uint64_t kMostKeptRows = 1U << 18U;
+constexpr std::uint64_t kMaxKeptRows = 1U << 18U;
 
 CellKey CellOf(std::uint64_t key) { return {SubjectOfKey(key), IndexOfKey(key)}; }
 
@@ -65,7 +65,7 @@ ColumnPasses::ColumnPasses(const ConditionRows& rows, const std::vector<int>& me
   for (const int metric : metrics) columns_.push_back(ColumnOf(*rows.experiment_, metric));
   std::uint64_t count = 0;
   for (const RowBlockPlace& block : rows.blocks_) count += block.rows;
-  keep_ = count <= kMostKeptRows;
+  keep_ = count <= kMaxKeptRows;
 }
 
 Expected<void> ColumnPasses::Pass(const std::function<void(const Rows&)>& visit) {

@@ -27,13 +27,13 @@ std::string Optional(YamlFields& in, const YamlNode& node, std::string_view key)
 ClaimFigure ReadFigure(YamlFields& in, const YamlNode& node,
                        const std::vector<std::string>& known) {
   static const Keys kKeys = {"experiment", "condition", "subject", "index", "statistic"};
-  constexpr int kMostSteps = 1'000'000;
+  constexpr int kMaxSteps = 1'000'000;
   ClaimFigure figure;
   if (!in.IsMap(node, "figure", kKeys)) return figure;
   figure.experiment = in.TextAt(node, "experiment");
   figure.condition = Optional(in, node, "condition");
   figure.subject = in.TextAt(node, "subject");
-  figure.index = in.IntegerAt(node, "index", 0, kMostSteps, 0);
+  figure.index = in.IntegerAt(node, "index", 0, kMaxSteps, 0);
   figure.statistic = in.TextAt(node, "statistic");
   if (in.ok() && std::ranges::find(known, figure.experiment) == known.end()) {
     in.Fail(node.line, "experiment",

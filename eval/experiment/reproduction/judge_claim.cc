@@ -14,7 +14,7 @@ namespace {
 
 // Of so many trials, all lie within bounds that hold a further one in 95 of 100 cases: outside the
 // middle 95 percent of fewer says nothing.
-constexpr std::uint64_t kFewestDraws = 39;
+constexpr std::uint64_t kMinDraws = 39;
 
 // A figure of ours, ready to be compared.
 struct OurFigure {
@@ -170,7 +170,7 @@ Expected<JudgedClaim> JudgeClaim(const Claim& claim, const std::map<std::string,
   }
   judged.verdict = VerdictOf(claim, ours->interval, than);
   if (claim.rule == ClaimRule::kDraw && judged.verdict == Verdict::kRefuted &&
-      ours->trials < kFewestDraws) {
+      ours->trials < kMinDraws) {
     judged.verdict = Verdict::kUndecided;
   }
   return judged;

@@ -15,7 +15,7 @@
 namespace sextant {
 namespace {
 
-constexpr std::uint64_t kMostHeader = std::uint64_t{64} << 20U;
+constexpr std::uint64_t kMaxHeader = std::uint64_t{64} << 20U;
 
 tl::unexpected<Error> Unreadable(const std::filesystem::path& path) {
   return MakeError(
@@ -87,7 +87,7 @@ Expected<void> RowFileReader::ReadHeader() {
   if (file_bytes_ < head.size() || !ReadAt(0, head.data(), head.size())) return Damaged(path_);
   std::uint64_t size = 0;
   std::memcpy(&size, head.data() + 8, 8);
-  if (!head.starts_with(kRowFileMark) || size > kMostHeader || size % 8 != 0 ||
+  if (!head.starts_with(kRowFileMark) || size > kMaxHeader || size % 8 != 0 ||
       file_bytes_ < head.size() + size + 8) {
     return Damaged(path_);
   }
@@ -98,7 +98,7 @@ Expected<void> RowFileReader::ReadHeader() {
   if (checksum != RowChecksum(head + configuration_)) return Damaged(path_);
   configuration_.erase(configuration_.find_last_not_of(' ') + 1);
   columns_ = CountMetrics(configuration_);
-  if (columns_ == 0 || columns_ > kMostMetrics) return Damaged(path_);
+  if (columns_ == 0 || columns_ > kMaxMetrics) return Damaged(path_);
   whole_bytes_ = 16 + size + 8;
   return {};
 }

@@ -11,17 +11,17 @@ namespace {
 
 using Points = std::span<const Eigen::Vector3d>;
 
-constexpr int kLeastRings = 4;
-constexpr int kLeastColumns = 8;
+constexpr int kMinRings = 4;
+constexpr int kMinColumns = 8;
 constexpr double kOfMostInARing = 0.02;  ///< Bins with less than this of the fullest are between.
-constexpr int kLeastGap = 2;             ///< Bins between two rings.
-constexpr double kLeastRow = 0.75;       ///< Height of a row of whole rings, in cells.
+constexpr int kMinGap = 2;               ///< Bins between two rings.
+constexpr double kMinRow = 0.75;         ///< Height of a row of whole rings, in cells.
 
 // Eight points from `first` on, the last one again where there are no more.
-SEXTANT_INLINE std::array<Lanes, 3> LoadPoints(Points points, std::size_t first,
+SEXTANT_INLINE std::array<Vec8d, 3> LoadPoints(Points points, std::size_t first,
                                                const std::array<std::size_t, 3>& axes) {
-  std::array<Lanes, 3> loaded;
-  for (std::size_t i = 0; i < kLanes; ++i) {
+  std::array<Vec8d, 3> loaded;
+  for (std::size_t i = 0; i < kSimdWidth; ++i) {
     const Eigen::Vector3d& point = points[std::min(first + i, points.size() - 1)];
     for (std::size_t k = 0; k < 3; ++k) loaded[k][i] = point.data()[axes[k]];
   }
@@ -45,13 +45,13 @@ Rings FindRings(std::span<const int> histogram, double widest) {
   };
   for (int bin = 0; bin < static_cast<int>(histogram.size()); ++bin) {
     if (histogram[static_cast<std::size_t>(bin)] <= least) continue;
-    if (begin < 0 || bin - last > kLeastGap) {
+    if (begin < 0 || bin - last > kMinGap) {
       if (!close()) return {};
       begin = bin;
     }
     last = bin;
   }
-  if (!close() || rings.middles.size() < kLeastRings) return {};
+  if (!close() || rings.middles.size() < kMinRings) return {};
   return rings;
 }
 
@@ -66,7 +66,7 @@ std::vector<int> RowStarts(const Rings& rings, double cell_bins, int bins) {
   }
   double lowest = rings.middles.front();
   for (std::size_t i = 1; i < rings.middles.size(); ++i) {
-    if (rings.middles[i] - lowest < kLeastRow * cell_bins) continue;
+    if (rings.middles[i] - lowest < kMinRow * cell_bins) continue;
     starts.push_back(static_cast<int>(0.5 * (rings.middles[i - 1] + rings.middles[i])) + 1);
     lowest = rings.middles[i];
   }
@@ -78,18 +78,18 @@ std::vector<int> RowStarts(const Rings& rings, double cell_bins, int bins) {
 // Before its first use, as clang wants of functions of many versions.
 SEXTANT_MULTIVERSION
 void ScanCells::FindBearings(Points points, double* slopes, std::int32_t* columns) const {
-  for (std::size_t i = 0; i < points.size(); i += kLanes) {
-    const std::array<Lanes, 3> xyz = LoadPoints(points, i, axes_);
-    StoreLanes(SlopesOf(xyz[0], xyz[1], xyz[2]), slopes + i);
+  for (std::size_t i = 0; i < points.size(); i += kSimdWidth) {
+    const std::array<Vec8d, 3> xyz = LoadPoints(points, i, axes_);
+    StoreVec(SlopesOf(xyz[0], xyz[1], xyz[2]), slopes + i);
     ColumnsOf(xyz[0], xyz[1], columns + i);
   }
 }
 
 ScanCells::ScanCells(Points points, double cell_rad) : cell_rad_(cell_rad) {
   ChooseAxes(points);
-  columns_ = std::max(kLeastColumns, static_cast<int>(2.0 * std::numbers::pi / cell_rad));
-  std::vector<double> slopes(points.size() + kLanes);
-  std::vector<std::int32_t> columns(points.size() + kLanes);
+  columns_ = std::max(kMinColumns, static_cast<int>(2.0 * std::numbers::pi / cell_rad));
+  std::vector<double> slopes(points.size() + kSimdWidth);
+  std::vector<std::int32_t> columns(points.size() + kSimdWidth);
   FindBearings(points, slopes.data(), columns.data());
   slopes.resize(points.size());
   ChooseRows(slopes, cell_rad);

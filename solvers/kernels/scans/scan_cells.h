@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "base/lanes.h"
+#include "base/simd.h"
 
 namespace sextant {
 
@@ -50,14 +50,14 @@ class ScanCells {
   void TakeOff(std::span<const double> offsets_m);
 
   /// Where eight points fall: cell numbers, or `outside` where there is no row.
-  SEXTANT_INLINE void CellsOf(const std::array<Lanes, 3>& points, std::int32_t outside,
+  SEXTANT_INLINE void CellsOf(const std::array<Vec8d, 3>& points, std::int32_t outside,
                               std::int32_t* cells) const {
-    const Lanes x = points[axes_[0]];
-    const Lanes y = points[axes_[1]];
-    std::array<double, kLanes> slopes;
-    StoreLanes(SlopesOf(x, y, points[axes_[2]]), slopes.data());
+    const Vec8d x = points[axes_[0]];
+    const Vec8d y = points[axes_[1]];
+    std::array<double, kSimdWidth> slopes;
+    StoreVec(SlopesOf(x, y, points[axes_[2]]), slopes.data());
     ColumnsOf(x, y, cells);
-    for (std::size_t i = 0; i < kLanes; ++i) {
+    for (std::size_t i = 0; i < kSimdWidth; ++i) {
       const std::int32_t row = row_of_bin_[static_cast<std::size_t>(BinOf(slopes[i]))];
       cells[i] = row < 0 ? outside : row * columns_ + cells[i];
     }
@@ -68,26 +68,26 @@ class ScanCells {
   static constexpr double kSteepest = 4.0;
 
   // Tangents of elevations, no steeper than kSteepest.
-  static SEXTANT_INLINE Lanes SlopesOf(const Lanes& x, const Lanes& y, const Lanes& z) {
-    const Lanes level = Max(Sqrt(x * x + y * y), AllLanes(1e-12));
-    return Max(Min(z / level, AllLanes(kSteepest)), AllLanes(-kSteepest));
+  static SEXTANT_INLINE Vec8d SlopesOf(const Vec8d& x, const Vec8d& y, const Vec8d& z) {
+    const Vec8d level = Max(Sqrt(x * x + y * y), BroadcastVec(1e-12));
+    return Max(Min(z / level, BroadcastVec(kSteepest)), BroadcastVec(-kSteepest));
   }
 
   // Azimuths in turns, from 0 to 1, within 0.001 of it: that shifts the borders of cells and
   // nothing else.
-  static SEXTANT_INLINE Lanes TurnsOf(const Lanes& x, const Lanes& y) {
-    const Lanes right = Abs(x);
-    const Lanes up = Abs(y);
-    const Lanes ratio = Min(right, up) / Max(Max(right, up), AllLanes(1e-12));
-    const Lanes eighth = ratio * (0.125 + 0.0434 * (1.0 - ratio));
-    const Lanes quarter = up > right ? 0.25 - eighth : eighth;
-    const Lanes half = x < 0.0 ? 0.5 - quarter : quarter;
+  static SEXTANT_INLINE Vec8d TurnsOf(const Vec8d& x, const Vec8d& y) {
+    const Vec8d right = Abs(x);
+    const Vec8d up = Abs(y);
+    const Vec8d ratio = Min(right, up) / Max(Max(right, up), BroadcastVec(1e-12));
+    const Vec8d eighth = ratio * (0.125 + 0.0434 * (1.0 - ratio));
+    const Vec8d quarter = up > right ? 0.25 - eighth : eighth;
+    const Vec8d half = x < 0.0 ? 0.5 - quarter : quarter;
     return y < 0.0 ? 1.0 - half : half;
   }
 
-  SEXTANT_INLINE void ColumnsOf(const Lanes& x, const Lanes& y, std::int32_t* columns) const {
-    const Lanes turns = TurnsOf(x, y) * static_cast<double>(columns_);
-    for (std::size_t i = 0; i < kLanes; ++i) {
+  SEXTANT_INLINE void ColumnsOf(const Vec8d& x, const Vec8d& y, std::int32_t* columns) const {
+    const Vec8d turns = TurnsOf(x, y) * static_cast<double>(columns_);
+    for (std::size_t i = 0; i < kSimdWidth; ++i) {
       columns[i] = std::min(static_cast<std::int32_t>(turns[i]), columns_ - 1);
     }
   }

@@ -6,7 +6,7 @@
 namespace sextant {
 namespace {
 
-constexpr double kLeastCosine = 0.85;  ///< Between the normals of a match.
+constexpr double kMinCosine = 0.85;  ///< Between the normals of a match.
 constexpr double kEndOfWeights2 = 9.0;
 constexpr double kCellsOfAPlane = 9.0;
 /// Besides what is known of a match, in noise variances: planes are not quite flat.
@@ -17,16 +17,16 @@ struct Motion {
   explicit Motion(const Rigid3d& b_from_a)
       : rotation(b_from_a.rotation.toRotationMatrix()), translation(b_from_a.translation) {}
 
-  SEXTANT_INLINE std::array<Lanes, 3> Turned(const std::array<Lanes, 3>& v) const {
-    std::array<Lanes, 3> turned;
+  SEXTANT_INLINE std::array<Vec8d, 3> Turned(const std::array<Vec8d, 3>& v) const {
+    std::array<Vec8d, 3> turned;
     for (int k = 0; k < 3; ++k) {
       turned[static_cast<std::size_t>(k)] =
           rotation(k, 0) * v[0] + rotation(k, 1) * v[1] + rotation(k, 2) * v[2];
     }
     return turned;
   }
-  SEXTANT_INLINE std::array<Lanes, 3> Moved(const std::array<Lanes, 3>& p) const {
-    std::array<Lanes, 3> moved = Turned(p);
+  SEXTANT_INLINE std::array<Vec8d, 3> Moved(const std::array<Vec8d, 3>& p) const {
+    std::array<Vec8d, 3> moved = Turned(p);
     for (int k = 0; k < 3; ++k) moved[static_cast<std::size_t>(k)] += translation[k];
     return moved;
   }
@@ -37,30 +37,29 @@ struct Motion {
 
 using Triple = std::array<std::vector<double>, 3>;
 
-SEXTANT_INLINE std::array<Lanes, 3> Load(const Triple& from, std::size_t at) {
-  return {LoadLanes(from[0].data() + at), LoadLanes(from[1].data() + at),
-          LoadLanes(from[2].data() + at)};
+SEXTANT_INLINE std::array<Vec8d, 3> Load(const Triple& from, std::size_t at) {
+  return {LoadVec(from[0].data() + at), LoadVec(from[1].data() + at), LoadVec(from[2].data() + at)};
 }
 
-SEXTANT_INLINE Lanes Dot(const std::array<Lanes, 3>& a, const std::array<Lanes, 3>& b) {
+SEXTANT_INLINE Vec8d Dot(const std::array<Vec8d, 3>& a, const std::array<Vec8d, 3>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-SEXTANT_INLINE std::array<Lanes, 3> Cross(const std::array<Lanes, 3>& a,
-                                          const std::array<Lanes, 3>& b) {
+SEXTANT_INLINE std::array<Vec8d, 3> Cross(const std::array<Vec8d, 3>& a,
+                                          const std::array<Vec8d, 3>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 struct Planes {
-  std::array<Lanes, 3> normal;
-  Lanes distance;
-  Lanes variance;
-  std::array<Lanes, 6> inverse;
+  std::array<Vec8d, 3> normal;
+  Vec8d distance;
+  Vec8d variance;
+  std::array<Vec8d, 6> inverse;
 };
 
 SEXTANT_INLINE Planes Gather(const std::vector<ScanPlane>& planes, const std::int32_t* which) {
   Planes gathered;
-  for (std::size_t i = 0; i < kLanes; ++i) {
+  for (std::size_t i = 0; i < kSimdWidth; ++i) {
     const ScanPlane& plane = planes[static_cast<std::size_t>(which[i])];
     for (std::size_t k = 0; k < 3; ++k) gathered.normal[k][i] = plane.normal[k];
     gathered.distance[i] = plane.distance;
@@ -71,7 +70,7 @@ SEXTANT_INLINE Planes Gather(const std::vector<ScanPlane>& planes, const std::in
 }
 
 // The planes' variances at q over the noise of one return.
-SEXTANT_INLINE Lanes PlaneVariance(const std::array<Lanes, 6>& i, const std::array<Lanes, 3>& q) {
+SEXTANT_INLINE Vec8d PlaneVariance(const std::array<Vec8d, 6>& i, const std::array<Vec8d, 3>& q) {
   return i[0] * q[0] * q[0] + i[3] * q[1] * q[1] + i[5] * q[2] * q[2] +
          2.0 * (i[1] * q[0] * q[1] + i[2] * q[0] * q[2] + i[4] * q[1] * q[2]);
 }
@@ -80,12 +79,12 @@ SEXTANT_MULTIVERSION
 void MatchAll(const ScanSurfaces& target, const ScanSurfaces::Patches& patches,
               const Motion& motion, std::int32_t* plane_of) {
   const std::int32_t none = target.no_plane();
-  for (std::size_t i = 0; i < patches.inverse_count.size(); i += kLanes) {
-    const std::array<Lanes, 3> normals = motion.Turned(Load(patches.normal, i));
+  for (std::size_t i = 0; i < patches.inverse_count.size(); i += kSimdWidth) {
+    const std::array<Vec8d, 3> normals = motion.Turned(Load(patches.normal, i));
     target.cells().CellsOf(motion.Moved(Load(patches.middle, i)), none, plane_of + i);
-    const Lanes cosines = Dot(Gather(target.planes(), plane_of + i).normal, normals);
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      if (cosines[k] < kLeastCosine) plane_of[i + k] = none;
+    const Vec8d cosines = Dot(Gather(target.planes(), plane_of + i).normal, normals);
+    for (std::size_t k = 0; k < kSimdWidth; ++k) {
+      if (cosines[k] < kMinCosine) plane_of[i + k] = none;
     }
   }
 }
@@ -104,42 +103,42 @@ SEXTANT_MULTIVERSION
 void Accumulate(const std::vector<ScanPlane>& planes, const ScanSurfaces::Patches& patches,
                 const Motion& motion, const std::int32_t* plane_of, double gate_m, Hessian kind,
                 Sums& sums) {
-  std::array<Lanes, 6> gradient{};
-  std::array<Lanes, 21> hessian{};
-  Lanes squares{};
-  Lanes matches{};
-  const Lanes gate = AllLanes(gate_m * gate_m);
-  for (std::size_t i = 0; i < patches.inverse_count.size(); i += kLanes) {
+  std::array<Vec8d, 6> gradient{};
+  std::array<Vec8d, 21> hessian{};
+  Vec8d squares{};
+  Vec8d matches{};
+  const Vec8d gate = BroadcastVec(gate_m * gate_m);
+  for (std::size_t i = 0; i < patches.inverse_count.size(); i += kSimdWidth) {
     const Planes plane = Gather(planes, plane_of + i);
-    const std::array<Lanes, 3> q = motion.Moved(Load(patches.middle, i));
-    const Lanes residual = Dot(plane.normal, q) - plane.distance;
-    const Lanes patch_share = LoadLanes(patches.inverse_count.data() + i);
-    const Lanes plane_share = PlaneVariance(plane.inverse, q);
-    const Lanes share = patch_share + plane_share;
-    const Lanes variance = plane.variance * share;
-    const Lanes end = Max(gate, kEndOfWeights2 * plane.variance * (share + kUnknownShare));
-    const LaneMask is_match = (plane.variance > 0.0) & (residual * residual < end);
-    const Lanes biweight = 1.0 - residual * residual / (is_match ? end : AllLanes(1.0));
-    const Lanes weight =
-        is_match ? biweight * biweight / (is_match ? variance : AllLanes(1.0)) : AllLanes(0.0);
-    const Lanes noise = plane.variance * (patch_share + kCellsOfAPlane * plane_share);
-    const Lanes of_hessian = kind == Hessian::kOfNoise ? weight * weight * noise : weight;
-    const std::array<Lanes, 3> arm = Cross(q, plane.normal);
-    const std::array<Lanes, 6> j = {arm[0],          arm[1],          arm[2],
+    const std::array<Vec8d, 3> q = motion.Moved(Load(patches.middle, i));
+    const Vec8d residual = Dot(plane.normal, q) - plane.distance;
+    const Vec8d patch_share = LoadVec(patches.inverse_count.data() + i);
+    const Vec8d plane_share = PlaneVariance(plane.inverse, q);
+    const Vec8d share = patch_share + plane_share;
+    const Vec8d variance = plane.variance * share;
+    const Vec8d end = Max(gate, kEndOfWeights2 * plane.variance * (share + kUnknownShare));
+    const Mask8 is_match = (plane.variance > 0.0) & (residual * residual < end);
+    const Vec8d biweight = 1.0 - residual * residual / (is_match ? end : BroadcastVec(1.0));
+    const Vec8d weight = is_match ? biweight * biweight / (is_match ? variance : BroadcastVec(1.0))
+                                  : BroadcastVec(0.0);
+    const Vec8d noise = plane.variance * (patch_share + kCellsOfAPlane * plane_share);
+    const Vec8d of_hessian = kind == Hessian::kOfNoise ? weight * weight * noise : weight;
+    const std::array<Vec8d, 3> arm = Cross(q, plane.normal);
+    const std::array<Vec8d, 6> j = {arm[0],          arm[1],          arm[2],
                                     plane.normal[0], plane.normal[1], plane.normal[2]};
     std::size_t next = 0;
     for (std::size_t a = 0; a < 6; ++a) {
       gradient[a] += weight * j[a] * residual;
-      const Lanes weighted = of_hessian * j[a];
+      const Vec8d weighted = of_hessian * j[a];
       for (std::size_t b = a; b < 6; ++b) hessian[next++] += weighted * j[b];
     }
     squares += weight * residual * residual;
-    matches += is_match ? AllLanes(1.0) : AllLanes(0.0);
+    matches += is_match ? BroadcastVec(1.0) : BroadcastVec(0.0);
   }
-  for (std::size_t a = 0; a < 6; ++a) sums.gradient[a] = SumLanes(gradient[a]);
-  for (std::size_t k = 0; k < 21; ++k) sums.hessian[k] = SumLanes(hessian[k]);
-  sums.squares = SumLanes(squares);
-  sums.matches = SumLanes(matches);
+  for (std::size_t a = 0; a < 6; ++a) sums.gradient[a] = HorizontalSum(gradient[a]);
+  for (std::size_t k = 0; k < 21; ++k) sums.hessian[k] = HorizontalSum(hessian[k]);
+  sums.squares = HorizontalSum(squares);
+  sums.matches = HorizontalSum(matches);
 }
 
 Matrix6d Symmetric(const std::array<double, 21>& upper) {

@@ -8,11 +8,11 @@
 namespace sextant {
 namespace {
 
-constexpr double kLeastOfPatch = 3.0;  ///< Points.
-constexpr double kMostVariance = 2.0;  ///< Of a flat window's residuals, in that of the noise.
-constexpr double kMostPatchVariance = 3.0;
-constexpr double kMostTilt_rad = 0.1;  ///< Sigma of a normal that is used.
-constexpr std::size_t kLeastWindows = 20;
+constexpr double kMinOfPatch = 3.0;   ///< Points.
+constexpr double kMaxVariance = 2.0;  ///< Of a flat window's residuals, in that of the noise.
+constexpr double kMaxPatchVariance = 3.0;
+constexpr double kMaxTilt_rad = 0.1;  ///< Sigma of a normal that is used.
+constexpr std::size_t kMinWindows = 20;
 
 // The number of the window whose plane cell (row, column) takes.
 std::optional<std::size_t> BestWindow(const ScanWindows::Planes& windows, const ScanCells& cells,
@@ -46,7 +46,7 @@ ScanPlane PlaneOf(const ScanWindows::Planes& windows, std::size_t i, double nois
 // A single ring leaves a plane free to turn about it.
 bool IsTiltKnown(const ScanPlane& plane) {
   const std::array<double, 6>& i = plane.inverse_moments;
-  return plane.variance_m2 * (i[0] + i[3] + i[5]) < kMostTilt_rad * kMostTilt_rad;
+  return plane.variance_m2 * (i[0] + i[3] + i[5]) < kMaxTilt_rad * kMaxTilt_rad;
 }
 
 double AlongNormal(const ScanPlane& plane, const CellSums& sums) {
@@ -70,14 +70,14 @@ ScanSurfaces::ScanSurfaces(const ScanWindows& windows) : cells_(windows.cells())
 void ScanSurfaces::ChoosePlanes(const ScanWindows& windows) {
   const std::size_t count = cells_.sums().size();
   planes_.resize(count + 1);
-  const double noise_variance = windows.NoiseVariance(0, count, kLeastWindows);
+  const double noise_variance = windows.NoiseVariance(0, count, kMinWindows);
   range_sigma_m_ = std::sqrt(noise_variance);
   for (std::size_t cell = 0; cell < count; ++cell) {
     if (cells_.sums()[cell].of[CellSums::kCount] == 0.0) continue;
     const int row = static_cast<int>(cell) / cells_.columns();
     const int column = static_cast<int>(cell) % cells_.columns();
     const std::optional<std::size_t> window =
-        BestWindow(windows.planes(), cells_, row, column, kMostVariance * noise_variance);
+        BestWindow(windows.planes(), cells_, row, column, kMaxVariance * noise_variance);
     if (!window) continue;
     const ScanPlane plane = PlaneOf(windows.planes(), *window, noise_variance);
     if (!IsTiltKnown(plane)) continue;
@@ -90,8 +90,8 @@ void ScanSurfaces::AddPatch(std::size_t cell) {
   const CellSums& sums = cells_.sums()[cell];
   const ScanPlane& plane = planes_[cell];
   const double count = sums.of[CellSums::kCount];
-  if (count < kLeastOfPatch) return;
-  if (AlongNormal(plane, sums) > kMostPatchVariance * plane.variance_m2) return;
+  if (count < kMinOfPatch) return;
+  if (AlongNormal(plane, sums) > kMaxPatchVariance * plane.variance_m2) return;
   for (std::size_t k = 0; k < 3; ++k) {
     patches_.middle[k].push_back(sums.of[CellSums::kFirst + k] / count);
     patches_.normal[k].push_back(plane.normal[k]);
@@ -101,7 +101,7 @@ void ScanSurfaces::AddPatch(std::size_t cell) {
 }
 
 void ScanSurfaces::FillUp() {
-  const std::size_t padded = (patch_count_ + kLanes - 1) / kLanes * kLanes;
+  const std::size_t padded = (patch_count_ + kSimdWidth - 1) / kSimdWidth * kSimdWidth;
   for (std::size_t k = 0; k < 3; ++k) {
     patches_.middle[k].resize(padded, 0.0);
     patches_.normal[k].resize(padded, 0.0);

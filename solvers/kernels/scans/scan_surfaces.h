@@ -39,7 +39,7 @@ class ScanSurfaces {
   /// The number of a plane that nothing matches.
   std::int32_t no_plane() const { return static_cast<std::int32_t>(planes_.size()) - 1; }
 
-  /// Middles of cells, structure of arrays, filled up to a multiple of kLanes with patches of
+  /// Middles of cells, structure of arrays, filled up to a multiple of kSimdWidth with patches of
   /// weight 0.
   struct Patches {
     std::array<std::vector<double>, 3> middle;

@@ -7,18 +7,18 @@
 namespace sextant {
 namespace {
 
-constexpr double kLeastPoints = 12.0;   ///< Of a window.
+constexpr double kMinPoints = 12.0;     ///< Of a window.
 constexpr double kNoiseQuantile = 0.3;  ///< Most windows are flat, but not all.
-constexpr double kLeastNoise_m = 1e-4;  ///< No LiDAR is better, and exact data would divide by 0.
+constexpr double kMinNoise_m = 1e-4;    ///< No LiDAR is better, and exact data would divide by 0.
 constexpr double kSteepCosine2 = 0.03;  ///< Windows seen flatter do not tell the noise.
-constexpr double kLeastCosine2 = 0.02;  ///< Flatter, more than range noise moves points.
+constexpr double kMinCosine2 = 0.02;    ///< Flatter, more than range noise moves points.
 
 // The sums of cells as structure of arrays, with a border of a cell that closes the circle and is
 // empty above and below.
 class CellPlanes {
  public:
   explicit CellPlanes(const ScanCells& cells)
-      : stride_(static_cast<std::size_t>(cells.columns()) + 2 + kLanes) {
+      : stride_(static_cast<std::size_t>(cells.columns()) + 2 + kSimdWidth) {
     const auto rows = static_cast<std::size_t>(cells.rows());
     const auto columns = static_cast<std::size_t>(cells.columns());
     for (std::vector<double>& sums : of_) sums.resize((rows + 2) * stride_);
@@ -32,11 +32,11 @@ class CellPlanes {
   }
 
   // Sums over the 3 x 3 cells round each of eight cells of a row.
-  SEXTANT_INLINE Lanes Window(std::size_t k, std::size_t row, std::size_t column) const {
-    Lanes sum = AllLanes(0.0);
+  SEXTANT_INLINE Vec8d Window(std::size_t k, std::size_t row, std::size_t column) const {
+    Vec8d sum = BroadcastVec(0.0);
     for (std::size_t r = 0; r < 3; ++r) {
       const double* at = of_[k].data() + (row + r) * stride_ + column;
-      sum += (LoadLanes(at) + LoadLanes(at + 1)) + LoadLanes(at + 2);
+      sum += (LoadVec(at) + LoadVec(at + 1)) + LoadVec(at + 2);
     }
     return sum;
   }
@@ -48,60 +48,61 @@ class CellPlanes {
 
 // Eight windows.
 struct WindowFit {
-  std::array<Lanes, 3> plane;
-  std::array<Lanes, 6> inverse;
-  Lanes range_variance;
-  Lanes cosine2;
+  std::array<Vec8d, 3> plane;
+  std::array<Vec8d, 6> inverse;
+  Vec8d range_variance;
+  Vec8d cosine2;
 };
 
 SEXTANT_INLINE WindowFit FitWindows(const CellPlanes& cells, std::size_t row, std::size_t column) {
-  const Lanes count = cells.Window(CellSums::kCount, row, column);
-  std::array<Lanes, 3> s;
-  std::array<Lanes, 6> q;
+  const Vec8d count = cells.Window(CellSums::kCount, row, column);
+  std::array<Vec8d, 3> s;
+  std::array<Vec8d, 6> q;
   for (std::size_t k = 0; k < 3; ++k) s[k] = cells.Window(CellSums::kFirst + k, row, column);
   for (std::size_t k = 0; k < 6; ++k) q[k] = cells.Window(CellSums::kSecond + k, row, column);
   WindowFit fit;
-  std::array<Lanes, 6>& i = fit.inverse;  // The adjugate first.
+  std::array<Vec8d, 6>& i = fit.inverse;  // The adjugate first.
   i[0] = q[3] * q[5] - q[4] * q[4];
   i[1] = q[2] * q[4] - q[1] * q[5];
   i[2] = q[1] * q[4] - q[2] * q[3];
   i[3] = q[0] * q[5] - q[2] * q[2];
   i[4] = q[1] * q[2] - q[0] * q[4];
   i[5] = q[0] * q[3] - q[1] * q[1];
-  const Lanes determinant = q[0] * i[0] + q[1] * i[1] + q[2] * i[2];
-  const LaneMask usable = (determinant > 0.0) & (count >= kLeastPoints);
-  const Lanes scale = 1.0 / (usable ? determinant : AllLanes(1.0));
-  for (Lanes& element : i) element *= scale;
-  std::array<Lanes, 3>& m = fit.plane;
+  const Vec8d determinant = q[0] * i[0] + q[1] * i[1] + q[2] * i[2];
+  const Mask8 usable = (determinant > 0.0) & (count >= kMinPoints);
+  const Vec8d scale = 1.0 / (usable ? determinant : BroadcastVec(1.0));
+  for (Vec8d& element : i) element *= scale;
+  std::array<Vec8d, 3>& m = fit.plane;
   m[0] = i[0] * s[0] + i[1] * s[1] + i[2] * s[2];
   m[1] = i[1] * s[0] + i[3] * s[1] + i[4] * s[2];
   m[2] = i[2] * s[0] + i[4] * s[1] + i[5] * s[2];
-  const Lanes m_s = m[0] * s[0] + m[1] * s[1] + m[2] * s[2];
-  const Lanes m_m = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
-  const Lanes s_s = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
-  const LaneMask has_plane = usable & (m_m > 0.0) & (s_s > 0.0);
-  const Lanes squares = Max(count - m_s, AllLanes(0.0));
-  fit.cosine2 = Max(m_s * m_s / (has_plane ? m_m * s_s : AllLanes(1.0)), AllLanes(kLeastCosine2));
-  const Lanes variance =
-      squares / ((has_plane ? (count - 3.0) * m_m : AllLanes(1.0)) * fit.cosine2);
-  fit.range_variance = has_plane ? variance : AllLanes(HUGE_VAL);
+  const Vec8d m_s = m[0] * s[0] + m[1] * s[1] + m[2] * s[2];
+  const Vec8d m_m = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+  const Vec8d s_s = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
+  const Mask8 has_plane = usable & (m_m > 0.0) & (s_s > 0.0);
+  const Vec8d squares = Max(count - m_s, BroadcastVec(0.0));
+  fit.cosine2 =
+      Max(m_s * m_s / (has_plane ? m_m * s_s : BroadcastVec(1.0)), BroadcastVec(kMinCosine2));
+  const Vec8d variance =
+      squares / ((has_plane ? (count - 3.0) * m_m : BroadcastVec(1.0)) * fit.cosine2);
+  fit.range_variance = has_plane ? variance : BroadcastVec(HUGE_VAL);
   return fit;
 }
 
-// Cells beyond a row's end are cut off by the next row's, or by the vectors' last kLanes.
+// Cells beyond a row's end are cut off by the next row's, or by the vectors' last kSimdWidth.
 SEXTANT_MULTIVERSION
 void FitAllWindows(const CellPlanes& cells, std::size_t rows, std::size_t columns,
                    ScanWindows::Planes& windows) {
   for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t column = 0; column < columns; column += kLanes) {
+    for (std::size_t column = 0; column < columns; column += kSimdWidth) {
       const WindowFit fit = FitWindows(cells, row, column);
       const std::size_t at = row * columns + column;
-      for (std::size_t k = 0; k < 3; ++k) StoreLanes(fit.plane[k], windows.plane[k].data() + at);
+      for (std::size_t k = 0; k < 3; ++k) StoreVec(fit.plane[k], windows.plane[k].data() + at);
       for (std::size_t k = 0; k < 6; ++k) {
-        StoreLanes(fit.inverse[k], windows.inverse[k].data() + at);
+        StoreVec(fit.inverse[k], windows.inverse[k].data() + at);
       }
-      StoreLanes(fit.range_variance, windows.range_variance.data() + at);
-      StoreLanes(fit.cosine2, windows.cosine2.data() + at);
+      StoreVec(fit.range_variance, windows.range_variance.data() + at);
+      StoreVec(fit.cosine2, windows.cosine2.data() + at);
     }
   }
 }
@@ -110,7 +111,7 @@ void FitAllWindows(const CellPlanes& cells, std::size_t rows, std::size_t column
 
 ScanWindows::ScanWindows(std::span<const Eigen::Vector3d> points, double cell_rad)
     : cells_(points, cell_rad) {
-  const std::size_t size = cells_.sums().size() + kLanes;
+  const std::size_t size = cells_.sums().size() + kSimdWidth;
   for (std::vector<double>& m : planes_.plane) m.resize(size);
   for (std::vector<double>& i : planes_.inverse) i.resize(size);
   planes_.range_variance.resize(size);
@@ -136,7 +137,7 @@ double ScanWindows::NoiseVariance(std::size_t first, std::size_t count, std::siz
   const auto at = variances.begin() + static_cast<std::ptrdiff_t>(
                                           kNoiseQuantile * static_cast<double>(variances.size()));
   std::nth_element(variances.begin(), at, variances.end());
-  return std::max(*at, kLeastNoise_m * kLeastNoise_m);
+  return std::max(*at, kMinNoise_m * kMinNoise_m);
 }
 
 void ScanWindows::TakeOff(std::span<const double> offsets_m) {

@@ -22,7 +22,7 @@ class ScanWindows {
 
   const ScanCells& cells() const { return cells_; }
 
-  /// By the cell in their middle, and kLanes more that mean nothing.
+  /// By the cell in their middle, and kSimdWidth more that mean nothing.
   struct Planes {
     std::array<std::vector<double>, 3> plane;    ///< m of m . p = 1.
     std::array<std::vector<double>, 6> inverse;  ///< Of sum p p^T: xx, xy, xz, yy, yz, zz.

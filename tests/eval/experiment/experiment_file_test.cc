@@ -156,7 +156,7 @@ TEST(TrialKinds, AreDocumented) {
   for (const TrialKind& kind : BuiltinKinds()) {
     EXPECT_FALSE(kind.summary.empty()) << kind.name;
     EXPECT_FALSE(kind.metrics.empty()) << kind.name;
-    EXPECT_LE(kind.metrics.size(), kMostMetrics) << kind.name;
+    EXPECT_LE(kind.metrics.size(), kMaxMetrics) << kind.name;
     EXPECT_LT(kind.trials_per_block, 0x10000) << kind.name;
     for (const OptionDoc& parameter : kind.parameters) {
       EXPECT_FALSE(parameter.meaning.empty()) << kind.name << " " << parameter.name;

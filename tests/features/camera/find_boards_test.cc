@@ -42,7 +42,7 @@ Board CheckerBoard() {
   return board;
 }
 
-Rigid3d HungFromACorner(const Eigen::Vector3d& place, double lean_rad) {
+Rigid3d HeldByACorner(const Eigen::Vector3d& place, double lean_rad) {
   Rigid3d pose;
   pose.rotation = ExpSo3(Eigen::Vector3d(0.3 * lean_rad, lean_rad, 0.0)) *
                   ExpSo3(Eigen::Vector3d(0.0, 0.0, 0.25 * std::numbers::pi));
@@ -81,8 +81,7 @@ TEST(FindBoards, CornersInTheCameraFrameAreWithinTheirCovariance) {
     const double lean = random.Uniform(-0.6, 0.6);
     const double depth = random.Uniform(1.6, 2.4);
     const Photo photo = Photograph(
-        boards,
-        {HungFromACorner({-0.55, 0.0, depth}, lean), HungFromACorner({0.5, 0.1, depth}, -lean)},
+        boards, {HeldByACorner({-0.55, 0.0, depth}, lean), HeldByACorner({0.5, 0.1, depth}, -lean)},
         static_cast<std::uint64_t>(view));
     const BoardFinder finder = *BoardFinder::Make(boards, photo.camera);
     const Expected<SeenBoards> seen = finder.Find(photo.image);
@@ -180,7 +179,7 @@ TEST(FindBoards, WhatAReducedImageHidesIsFoundInTheWhole) {
 // OpenCV reads AprilTag's families too, and calls another corner the first.
 TEST(FindBoards, EitherLibraryGivesTheSamePose) {
   const Board board = HollowBoard();
-  const Rigid3d pose = HungFromACorner({0.1, -0.05, 1.6}, 0.3);
+  const Rigid3d pose = HeldByACorner({0.1, -0.05, 1.6}, 0.3);
   const Photo photo = Photograph({board}, {pose}, 3);
   for (const char* detector : {"", "apriltag(decimate=2)", "aruco", "aruco(refine=subpix)"}) {
     const Expected<BoardFinder> finder = BoardFinder::Make({board}, photo.camera, detector);
@@ -218,7 +217,7 @@ TEST(FindBoards, RefusesWhatCannotBeLookedFor) {
 
 TEST(ExplainMissing, NamesTheCause) {
   const Board board = HollowBoard();
-  const Rigid3d pose = HungFromACorner({0.0, 0.0, 1.5}, 0.2);
+  const Rigid3d pose = HeldByACorner({0.0, 0.0, 1.5}, 0.2);
   const Photo photo = Photograph({board}, {pose}, 4);
   const BoardTag& tag = board.tags[0];
   const auto cause = [](const cv::Mat& image, const BoardTag& missing) {

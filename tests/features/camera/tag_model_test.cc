@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/lanes.h"
 #include "base/random.h"
+#include "base/simd.h"
 #include "features/camera/undistortion.h"
 #include "simulator/scene/camera_model.h"
 
@@ -19,7 +19,7 @@ EdgePixels SomePixels() {
   Random random(1);
   EdgePixels pixels;
   constexpr std::size_t kCount = 203;
-  const std::size_t padded = (kCount + kLanes - 1) / kLanes * kLanes;
+  const std::size_t padded = (kCount + kSimdWidth - 1) / kSimdWidth * kSimdWidth;
   for (std::size_t i = 0; i < padded; ++i) {
     pixels.x.push_back(random.Uniform(-40.0, 40.0));
     pixels.y.push_back(random.Uniform(-40.0, 40.0));
@@ -68,9 +68,9 @@ TEST(TagModel, NormalEquationsAreThoseOfItsOwnDifferences) {
   model.Evaluate(SomeState());
   TagNormal normal;
   TagRow right;
-  constexpr double kMost = 40.0;
-  model.Linearise(kMost, normal, right);
-  const Eigen::VectorXd weights = (kMost / model.residuals().array().abs().max(1e-12)).min(1.0);
+  constexpr double kMax = 40.0;
+  model.Linearise(kMax, normal, right);
+  const Eigen::VectorXd weights = (kMax / model.residuals().array().abs().max(1e-12)).min(1.0);
   const TagNormal expected = rows.transpose() * weights.asDiagonal() * rows;
   const TagRow expected_right = rows.transpose() * weights.cwiseProduct(model.residuals());
   for (int a = 0; a < kTagUnknowns; ++a) {
@@ -87,7 +87,7 @@ TEST(TagModel, NormalEquationsAreThoseOfItsOwnDifferences) {
 // integral.
 TEST(TagModel, AnEdgeRisesAsTheNormalDistribution) {
   EdgePixels pixels;
-  for (std::size_t i = 0; i < 2 * kLanes; ++i) {
+  for (std::size_t i = 0; i < 2 * kSimdWidth; ++i) {
     pixels.x.push_back(-104.0 + 0.5 * static_cast<double>(i));
     pixels.y.push_back(5.0);
     pixels.x_by_u.push_back(1.0);
@@ -96,7 +96,7 @@ TEST(TagModel, AnEdgeRisesAsTheNormalDistribution) {
     pixels.y_by_v.push_back(1.0);
     pixels.grey.push_back(0.0);
   }
-  pixels.count = 2 * kLanes;
+  pixels.count = 2 * kSimdWidth;
   TagState state;
   state.tag_from_straight = Eigen::Vector3d(0.01, 0.01, 1.0).asDiagonal();
   state.blur_px = 1.3;
@@ -119,10 +119,10 @@ TEST(Undistortion, AStepFromAPixelNearbyIsAsGood) {
                                  random.Uniform(0.2, 0.8) * camera.height_px);
       Eigen::Vector2d step;
       for (int k = 0; k < 2; ++k) step[k] = random.Uniform(-8.0, 8.0);
-      const auto start = undistortion.Straighten(from);
-      const auto truth = undistortion.Straighten(from + step);
+      const auto start = undistortion.Undistort(from);
+      const auto truth = undistortion.Undistort(from + step);
       ASSERT_TRUE(start && truth) << name;
-      const auto near = undistortion.StraightenNear(from + step, from, *start);
+      const auto near = undistortion.UndistortNear(from + step, from, *start);
       ASSERT_TRUE(near) << name;
       EXPECT_LT((near->straight_px - truth->straight_px).norm(), 1e-4) << name;
       EXPECT_LT((near->straight_by_pixel - truth->straight_by_pixel).norm(), 1e-3) << name;

@@ -94,7 +94,7 @@ TEST(PolygonEdges, EveryExtractorMeetsTheTruthAsOnBoardsThatWereFound) {
 }
 
 TEST(PolygonEdges, ASquareBoardIsNumberedFromTheEdgeThatWasDrawnFirst) {
-  const Scene scene = HungBoards(1);
+  const Scene scene = PlacedBoards(1);
   const ScanRings rings = RingsOf(scene, 1, 0.001);
   ScanMarks marks = DrawScene(scene);
   for (int turns = 0; turns < 4; ++turns) {
@@ -115,7 +115,7 @@ TEST(PolygonEdges, ASquareBoardIsNumberedFromTheEdgeThatWasDrawnFirst) {
 }
 
 TEST(PolygonEdges, AnOblongBoardDrawnFromTheWrongEdgeIsRefused) {
-  Scene scene = HungBoards(1);
+  Scene scene = PlacedBoards(1);
   scene.boards[0].board.top_right_m = 0.4;
   scene.boards[0].board.right_bottom_m = 0.6;
   const ScanRings rings = RingsOf(scene, 2);
@@ -136,7 +136,7 @@ TEST(PolygonEdges, AnOblongBoardDrawnFromTheWrongEdgeIsRefused) {
 // A strip in the board's own plane that goes on over its lower right edge, as a stand does: the
 // rings do not end there.
 TEST(PolygonEdges, WhereARingGoesOnInThePlaneTheBoardDoesNotEnd) {
-  Scene scene = HungBoards(1);
+  Scene scene = PlacedBoards(1);
   const Rigid3d& pose = scene.boards[0].world_from_board;
   scene.walls.push_back(Wall(
       "stand", pose * Rigid3d{Eigen::Quaterniond::Identity(), {0.24, 0.05, 0.002}}, 0.4, 0.09));
@@ -153,7 +153,7 @@ TEST(PolygonEdges, WhereARingGoesOnInThePlaneTheBoardDoesNotEnd) {
 }
 
 TEST(PolygonEdges, AHollowBoardGivesEightCorners) {
-  Scene scene = HungBoards(1);
+  Scene scene = PlacedBoards(1);
   Board& board = scene.boards[0].board;
   board.top_right_m = 0.9;
   board.right_bottom_m = 0.9;
@@ -172,7 +172,7 @@ TEST(PolygonEdges, AHollowBoardGivesEightCorners) {
 TEST(PolygonEdges, NoisyRangesAreNoHindrance) {
   std::vector<double> errors;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const Scene scene = HungBoards(2);
+    const Scene scene = PlacedBoards(2);
     const auto patches =
         PatchesFromPolygons(RingsOf(scene, seed, 0.03), DrawScene(scene), BoardsIn(scene));
     ASSERT_TRUE(patches) << patches.error().message;
@@ -200,7 +200,7 @@ void PrintTo(const BadMarks& bad, std::ostream* out) { *out << bad.name; }
 class BadMarksTest : public testing::TestWithParam<BadMarks> {};
 
 TEST_P(BadMarksTest, AreRefusedByBoardAndEdge) {
-  const Scene scene = HungBoards(2);
+  const Scene scene = PlacedBoards(2);
   ScanMarks marks = DrawScene(scene);
   std::vector<Board> boards = BoardsIn(scene);
   GetParam().spoil(marks, boards);

@@ -38,7 +38,7 @@ struct WeakDirection {
 };
 
 /// What the pairs say about themselves before anyone believes the pose.
-struct Judgement {
+struct PairDiagnostics {
   std::optional<OrderFinding> order;
   std::vector<EdgeFinding> edges;
   std::optional<WeakDirection> weak_rotation;
@@ -56,12 +56,12 @@ struct Judgement {
 /// Needs boards of four corners. Edges are compared in the better order; they are reported beyond 5
 /// percent of their length and three standard deviations of their difference, where the noise is
 /// stated. Weak: one standard deviation over five times that of the strongest direction.
-Judgement JudgePairs(const CalibrationProblem& problem);
+PairDiagnostics DiagnosePairs(const CalibrationProblem& problem);
 
 /// The problem with its LiDAR points moved to the pairs that the finding says.
 CalibrationProblem Reordered(const CalibrationProblem& problem, const OrderFinding& order);
 
 /// The findings in words, a line each, with both figures and what to do.
-std::vector<std::string> Describe(const Judgement& judgement);
+std::vector<std::string> Describe(const PairDiagnostics& judgement);
 
 }  // namespace sextant

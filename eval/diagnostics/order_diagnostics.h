@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "eval/judge/judge.h"
+#include "eval/diagnostics/pair_diagnostics.h"
 #include "geometry/calibration_problem.h"
 
 namespace sextant {
@@ -24,7 +24,7 @@ struct BoardPairs {
 /// The boards that have each of their four corners exactly once, ordered by view and board.
 std::vector<BoardPairs> CompleteBoards(std::span<const Pair3d3d> pairs);
 
-/// See JudgePairs; none where the given order is the best or no other is far better.
+/// See DiagnosePairs; none where the given order is the best or no other is far better.
 std::optional<OrderFinding> FindBetterOrder(std::span<const Pair3d3d> pairs);
 
 }  // namespace sextant

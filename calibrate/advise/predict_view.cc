@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibrate/advise/foresee.h"
+#include "calibrate/advise/predict_view.h"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@ namespace {
 constexpr double kSteepest_deg = 65.0;
 constexpr double kSmallestPrint_px = 20.0;
 constexpr double kSpotSigma = 0.18;
-constexpr int kFewestRaysPerSide = 2;
+constexpr int kMinRaysPerSide = 2;
 
 std::vector<std::vector<Eigen::Vector2d>> PrintsOf(const Board& board) {
   std::vector<std::vector<Eigen::Vector2d>> prints;
@@ -93,8 +93,7 @@ class RingCrossings {
     }
     std::array<int, kCornersPerBoard> rays{};
     for (const EdgeRay& ray : view.edges) ++rays[static_cast<std::size_t>(ray.side)];
-    return rings >= kFewestRings &&
-           *std::min_element(rays.begin(), rays.end()) >= kFewestRaysPerSide;
+    return rings >= kMinRings && *std::min_element(rays.begin(), rays.end()) >= kMinRaysPerSide;
   }
 
  private:
@@ -165,7 +164,7 @@ class RingCrossings {
 
 }  // namespace
 
-std::optional<BoardView> ForeseeView(const SensorPair& sensors, const Board& board,
+std::optional<BoardView> PredictView(const SensorPair& sensors, const Board& board,
                                      const Rigid3d& cam_from_board) {
   const Rigid3d lidar_from_board = sensors.cam_from_lidar.Inverse() * cam_from_board;
   const auto normal_of = [](const Rigid3d& pose) {

@@ -5,23 +5,23 @@
 #include <cstdint>
 #include <cstring>
 
-#include "base/lanes.h"
+#include "base/simd.h"
 
 namespace sextant::p3p {
 
 /// Arithmetic that is written once for one problem (double), for the candidates of one problem
-/// (FourLanes) and for eight problems (Lanes) side by side: choices in place of branches.
+/// (Vec4d) and for eight problems (Vec8d) side by side: choices in place of branches.
 
 /// Four doubles side by side.
-using FourLanes = double __attribute__((vector_size(32)));
+using Vec4d = double __attribute__((vector_size(32)));
 
 SEXTANT_INLINE double Select(bool mask, double a, double b) { return mask ? a : b; }
 template <class Mask>
-SEXTANT_INLINE FourLanes Select(const Mask& mask, const FourLanes& a, const FourLanes& b) {
+SEXTANT_INLINE Vec4d Select(const Mask& mask, const Vec4d& a, const Vec4d& b) {
   return mask ? a : b;
 }
 template <class Mask>
-SEXTANT_INLINE Lanes Select(const Mask& mask, const Lanes& a, const Lanes& b) {
+SEXTANT_INLINE Vec8d Select(const Mask& mask, const Vec8d& a, const Vec8d& b) {
   return mask ? a : b;
 }
 
@@ -34,10 +34,10 @@ SEXTANT_INLINE bool Any(const Mask& mask) {
 }
 
 SEXTANT_INLINE double SquareRoot(double a) { return std::sqrt(a); }
-SEXTANT_INLINE FourLanes SquareRoot(const FourLanes& a) {
-  return FourLanes{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+SEXTANT_INLINE Vec4d SquareRoot(const Vec4d& a) {
+  return Vec4d{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
 }
-SEXTANT_INLINE Lanes SquareRoot(const Lanes& a) { return Sqrt(a); }
+SEXTANT_INLINE Vec8d SquareRoot(const Vec8d& a) { return Sqrt(a); }
 
 template <class T>
 SEXTANT_INLINE T Size(const T& a) {
@@ -53,7 +53,7 @@ SEXTANT_INLINE T AtLeastZero(const T& a) {
 }
 
 SEXTANT_INLINE void BitsOf(double a, std::int64_t& bits) { std::memcpy(&bits, &a, sizeof a); }
-SEXTANT_INLINE void BitsOf(const Lanes& a, LaneMask& bits) { std::memcpy(&bits, &a, sizeof a); }
+SEXTANT_INLINE void BitsOf(const Vec8d& a, Mask8& bits) { std::memcpy(&bits, &a, sizeof a); }
 template <class T>
 struct Bits;
 template <>
@@ -61,8 +61,8 @@ struct Bits<double> {
   using Type = std::int64_t;
 };
 template <>
-struct Bits<Lanes> {
-  using Type = LaneMask;
+struct Bits<Vec8d> {
+  using Type = Mask8;
 };
 
 /// Within 1e-4 of the cube root of a positive number: a third of the exponent, then Halley's step.

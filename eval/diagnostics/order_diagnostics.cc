@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/judge/judge_order.h"
+#include "eval/diagnostics/order_diagnostics.h"
 
 #include <algorithm>
 #include <array>

@@ -26,7 +26,7 @@ struct SensorPair {
 ///
 /// Edges: where a ring crosses a side, uniform over a step between samples, and 0.18 of the beam's
 /// spot besides, as FindEdgePoints states it.
-std::optional<BoardView> ForeseeView(const SensorPair& sensors, const Board& board,
+std::optional<BoardView> PredictView(const SensorPair& sensors, const Board& board,
                                      const Rigid3d& cam_from_board);
 
 }  // namespace sextant

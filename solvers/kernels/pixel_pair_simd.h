@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "geometry/calibration_problem.h"
-#include "solvers/kernels/split_lanes.h"
+#include "solvers/kernels/simd_dispatch.h"
 
 namespace sextant {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "eval/judge/judge.h"
+#include "eval/diagnostics/pair_diagnostics.h"
 
 namespace sextant {
 namespace {
@@ -54,7 +54,7 @@ std::string Describe(const WeakDirection& weak) {
 
 }  // namespace
 
-std::vector<std::string> Describe(const Judgement& judgement) {
+std::vector<std::string> Describe(const PairDiagnostics& judgement) {
   std::vector<std::string> lines;
   if (judgement.order) lines.push_back(Describe(*judgement.order));
   if (judgement.mirrored_rmse_m) {

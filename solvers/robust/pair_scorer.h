@@ -17,9 +17,9 @@ namespace sextant {
 /// What a search among 3D-3D pairs asks of them: which agree, what poses cost, least squares on the
 /// inliers of a pose, and the answer from it. The threshold of lengths is MaxSquared of the
 /// options, that of poses their FinalMaxSquared.
-class PairJudge {
+class PairScorer {
  public:
-  virtual ~PairJudge() = default;
+  virtual ~PairScorer() = default;
 
   /// Pairs i and j are connected where their lengths from i to j in both frames differ by no more
   /// than the threshold of its sigma.
@@ -35,8 +35,8 @@ class PairJudge {
 };
 
 /// Of isotropic pairs, which are judged in columns, or of any. Refers to its arguments.
-std::unique_ptr<PairJudge> MakePairJudge(const Solver& inner, const CalibrationProblem& problem,
-                                         const InlierOptions& options);
+std::unique_ptr<PairScorer> MakePairScorer(const Solver& inner, const CalibrationProblem& problem,
+                                           const InlierOptions& options);
 
 /// Whether no pair states a covariance.
 bool AreIsotropic(std::span<const Pair3d3d> pairs);

@@ -10,7 +10,7 @@
 namespace sextant {
 
 /// An unknown beside the pose of which the views tell nothing that is worth having.
-struct JointUntold {
+struct UnobservableParameter {
   int unknown = 0;      ///< Among the shared unknowns.
   double sigma = 0.0;   ///< What is known of it, in its unit.
   double useful = 0.0;  ///< More than this is no knowledge.
@@ -24,8 +24,8 @@ Eigen::VectorXd UsefulSigmas(const std::vector<JointView>& views, const JointUnk
 /// The unknown that is told worst, in units of what is useful; none where all are told. `useful` as
 /// above; it stands in as a prior a thousand times as wide, so that what the views do not tell at
 /// all has a sigma too.
-std::optional<JointUntold> FindUntold(const Eigen::MatrixXd& information,
-                                      const Eigen::VectorXd& useful);
+std::optional<UnobservableParameter> FindUnobservable(const Eigen::MatrixXd& information,
+                                                      const Eigen::VectorXd& useful);
 
 /// The unknowns without that one (and its fellow: both sides of that board, both focal lengths,
 /// both coordinates of the centre), and a state without it.
@@ -36,7 +36,7 @@ void LeaveOut(int unknown, const CalibrationProblem& problem, JointUnknowns& unk
 std::string NameOf(const JointUnknowns& unknowns, const Camera& camera, int unknown);
 
 /// The sentence for Estimate::warnings.
-std::string DescribeUntold(const JointUntold& untold, const JointUnknowns& unknowns,
-                           const Camera& camera);
+std::string DescribeUnobservable(const UnobservableParameter& untold, const JointUnknowns& unknowns,
+                                 const Camera& camera);
 
 }  // namespace sextant

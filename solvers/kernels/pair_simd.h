@@ -6,7 +6,7 @@
 
 namespace sextant {
 
-/// Points in lanes: of one pair (Real = double) or of eight (L = Lanes or SplitLanes).
+/// Points in lanes: of one pair (Real = double) or of eight (L = Vec8d or SplitVec8d).
 
 template <class Real>
 struct Point3 {
@@ -27,13 +27,13 @@ SEXTANT_INLINE Point3<Real> Rotate(const RotationMatrix<Real>& r, const Point3<R
 }
 
 /// a b c a b c ..., each from its own place.
-SEXTANT_INLINE FourLanes InTurn(const FourLanes& a, const FourLanes& b, const FourLanes& c) {
+SEXTANT_INLINE Vec4d InTurn(const Vec4d& a, const Vec4d& b, const Vec4d& c) {
   return __builtin_shufflevector(__builtin_shufflevector(a, b, 0, 5, 2, 3), c, 0, 1, 6, 3);
 }
-SEXTANT_INLINE SplitLanes InTurn(const SplitLanes& a, const SplitLanes& b, const SplitLanes& c) {
+SEXTANT_INLINE SplitVec8d InTurn(const SplitVec8d& a, const SplitVec8d& b, const SplitVec8d& c) {
   return {InTurn(a.low, b.low, c.low), InTurn(b.high, c.high, a.high)};
 }
-SEXTANT_INLINE Lanes InTurn(const Lanes& a, const Lanes& b, const Lanes& c) {
+SEXTANT_INLINE Vec8d InTurn(const Vec8d& a, const Vec8d& b, const Vec8d& c) {
   // By a constant mask g++ 12 takes choices apart.
   return __builtin_shufflevector(__builtin_shufflevector(a, b, 0, 9, 2, 3, 12, 5, 6, 15), c, 0, 1,
                                  10, 3, 4, 13, 6, 7);
@@ -41,12 +41,12 @@ SEXTANT_INLINE Lanes InTurn(const Lanes& a, const Lanes& b, const Lanes& c) {
 
 /// Every lane from so many places on, the first ones last.
 template <int kBy>
-SEXTANT_INLINE Lanes Turned(const Lanes& a) {
+SEXTANT_INLINE Vec8d Turned(const Vec8d& a) {
   return __builtin_shufflevector(a, a, kBy, kBy + 1, kBy + 2, kBy + 3, kBy + 4, kBy + 5, kBy + 6,
                                  kBy + 7);
 }
 template <int kBy>
-SEXTANT_INLINE SplitLanes Turned(const SplitLanes& a) {
+SEXTANT_INLINE SplitVec8d Turned(const SplitVec8d& a) {
   return {__builtin_shufflevector(a.low, a.high, kBy, kBy + 1, kBy + 2, kBy + 3),
           __builtin_shufflevector(a.high, a.low, kBy, kBy + 1, kBy + 2, kBy + 3)};
 }
@@ -69,18 +69,18 @@ template <class L>
 SEXTANT_INLINE Point3<L> LoadPoints(const double* from, const RepeatedPoint<L>& origin) {
   // Each register is read once: unlike loads, differences are never made anew.
   const L p = Load<L>(from) - origin.first;
-  const L q = Load<L>(from + kLanes) - origin.second;
-  const L r = Load<L>(from + 2 * kLanes) - origin.third;
+  const L q = Load<L>(from + kSimdWidth) - origin.second;
+  const L r = Load<L>(from + 2 * kSimdWidth) - origin.third;
   return {InTurn(p, q, r), Turned<1>(InTurn(r, p, q)), Turned<2>(InTurn(q, r, p))};
 }
-inline constexpr std::size_t kPointOrder[kLanes] = {0, 3, 6, 1, 4, 7, 2, 5};
+inline constexpr std::size_t kPointOrder[kSimdWidth] = {0, 3, 6, 1, 4, 7, 2, 5};
 
 /// A coordinate of eight pairs.
 template <class L>
 SEXTANT_INLINE L Gather(const Pair3d3d* p, Eigen::Vector3d Pair3d3d::*point, int axis) {
-  return LanesOf<L>((p[0].*point)[axis], (p[1].*point)[axis], (p[2].*point)[axis],
-                    (p[3].*point)[axis], (p[4].*point)[axis], (p[5].*point)[axis],
-                    (p[6].*point)[axis], (p[7].*point)[axis]);
+  return VecOf<L>((p[0].*point)[axis], (p[1].*point)[axis], (p[2].*point)[axis],
+                  (p[3].*point)[axis], (p[4].*point)[axis], (p[5].*point)[axis],
+                  (p[6].*point)[axis], (p[7].*point)[axis]);
 }
 template <class L>
 SEXTANT_INLINE Point3<L> Gather(const Pair3d3d* p, Eigen::Vector3d Pair3d3d::*point) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/joint/joint_knowledge.h"
+#include "solvers/joint/joint_observability.h"
 
 #include <fmt/format.h>
 
@@ -62,8 +62,8 @@ Eigen::VectorXd UsefulSigmas(const std::vector<JointView>& views, const JointUnk
   return useful;
 }
 
-std::optional<JointUntold> FindUntold(const Eigen::MatrixXd& information,
-                                      const Eigen::VectorXd& useful) {
+std::optional<UnobservableParameter> FindUnobservable(const Eigen::MatrixXd& information,
+                                                      const Eigen::VectorXd& useful) {
   if (useful.size() == 0) return std::nullopt;
   Eigen::MatrixXd with_prior = information;
   with_prior.diagonal().tail(useful.size()) += (kPriorWidth * useful).cwiseAbs2().cwiseInverse();
@@ -73,7 +73,7 @@ std::optional<JointUntold> FindUntold(const Eigen::MatrixXd& information,
   Eigen::Index worst = 0;
   const double ratio = sigma.cwiseQuotient(useful).maxCoeff(&worst);
   if (ratio <= 1.0) return std::nullopt;
-  return JointUntold{kPose + static_cast<int>(worst), sigma[worst], useful[worst]};
+  return UnobservableParameter{kPose + static_cast<int>(worst), sigma[worst], useful[worst]};
 }
 
 void LeaveOut(int unknown, const CalibrationProblem& problem, JointUnknowns& unknowns,
@@ -114,8 +114,8 @@ std::string NameOf(const JointUnknowns& unknowns, const Camera& camera, int unkn
   return std::string(IntrinsicName(camera.model, unknowns.intrinsics[index]));
 }
 
-std::string DescribeUntold(const JointUntold& untold, const JointUnknowns& unknowns,
-                           const Camera& camera) {
+std::string DescribeUnobservable(const UnobservableParameter& untold, const JointUnknowns& unknowns,
+                                 const Camera& camera) {
   return fmt::format(
       "{} was taken as given: the views tell it to {:.2g} only, and beyond {:.2g} that is no "
       "knowledge; hold the board at more distances and tilts",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/judge/judge.h"
+#include "eval/diagnostics/pair_diagnostics.h"
 
 #include <gmock/gmock.h>
 
@@ -32,7 +32,7 @@ void RotateLabels(CalibrationProblem& problem, int view, int board, int turns) {
 }
 
 TEST(Judge, SaysNothingOfGoodData) {
-  const Judgement judgement = JudgePairs(CleanProblem(3));
+  const PairDiagnostics judgement = DiagnosePairs(CleanProblem(3));
   EXPECT_FALSE(judgement.order);
   EXPECT_FALSE(judgement.mirrored_rmse_m);
   EXPECT_THAT(judgement.edges, testing::IsEmpty());
@@ -43,7 +43,7 @@ TEST(Judge, FindsRotatedLabelsOfOneBoard) {
     const CalibrationProblem truth = CleanProblem(1);
     CalibrationProblem problem = truth;
     RotateLabels(problem, 0, 1, turns);
-    const Judgement judgement = JudgePairs(problem);
+    const PairDiagnostics judgement = DiagnosePairs(problem);
     ASSERT_TRUE(judgement.order);
     EXPECT_FALSE(judgement.order->boards_swapped);
     EXPECT_EQ(judgement.order->moved.size(), 4U);
@@ -63,7 +63,7 @@ TEST(Judge, FindsSwappedBoardsAndReversedOrders) {
   for (std::size_t i = 0; i < 4; ++i)
     std::swap(pairs[i].point_in_lidar, pairs[i + 4].point_in_lidar);
   std::swap(pairs[9].point_in_lidar, pairs[11].point_in_lidar);
-  const Judgement judgement = JudgePairs(problem);
+  const PairDiagnostics judgement = DiagnosePairs(problem);
   ASSERT_TRUE(judgement.order);
   EXPECT_TRUE(judgement.order->boards_swapped);
   const CalibrationProblem reordered = Reordered(problem, *judgement.order);
@@ -75,7 +75,7 @@ TEST(Judge, FindsSwappedBoardsAndReversedOrders) {
 TEST(Judge, NamesTheBoardWhoseEdgesDisagree) {
   CalibrationProblem problem = CleanProblem(2);
   problem.pairs_3d3d[13].point_in_lidar.z() += 0.3;
-  const Judgement judgement = JudgePairs(problem);
+  const PairDiagnostics judgement = DiagnosePairs(problem);
   ASSERT_EQ(judgement.edges.size(), 1U);
   EXPECT_EQ(judgement.edges[0].view, 1);
   EXPECT_EQ(judgement.edges[0].board, 1);
@@ -85,7 +85,7 @@ TEST(Judge, NamesTheBoardWhoseEdgesDisagree) {
 TEST(Judge, NamesABoardFileThatDisagreesWithBothSensors) {
   CalibrationProblem problem = CleanProblem(1);
   problem.boards[0].top_right_m = 0.60;
-  const Judgement judgement = JudgePairs(problem);
+  const PairDiagnostics judgement = DiagnosePairs(problem);
   ASSERT_FALSE(judgement.edges.empty());
   EXPECT_EQ(judgement.edges[0].board, 0);
   EXPECT_EQ(judgement.edges[0].known_m, 0.60);
@@ -100,7 +100,7 @@ TEST(Judge, NamesTheTurnThatAlmostCollinearPointsLeaveWeak) {
     pair.point_in_lidar = truth.Inverse() * pair.point_in_cam;
     pair.point_in_cam.z() += 1e-3 * (pair.id.corner - 1.5);
   }
-  const Judgement judgement = JudgePairs(problem);
+  const PairDiagnostics judgement = DiagnosePairs(problem);
   ASSERT_TRUE(judgement.weak_rotation);
   EXPECT_GT(std::abs(judgement.weak_rotation->axis_in_cam.x()), 0.99);
   EXPECT_THAT(Describe(judgement), testing::Contains(HasSubstr("rotation about")));

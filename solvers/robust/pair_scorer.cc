@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/robust/pair_judge.h"
+#include "solvers/robust/pair_scorer.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -16,16 +16,16 @@ namespace {
 constexpr int kMaxRounds = 20;
 
 /// Of pairs with any noise.
-class TermsJudge final : public PairJudge {
+class TermsScorer final : public PairScorer {
  public:
-  TermsJudge(const Solver& inner, const CalibrationProblem& problem, const InlierOptions& options)
+  TermsScorer(const Solver& inner, const CalibrationProblem& problem, const InlierOptions& options)
       : inner_(inner),
         problem_(problem),
         options_(options),
         terms_(MakeTerms(problem, PairKind::k3d3d, options.Assumed())),
         lengths_(terms_, options.MaxSquared(PairKind::k3d3d)),
-        poses_(terms_, options.FinalMaxSquared(terms_.size(),
-                                               ChanceOfAgreement(terms_, kChiSquare3At9999))) {}
+        poses_(terms_, options.FinalMaxSquared(
+                           terms_.size(), RandomAgreementProbability(terms_, kChiSquare3At9999))) {}
 
   BitGraph Graph() const override {
     const std::vector<Pair3d3d>& pairs = problem_.pairs_3d3d;
@@ -78,15 +78,16 @@ class TermsJudge final : public PairJudge {
 };
 
 /// Of isotropic pairs.
-class ColumnsJudge final : public PairJudge {
+class ColumnsScorer final : public PairScorer {
  public:
-  ColumnsJudge(const Solver& inner, const CalibrationProblem& problem, const InlierOptions& options)
+  ColumnsScorer(const Solver& inner, const CalibrationProblem& problem,
+                const InlierOptions& options)
       : inner_(inner),
         problem_(problem),
         options_(options),
         pairs_(problem.pairs_3d3d, options.Assumed()),
-        max_squared_(
-            options.FinalMaxSquared(pairs_.size(), ChanceOfAgreement(pairs_, kChiSquare3At9999))) {}
+        max_squared_(options.FinalMaxSquared(
+            pairs_.size(), RandomAgreementProbability(pairs_, kChiSquare3At9999))) {}
 
   BitGraph Graph() const override {
     return AgreementGraph(pairs_, options_.MaxSquared(PairKind::k3d3d));
@@ -107,7 +108,7 @@ class ColumnsJudge final : public PairJudge {
   Expected<Estimate> Answer(const Rigid3d& pose) const override {
     std::optional<Estimate> refit = RefitIfNoWorse(inner_, problem_, pairs_, pose, max_squared_);
     if (refit) return std::move(*refit);
-    return TermsJudge(inner_, problem_, options_).Answer(pose);
+    return TermsScorer(inner_, problem_, options_).Answer(pose);
   }
 
  private:
@@ -127,17 +128,17 @@ bool AreIsotropic(std::span<const Pair3d3d> pairs) {
 
 Expected<void> CheckConsensus(const PairColumns& pairs, double max_squared,
                               std::span<const int> inliers, int least) {
-  return CheckConsensus(PairKind::k3d3d, LeastDistinct(pairs, inliers),
-                        static_cast<int>(pairs.size()), ChanceOfAgreement(pairs, max_squared),
-                        least);
+  return CheckConsensus(PairKind::k3d3d, CountDistinctAtLeast(pairs, inliers),
+                        static_cast<int>(pairs.size()),
+                        RandomAgreementProbability(pairs, max_squared), least);
 }
 
-std::unique_ptr<PairJudge> MakePairJudge(const Solver& inner, const CalibrationProblem& problem,
-                                         const InlierOptions& options) {
+std::unique_ptr<PairScorer> MakePairScorer(const Solver& inner, const CalibrationProblem& problem,
+                                           const InlierOptions& options) {
   if (AreIsotropic(problem.pairs_3d3d)) {
-    return std::make_unique<ColumnsJudge>(inner, problem, options);
+    return std::make_unique<ColumnsScorer>(inner, problem, options);
   }
-  return std::make_unique<TermsJudge>(inner, problem, options);
+  return std::make_unique<TermsScorer>(inner, problem, options);
 }
 
 Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem& problem,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/judge/judge.h"
+#include "eval/diagnostics/pair_diagnostics.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "eval/judge/judge_order.h"
+#include "eval/diagnostics/order_diagnostics.h"
 #include "geometry/pair_noise.h"
 #include "geometry/symmetric.h"
 #include "solvers/kernels/kabsch.h"
@@ -53,7 +53,7 @@ double Excess(const Edge& edge, std::optional<double> known) {
   return difference - std::max(kMinEdgeDifference * reference, kEdgeSigmas * edge.sigma_m);
 }
 
-std::vector<EdgeFinding> JudgeEdges(const CalibrationProblem& problem) {
+std::vector<EdgeFinding> DiagnoseEdges(const CalibrationProblem& problem) {
   std::vector<EdgeFinding> findings;
   for (const BoardPairs& group : CompleteBoards(problem.pairs_3d3d)) {
     double worst = 0.0;
@@ -96,13 +96,13 @@ CalibrationProblem Reordered(const CalibrationProblem& problem, const OrderFindi
   return reordered;
 }
 
-Judgement JudgePairs(const CalibrationProblem& problem) {
-  Judgement judgement;
+PairDiagnostics DiagnosePairs(const CalibrationProblem& problem) {
+  PairDiagnostics judgement;
   if (problem.pairs_3d3d.size() < 3) return judgement;
   judgement.order = FindBetterOrder(problem.pairs_3d3d);
   const CalibrationProblem judged =
       judgement.order ? Reordered(problem, *judgement.order) : problem;
-  judgement.edges = JudgeEdges(judged);
+  judgement.edges = DiagnoseEdges(judged);
 
   const std::vector<Pair3d3d>& pairs = judged.pairs_3d3d;
   const std::vector<double> weights(pairs.size(), 1.0);
