@@ -41,3 +41,26 @@ inline tl::unexpected<Error> MakeError(ErrorCode code, std::string message) {
 }
 
 }  // namespace sextant
+
+#define SEXTANT_CONCAT_INNER(a, b) a##b
+#define SEXTANT_CONCAT(a, b) SEXTANT_CONCAT_INNER(a, b)
+
+/// Returns the error of an Expected from the calling function, and goes on where there is none.
+#define SEXTANT_RETURN_IF_ERROR(...)                                              \
+  do {                                                                            \
+    if (auto sextant_status = (__VA_ARGS__); !sextant_status) {                   \
+      return tl::unexpected<::sextant::Error>(std::move(sextant_status.error())); \
+    }                                                                             \
+  } while (false)
+
+/// SEXTANT_ASSIGN_OR_RETURN(const T x, F()): declares x as the value of the Expected that F
+/// returns, or returns its error from the calling function. The declaration must not contain a
+/// comma.
+#define SEXTANT_ASSIGN_OR_RETURN(declaration, ...) \
+  SEXTANT_ASSIGN_OR_RETURN_AS(SEXTANT_CONCAT(sextant_expected_, __LINE__), declaration, __VA_ARGS__)
+#define SEXTANT_ASSIGN_OR_RETURN_AS(expected, declaration, ...)             \
+  auto expected = (__VA_ARGS__);                                            \
+  if (!expected) {                                                          \
+    return tl::unexpected<::sextant::Error>(std::move((expected).error())); \
+  }                                                                         \
+  declaration = *std::move(expected)

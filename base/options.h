@@ -91,9 +91,7 @@ class OptionSet {
     for (const auto& [name, text] : values) {
       for (const Bound& bound : bound_) {
         if (bound.doc.name != name) continue;
-        if (Expected<void> ok = bound.set(options, text); !ok) {
-          return tl::unexpected<Error>(std::move(ok.error()));
-        }
+        SEXTANT_RETURN_IF_ERROR(bound.set(options, text));
       }
     }
     return options;

@@ -18,9 +18,8 @@ class SpecParser {
   Expected<std::vector<SpecNode>> ParseAll() {
     std::vector<SpecNode> specs;
     do {
-      Expected<SpecNode> spec = ParseNode(0);
-      if (!spec) return tl::unexpected<Error>(std::move(spec.error()));
-      specs.push_back(std::move(*spec));
+      SEXTANT_ASSIGN_OR_RETURN(SpecNode spec, ParseNode(0));
+      specs.push_back(std::move(spec));
     } while (Accept(','));
     SkipBlanks();
     if (position_ != text_.size()) return Fail("',' or the end");
@@ -36,9 +35,7 @@ class SpecParser {
     if (!Accept('(')) return node;
     if (Accept(')')) return node;
     do {
-      if (Expected<void> ok = ParseArgument(depth, node); !ok) {
-        return tl::unexpected<Error>(std::move(ok.error()));
-      }
+      SEXTANT_RETURN_IF_ERROR(ParseArgument(depth, node));
     } while (Accept(','));
     if (!Accept(')')) return Fail("',' or ')'");
     return node;
@@ -54,9 +51,8 @@ class SpecParser {
       return {};
     }
     position_ = start;
-    Expected<SpecNode> inner = ParseNode(depth + 1);
-    if (!inner) return tl::unexpected<Error>(std::move(inner.error()));
-    node.inner.push_back(std::move(*inner));
+    SEXTANT_ASSIGN_OR_RETURN(SpecNode inner, ParseNode(depth + 1));
+    node.inner.push_back(std::move(inner));
     return {};
   }
 
@@ -104,13 +100,12 @@ Expected<std::vector<SpecNode>> ParseSpecList(std::string_view text) {
 }
 
 Expected<SpecNode> ParseSpec(std::string_view text) {
-  Expected<std::vector<SpecNode>> specs = ParseSpecList(text);
-  if (!specs) return tl::unexpected<Error>(std::move(specs.error()));
-  if (specs->size() != 1) {
+  SEXTANT_ASSIGN_OR_RETURN(std::vector<SpecNode> specs, ParseSpecList(text));
+  if (specs.size() != 1) {
     return MakeError(ErrorCode::kParse,
-                     fmt::format("expected one solver, got {} in '{}'", specs->size(), text));
+                     fmt::format("expected one solver, got {} in '{}'", specs.size(), text));
   }
-  return std::move(specs->front());
+  return std::move(specs.front());
 }
 
 std::string FormatSpec(const SpecNode& node) {

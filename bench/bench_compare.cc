@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // bench_compare <old folder> <new folder>: what scripts/bench-compare tells. Ends with 1 where
 // something has become slower beyond the noise, or wrong.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdio>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // bench_scaling <folder of the programs> <folder of the page> [--quick]: how time and memory grow
 // with points, outliers, views, trials, threads and ranks; writes scaling.md and its pictures.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdio>
 #include <cstring>

@@ -2,7 +2,7 @@
 #include "bench/peer_tasks.h"
 
 #include <benchmark/benchmark.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdio>
 #include <memory>

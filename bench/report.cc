@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // bench_report <folder of JSON files> : writes docs/performance.md's text to standard output.
 // Names of benchmarks are task/implementation/N; ours is `sextant`, the others are peers.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <filesystem>
 #include <numbers>
@@ -19,14 +19,13 @@ namespace sextant::cli {
 namespace {
 
 Expected<LidarPattern> PatternNamed(const std::string& name) {
-  const Expected<LidarModel> model = FindLidarModel(name);
-  if (!model) return tl::unexpected<Error>(model.error());
+  SEXTANT_ASSIGN_OR_RETURN(const LidarModel model, FindLidarModel(name));
   LidarPattern pattern{
-      .azimuth_step_rad = 2.0 * std::numbers::pi * model->column_period_s / model->turn_period_s,
-      .range_sigma_m = model->range_sigma_m,
-      .aperture_m = model->aperture_h_m,
-      .divergence_rad = model->divergence_h_rad};
-  for (const LidarRing& ring : model->rings) pattern.elevations_rad.push_back(ring.elevation_rad);
+      .azimuth_step_rad = 2.0 * std::numbers::pi * model.column_period_s / model.turn_period_s,
+      .range_sigma_m = model.range_sigma_m,
+      .aperture_m = model.aperture_h_m,
+      .divergence_rad = model.divergence_h_rad};
+  for (const LidarRing& ring : model.rings) pattern.elevations_rad.push_back(ring.elevation_rad);
   if (!pattern.elevations_rad.empty()) return pattern;
   return MakeError(ErrorCode::kInvalidOption,
                    fmt::format("--lidar: {} has no rings, and boards are foreseen by rings", name));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/bag_extract.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <filesystem>
 #include <map>
@@ -27,12 +27,10 @@ class Extractor {
   Extractor(const Bag& bag, std::string folder) : bag_(bag), folder_(std::move(folder)) {}
 
   Expected<void> Take(const BagMessage& message) {
-    const Expected<MessageHeader> header = DecodeHeader(message);
-    if (!header) return tl::unexpected<Error>(header.error());
-    const std::string name = MessageName(numbers_[message.topic_index]++, header->stamp_ns);
-    const Expected<std::optional<Extracted>> file = Convert(message);
-    if (!file) return tl::unexpected<Error>(file.error());
-    if (!*file) return {};
+    SEXTANT_ASSIGN_OR_RETURN(const MessageHeader header, DecodeHeader(message));
+    const std::string name = MessageName(numbers_[message.topic_index]++, header.stamp_ns);
+    SEXTANT_ASSIGN_OR_RETURN(const std::optional<Extracted> file, Convert(message));
+    if (!file) return {};
     const std::filesystem::path folder = FolderOf(message.topic_index);
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -40,9 +38,9 @@ class Extractor {
       return MakeError(ErrorCode::kIo, fmt::format("cannot make the folder '{}': {}",
                                                    folder.string(), error.message()));
     }
-    extensions_[message.topic_index] = (*file)->extension;
+    extensions_[message.topic_index] = (file)->extension;
     ++files_;
-    return WriteFileAtomically(folder / (name + (*file)->extension), (*file)->bytes);
+    return WriteFileAtomically(folder / (name + (file)->extension), (file)->bytes);
   }
 
   // Two topics whose names give one folder get folders of their own.

@@ -51,9 +51,8 @@ struct Job {
 Expected<std::vector<std::filesystem::path>> Files(const std::vector<std::string>& names) {
   std::vector<std::filesystem::path> files;
   for (const std::string& name : names) {
-    const auto some = ExpandPattern(name);
-    if (!some) return tl::unexpected<Error>(some.error());
-    files.insert(files.end(), some->begin(), some->end());
+    SEXTANT_ASSIGN_OR_RETURN(const auto some, ExpandPattern(name));
+    files.insert(files.end(), some.begin(), some.end());
   }
   return files;
 }
@@ -70,11 +69,9 @@ Expected<Session> SessionOf(const CalibrateOptions& options) {
                      fmt::format("{} is missing: expected --image and --cloud together",
                                  options.images.empty() ? "--image" : "--cloud"));
   }
-  const auto images = Files(options.images);
-  if (!images) return tl::unexpected<Error>(images.error());
-  const auto clouds = Files(options.clouds);
-  if (!clouds) return tl::unexpected<Error>(clouds.error());
-  return Session{.files = PairFiles(*images, *clouds)};
+  SEXTANT_ASSIGN_OR_RETURN(const auto images, Files(options.images));
+  SEXTANT_ASSIGN_OR_RETURN(const auto clouds, Files(options.clouds));
+  return Session{.files = PairFiles(images, clouds)};
 }
 
 Expected<std::vector<SolverPtr>> SolversOf(const std::string& list) {
@@ -83,13 +80,12 @@ Expected<std::vector<SolverPtr>> SolversOf(const std::string& list) {
       registry.entries(), [](const SolverEntry& entry) { return entry.name == "joint"; });
   // A beam's spot widens outlines by a percent or two, which joint would take for nearness.
   const std::string usual = has_joint ? "joint(gnc(kabsch),board_size=scale)" : "gnc(kabsch)";
-  const Expected<std::vector<SpecNode>> specs = ParseSpecList(list.empty() ? usual : list);
-  if (!specs) return tl::unexpected<Error>(specs.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<SpecNode> specs,
+                           ParseSpecList(list.empty() ? usual : list));
   std::vector<SolverPtr> solvers;
-  for (const SpecNode& spec : *specs) {
-    Expected<SolverPtr> solver = registry.Make(spec);
-    if (!solver) return tl::unexpected<Error>(solver.error());
-    solvers.push_back(std::move(*solver));
+  for (const SpecNode& spec : specs) {
+    SEXTANT_ASSIGN_OR_RETURN(SolverPtr solver, registry.Make(spec));
+    solvers.push_back(std::move(solver));
   }
   return solvers;
 }
@@ -105,39 +101,31 @@ Expected<void> ReadBoardsAndCamera(const CalibrateOptions& options, Job& job) {
                                  boards_path.empty() ? "--board" : "--camera",
                                  boards_path.empty() ? "boards" : "camera"));
   }
-  const Expected<std::vector<Board>> boards = ReadBoards(boards_path);
-  if (!boards) return tl::unexpected<Error>(boards.error());
-  job.boards = *boards;
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<Board> boards, ReadBoards(boards_path));
+  job.boards = boards;
   if (camera_path.empty()) return {};
-  const Expected<Camera> camera = ReadCamera(camera_path);
-  if (!camera) return tl::unexpected<Error>(camera.error());
-  job.camera = *camera;
+  SEXTANT_ASSIGN_OR_RETURN(const Camera camera, ReadCamera(camera_path));
+  job.camera = camera;
   return {};
 }
 
 Expected<Job> MakeJob(const CalibrateOptions& options) {
   Job job;
-  Expected<Session> session = SessionOf(options);
-  if (!session) return tl::unexpected<Error>(session.error());
-  job.session = std::move(*session);
+  SEXTANT_ASSIGN_OR_RETURN(Session session, SessionOf(options));
+  job.session = std::move(session);
   if (!options.image_topic.empty()) job.session.image_topic = options.image_topic;
   if (!options.cloud_topic.empty()) job.session.cloud_topic = options.cloud_topic;
   job.tolerance_s = options.tolerance_s;
-  if (Expected<void> ok = ReadBoardsAndCamera(options, job); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
-  Expected<std::vector<SolverPtr>> solvers = SolversOf(options.solvers);
-  if (!solvers) return tl::unexpected<Error>(solvers.error());
-  job.solvers = std::move(*solvers);
+  SEXTANT_RETURN_IF_ERROR(ReadBoardsAndCamera(options, job));
+  SEXTANT_ASSIGN_OR_RETURN(std::vector<SolverPtr> solvers, SolversOf(options.solvers));
+  job.solvers = std::move(solvers);
   job.match.initial = job.session.initial_cam_from_lidar;
   if (!options.initial.empty()) {
-    const Expected<Rigid3d> initial = PoseFromArgument("--initial", options.initial);
-    if (!initial) return tl::unexpected<Error>(initial.error());
-    job.match.initial = *initial;
+    SEXTANT_ASSIGN_OR_RETURN(const Rigid3d initial, PoseFromArgument("--initial", options.initial));
+    job.match.initial = initial;
   }
-  const Expected<BoardSearchOptions> search = SearchOptionsFrom(options.search);
-  if (!search) return tl::unexpected<Error>(search.error());
-  job.observe = {.detector = options.detector, .extractor = options.extractor, .search = *search};
+  SEXTANT_ASSIGN_OR_RETURN(const BoardSearchOptions search, SearchOptionsFrom(options.search));
+  job.observe = {.detector = options.detector, .extractor = options.extractor, .search = search};
   return job;
 }
 
@@ -148,8 +136,8 @@ Expected<RecordedViews> Look(const Job& job) {
                                          .observe = job.observe,
                                          .tolerance_s = job.tolerance_s});
   }
-  const Expected<Observer> observer = Observer::Make(job.boards, *job.camera, job.observe);
-  if (!observer) return tl::unexpected<Error>(observer.error());
+  SEXTANT_ASSIGN_OR_RETURN(const Observer observer,
+                           Observer::Make(job.boards, *job.camera, job.observe));
   const std::vector<FilePair>& pairs = job.session.files.pairs;
   if (pairs.empty()) {
     return MakeError(ErrorCode::kMissingData,
@@ -159,7 +147,7 @@ Expected<RecordedViews> Look(const Job& job) {
   }
   Progress progress("views", static_cast<long>(pairs.size()));
   return RecordedViews{.camera = *job.camera,
-                       .views = ObserveFiles(*observer, pairs, [&progress] { progress.Step(); })};
+                       .views = ObserveFiles(observer, pairs, [&progress] { progress.Step(); })};
 }
 
 std::vector<std::string> FindingsOf(const Job& job, const std::vector<SessionView>& views,

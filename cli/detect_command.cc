@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -40,15 +40,13 @@ Expected<Search> MakeSearch(const DetectOptions& options) {
     search.detector = std::move(*detector);
     return search;
   }
-  const Expected<std::vector<Board>> boards = ReadBoards(options.board_path);
-  if (!boards) return tl::unexpected<Error>(boards.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<Board> boards, ReadBoards(options.board_path));
   std::optional<Camera> camera;
   if (!options.camera_path.empty()) {
-    const Expected<Camera> read = ReadCamera(options.camera_path);
-    if (!read) return tl::unexpected<Error>(read.error());
-    camera = *read;
+    SEXTANT_ASSIGN_OR_RETURN(const Camera read, ReadCamera(options.camera_path));
+    camera = read;
   }
-  Expected<BoardFinder> finder = BoardFinder::Make(*boards, camera, options.detector);
+  Expected<BoardFinder> finder = BoardFinder::Make(boards, camera, options.detector);
   if (!finder) {
     return MakeError(finder.error().code,
                      fmt::format("{}: {}", options.board_path, finder.error().message));
@@ -72,22 +70,19 @@ void ExplainAll(const Search& search, const cv::Mat& grey, ImageReport& report) 
 
 Expected<ImageReport> Examine(const Search& search, const cv::Mat& image) {
   ImageReport report{.path = {}, .size = image.size()};
-  const Expected<cv::Mat> grey = ToGrey(image);
-  if (!grey) return tl::unexpected<Error>(grey.error());
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat grey, ToGrey(image));
   if (search.finder) {
-    Expected<SeenBoards> seen = search.finder->Find(*grey);
-    if (!seen) return tl::unexpected<Error>(seen.error());
-    report.seen = std::move(*seen);
-    ExplainAll(search, *grey, report);
+    SEXTANT_ASSIGN_OR_RETURN(SeenBoards seen, search.finder->Find(grey));
+    report.seen = std::move(seen);
+    ExplainAll(search, grey, report);
     return report;
   }
-  Expected<Detections> found = search.detector->Detect(*grey);
-  if (!found) return tl::unexpected<Error>(found.error());
+  SEXTANT_ASSIGN_OR_RETURN(Detections found, search.detector->Detect(grey));
   report.sought_checkers = search.detector->name().starts_with("checkerboard");
-  report.seen.strangers = std::move(found->tags);
-  report.checkers = std::move(found->checkers);
+  report.seen.strangers = std::move(found.tags);
+  report.checkers = std::move(found.checkers);
   const bool is_empty = report.seen.strangers.empty() && report.checkers.empty();
-  if (is_empty && search.explain) report.other_families = FindOtherFamilies(*grey, "", {});
+  if (is_empty && search.explain) report.other_families = FindOtherFamilies(grey, "", {});
   return report;
 }
 
@@ -102,18 +97,15 @@ std::filesystem::path OverlayPath(const DetectOptions& options, const std::strin
 
 ImageResult ExamineFile(const Search& search, const DetectOptions& options,
                         const std::string& path) {
-  const Expected<cv::Mat> image = ReadImage(path);
-  if (!image) return tl::unexpected<Error>(image.error());
-  Expected<ImageReport> report = Examine(search, *image);
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat image, ReadImage(path));
+  Expected<ImageReport> report = Examine(search, image);
   if (!report) {
     return MakeError(report.error().code, fmt::format("{}: {}", path, report.error().message));
   }
   report->path = path;
   if (!options.overlay_path.empty()) {
-    const cv::Mat drawn = DrawDetection(*image, *report, search.Boards(), search.GetCamera());
-    if (Expected<void> ok = WriteImage(drawn, OverlayPath(options, path)); !ok) {
-      return tl::unexpected<Error>(ok.error());
-    }
+    const cv::Mat drawn = DrawDetection(image, *report, search.Boards(), search.GetCamera());
+    SEXTANT_RETURN_IF_ERROR(WriteImage(drawn, OverlayPath(options, path)));
   }
   return report;
 }

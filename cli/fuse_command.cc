@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -32,16 +32,14 @@ Expected<std::vector<Rigid3d>> SensorsFromLidar(const FuseOptions& options) {
       return MakeError(ErrorCode::kInvalidOption,
                        "--rts already says where every cloud is: leave out --from and --to");
     }
-    const Expected<std::vector<Rigid3d>> list = ReadTransformList(options.rts_path);
-    if (!list) return tl::unexpected<Error>(list.error());
-    poses = *list;
+    SEXTANT_ASSIGN_OR_RETURN(const std::vector<Rigid3d> list, ReadTransformList(options.rts_path));
+    poses = list;
   } else {
     std::vector<std::string> paths = options.from;
     if (!options.to.empty()) paths.push_back(options.to);
     for (const std::string& path : paths) {
-      const Expected<Rigid3d> pose = ReadPoseFile(path);
-      if (!pose) return tl::unexpected<Error>(pose.error());
-      poses.push_back(*pose);
+      SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, ReadPoseFile(path));
+      poses.push_back(pose);
     }
   }
   if (poses.size() == clouds && (options.rts_path.empty() ? !options.to.empty() : true)) {

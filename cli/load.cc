@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/load.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <filesystem>
 #include <vector>
@@ -23,14 +23,12 @@ Expected<std::vector<Board>> ReadNamedBoards(const std::filesystem::path& path) 
 
 Expected<void> AddNamedFiles(const InputOptions& options, CalibrationProblem& problem) {
   if (!options.camera_path.empty()) {
-    const Expected<Camera> camera = ReadCamera(options.camera_path);
-    if (!camera) return tl::unexpected<Error>(camera.error());
-    problem.camera = *camera;
+    SEXTANT_ASSIGN_OR_RETURN(const Camera camera, ReadCamera(options.camera_path));
+    problem.camera = camera;
   }
   if (!options.boards_path.empty()) {
-    const Expected<std::vector<Board>> boards = ReadNamedBoards(options.boards_path);
-    if (!boards) return tl::unexpected<Error>(boards.error());
-    problem.boards = *boards;
+    SEXTANT_ASSIGN_OR_RETURN(const std::vector<Board> boards, ReadNamedBoards(options.boards_path));
+    problem.boards = boards;
   }
   return {};
 }
@@ -38,21 +36,18 @@ Expected<void> AddNamedFiles(const InputOptions& options, CalibrationProblem& pr
 }  // namespace
 
 Expected<LoadedInput> Load(const InputOptions& options) {
-  const Expected<DetectedProblem> read = ReadProblem(options.problem_path);
-  if (!read) return tl::unexpected<Error>(read.error());
+  SEXTANT_ASSIGN_OR_RETURN(const DetectedProblem read, ReadProblem(options.problem_path));
   LoadedInput input;
-  input.file = *read;
-  input.notes = read->notes;
+  input.file = read;
+  input.notes = read.notes;
   CalibrationProblem& problem = input.file.problem;
-  if (Expected<void> ok = AddNamedFiles(options, problem); !ok) {
-    return tl::unexpected<Error>(std::move(ok.error()));
-  }
+  SEXTANT_RETURN_IF_ERROR(AddNamedFiles(options, problem));
   input.judgement = DiagnosePairs(problem);
   if (options.reorder && input.judgement.order) {
     problem = Reordered(problem, *input.judgement.order);
   }
   input.summary = {.path = options.problem_path,
-                   .format = std::string(ToString(read->format)),
+                   .format = std::string(ToString(read.format)),
                    .pairs_3d3d = static_cast<int>(problem.pairs_3d3d.size()),
                    .pairs_2d3d = static_cast<int>(problem.pairs_2d3d.size()),
                    .points_in_cam = static_cast<int>(problem.point_sets.in_cam.size()),

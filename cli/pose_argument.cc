@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/pose_argument.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 
@@ -21,9 +21,8 @@ Expected<Rigid3d> PoseFromNumbers(const std::string& option,
                                  texts.size()));
   }
   for (std::size_t i = 0; i < kNumbers; ++i) {
-    const Expected<double> value = ParseFinite(texts[i], {.file = option});
-    if (!value) return tl::unexpected<Error>(value.error());
-    values[i] = *value;
+    SEXTANT_ASSIGN_OR_RETURN(const double value, ParseFinite(texts[i], {.file = option}));
+    values[i] = value;
   }
   const Eigen::Quaterniond rotation(values[3], values[4], values[5], values[6]);
   if (std::abs(rotation.norm() - 1.0) > 0.01) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/pose_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 
@@ -24,9 +24,8 @@ Expected<Rigid3d> FromResults(const std::string& path) {
 
 // Whatever else the file says, now or in a later version, is none of our business.
 Expected<Rigid3d> ParsePoseYaml(std::string_view text, const std::string& file) {
-  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
-  if (!root) return tl::unexpected<Error>(root.error());
-  const YamlNode* node = root->Find("cam_from_lidar");
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  const YamlNode* node = root.Find("cam_from_lidar");
   if (node == nullptr) {
     return MakeError(ErrorCode::kMissingData,
                      file + ": expected the key cam_from_lidar, as result.yaml has it");
@@ -51,9 +50,8 @@ Expected<Rigid3d> ParsePoseYaml(std::string_view text, const std::string& file) 
 Expected<Rigid3d> ReadPoseFile(const std::string& path) {
   if (path.ends_with(".json")) return FromResults(path);
   if (path.ends_with(".yaml") || path.ends_with(".yml")) return ReadWith(path, ParsePoseYaml);
-  const Expected<std::vector<Rigid3d>> poses = ReadTransformList(path);
-  if (!poses) return tl::unexpected<Error>(poses.error());
-  return poses->front();
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<Rigid3d> poses, ReadTransformList(path));
+  return poses.front();
 }
 
 }  // namespace sextant::cli

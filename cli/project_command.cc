@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <opencv2/core/mat.hpp>
@@ -36,31 +36,26 @@ struct Inputs {
 
 Expected<Inputs> ReadInputs(const ProjectOptions& options) {
   Inputs inputs;
-  Expected<CalibrationResult> result = ReadCalibrationResult(options.result_path);
-  if (!result) return tl::unexpected<Error>(result.error());
+  SEXTANT_ASSIGN_OR_RETURN(CalibrationResult result, ReadCalibrationResult(options.result_path));
   if (!options.camera_path.empty()) {
-    const Expected<Camera> camera = ReadCamera(options.camera_path);
-    if (!camera) return tl::unexpected<Error>(camera.error());
-    result->camera = *camera;
+    SEXTANT_ASSIGN_OR_RETURN(const Camera camera, ReadCamera(options.camera_path));
+    result.camera = camera;
   }
-  if (!result->camera) {
+  if (!result.camera) {
     return MakeError(ErrorCode::kMissingData,
                      fmt::format("{} has no camera; expected its key 'camera', or --camera",
                                  options.result_path));
   }
-  inputs.camera = *result->camera;
+  inputs.camera = result.camera;
   if (!options.boards_path.empty()) {
-    Expected<std::vector<Board>> boards = ReadBoards(options.boards_path);
-    if (!boards) return tl::unexpected<Error>(boards.error());
-    result->boards = std::move(*boards);
+    SEXTANT_ASSIGN_OR_RETURN(std::vector<Board> boards, ReadBoards(options.boards_path));
+    result.boards = std::move(boards);
   }
-  inputs.result = std::move(*result);
-  const Expected<PointCloud> cloud = ReadCloud(options.cloud_path);
-  if (!cloud) return tl::unexpected<Error>(cloud.error());
-  inputs.cloud = *cloud;
-  const Expected<cv::Mat> image = ReadColourImage(options.image_path);
-  if (!image) return tl::unexpected<Error>(image.error());
-  inputs.image = *image;
+  inputs.result = std::move(result);
+  SEXTANT_ASSIGN_OR_RETURN(const PointCloud cloud, ReadCloud(options.cloud_path));
+  inputs.cloud = cloud;
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat image, ReadColourImage(options.image_path));
+  inputs.image = image;
   return inputs;
 }
 
@@ -101,14 +96,13 @@ void TakeScan(const std::vector<Eigen::Vector3d>& corners, BoardInBoth& board) {
 Expected<std::vector<BoardInBoth>> FindInBoth(const Inputs& inputs) {
   std::vector<BoardInBoth> boards(inputs.result.boards.size());
   if (boards.empty()) return boards;
-  const Expected<Observer> observer = Observer::Make(inputs.result.boards, inputs.camera);
-  if (!observer) return tl::unexpected<Error>(observer.error());
-  const Expected<Observation> seen = observer->Observe(inputs.image, inputs.cloud);
-  if (!seen) return tl::unexpected<Error>(seen.error());
-  for (const CameraSighting& sighting : seen->in_image) {
+  SEXTANT_ASSIGN_OR_RETURN(const Observer observer,
+                           Observer::Make(inputs.result.boards, inputs.camera));
+  SEXTANT_ASSIGN_OR_RETURN(const Observation seen, observer.Observe(inputs.image, inputs.cloud));
+  for (const CameraSighting& sighting : seen.in_image) {
     boards[static_cast<std::size_t>(sighting.board)].by_image = sighting.corners.points;
   }
-  for (const LidarSighting& sighting : seen->in_scan) {
+  for (const LidarSighting& sighting : seen.in_scan) {
     for (std::size_t i = 0; i < boards.size(); ++i) {
       const BoardPlacement* placement = PlacementOf(sighting, static_cast<int>(i));
       if (placement == nullptr) continue;

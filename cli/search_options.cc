@@ -21,10 +21,9 @@ Expected<LidarBeam> BeamOf(const SearchArguments& arguments) {
 }  // namespace
 
 Expected<BoardSearchOptions> SearchOptionsFrom(const SearchArguments& arguments) {
-  const Expected<LidarBeam> beam = BeamOf(arguments);
-  if (!beam) return tl::unexpected<Error>(beam.error());
+  SEXTANT_ASSIGN_OR_RETURN(const LidarBeam beam, BeamOf(arguments));
   BoardSearchOptions search{
-      .correct_edges = !arguments.raw_edges, .beam = *beam, .seed = arguments.seed};
+      .correct_edges = !arguments.raw_edges, .beam = beam, .seed = arguments.seed};
   if (arguments.region.empty()) return search;
   LidarRegion region;
   for (int i = 0; i < 3; ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/session_bag.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <cstddef>
@@ -26,15 +26,13 @@ std::int64_t StampOf(const ScanTruth& scan) {
 }
 
 Expected<CloudMessage> ScanMessage(const std::filesystem::path& file, std::int64_t stamp_ns) {
-  Expected<PointCloud> cloud = ReadPcd(file);
-  if (!cloud) return tl::unexpected<Error>(cloud.error());
-  return CloudMessage{{stamp_ns, "lidar"}, std::move(*cloud)};
+  SEXTANT_ASSIGN_OR_RETURN(PointCloud cloud, ReadPcd(file));
+  return CloudMessage{{stamp_ns, "lidar"}, std::move(cloud)};
 }
 
 Expected<ImageMessage> GreyMessage(const std::filesystem::path& file, const MessageHeader& header) {
-  const Expected<cv::Mat> image = ReadImage(file);
-  if (!image) return tl::unexpected<Error>(image.error());
-  if (image->type() != CV_8UC1) {
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat image, ReadImage(file));
+  if (image.type() != CV_8UC1) {
     return MakeError(
         ErrorCode::kInvalidInput,
         fmt::format("{}: expected an image of 8-bit grey, as the simulation writes; remove it and "
@@ -43,12 +41,12 @@ Expected<ImageMessage> GreyMessage(const std::filesystem::path& file, const Mess
   }
   ImageMessage message;
   message.header = header;
-  message.width_px = image->cols;
-  message.height_px = image->rows;
+  message.width_px = image.cols;
+  message.height_px = image.rows;
   message.encoding = "mono8";
-  message.row_bytes = static_cast<std::size_t>(image->cols);
-  for (int row = 0; row < image->rows; ++row) {
-    message.data.append(image->ptr<char>(row), message.row_bytes);
+  message.row_bytes = static_cast<std::size_t>(image.cols);
+  for (int row = 0; row < image.rows; ++row) {
+    message.data.append(image.ptr<char>(row), message.row_bytes);
   }
   return message;
 }
@@ -60,9 +58,9 @@ class SessionRecorder {
 
   Expected<void> Record(const std::vector<ScanTruth>& scans) {
     for (const SceneCamera& camera : scene_.cameras) {
-      const Expected<Camera> told = ReadCamera(folder_ / (camera.name + "_info.yaml"));
-      if (!told) return tl::unexpected<Error>(told.error());
-      cameras_.push_back(*told);
+      SEXTANT_ASSIGN_OR_RETURN(const Camera told,
+                               ReadCamera(folder_ / (camera.name + "_info.yaml")));
+      cameras_.push_back(told);
     }
     for (const ScanTruth& scan : scans) {
       if (Expected<void> ok = RecordScan(scan); !ok) return ok;
@@ -73,9 +71,9 @@ class SessionRecorder {
  private:
   Expected<void> RecordScan(const ScanTruth& scan) {
     const std::int64_t stamp_ns = StampOf(scan);
-    const Expected<CloudMessage> points = ScanMessage(folder_ / scan.scan_file, stamp_ns);
-    if (!points) return tl::unexpected<Error>(points.error());
-    Expected<void> ok = writer_.Write("/lidar/points", stamp_ns, *points);
+    SEXTANT_ASSIGN_OR_RETURN(const CloudMessage points,
+                             ScanMessage(folder_ / scan.scan_file, stamp_ns));
+    Expected<void> ok = writer_.Write("/lidar/points", stamp_ns, points);
     for (std::size_t i = 0; ok && i < cameras_.size(); ++i) ok = RecordCamera(scan, i, stamp_ns);
     return ok;
   }
@@ -83,9 +81,9 @@ class SessionRecorder {
   Expected<void> RecordCamera(const ScanTruth& scan, std::size_t camera, std::int64_t stamp_ns) {
     const std::string& name = scene_.cameras[camera].name;
     const MessageHeader header = {stamp_ns, name + "_optical"};
-    const Expected<ImageMessage> image = GreyMessage(folder_ / scan.image_files[camera], header);
-    if (!image) return tl::unexpected<Error>(image.error());
-    Expected<void> ok = writer_.Write("/" + name + "/image_raw", stamp_ns, *image);
+    SEXTANT_ASSIGN_OR_RETURN(const ImageMessage image,
+                             GreyMessage(folder_ / scan.image_files[camera], header));
+    Expected<void> ok = writer_.Write("/" + name + "/image_raw", stamp_ns, image);
     if (!ok) return ok;
     return writer_.Write("/" + name + "/camera_info", stamp_ns,
                          CameraInfoMessage{header, cameras_[camera]});
@@ -115,9 +113,8 @@ Expected<void> CheckSessionBag(const SessionOptions& options) {
 
 Expected<void> WriteSessionBag(const std::filesystem::path& folder, const Scene& scene,
                                const std::vector<ScanTruth>& scans) {
-  Expected<Rosbag1Writer> writer = Rosbag1Writer::Create(folder / "session.bag");
-  if (!writer) return tl::unexpected<Error>(writer.error());
-  return SessionRecorder(folder, scene, std::move(*writer)).Record(scans);
+  SEXTANT_ASSIGN_OR_RETURN(Rosbag1Writer writer, Rosbag1Writer::Create(folder / "session.bag"));
+  return SessionRecorder(folder, scene, std::move(writer)).Record(scans);
 }
 
 }  // namespace sextant::cli

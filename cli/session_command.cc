@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 #include <vector>
@@ -20,22 +20,20 @@ namespace {
 constexpr const char* kCommand = "simulate";
 
 Expected<SessionOptions> SessionOptionsOf(const SimulateSessionOptions& options) {
-  const Expected<SessionLevel> level = FindSessionLevel(options.level);
-  if (!level) return tl::unexpected<Error>(level.error());
-  const Expected<PcdEncoding> encoding = FindPcdEncoding(options.pcd);
-  if (!encoding) return tl::unexpected<Error>(encoding.error());
+  SEXTANT_ASSIGN_OR_RETURN(const SessionLevel level, FindSessionLevel(options.level));
+  SEXTANT_ASSIGN_OR_RETURN(const PcdEncoding encoding, FindPcdEncoding(options.pcd));
   SessionOptions session;
   session.folder = options.out;
-  session.level = *level;
+  session.level = level;
   session.seed = options.seed;
   session.scans = options.scans;
   session.interval_s = options.interval_s;
   session.ideal = options.ideal;
-  session.encoding = *encoding;
+  session.encoding = encoding;
   session.noise.lidar_sigma_m = options.lidar_sigma_m;
   constexpr double kMarkedByAPerson_px = 3.5;
   constexpr double kFoundInTheImage_px = 1.0;
-  const bool is_marked = *level == SessionLevel::kPairs;
+  const bool is_marked = level == SessionLevel::kPairs;
   session.noise.pixel_sigma_px =
       options.pixel_sigma_px.value_or(is_marked ? kMarkedByAPerson_px : kFoundInTheImage_px);
   session.encode_image = EncodePng;
@@ -43,11 +41,9 @@ Expected<SessionOptions> SessionOptionsOf(const SimulateSessionOptions& options)
 }
 
 Expected<void> WriteSheet(const Scene& scene, const SimulateSessionOptions& options) {
-  const Expected<cv::Mat> sheet = DrawContactSheet(scene, options.seed);
-  if (!sheet) return tl::unexpected<Error>(sheet.error());
-  const Expected<std::string> bytes = EncodePng(*sheet);
-  if (!bytes) return tl::unexpected<Error>(bytes.error());
-  return WriteFileAtomically(options.sheet_path, *bytes);
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat sheet, DrawContactSheet(scene, options.seed));
+  SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, EncodePng(sheet));
+  return WriteFileAtomically(options.sheet_path, bytes);
 }
 
 Expected<void> WriteExtras(const Scene& scene, const std::vector<ScanTruth>& scans,

@@ -21,9 +21,8 @@ Expected<std::vector<SolverPtr>> MakeSolvers(const SolverRegistry& registry,
                                              const std::vector<SpecNode>& specs) {
   std::vector<SolverPtr> solvers;
   for (const SpecNode& spec : specs) {
-    Expected<SolverPtr> solver = registry.Make(spec);
-    if (!solver) return tl::unexpected<Error>(std::move(solver.error()));
-    solvers.push_back(std::move(*solver));
+    SEXTANT_ASSIGN_OR_RETURN(SolverPtr solver, registry.Make(spec));
+    solvers.push_back(std::move(solver));
   }
   return solvers;
 }

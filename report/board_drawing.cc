@@ -4,7 +4,7 @@
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <memory>
@@ -38,17 +38,16 @@ void StrokeRectangle(cairo_t* cr, const Eigen::Vector2d& centre, double width, d
 
 // One path for all cells: filled together, neighbours leave no seam.
 Expected<void> DrawTag(cairo_t* cr, const BoardTag& tag) {
-  const Expected<TagPattern> pattern = MakeTagPattern(tag.family, tag.id);
-  if (!pattern) return tl::unexpected<Error>(pattern.error());
-  const double cell_m = tag.edge_m / pattern->edge_cells;
+  SEXTANT_ASSIGN_OR_RETURN(const TagPattern pattern, MakeTagPattern(tag.family, tag.id));
+  const double cell_m = tag.edge_m / pattern.edge_cells;
   cairo_save(cr);
   cairo_translate(cr, tag.center_in_board_m.x(), tag.center_in_board_m.y());
   cairo_rotate(cr, tag.rotation_rad);
-  for (int row = 0; row < pattern->cells; ++row) {
-    for (int column = 0; column < pattern->cells; ++column) {
-      if (pattern->IsWhite(row, column)) continue;
-      cairo_rectangle(cr, (column - 0.5 * pattern->cells) * cell_m,
-                      (row - 0.5 * pattern->cells) * cell_m, cell_m, cell_m);
+  for (int row = 0; row < pattern.cells; ++row) {
+    for (int column = 0; column < pattern.cells; ++column) {
+      if (pattern.IsWhite(row, column)) continue;
+      cairo_rectangle(cr, (column - 0.5 * pattern.cells) * cell_m,
+                      (row - 0.5 * pattern.cells) * cell_m, cell_m, cell_m);
     }
   }
   cairo_fill(cr);
@@ -161,9 +160,7 @@ Expected<std::string> DrawBoards(const std::vector<Board>& boards, const std::st
         cairo_pdf_surface_set_size(surface.get(), PageWidth(board) * units_a_m,
                                    PageHeight(board) * units_a_m);
       }
-      if (Expected<void> ok = DrawBoard(context.get(), board, source, units_a_m); !ok) {
-        return tl::unexpected<Error>(ok.error());
-      }
+      SEXTANT_RETURN_IF_ERROR(DrawBoard(context.get(), board, source, units_a_m));
       if (format == DrawingFormat::kPdf) cairo_show_page(context.get());
     }
   }

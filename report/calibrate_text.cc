@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/calibrate_text.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "calibrate/trust/view_residuals.h"
 #include "eval/statistics/text_table.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/overlay.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
@@ -75,9 +75,8 @@ Expected<void> DrawOverlay(const CalibrationProblem& problem, const SolveReport&
   if (!problem.camera) {
     return MakeError(ErrorCode::kMissingData, "an overlay needs the camera: give --camera");
   }
-  const Expected<cv::Mat> read = ReadColourImage(image);
-  if (!read) return tl::unexpected<Error>(read.error());
-  cv::Mat canvas = *read;
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat read, ReadColourImage(image));
+  cv::Mat canvas = read;
   const Camera& camera = *problem.camera;
   const bool size_known = camera.width_px > 0 && camera.height_px > 0;
   if (size_known && (canvas.cols != camera.width_px || canvas.rows != camera.height_px)) {

@@ -64,12 +64,11 @@ std::string Ticks(const std::vector<PairId>& ids) {
 }  // namespace
 
 Expected<void> DrawPlot(const std::string& commands, const std::filesystem::path& path) {
-  const Expected<std::string> terminal = TerminalFor(path);
-  if (!terminal) return tl::unexpected<Error>(terminal.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::string terminal, TerminalFor(path));
   std::filesystem::path temporary = path;
   temporary += ".part";
   const std::string script = fmt::format("set terminal {}\nset output {}\n{}\nset output\n",
-                                         *terminal, Quote(temporary.string()), commands);
+                                         terminal, Quote(temporary.string()), commands);
   FILE* gnuplot = popen("gnuplot", "w");
   const bool written =
       gnuplot != nullptr && std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/scan_picture.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -121,19 +121,17 @@ void DrawBoard(const LidarCorners& corners, const Board& board, Panorama& panora
 
 Expected<void> DrawScan(const std::string& scan, const ScanReport& report,
                         const std::vector<Board>& boards, const std::filesystem::path& out) {
-  const Expected<PointCloud> cloud = ReadCloud(scan);
-  if (!cloud) return tl::unexpected<Error>(cloud.error());
-  Panorama panorama = FrameOf(report, *cloud);
-  DrawReturns(*cloud, panorama);
+  SEXTANT_ASSIGN_OR_RETURN(const PointCloud cloud, ReadCloud(scan));
+  Panorama panorama = FrameOf(report, cloud);
+  DrawReturns(cloud, panorama);
   for (const Expected<LidarCorners>& corners : report.corners) {
     if (corners) DrawBoard(*corners, boards[static_cast<std::size_t>(corners->board)], panorama);
   }
   cv::putText(panorama.canvas(),
               fmt::format("{}: as the LiDAR sees it, near blue to far red", scan), {12, 28},
               cv::FONT_HERSHEY_SIMPLEX, 0.6, {255, 255, 255}, 1, cv::LINE_AA);
-  const Expected<std::string> png = EncodePng(panorama.canvas());
-  if (!png) return tl::unexpected<Error>(png.error());
-  return WriteFileAtomically(out, *png);
+  SEXTANT_ASSIGN_OR_RETURN(const std::string png, EncodePng(panorama.canvas()));
+  return WriteFileAtomically(out, png);
 }
 
 }  // namespace sextant::cli

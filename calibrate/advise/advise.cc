@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/advise/advise.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -159,9 +159,7 @@ std::optional<std::size_t> BestOf(const std::vector<Candidate>& grid,
 }  // namespace
 
 Expected<Advice> Advise(const CalibrationResult& result, const SensorPair& sensors) {
-  if (const Expected<void> ok = Check(result, sensors); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  SEXTANT_RETURN_IF_ERROR(Check(result, sensors));
   Advice advice;
   const Matrix6d known = SumOfViews(result, sensors, advice);
   advice.warnings = DegenerateSets(BoardPosesOf(result));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/bag/bag_image.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <array>
 #include <bit>
@@ -108,11 +108,10 @@ Expected<cv::Mat> ToMat(const EncodedImageMessage& image) {
 }
 
 Expected<std::string> EncodePng(const ImageMessage& image) {
-  const Expected<cv::Mat> pixels = ToMat(image);
-  if (!pixels) return tl::unexpected<Error>(pixels.error());
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat pixels, ToMat(image));
   try {
     std::vector<unsigned char> png;
-    cv::imencode(".png", *pixels, png);
+    cv::imencode(".png", pixels, png);
     return std::string(png.begin(), png.end());
   } catch (const cv::Exception& error) {
     return Refuse(fmt::format("OpenCV cannot encode it: {}", Printable(error.err, 100)));

@@ -24,9 +24,8 @@ Expected<BagStreams> ReadStreams(const Bag& bag, std::int64_t tolerance_ns) {
     all.streams.push_back({.topic = i, .stamps_ns = {}});
   }
   const Expected<void> read = bag.Read(topics, [&](const BagMessage& message) -> Expected<void> {
-    const Expected<MessageHeader> header = DecodeHeader(message);
-    if (!header) return tl::unexpected<Error>(header.error());
-    all.streams[stream_of[message.topic_index]].stamps_ns.push_back(header->stamp_ns);
+    SEXTANT_ASSIGN_OR_RETURN(const MessageHeader header, DecodeHeader(message));
+    all.streams[stream_of[message.topic_index]].stamps_ns.push_back(header.stamp_ns);
     return {};
   });
   if (!read) return tl::unexpected<Error>(read.error());

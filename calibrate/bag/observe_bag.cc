@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/bag/observe_bag.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -90,9 +90,8 @@ Expected<std::optional<Camera>> CameraIn(const Bag& bag, const std::string& imag
   const Expected<void> read =
       bag.Read({*topic}, [&camera](const BagMessage& message) -> Expected<void> {
         if (camera) return {};
-        const Expected<CameraInfoMessage> info = DecodeCameraInfo(message);
-        if (!info) return tl::unexpected<Error>(info.error());
-        camera = info->camera;
+        SEXTANT_ASSIGN_OR_RETURN(const CameraInfoMessage info, DecodeCameraInfo(message));
+        camera = info.camera;
         return {};
       });
   if (!read) return tl::unexpected<Error>(read.error());
@@ -119,21 +118,18 @@ struct KeptMoment {
 
 Expected<cv::Mat> DecodeAny(const BagMessage& message) {
   if (message.topic->kind == MessageKind::kEncodedImage) {
-    const Expected<EncodedImageMessage> image = DecodeEncodedImage(message);
-    if (!image) return tl::unexpected<Error>(image.error());
-    return ToMat(*image);
+    SEXTANT_ASSIGN_OR_RETURN(const EncodedImageMessage image, DecodeEncodedImage(message));
+    return ToMat(image);
   }
-  const Expected<ImageMessage> image = DecodeImage(message);
-  if (!image) return tl::unexpected<Error>(image.error());
-  return ToMat(*image);
+  SEXTANT_ASSIGN_OR_RETURN(const ImageMessage image, DecodeImage(message));
+  return ToMat(image);
 }
 
 Expected<Observation> Examine(const Observer& observer, const KeptMoment& moment) {
-  const Expected<cv::Mat> image = DecodeAny(moment.image->Get());
-  if (!image) return tl::unexpected<Error>(image.error());
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat image, DecodeAny(moment.image->Get()));
   const Expected<CloudMessage> cloud = DecodePointCloud(moment.cloud->Get());
   if (!cloud) return tl::unexpected<Error>(cloud.error());
-  return observer.Observe(*image, cloud->cloud);
+  return observer.Observe(image, cloud->cloud);
 }
 
 // Gathers messages until a batch of moments is whole, then examines these on all cores.
@@ -199,13 +195,11 @@ class Batches {
 
 Expected<BagPlan> PlanBag(const Bag& bag, const BagSource& source) {
   const auto tolerance_ns = static_cast<std::int64_t>(1e9 * source.tolerance_s);
-  const Expected<BagStreams> all = ReadStreams(bag, tolerance_ns);
-  if (!all) return tl::unexpected<Error>(all.error());
-  const Expected<const BagPairing*> pairing = ChoosePairing(bag, *all, source);
-  if (!pairing) return tl::unexpected<Error>(pairing.error());
-  const BagStream& images = all->streams[(*pairing)->images];
-  const BagStream& scans = all->streams[(*pairing)->scans];
-  const std::vector<StampPair>& pairs = (*pairing)->pairs.pairs;
+  SEXTANT_ASSIGN_OR_RETURN(const BagStreams all, ReadStreams(bag, tolerance_ns));
+  SEXTANT_ASSIGN_OR_RETURN(const const BagPairing* pairing, ChoosePairing(bag, all, source));
+  const BagStream& images = all.streams[(pairing)->images];
+  const BagStream& scans = all.streams[(pairing)->scans];
+  const std::vector<StampPair>& pairs = (pairing)->pairs.pairs;
   if (pairs.empty()) return NeverMeet(images, scans, source.tolerance_s);
   BagPlan plan{.image_topic = images.topic, .cloud_topic = scans.topic};
   const std::size_t count = std::min(pairs.size(), source.most_views);
@@ -216,9 +210,9 @@ Expected<BagPlan> PlanBag(const Bag& bag, const BagSource& source) {
                             .stamp_ns = scans.stamps_ns[pair.first],
                             .difference_ns = pair.difference_ns});
   }
-  const Expected<std::optional<Camera>> camera = CameraIn(bag, bag.topics()[plan.image_topic].name);
-  if (!camera) return tl::unexpected<Error>(camera.error());
-  plan.camera = *camera;
+  SEXTANT_ASSIGN_OR_RETURN(const std::optional<Camera> camera,
+                           CameraIn(bag, bag.topics()[plan.image_topic].name));
+  plan.camera = camera;
   return plan;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/observe/observe.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -101,9 +101,9 @@ Expected<Observer> Observer::Make(std::vector<Board> boards, const Camera& camer
                      fmt::format("board {} has no size ({} x {} m)", board.id, board.top_right_m,
                                  board.right_bottom_m));
   }
-  Expected<BoardFinder> finder = BoardFinder::Make(std::move(boards), camera, options.detector);
-  if (!finder) return tl::unexpected<Error>(finder.error());
-  return Observer(std::move(*finder), options);
+  SEXTANT_ASSIGN_OR_RETURN(BoardFinder finder,
+                           BoardFinder::Make(std::move(boards), camera, options.detector));
+  return Observer(std::move(finder), options);
 }
 
 Expected<Observation> Observer::Observe(const cv::Mat& image, const PointCloud& cloud) const {
@@ -118,9 +118,8 @@ Expected<Observation> Observer::Observe(const cv::Mat& image, const PointCloud& 
 }
 
 Expected<void> Observer::LookInImage(const cv::Mat& image, Observation& observation) const {
-  const Expected<SeenBoards> seen = finder_.Find(image);
-  if (!seen) return tl::unexpected<Error>(seen.error());
-  for (const SeenBoard& board : seen->boards) {
+  SEXTANT_ASSIGN_OR_RETURN(const SeenBoards seen, finder_.Find(image));
+  for (const SeenBoard& board : seen.boards) {
     if (board.pose && *board.pose) {
       observation.in_image.push_back(SightingOf(boards()[board.index], board));
     } else {
@@ -133,12 +132,10 @@ Expected<void> Observer::LookInImage(const cv::Mat& image, Observation& observat
 }
 
 Expected<void> Observer::LookInScan(const PointCloud& cloud, Observation& observation) const {
-  const Expected<ScanRings> rings = ScanRings::Build(cloud);
-  if (!rings) return tl::unexpected<Error>(rings.error());
-  observation.lidar = PatternOf(*rings, options_.search.beam);
-  const Expected<BoardSearch> search = FindBoards(*rings, boards(), options_.search);
-  if (!search) return tl::unexpected<Error>(search.error());
-  for (const BoardPatch& patch : search->found) {
+  SEXTANT_ASSIGN_OR_RETURN(const ScanRings rings, ScanRings::Build(cloud));
+  observation.lidar = PatternOf(rings, options_.search.beam);
+  SEXTANT_ASSIGN_OR_RETURN(const BoardSearch search, FindBoards(rings, boards(), options_.search));
+  for (const BoardPatch& patch : search.found) {
     std::string why;
     Expected<std::vector<BoardPlacement>> placements =
         PlaceBoards(patch, boards(), options_.extractor, why);
@@ -150,17 +147,17 @@ Expected<void> Observer::LookInScan(const PointCloud& cloud, Observation& observ
     LidarSighting sighting{.placements = std::move(*placements),
                            .plane = patch.plane,
                            .edges = patch.edges,
-                           .face = FaceReturns(*rings, patch, boards())};
+                           .face = FaceReturns(rings, patch, boards())};
     sighting.range_sigma_m = RangeSigma(sighting.face, patch.plane);
     sighting.measured_sides_m =
         MeasuredSides(patch, sighting.placements.front(),
                       boards()[static_cast<std::size_t>(sighting.placements.front().board)]);
     observation.in_scan.push_back(std::move(sighting));
   }
-  if (search->found.size() < boards().size()) {
+  if (search.found.size() < boards().size()) {
     observation.missing.push_back(
-        {.why = fmt::format("{} of {} boards found{}", search->found.size(), boards().size(),
-                            WhyNotInScan(*search))});
+        {.why = fmt::format("{} of {} boards found{}", search.found.size(), boards().size(),
+                            WhyNotInScan(search))});
   }
   return {};
 }

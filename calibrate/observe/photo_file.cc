@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/observe/photo_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <opencv2/imgcodecs.hpp>
 #include <string_view>
@@ -31,15 +31,14 @@ bool IsTruncated(std::string_view bytes) {
 }
 
 Expected<cv::Mat> ReadAs(const std::filesystem::path& path, int mode) {
-  const Expected<std::string> bytes = ReadTextFile(path);
-  if (!bytes) return tl::unexpected<Error>(bytes.error());
-  if (IsTruncated(*bytes)) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, ReadTextFile(path));
+  if (IsTruncated(bytes)) {
     return MakeError(ErrorCode::kParse,
                      fmt::format("{}: the image is cut off: its end is missing", path.string()));
   }
   cv::Mat image;
   try {
-    const std::vector<unsigned char> raw(bytes->begin(), bytes->end());
+    const std::vector<unsigned char> raw(bytes.begin(), bytes.end());
     if (!raw.empty()) image = cv::imdecode(raw, mode);
   } catch (const cv::Exception& error) {
     return MakeError(ErrorCode::kParse,

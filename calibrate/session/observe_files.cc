@@ -10,11 +10,9 @@ namespace sextant {
 namespace {
 
 Expected<Observation> ObservePair(const Observer& observer, const FilePair& pair) {
-  const Expected<cv::Mat> image = ReadImage(pair.image);
-  if (!image) return tl::unexpected<Error>(image.error());
-  const Expected<PointCloud> cloud = ReadCloud(pair.cloud);
-  if (!cloud) return tl::unexpected<Error>(cloud.error());
-  return observer.Observe(*image, *cloud);
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat image, ReadImage(pair.image));
+  SEXTANT_ASSIGN_OR_RETURN(const PointCloud cloud, ReadCloud(pair.cloud));
+  return observer.Observe(image, cloud);
 }
 
 }  // namespace

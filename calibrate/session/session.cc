@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/session/session.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <system_error>
@@ -103,11 +103,9 @@ class SessionReader {
 // cam_from_lidar of a camera in truth.yaml, which carries much else.
 Expected<std::optional<Rigid3d>> TruthOf(const fs::path& path, const std::string& camera) {
   if (!Exists(path)) return std::optional<Rigid3d>();
-  const Expected<std::string> text = ReadTextFile(path);
-  if (!text) return tl::unexpected<Error>(text.error());
-  const Expected<YamlNode> root = ParseYaml(*text, path.string());
-  if (!root) return tl::unexpected<Error>(root.error());
-  const YamlNode* cameras = root->Find("cameras");
+  SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, path.string()));
+  const YamlNode* cameras = root.Find("cameras");
   if (cameras == nullptr) return std::optional<Rigid3d>();
   for (const YamlNode& node : cameras->items) {
     const YamlNode* name = node.Find("camera");
@@ -123,10 +121,10 @@ Expected<std::optional<Rigid3d>> TruthOf(const fs::path& path, const std::string
 
 // The cameras that have an info file, by name.
 Expected<std::vector<std::string>> CamerasIn(const fs::path& folder) {
-  const Expected<std::vector<fs::path>> infos = ExpandPattern(folder / "*_info.yaml");
-  if (!infos) return tl::unexpected<Error>(infos.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<fs::path> infos,
+                           ExpandPattern(folder / "*_info.yaml"));
   std::vector<std::string> names;
-  for (const fs::path& info : *infos) {
+  for (const fs::path& info : infos) {
     const std::string stem = info.stem().string();
     names.push_back(stem.substr(0, stem.size() - std::string("_info").size()));
   }
@@ -134,40 +132,36 @@ Expected<std::vector<std::string>> CamerasIn(const fs::path& folder) {
 }
 
 Expected<Session> ReadSimulated(const fs::path& folder, const std::string& camera_name) {
-  const Expected<std::vector<std::string>> cameras = CamerasIn(folder);
-  if (!cameras) return tl::unexpected<Error>(cameras.error());
-  const std::string camera = camera_name.empty() ? cameras->front() : camera_name;
-  if (std::ranges::find(*cameras, camera) == cameras->end()) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<std::string> cameras, CamerasIn(folder));
+  const std::string camera = camera_name.empty() ? cameras.front() : camera_name;
+  if (std::ranges::find(cameras, camera) == cameras.end()) {
     std::string known;
-    for (const std::string& name : *cameras) known += (known.empty() ? "" : ", ") + name;
+    for (const std::string& name : cameras) known += (known.empty() ? "" : ", ") + name;
     return MakeError(ErrorCode::kMissingData, fmt::format("{}: no camera '{}'; there are: {}",
                                                           folder.string(), camera, known));
   }
   Session session{.boards = folder / "boards.yaml", .camera = folder / (camera + "_info.yaml")};
-  const auto images = ExpandPattern(folder / (camera + "_*.png"));
-  if (!images) return tl::unexpected<Error>(images.error());
-  const auto clouds = ExpandPattern(folder / "scan_*.pcd");
-  if (!clouds) return tl::unexpected<Error>(clouds.error());
+  SEXTANT_ASSIGN_OR_RETURN(const auto images, ExpandPattern(folder / (camera + "_*.png")));
+  SEXTANT_ASSIGN_OR_RETURN(const auto clouds, ExpandPattern(folder / "scan_*.pcd"));
   // Of the cameras cam and cam_right, cam_*.png takes the other's images too.
   std::vector<fs::path> own;
   const auto is_number = [](char c) { return c >= '0' && c <= '9'; };
-  for (const fs::path& image : *images) {
+  for (const fs::path& image : images) {
     const std::string number = image.stem().string().substr(camera.size() + 1);
     if (std::ranges::all_of(number, is_number)) own.push_back(image);
   }
-  session.files = PairFiles(own, *clouds);
-  const Expected<std::optional<Rigid3d>> truth = TruthOf(folder / "truth.yaml", camera);
-  if (!truth) return tl::unexpected<Error>(truth.error());
-  session.true_cam_from_lidar = *truth;
+  session.files = PairFiles(own, clouds);
+  SEXTANT_ASSIGN_OR_RETURN(const std::optional<Rigid3d> truth,
+                           TruthOf(folder / "truth.yaml", camera));
+  session.true_cam_from_lidar = truth;
   return session;
 }
 
 }  // namespace
 
 Expected<Session> ParseSession(std::string_view text, const std::string& file) {
-  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
-  if (!root) return tl::unexpected<Error>(root.error());
-  return SessionReader(file).Read(*root);
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  return SessionReader(file).Read(root);
 }
 
 Expected<Session> ReadSession(const fs::path& path, const std::string& camera_name) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/mark/mark_input.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 
@@ -58,20 +58,19 @@ bool SameProjection(const ScanMarks& a, const ScanMarks& b) {
 // or none was.
 Expected<void> GoOnWith(const std::filesystem::path& path, const MarkOptions& options,
                         MarkInput& input) {
-  const Expected<ScanMarks> kept = ReadPolygons(path);
-  if (!kept) return tl::unexpected<Error>(kept.error());
+  SEXTANT_ASSIGN_OR_RETURN(const ScanMarks kept, ReadPolygons(path));
   const bool asked =
       !options.camera_path.empty() || !options.cam_from_lidar.empty() || options.yaw_deg != 0.0;
-  const bool fits_photo = input.photo.empty() || (kept->camera.width_px == input.photo.cols &&
-                                                  kept->camera.height_px == input.photo.rows);
-  if ((asked && !SameProjection(*kept, input.marks)) || !fits_photo) {
+  const bool fits_photo = input.photo.empty() || (kept.camera.width_px == input.photo.cols &&
+                                                  kept.camera.height_px == input.photo.rows);
+  if ((asked && !SameProjection(kept, input.marks)) || !fits_photo) {
     return MakeError(ErrorCode::kInvalidInput,
                      fmt::format("{}: was drawn in another projection of a scan; go on with its "
                                  "own --camera, --cam-from-lidar and --image, write to another "
                                  "--out, or remove it",
                                  path.string()));
   }
-  input.marks = *kept;
+  input.marks = kept;
   input.note = "goes on with " + path.filename().string();
   return {};
 }
@@ -83,34 +82,28 @@ std::filesystem::path AutosavePath(const MarkOptions& options) {
 }
 
 Expected<MarkInput> LoadMarkInput(const MarkOptions& options) {
-  const Expected<PointCloud> scan = ReadCloud(options.cloud_path);
-  if (!scan) return tl::unexpected<Error>(scan.error());
+  SEXTANT_ASSIGN_OR_RETURN(const PointCloud scan, ReadCloud(options.cloud_path));
   MarkInput input;
   if (!options.image_path.empty()) {
-    const Expected<cv::Mat> photo = ReadColourImage(options.image_path);
-    if (!photo) return tl::unexpected<Error>(photo.error());
-    input.photo = *photo;
+    SEXTANT_ASSIGN_OR_RETURN(const cv::Mat photo, ReadColourImage(options.image_path));
+    input.photo = photo;
   }
-  const Expected<Camera> camera = ChooseCamera(options, input.photo);
-  if (!camera) return tl::unexpected<Error>(camera.error());
-  const Expected<Rigid3d> pose = ChoosePose(options);
-  if (!pose) return tl::unexpected<Error>(pose.error());
-  input.marks = {.camera = *camera, .cam_from_lidar = *pose};
+  SEXTANT_ASSIGN_OR_RETURN(const Camera camera, ChooseCamera(options, input.photo));
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, ChoosePose(options));
+  input.marks = {.camera = camera, .cam_from_lidar = pose};
   std::error_code ignored;
   input.is_saved = !std::filesystem::exists(AutosavePath(options), ignored);
   if (!input.is_saved || std::filesystem::exists(options.out_path, ignored)) {
     const std::filesystem::path from =
         input.is_saved ? std::filesystem::path(options.out_path) : AutosavePath(options);
-    if (Expected<void> ok = GoOnWith(from, options, input); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
+    SEXTANT_RETURN_IF_ERROR(GoOnWith(from, options, input));
   }
-  input.returns = ProjectScan(*scan, input.marks.camera, input.marks.cam_from_lidar);
+  input.returns = ProjectScan(scan, input.marks.camera, input.marks.cam_from_lidar);
   if (input.returns.empty()) {
     return MakeError(ErrorCode::kDegenerate,
                      fmt::format("{}: none of its {} points is in view; turn the camera with --yaw "
                                  "or give --cam-from-lidar",
-                                 options.cloud_path, scan->points.size()));
+                                 options.cloud_path, scan.points.size()));
   }
   return input;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/mpi/run_on_ranks.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tbb/info.h>
 
 #include <algorithm>
@@ -42,9 +42,7 @@ Expected<void> CheckSeen(const std::filesystem::path& folder) {
 
 Expected<std::vector<std::uint64_t>> FindHeld(const Plan& plan, bool fresh) {
   if (fresh) {
-    if (Expected<void> ok = RemoveRowFiles(plan.folder); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
+    SEXTANT_RETURN_IF_ERROR(RemoveRowFiles(plan.folder));
   }
   return BlocksHeldBy(RowFilesIn(plan.folder, plan.configuration), plan.configuration);
 }

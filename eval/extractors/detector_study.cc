@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/extractors/detector_study.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -112,18 +112,16 @@ TagPictureOptions Draw(const DetectorStudyOptions& options, int trial) {
 
 Expected<Trial> RunTrial(const TagPictureOptions& drawn,
                          const std::vector<TagDetectorPtr>& detectors, std::size_t first_of_ours) {
-  const Expected<TagPicture> picture = RenderTagPicture(drawn);
-  if (!picture) return tl::unexpected<Error>(picture.error());
-  const Expected<TagPattern> pattern = MakeTagPattern(drawn.family, drawn.id);
-  if (!pattern) return tl::unexpected<Error>(pattern.error());
+  SEXTANT_ASSIGN_OR_RETURN(const TagPicture picture, RenderTagPicture(drawn));
+  SEXTANT_ASSIGN_OR_RETURN(const TagPattern pattern, MakeTagPattern(drawn.family, drawn.id));
   Trial trial{.is_large = drawn.side_px >= kLarge_px, .answers = {}};
   std::optional<Quad> start;
   for (std::size_t i = 0; i < detectors.size(); ++i) {
-    const std::optional<Quad> corners = FindTag(*detectors[i], *picture, drawn.id, *pattern);
+    const std::optional<Quad> corners = FindTag(*detectors[i], picture, drawn.id, pattern);
     if (i == first_of_ours) start = corners;
-    trial.answers.push_back(AnswerOf(corners, picture->corners_px));
+    trial.answers.push_back(AnswerOf(corners, picture.corners_px));
   }
-  trial.answers.push_back(RefinedAnswer(start, *picture, *pattern));
+  trial.answers.push_back(RefinedAnswer(start, picture, pattern));
   return trial;
 }
 
@@ -181,9 +179,8 @@ Expected<std::vector<DetectorRow>> StudyDetectors(const DetectorStudyOptions& op
   const std::vector<std::string> names = StudiedDetectors(options.family);
   std::vector<TagDetectorPtr> detectors;
   for (std::size_t i = 0; i + 1 < names.size(); ++i) {
-    Expected<TagDetectorPtr> detector = MakeTagDetector(names[i]);
-    if (!detector) return tl::unexpected<Error>(detector.error());
-    detectors.push_back(std::move(*detector));
+    SEXTANT_ASSIGN_OR_RETURN(TagDetectorPtr detector, MakeTagDetector(names[i]));
+    detectors.push_back(std::move(detector));
   }
   std::vector<Expected<Trial>> results(static_cast<std::size_t>(options.trials));
   tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {

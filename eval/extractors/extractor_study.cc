@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/extractors/extractor_study.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -84,13 +84,12 @@ class Study {
                      {.seed = DeriveSeed(options_.seed, model_.name, trial.part, index),
                       .truth = trial.part == kPlacement});
     if (!scan) return tl::unexpected<Error>(scan.error());
-    const Expected<ScanRings> rings = ScanRings::Build(scan->cloud);
-    if (!rings) return tl::unexpected<Error>(rings.error());
+    SEXTANT_ASSIGN_OR_RETURN(const ScanRings rings, ScanRings::Build(scan->cloud));
     BoardSearchOptions search;
     search.beam = beam_;
     const std::vector<Board> boards =
         trial.part == kRoom ? BoardsIn(TwoBoardsInRoom({}, random)) : BoardsIn(scene);
-    const Expected<BoardSearch> found = FindBoards(*rings, boards, search);
+    const Expected<BoardSearch> found = FindBoards(rings, boards, search);
     if (!found) return tl::unexpected<Error>(found.error());
     Outcome outcome;
     if (trial.part == kRoom) outcome.boards = static_cast<int>(found->found.size());
@@ -187,11 +186,9 @@ ExtractorErrors Summarise(std::size_t extractor, const std::vector<Outcome>& out
 
 Expected<ExtractorStudyRow> StudyModel(const ExtractorStudyOptions& options,
                                        const std::string& name) {
-  const Expected<LidarModel> model = FindLidarModel(name);
-  if (!model) return tl::unexpected<Error>(model.error());
-  const Expected<LidarBeam> beam = FindLidarBeam(name);
-  if (!beam) return tl::unexpected<Error>(beam.error());
-  const Study study(options, *model, *beam);
+  SEXTANT_ASSIGN_OR_RETURN(const LidarModel model, FindLidarModel(name));
+  SEXTANT_ASSIGN_OR_RETURN(const LidarBeam beam, FindLidarBeam(name));
+  const Study study(options, model, beam);
   std::vector<Trial> trials;
   for (int i = 0; i < options.trials; ++i) trials.push_back({kAccuracy, i});
   for (int i = 0; i < options.placements; ++i) trials.push_back({kPlacement, i});
@@ -220,9 +217,8 @@ Expected<ExtractorStudyRow> StudyModel(const ExtractorStudyOptions& options,
 Expected<std::vector<ExtractorStudyRow>> StudyExtractors(const ExtractorStudyOptions& options) {
   std::vector<ExtractorStudyRow> rows;
   for (const std::string& name : options.models.empty() ? LidarModelNames() : options.models) {
-    Expected<ExtractorStudyRow> row = StudyModel(options, name);
-    if (!row) return tl::unexpected<Error>(row.error());
-    rows.push_back(std::move(*row));
+    SEXTANT_ASSIGN_OR_RETURN(ExtractorStudyRow row, StudyModel(options, name));
+    rows.push_back(std::move(row));
   }
   return rows;
 }

@@ -31,9 +31,8 @@ Expected<ScanPair> ScanTwice(Scene scene, const LidarModel& model, std::uint64_t
   for (const bool is_source : {false, true}) {
     scan.scan_index = is_source ? 1 : 0;
     scene.lidar.world_from_lidar = is_source ? pair.target_from_source : Rigid3d{};
-    Expected<SimulatedScan> made = SimulateScan(scene, model, scan);
-    if (!made) return tl::unexpected<Error>(made.error());
-    (is_source ? pair.in_source : pair.in_target) = std::move(made->cloud.points);
+    SEXTANT_ASSIGN_OR_RETURN(SimulatedScan made, SimulateScan(scene, model, scan));
+    (is_source ? pair.in_source : pair.in_target) = std::move(made.cloud.points);
   }
   return pair;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/metrics/running_average.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -128,9 +128,7 @@ Expected<RunningAverageAnalysis> AnalyseRunningAverage(std::span<const RunningAv
     return MakeError(ErrorCode::kMissingData, "the log has no iterations to analyse");
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (Expected<void> ok = CheckRow(rows[i], i); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
+    SEXTANT_RETURN_IF_ERROR(CheckRow(rows[i], i));
   }
   RunningAverageAnalysis analysis;
   analysis.scans = Recover(rows);
@@ -139,15 +137,13 @@ Expected<RunningAverageAnalysis> AnalyseRunningAverage(std::span<const RunningAv
   for (const RecoveredScan& scan : analysis.scans) {
     rotations.push_back(scan.cam_from_lidar.rotation);
   }
-  const Expected<Eigen::Quaterniond> chordal = ChordalMean(rotations);
-  if (!chordal) return tl::unexpected<Error>(chordal.error());
-  const Expected<Eigen::Quaterniond> quaternion_sum = QuaternionSumMean(rotations);
-  if (!quaternion_sum) return tl::unexpected<Error>(quaternion_sum.error());
-  analysis.mean = {*chordal, rows.back().mean_translation_m};
-  analysis.quaternion_sum = *quaternion_sum;
+  SEXTANT_ASSIGN_OR_RETURN(const Eigen::Quaterniond chordal, ChordalMean(rotations));
+  SEXTANT_ASSIGN_OR_RETURN(const Eigen::Quaterniond quaternion_sum, QuaternionSumMean(rotations));
+  analysis.mean = {chordal, rows.back().mean_translation_m};
+  analysis.quaternion_sum = quaternion_sum;
   analysis.logged_rotation = Eigen::Quaterniond(rows.back().rotation).normalized();
-  analysis.logged_from_mean_rad = RotationDistance(analysis.logged_rotation, *chordal);
-  analysis.quaternion_sum_from_mean_rad = RotationDistance(*quaternion_sum, *chordal);
+  analysis.logged_from_mean_rad = RotationDistance(analysis.logged_rotation, chordal);
+  analysis.quaternion_sum_from_mean_rad = RotationDistance(quaternion_sum, chordal);
   analysis.last_rmse_m = rows.back().rmse_m;
   MeasureScatter(analysis);
   return analysis;

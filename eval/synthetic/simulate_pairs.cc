@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/synthetic/simulate_pairs.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <vector>
@@ -87,9 +87,7 @@ Expected<void> Check(const PairSimulation& simulation, int corners) {
 Expected<SimulatedSession> SimulatePairs(const PairSimulation& simulation) {
   const std::vector<Board> boards = PaperBoards();
   const int corners = simulation.views * static_cast<int>(boards.size()) * kCornersPerBoard;
-  if (Expected<void> ok = Check(simulation, corners); !ok) {
-    return tl::unexpected<Error>(std::move(ok.error()));
-  }
+  SEXTANT_RETURN_IF_ERROR(Check(simulation, corners));
   SimulatedSession session;
   session.problem.boards = boards;
   session.problem.camera = ZedLikeCamera();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/synthetic/simulate_views.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -244,7 +244,7 @@ bool TryView(const ViewSimulation& simulation, int index, Random& random, Simula
 }  // namespace
 
 Expected<SimulatedViews> SimulateViews(const ViewSimulation& simulation) {
-  if (Expected<void> ok = Check(simulation); !ok) return tl::unexpected<Error>(ok.error());
+  SEXTANT_RETURN_IF_ERROR(Check(simulation));
   SimulatedViews session;
   session.problem.boards = {TheBoard(simulation)};
   session.problem.camera = ZedLikeCamera();

@@ -175,9 +175,8 @@ TagDetectorEntry AprilTagDetectorEntry() {
       .example = "apriltag(family=tag36h11,decimate=2)",
       .options = Options().Describe(),
       .make = [](const std::string& name, const OptionValues& values) -> Expected<TagDetectorPtr> {
-        const Expected<AprilTagOptions> options = Options().Parse(values);
-        if (!options) return tl::unexpected<Error>(options.error());
-        return std::make_shared<AprilTagDetector>(name, *options);
+        SEXTANT_ASSIGN_OR_RETURN(const AprilTagOptions options, Options().Parse(values));
+        return std::make_shared<AprilTagDetector>(name, options);
       }};
 }
 

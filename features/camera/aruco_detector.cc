@@ -154,8 +154,7 @@ class ArucoDetector final : public TagDetector {
 };
 
 Expected<TagDetectorPtr> Make(const std::string& name, const OptionValues& values) {
-  const Expected<ArucoOptions> options = ArucoOptionSet().Parse(values);
-  if (!options) return tl::unexpected<Error>(options.error());
+  SEXTANT_ASSIGN_OR_RETURN(const ArucoOptions options, ArucoOptionSet().Parse(values));
   bool names_dictionary = false;
   std::string file;
   for (const auto& [option, text] : values) {
@@ -168,12 +167,11 @@ Expected<TagDetectorPtr> Make(const std::string& name, const OptionValues& value
                      "aruco(dictionary=6x6_250)");
   }
   if (!file.empty()) {
-    const auto own = ReadArucoDictionary(file);
-    if (!own) return tl::unexpected<Error>(own.error());
-    return std::make_shared<ArucoDetector>(name, file, *own, *options);
+    SEXTANT_ASSIGN_OR_RETURN(const auto own, ReadArucoDictionary(file));
+    return std::make_shared<ArucoDetector>(name, file, own, options);
   }
-  const std::string& family = ArucoDictionaryNames()[options->dictionary];
-  return std::make_shared<ArucoDetector>(name, family, *FindArucoDictionary(family), *options);
+  const std::string& family = ArucoDictionaryNames()[options.dictionary];
+  return std::make_shared<ArucoDetector>(name, family, *FindArucoDictionary(family), options);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/camera/board_pose.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -131,8 +131,7 @@ Expected<BoardPose> EstimateBoardPose(const Camera& camera, std::span<const Boar
   if (groups.empty()) {
     return MakeError(ErrorCode::kTooFewPairs, "no tag or checkerboard of the board was seen");
   }
-  const Expected<std::vector<Whitened>> whitened = Whiten(groups);
-  if (!whitened) return tl::unexpected<Error>(whitened.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<Whitened> whitened, Whiten(groups));
   std::vector<Minimum> minima;
   Error failure{ErrorCode::kNoConvergence, "no pose of the board fits its points"};
   for (const BoardPoints& group : groups) {
@@ -143,7 +142,7 @@ Expected<BoardPose> EstimateBoardPose(const Camera& camera, std::span<const Boar
     }
     for (int i = 0; i < starts->count; ++i) {
       const auto minimum =
-          Refine(camera, *whitened, starts->cam_from_lidar[static_cast<std::size_t>(i)]);
+          Refine(camera, whitened, starts->cam_from_lidar[static_cast<std::size_t>(i)]);
       if (minimum) minima.push_back(*minimum);
     }
   }

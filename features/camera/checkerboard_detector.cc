@@ -109,9 +109,8 @@ TagDetectorEntry CheckerboardDetectorEntry() {
       .example = "checkerboard(columns=7,rows=5)",
       .options = CheckerOptionSet().Describe(),
       .make = [](const std::string& name, const OptionValues& values) -> Expected<TagDetectorPtr> {
-        const Expected<CheckerOptions> options = CheckerOptionSet().Parse(values);
-        if (!options) return tl::unexpected<Error>(options.error());
-        return std::make_shared<CheckerboardDetector>(name, *options);
+        SEXTANT_ASSIGN_OR_RETURN(const CheckerOptions options, CheckerOptionSet().Parse(values));
+        return std::make_shared<CheckerboardDetector>(name, options);
       }};
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/camera/edge_refine.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -212,7 +212,7 @@ Expected<RefinedTag> RefineTag(const cv::Mat& grey, const Quad& start, const Tag
     }
     const EdgePixels pixels =
         CollectEdgePixels(grey, refined.corners_px, pattern, undistortion, options);
-    if (Expected<void> ok = CheckPixels(pixels); !ok) return tl::unexpected<Error>(ok.error());
+    SEXTANT_RETURN_IF_ERROR(CheckPixels(pixels));
     state.tag_from_straight = *homography;
     const Quad before = refined.corners_px;
     Fit fit(pattern, pixels, state);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/camera/find_boards.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <set>
@@ -23,19 +23,18 @@ std::string CheckerKey(const BoardChecker& checker) {
 Expected<std::string> SpecFor(const std::string& family, const std::string& detector) {
   Expected<std::string> usual = DetectorSpecFor(family);
   if (!usual || detector.empty()) return usual;
-  Expected<SpecNode> wanted = ParseSpec(detector);
-  if (!wanted) return tl::unexpected<Error>(wanted.error());
+  SEXTANT_ASSIGN_OR_RETURN(SpecNode wanted, ParseSpec(detector));
   const SpecNode node = *ParseSpec(*usual);
   std::pair<std::string, std::string> option = node.options.front();
   // OpenCV reads AprilTag's families too.
-  if (wanted->name == "aruco" && node.name == "apriltag") option.first = "dictionary";
-  if (wanted->name != "aruco" && wanted->name != node.name) {
+  if (wanted.name == "aruco" && node.name == "apriltag") option.first = "dictionary";
+  if (wanted.name != "aruco" && wanted.name != node.name) {
     return MakeError(ErrorCode::kInvalidOption,
-                     fmt::format("detector '{}' does not read tags of {}; {} does", wanted->name,
+                     fmt::format("detector '{}' does not read tags of {}; {} does", wanted.name,
                                  family, node.name));
   }
-  wanted->options.insert(wanted->options.begin(), option);
-  return FormatSpec(*wanted);
+  wanted.options.insert(wanted.options.begin(), option);
+  return FormatSpec(wanted);
 }
 
 // The tag as the boards' family numbers its corners, where the other library's detector of that
@@ -121,12 +120,11 @@ std::optional<std::string> QuickSpec(const std::string& spec) {
 
 Expected<void> Look(const cv::Mat& grey, const Detectors& detectors, Detections& found) {
   for (const auto& [family, detector] : detectors) {
-    Expected<Detections> some = detector->Detect(grey);
-    if (!some) return tl::unexpected<Error>(some.error());
-    for (TagDetection& tag : some->tags) {
+    SEXTANT_ASSIGN_OR_RETURN(Detections some, detector->Detect(grey));
+    for (TagDetection& tag : some.tags) {
       found.tags.push_back(AsFamily(std::move(tag), family));
     }
-    for (CheckerDetection& checker : some->checkers) found.checkers.push_back(std::move(checker));
+    for (CheckerDetection& checker : some.checkers) found.checkers.push_back(std::move(checker));
   }
   return {};
 }
@@ -143,15 +141,14 @@ bool HasAllTags(const SeenBoards& seen) {
 
 Expected<BoardFinder> BoardFinder::Make(std::vector<Board> boards, std::optional<Camera> camera,
                                         const std::string& detector) {
-  if (Expected<void> ok = CheckBoards(boards); !ok) return tl::unexpected<Error>(ok.error());
+  SEXTANT_RETURN_IF_ERROR(CheckBoards(boards));
   BoardFinder finder;
   for (const Board& board : boards) {
     for (const BoardTag& tag : board.tags) {
       if (finder.detectors_.contains(tag.family)) continue;
-      const Expected<std::string> spec = SpecFor(tag.family, detector);
-      if (!spec) return tl::unexpected<Error>(spec.error());
-      const Expected<void> ok = Add(tag.family, *spec, finder.detectors_).and_then([&] {
-        const std::optional<std::string> quick = QuickSpec(*spec);
+      SEXTANT_ASSIGN_OR_RETURN(const std::string spec, SpecFor(tag.family, detector));
+      const Expected<void> ok = Add(tag.family, spec, finder.detectors_).and_then([&] {
+        const std::optional<std::string> quick = QuickSpec(spec);
         return quick ? Add(tag.family, *quick, finder.quick_) : Expected<void>();
       });
       if (!ok) return tl::unexpected<Error>(ok.error());
@@ -170,30 +167,23 @@ Expected<BoardFinder> BoardFinder::Make(std::vector<Board> boards, std::optional
 }
 
 Expected<SeenBoards> BoardFinder::Find(const cv::Mat& image) const {
-  const Expected<cv::Mat> grey = ToGrey(image);
-  if (!grey) return tl::unexpected<Error>(grey.error());
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat grey, ToGrey(image));
   if (camera_ && camera_->width_px > 0 &&
-      (grey->cols != camera_->width_px || grey->rows != camera_->height_px)) {
+      (grey.cols != camera_->width_px || grey.rows != camera_->height_px)) {
     return MakeError(ErrorCode::kInvalidInput,
                      fmt::format("the image has {} x {} pixels, expected the camera's {} x {}",
-                                 grey->cols, grey->rows, camera_->width_px, camera_->height_px));
+                                 grey.cols, grey.rows, camera_->width_px, camera_->height_px));
   }
   Detections checkers;
-  if (Expected<void> ok = Look(*grey, checkers_, checkers); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  SEXTANT_RETURN_IF_ERROR(Look(grey, checkers_, checkers));
   if (!quick_.empty() && quick_.size() == detectors_.size()) {
     Detections found = checkers;
-    if (Expected<void> ok = Look(*grey, quick_, found); !ok) {
-      return tl::unexpected<Error>(ok.error());
-    }
-    SeenBoards seen = Assemble(*grey, std::move(found));
+    SEXTANT_RETURN_IF_ERROR(Look(grey, quick_, found));
+    SeenBoards seen = Assemble(grey, std::move(found));
     if (HasAllTags(seen)) return seen;
   }
-  if (Expected<void> ok = Look(*grey, detectors_, checkers); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
-  return Assemble(*grey, std::move(checkers));
+  SEXTANT_RETURN_IF_ERROR(Look(grey, detectors_, checkers));
+  return Assemble(grey, std::move(checkers));
 }
 
 SeenBoards BoardFinder::Assemble(const cv::Mat& grey, Detections found) const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/camera/grey_image.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <opencv2/imgproc.hpp>
 

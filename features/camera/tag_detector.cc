@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/camera/tag_detector.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <opencv2/core.hpp>
@@ -49,10 +49,9 @@ void Sort(std::vector<TagDetection>& tags) {
 }  // namespace
 
 Expected<Detections> TagDetector::Detect(const cv::Mat& image) const {
-  const Expected<cv::Mat> grey = ToGrey(image);
-  if (!grey) return tl::unexpected<Error>(grey.error());
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat grey, ToGrey(image));
   try {
-    Detections found = DoDetect(*grey);
+    Detections found = DoDetect(grey);
     Sort(found.tags);
     return found;
   } catch (const cv::Exception& error) {
@@ -68,25 +67,22 @@ const std::vector<TagDetectorEntry>& TagDetectorEntries() {
 }
 
 Expected<TagDetectorPtr> MakeTagDetector(std::string_view spec) {
-  const Expected<SpecNode> node = ParseSpec(spec);
-  if (!node) return tl::unexpected<Error>(node.error());
+  SEXTANT_ASSIGN_OR_RETURN(const SpecNode node, ParseSpec(spec));
   std::vector<std::string> known;
   for (const TagDetectorEntry& entry : TagDetectorEntries()) {
     known.push_back(entry.name);
-    if (entry.name != node->name) continue;
-    if (!node->inner.empty()) {
+    if (entry.name != node.name) continue;
+    if (!node.inner.empty()) {
       return MakeError(ErrorCode::kInvalidOption,
                        fmt::format("detector '{}' takes option=value in its parentheses, got '{}'; "
                                    "write {}",
-                                   entry.name, node->inner.front().name, entry.example));
+                                   entry.name, node.inner.front().name, entry.example));
     }
-    if (Expected<void> ok = CheckOptions(entry, node->options); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
-    return entry.make(FormatSpec(*node), node->options);
+    SEXTANT_RETURN_IF_ERROR(CheckOptions(entry, node.options));
+    return entry.make(FormatSpec(node), node.options);
   }
-  return MakeError(ErrorCode::kUnknownName, fmt::format("unknown detector '{}'; {}", node->name,
-                                                        SuggestName(node->name, known)));
+  return MakeError(ErrorCode::kUnknownName, fmt::format("unknown detector '{}'; {}", node.name,
+                                                        SuggestName(node.name, known)));
 }
 
 Expected<std::string> DetectorSpecFor(std::string_view family) {

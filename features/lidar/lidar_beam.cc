@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/lidar/lidar_beam.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "base/nearest_name.h"
 #include "base/units.h"

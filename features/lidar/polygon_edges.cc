@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/lidar/polygon_edges.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -271,10 +271,9 @@ Expected<std::vector<BoardPatch>> PatchesFromPolygons(const ScanRings& scan, con
                       "of that id (--ids of sextant mark gives another)",
                       marked.id));
     }
-    Expected<BoardPatch> patch = MarkedPatch(scan, marks, marked, *board, options)
-                                     .Make(static_cast<int>(board - boards.begin()));
-    if (!patch) return tl::unexpected<Error>(std::move(patch.error()));
-    patches.push_back(std::move(*patch));
+    SEXTANT_ASSIGN_OR_RETURN(BoardPatch patch, MarkedPatch(scan, marks, marked, *board, options)
+                                                   .Make(static_cast<int>(board - boards.begin())));
+    patches.push_back(std::move(patch));
   }
   return patches;
 }

@@ -2,7 +2,7 @@
 #include "io/bag/decompress.h"
 
 #include <bzlib.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <lz4frame.h>
 #include <zstd.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // MCAP, mcap.dev/spec: records of an operation, a length and as many bytes.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <limits>
 #include <map>
@@ -112,9 +112,8 @@ class Mcap final : public Bag {
           if (op != McapOp::kChunk) return take(file_, op, content, begin + kMagic.size());
           const std::string where =
               fmt::format("{}: chunk at byte {}", file_, begin + kMagic.size());
-          const Expected<std::string> inside = Unpack(where, content);
-          if (!inside) return tl::unexpected<Error>(inside.error());
-          return ForEachRecord(*inside, where,
+          SEXTANT_ASSIGN_OR_RETURN(const std::string inside, Unpack(where, content));
+          return ForEachRecord(inside, where,
                                [&](McapOp inner, std::string_view record, std::size_t at) {
                                  return take(where, inner, record, at);
                                });
@@ -188,7 +187,7 @@ class Mcap final : public Bag {
 Expected<std::unique_ptr<Bag>> OpenMcap(std::string_view bytes, const std::string& file,
                                         std::shared_ptr<const void> owner) {
   auto bag = std::make_unique<Mcap>(bytes, file, std::move(owner));
-  if (Expected<void> ok = bag->Open(); !ok) return tl::unexpected<Error>(std::move(ok.error()));
+  SEXTANT_RETURN_IF_ERROR(bag->Open());
   return std::unique_ptr<Bag>(std::move(bag));
 }
 

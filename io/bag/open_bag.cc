@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/bag/mapped_file.h"
 #include "io/bag/open_bytes.h"
@@ -46,15 +46,13 @@ Expected<std::filesystem::path> RecordingIn(const std::filesystem::path& folder)
 Expected<std::unique_ptr<Bag>> OpenBag(const std::filesystem::path& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
-    const Expected<std::filesystem::path> inside = RecordingIn(path);
-    if (!inside) return tl::unexpected<Error>(inside.error());
-    return OpenBag(*inside);
+    SEXTANT_ASSIGN_OR_RETURN(const std::filesystem::path inside, RecordingIn(path));
+    return OpenBag(inside);
   }
-  const Expected<std::shared_ptr<const MappedFile>> file = MappedFile::Open(path);
-  if (!file) return tl::unexpected<Error>(file.error());
-  const std::string_view bytes = (*file)->bytes();
-  if (bytes.starts_with("#ROSBAG"sv)) return OpenRosbag1(bytes, path.string(), *file);
-  if (bytes.starts_with("\x89MCAP"sv)) return OpenMcap(bytes, path.string(), *file);
+  SEXTANT_ASSIGN_OR_RETURN(const std::shared_ptr<const MappedFile> file, MappedFile::Open(path));
+  const std::string_view bytes = (file)->bytes();
+  if (bytes.starts_with("#ROSBAG"sv)) return OpenRosbag1(bytes, path.string(), file);
+  if (bytes.starts_with("\x89MCAP"sv)) return OpenMcap(bytes, path.string(), file);
   if (bytes.starts_with("SQLite format 3\0"sv)) return OpenRosbag2Sqlite(path);
   const char* hint = bytes.starts_with("\x28\xb5\x2f\xfd"sv)
                          ? "; it is compressed as a whole: run `unzstd` on it first"

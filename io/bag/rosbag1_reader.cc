@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <map>
 
@@ -79,10 +79,9 @@ Expected<void> Rosbag1::Open() {
   BagRecords records(bytes_.substr(kRosbag1Magic.size()), kRosbag1Magic.size(), file_);
   if (Expected<void> ok = CheckBagHeader(records); !ok) return ok;
   while (true) {
-    const Expected<std::optional<BagRecord>> record = records.Next();
-    if (!record) return tl::unexpected<Error>(record.error());
-    if (!*record) break;
-    if (Expected<void> ok = TakeRecord(records, **record); !ok) return ok;
+    SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
+    if (!record) break;
+    if (Expected<void> ok = TakeRecord(records, *record); !ok) return ok;
   }
   if (!has_index_) return CountContents();
   for (const auto& [id, counted] : indexed_) {
@@ -100,12 +99,11 @@ Expected<void> Rosbag1::Open() {
 }
 
 Expected<void> Rosbag1::CheckBagHeader(BagRecords& records) {
-  const Expected<std::optional<BagRecord>> record = records.Next();
-  if (!record) return tl::unexpected<Error>(record.error());
-  if (!*record || OpOf((*record)->fields) != BagOp::kBagHeader) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
+  if (!record || OpOf((record)->fields) != BagOp::kBagHeader) {
     return records.Fail("expected the bag's header");
   }
-  const BagFields& fields = (*record)->fields;
+  const BagFields& fields = (record)->fields;
   if (!TextField(fields, "encryptor").empty()) {
     return records.Fail("this bag is encrypted; decrypt it with ROS first");
   }
@@ -160,17 +158,16 @@ Expected<void> Rosbag1::CountContents() {
     if (!contents) break;  // Read() says what is wrong with it.
     BagRecords records(*contents, 0, fmt::format("{}: chunk at byte {}", file_, chunk.begin));
     while (true) {
-      const Expected<std::optional<BagRecord>> record = records.Next();
-      if (!record) return tl::unexpected<Error>(record.error());
-      if (!*record) break;
-      const std::optional<BagOp> op = OpOf((*record)->fields);
+      SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
+      if (!record) break;
+      const std::optional<BagOp> op = OpOf((record)->fields);
       if (op == BagOp::kConnection) {
-        Expected<void> ok = AddConnection(records, **record, topics_, connections_);
+        Expected<void> ok = AddConnection(records, *record, topics_, connections_);
         if (!ok) return ok;
       }
       if (op != BagOp::kMessage) continue;
-      const auto known = connections_.find(Uint32Field((*record)->fields, "conn").value_or(~0U));
-      const std::optional<std::int64_t> time = TimeField((*record)->fields, "time");
+      const auto known = connections_.find(Uint32Field((record)->fields, "conn").value_or(~0U));
+      const std::optional<std::int64_t> time = TimeField((record)->fields, "time");
       if (known != connections_.end() && time) CountMessage(topics_[known->second], *time);
     }
   }
@@ -203,10 +200,9 @@ Expected<void> Rosbag1::VisitChunk(const Chunk& chunk, const Visitor& visit) con
   }
   BagRecords records(contents, 0, where);
   while (true) {
-    const Expected<std::optional<BagRecord>> record = records.Next();
-    if (!record) return tl::unexpected<Error>(record.error());
-    if (!*record) return {};
-    const BagFields& fields = (*record)->fields;
+    SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
+    if (!record) return {};
+    const BagFields& fields = (record)->fields;
     if (OpOf(fields) != BagOp::kMessage) continue;
     const std::optional<std::uint32_t> id = Uint32Field(fields, "conn");
     const std::optional<std::int64_t> time = TimeField(fields, "time");
@@ -214,7 +210,7 @@ Expected<void> Rosbag1::VisitChunk(const Chunk& chunk, const Visitor& visit) con
     if (!time || known == connections_.end()) {
       return records.Fail("expected a message with its time and a known connection");
     }
-    const BagMessage message{&topics_[known->second], known->second, *time, (*record)->data};
+    const BagMessage message{&topics_[known->second], known->second, *time, (record)->data};
     if (Expected<void> ok = visit(message); !ok) return ok;
   }
 }
@@ -224,7 +220,7 @@ Expected<void> Rosbag1::VisitChunk(const Chunk& chunk, const Visitor& visit) con
 Expected<std::unique_ptr<Bag>> OpenRosbag1(std::string_view bytes, const std::string& file,
                                            std::shared_ptr<const void> owner) {
   auto bag = std::make_unique<Rosbag1>(bytes, file, std::move(owner));
-  if (Expected<void> ok = bag->Open(); !ok) return tl::unexpected<Error>(std::move(ok.error()));
+  SEXTANT_RETURN_IF_ERROR(bag->Open());
   return std::unique_ptr<Bag>(std::move(bag));
 }
 

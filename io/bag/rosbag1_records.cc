@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/bag/rosbag1_records.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/bag/byte_reader.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/bag/rosbag1_writer.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -269,7 +269,7 @@ Rosbag1Writer::~Rosbag1Writer() = default;
 Expected<Rosbag1Writer> Rosbag1Writer::Create(const std::filesystem::path& path,
                                               BagCompression compression) {
   auto impl = std::make_unique<Impl>(path, compression);
-  if (Expected<void> ok = impl->Open(); !ok) return tl::unexpected<Error>(std::move(ok.error()));
+  SEXTANT_RETURN_IF_ERROR(impl->Open());
   return Rosbag1Writer(std::move(impl));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // ROS 2's recordings as SQLite databases: tables topics and messages (rosbag2_storage_sqlite3).
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <sqlite3.h>
 
 #include <algorithm>
@@ -159,7 +159,7 @@ Expected<void> Rosbag2Sqlite::VisitRow(sqlite3_stmt* row, const Visitor& visit) 
 
 Expected<std::unique_ptr<Bag>> OpenRosbag2Sqlite(const std::filesystem::path& path) {
   auto bag = std::make_unique<Rosbag2Sqlite>(path);
-  if (Expected<void> ok = bag->Open(); !ok) return tl::unexpected<Error>(std::move(ok.error()));
+  SEXTANT_RETURN_IF_ERROR(bag->Open());
   return std::unique_ptr<Bag>(std::move(bag));
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/blocks/board_view_block.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/blocks/pose_block.h"
 #include "solvers/core/board_view_check.h"

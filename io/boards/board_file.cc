@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/boards/board_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <numbers>
 
@@ -20,24 +20,22 @@ bool IsMarkerCoordinates(std::string_view text, const std::string& file) {
 }
 
 Expected<std::vector<Board>> ParseMarkerBoards(std::string_view text, const std::string& file) {
-  const auto markers = ParseMarkerCoordinates(text, file);
-  if (!markers) return tl::unexpected<Error>(markers.error());
-  return BoardsWithTags(*markers).map_error([&](Error&& error) {
+  SEXTANT_ASSIGN_OR_RETURN(const auto markers, ParseMarkerCoordinates(text, file));
+  return BoardsWithTagsmarkers.map_error([&](Error&& error) {
     return Error{error.code, ToString(Place{.file = file}) + ": " + error.message};
   });
 }
 
 Expected<std::vector<Board>> ParseBoardYaml(std::string_view text, const std::string& file) {
   static const std::vector<std::string> kKeys = {"boards"};
-  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
-  if (!root) return tl::unexpected<Error>(root.error());
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
   YamlFields in(file);
   std::vector<const YamlNode*> nodes;
-  const YamlNode* list = root->Find("boards");
-  if (list == nullptr && root->Find("top_right_m") != nullptr) {
-    nodes.push_back(&*root);
-  } else if (in.IsMap(*root, "boards", kKeys) &&
-             in.IsSequence(in.Require(*root, "boards"), "boards")) {
+  const YamlNode* list = root.Find("boards");
+  if (list == nullptr && root.Find("top_right_m") != nullptr) {
+    nodes.push_back(&root);
+  } else if (in.IsMap(root, "boards", kKeys) &&
+             in.IsSequence(in.Require(root, "boards"), "boards")) {
     for (const YamlNode& item : list->items) nodes.push_back(&item);
     if (nodes.empty()) in.Fail(list->line, "boards", "expected at least one board");
   }

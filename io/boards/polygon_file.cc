@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/boards/polygon_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <vector>
@@ -114,17 +114,16 @@ Expected<ScanMarks> ReadPolygons(const std::filesystem::path& path) {
 }
 
 Expected<ScanMarks> ParsePolygons(std::string_view text, const std::string& file) {
-  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
-  if (!root) return tl::unexpected<Error>(root.error());
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
   YamlFields in(file);
-  ReadPolygonHeader(in, *root);
+  ReadPolygonHeader(in, root);
   if (!in.ok()) return in.TakeError();
   ScanMarks marks;
-  marks.camera = ReadCameraBlock(in, in.Require(*root, "camera"));
-  marks.cam_from_lidar = ReadPoseBlock(in, in.Require(*root, "cam_from_lidar"), "cam_from_lidar");
-  if (const YamlNode* boards = root->Find("boards")) ReadPolygonBoards(in, *boards, marks.boards);
-  if (const YamlNode* corners = root->Find("corners")) ReadCorners(in, *corners, marks.corners);
-  const YamlNode* unfinished = root->Find("unfinished");
+  marks.camera = ReadCameraBlock(in, in.Require(root, "camera"));
+  marks.cam_from_lidar = ReadPoseBlock(in, in.Require(root, "cam_from_lidar"), "cam_from_lidar");
+  if (const YamlNode* boards = root.Find("boards")) ReadPolygonBoards(in, *boards, marks.boards);
+  if (const YamlNode* corners = root.Find("corners")) ReadCorners(in, *corners, marks.corners);
+  const YamlNode* unfinished = root.Find("unfinished");
   if (unfinished != nullptr && IsList(in, *unfinished, "unfinished", kEdges - 1)) {
     for (const YamlNode& node : unfinished->items) {
       marks.unfinished.push_back(ReadPixel(in, node, "unfinished"));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/cameras/camera_parts.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 
@@ -47,10 +47,9 @@ Expected<Camera> CameraFromParts(const CameraParts& parts) {
     return MakeError(ErrorCode::kInvalidInput,
                      "expected a camera matrix fx 0 cx 0 fy cy 0 0 1 (without skew)");
   }
-  const Expected<CameraModel> model = ModelOf(parts);
-  if (!model) return tl::unexpected<Error>(model.error());
+  SEXTANT_ASSIGN_OR_RETURN(const CameraModel model, ModelOf(parts));
   Camera camera;
-  camera.model = *model;
+  camera.model = model;
   camera.width_px = parts.width_px;
   camera.height_px = parts.height_px;
   camera.fx_px = k[0];
@@ -61,9 +60,7 @@ Expected<Camera> CameraFromParts(const CameraParts& parts) {
     const std::size_t count = std::min(parts.distortion.size(), camera.distortion.size());
     std::copy_n(parts.distortion.begin(), count, camera.distortion.begin());
   }
-  if (Expected<void> valid = ValidateCamera(camera); !valid) {
-    return tl::unexpected<Error>(std::move(valid.error()));
-  }
+  SEXTANT_RETURN_IF_ERROR(ValidateCamera(camera));
   return camera;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <initializer_list>
@@ -67,28 +67,27 @@ void ReadMatrices(YamlFields& in, const YamlNode& root, const YamlNode& matrix, 
 }  // namespace
 
 Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file) {
-  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
-  if (!root) return tl::unexpected<Error>(root.error());
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
   YamlFields in(file);
-  if (const YamlNode* block = root->Find("camera")) {
+  if (const YamlNode* block = root.Find("camera")) {
     const Camera camera = ReadCameraBlock(in, *block);
     if (!in.ok()) return in.TakeError();
     return camera;
   }
   CameraParts parts;
   std::vector<double> distortion;
-  if (const YamlNode* matrix = FindAny(*root, {"camera_matrix", "K", "k"})) {
-    ReadMatrices(in, *root, *matrix, parts, distortion);
-  } else if (root->Find("fx") != nullptr) {
-    ReadFlat(in, *root, parts, distortion);
+  if (const YamlNode* matrix = FindAny(root, {"camera_matrix", "K", "k"})) {
+    ReadMatrices(in, root, *matrix, parts, distortion);
+  } else if (root.Find("fx") != nullptr) {
+    ReadFlat(in, root, parts, distortion);
   } else {
-    in.Fail(root->line, {},
+    in.Fail(root.line, {},
             "expected a camera: camera_matrix, K, fx or camera; none of them is there");
   }
-  parts.width_px = ReadSize(in, *root, "width", "image_width");
-  parts.height_px = ReadSize(in, *root, "height", "image_height");
+  parts.width_px = ReadSize(in, root, "width", "image_width");
+  parts.height_px = ReadSize(in, root, "height", "image_height");
   std::string model;
-  if (root->Find("distortion_model") != nullptr) model = in.TextAt(*root, "distortion_model");
+  if (root.Find("distortion_model") != nullptr) model = in.TextAt(root, "distortion_model");
   if (!in.ok()) return in.TakeError();
   parts.distortion = distortion;
   parts.model = model;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/clouds/kitti_cloud.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/clouds/cloud_builder.h"
 #include "io/clouds/scalar_type.h"

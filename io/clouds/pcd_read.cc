@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <lzf.h>
 
 #include <algorithm>
@@ -269,19 +269,17 @@ Expected<PointCloud> ReadCompressed(const PcdHeader& header, const CloudFields& 
 Expected<PointCloud> ReadPcd(const std::filesystem::path& path) { return ReadWith(path, ParsePcd); }
 
 Expected<PointCloud> ParsePcd(std::string_view text, const std::string& file) {
-  const Expected<PcdHeader> header = ParsePcdHeader(text, file);
-  if (!header) return tl::unexpected<Error>(header.error());
-  const Expected<CloudFields> fields = FindFields(*header, file);
-  if (!fields) return tl::unexpected<Error>(fields.error());
-  switch (header->encoding) {
+  SEXTANT_ASSIGN_OR_RETURN(const PcdHeader header, ParsePcdHeader(text, file));
+  SEXTANT_ASSIGN_OR_RETURN(const CloudFields fields, FindFields(header, file));
+  switch (header.encoding) {
     case PcdEncoding::kAscii:
-      return ReadAscii(*header, *fields, text, file);
+      return ReadAscii(header, fields, text, file);
     case PcdEncoding::kBinary:
-      return ReadBinary(*header, *fields, text, file);
+      return ReadBinary(header, fields, text, file);
     case PcdEncoding::kBinaryCompressed:
       break;
   }
-  return ReadCompressed(*header, *fields, text, file);
+  return ReadCompressed(header, fields, text, file);
 }
 
 }  // namespace sextant

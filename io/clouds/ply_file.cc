@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/clouds/ply_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <limits>
@@ -150,18 +150,16 @@ Expected<CloudColumns> VertexColumns(const PlyElement& vertex, const std::string
 Expected<PointCloud> ReadPly(const std::filesystem::path& path) { return ReadWith(path, ParsePly); }
 
 Expected<PointCloud> ParsePly(std::string_view bytes, const std::string& file) {
-  const Expected<PlyHeader> header = ParsePlyHeader(bytes, file);
-  if (!header) return tl::unexpected<Error>(header.error());
-  Body body(bytes, file, *header);
+  SEXTANT_ASSIGN_OR_RETURN(const PlyHeader header, ParsePlyHeader(bytes, file));
+  Body body(bytes, file, header);
   std::vector<double> values;
-  for (const PlyElement& element : header->elements) {
-    CheckCount(element, header->encoding, body);
+  for (const PlyElement& element : header.elements) {
+    CheckCount(element, header.encoding, body);
     const bool is_vertex = element.name == "vertex";
     CloudColumns columns;
     if (is_vertex) {
-      const Expected<CloudColumns> found = VertexColumns(element, file);
-      if (!found) return tl::unexpected<Error>(found.error());
-      columns = *found;
+      SEXTANT_ASSIGN_OR_RETURN(const CloudColumns found, VertexColumns(element, file));
+      columns = found;
     }
     CloudBuilder builder(columns);
     for (std::size_t row = 0; row < element.count && body.ok(); ++row) {

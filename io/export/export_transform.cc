@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/export/export_transform.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cctype>
@@ -64,9 +64,7 @@ const std::vector<ExportFormat>& ExportFormats() {
 
 Expected<std::string> ExportTransform(std::string_view format, const CalibrationResult& result,
                                       const ExportOptions& options) {
-  if (const Expected<void> ok = CheckFrames(options); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  SEXTANT_RETURN_IF_ERROR(CheckFrames(options));
   const NamedTransform named = Named(result, options);
   const Camera* camera = result.camera ? &*result.camera : nullptr;
   if (format == "ros1") return Ros1LaunchText(named);

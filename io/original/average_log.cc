@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/original/average_log.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/blocks/rigid_matrix.h"
 #include "io/text/line_reader.h"

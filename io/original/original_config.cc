@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/original/original_config.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/text/line_reader.h"
 #include "io/text/text_file.h"

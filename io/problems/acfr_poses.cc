@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/problems/acfr_poses.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 
@@ -98,14 +98,13 @@ Expected<std::vector<int>> RelabelledAcfrPoses(std::span<const AcfrPose> poses) 
     groups.push_back({{pose.in_cam.corners_m.begin(), pose.in_cam.corners_m.end()},
                       {pose.in_lidar.corners_m.begin(), pose.in_lidar.corners_m.end()}});
   }
-  const Expected<CornerOrderFit> fit = ResolveCornerOrders(groups);
-  if (!fit) return tl::unexpected<Error>(fit.error());
-  const auto usual = std::ranges::max_element(fit->orders, {}, [&](const CornerOrder& order) {
-    return std::ranges::count(fit->orders, order);
+  SEXTANT_ASSIGN_OR_RETURN(const CornerOrderFit fit, ResolveCornerOrders(groups));
+  const auto usual = std::ranges::max_element(fit.orders, {}, [&](const CornerOrder& order) {
+    return std::ranges::count(fit.orders, order);
   });
   std::vector<int> relabelled;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (fit->orders[i] != *usual) relabelled.push_back(poses[i].id);
+    if (fit.orders[i] != *usual) relabelled.push_back(poses[i].id);
   }
   return relabelled;
 }
@@ -114,8 +113,7 @@ Expected<CalibrationProblem> ProblemFromAcfrPoses(std::span<const AcfrPose> pose
                                                   AcfrPoints points) {
   std::vector<CornerGroup> groups;
   for (const AcfrPose& pose : poses) groups.push_back(GroupOf(pose));
-  const Expected<CornerOrderFit> fit = ResolveCornerOrders(groups);
-  if (!fit) return tl::unexpected<Error>(fit.error());
+  SEXTANT_ASSIGN_OR_RETURN(const CornerOrderFit fit, ResolveCornerOrders(groups));
   CalibrationProblem problem;
   const auto add = [&problem](const Eigen::Vector3d& in_cam, const Eigen::Vector3d& in_lidar,
                               PairId id) {
@@ -127,7 +125,7 @@ Expected<CalibrationProblem> ProblemFromAcfrPoses(std::span<const AcfrPose> pose
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const int view = static_cast<int>(i);
     for (int k = 0; k < kCornersPerBoard; ++k) {
-      const int in_lidar = fit->orders[i].IndexInA(k, kCornersPerBoard);
+      const int in_lidar = fit.orders[i].IndexInA(k, kCornersPerBoard);
       add(groups[i].in_b[static_cast<std::size_t>(k)],
           groups[i].in_a[static_cast<std::size_t>(in_lidar)],
           {.view = view, .board = 0, .corner = k});

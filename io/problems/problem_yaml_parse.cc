@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/blocks/board_block.h"
 #include "io/blocks/board_view_block.h"
@@ -107,34 +107,33 @@ Expected<ProblemFile> ReadProblemYaml(const std::filesystem::path& path) {
 }
 
 Expected<ProblemFile> ParseProblemYaml(std::string_view text, const std::string& file) {
-  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
-  if (!root) return tl::unexpected<Error>(root.error());
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
   YamlFields in(file);
-  ReadProblemHeader(in, *root);
+  ReadProblemHeader(in, root);
   if (!in.ok()) return in.TakeError();
 
   ProblemFile read;
   CalibrationProblem& problem = read.problem;
-  if (root->Find("comment") != nullptr) read.comment = in.TextAt(*root, "comment");
-  if (const YamlNode* node = root->Find("camera")) problem.camera = ReadCameraBlock(in, *node);
-  if (const YamlNode* node = root->Find("boards")) ReadProblemBoards(in, *node, problem.boards);
-  if (const YamlNode* node = root->Find("initial_cam_from_lidar")) {
+  if (root.Find("comment") != nullptr) read.comment = in.TextAt(root, "comment");
+  if (const YamlNode* node = root.Find("camera")) problem.camera = ReadCameraBlock(in, *node);
+  if (const YamlNode* node = root.Find("boards")) ReadProblemBoards(in, *node, problem.boards);
+  if (const YamlNode* node = root.Find("initial_cam_from_lidar")) {
     problem.initial_cam_from_lidar = ReadPoseBlock(in, *node, "initial_cam_from_lidar");
   }
-  if (const YamlNode* node = root->Find("pairs_3d3d")) ReadPairs3d3d(in, *node, problem.pairs_3d3d);
-  if (const YamlNode* node = root->Find("pairs_2d3d")) ReadPairs2d3d(in, *node, problem.pairs_2d3d);
-  if (const YamlNode* node = root->Find("board_views")) {
+  if (const YamlNode* node = root.Find("pairs_3d3d")) ReadPairs3d3d(in, *node, problem.pairs_3d3d);
+  if (const YamlNode* node = root.Find("pairs_2d3d")) ReadPairs2d3d(in, *node, problem.pairs_2d3d);
+  if (const YamlNode* node = root.Find("board_views")) {
     problem.board_views = ReadBoardViews(in, *node, problem.boards);
   }
   problem.point_sets = WithholdPairing(problem.pairs_3d3d);
-  if (const YamlNode* node = root->Find("point_sets")) {
+  if (const YamlNode* node = root.Find("point_sets")) {
     static const Keys kKeys = {"in_cam", "in_lidar"};
     if (in.IsMap(*node, "point_sets", kKeys)) {
       problem.point_sets.in_cam = ReadPointList(in, in.Require(*node, "in_cam"), "in_cam");
       problem.point_sets.in_lidar = ReadPointList(in, in.Require(*node, "in_lidar"), "in_lidar");
     }
   }
-  if (const YamlNode* node = root->Find("truth")) {
+  if (const YamlNode* node = root.Find("truth")) {
     static const Keys kKeys = {"cam_from_lidar"};
     if (in.IsMap(*node, "truth", kKeys)) {
       read.true_cam_from_lidar =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <charconv>
 #include <cmath>
@@ -327,13 +327,12 @@ Expected<CalibrationResult> ReadCalibrationResult(const std::filesystem::path& p
 
 Expected<CalibrationResult> ParseCalibrationResult(std::string_view text, const std::string& file) {
   // JSON is YAML, too.
-  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
-  if (!root) return tl::unexpected<Error>(root.error());
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
   YamlFields in(file);
-  ReadResultHeader(in, *root);
+  ReadResultHeader(in, root);
   if (!in.ok()) return in.TakeError();
   CalibrationResult result;
-  ReadBody(in, *root, result);
+  ReadBody(in, root, result);
   if (!in.ok()) return in.TakeError();
   return result;
 }

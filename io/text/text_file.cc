@@ -2,7 +2,7 @@
 #include "io/text/text_file.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -132,10 +132,9 @@ Expected<void> AtomicFileWriter::Commit() {
 }
 
 Expected<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view text) {
-  Expected<AtomicFileWriter> writer = AtomicFileWriter::Open(path);
-  if (!writer) return tl::unexpected<Error>(std::move(writer.error()));
-  if (Expected<void> ok = writer->Append(text); !ok) return ok;
-  return writer->Commit();
+  SEXTANT_ASSIGN_OR_RETURN(AtomicFileWriter writer, AtomicFileWriter::Open(path));
+  if (Expected<void> ok = writer.Append(text); !ok) return ok;
+  return writer.Commit();
 }
 
 }  // namespace sextant

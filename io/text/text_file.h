@@ -51,9 +51,8 @@ class AtomicFileWriter {
 template <class Parse>
 std::invoke_result_t<Parse, std::string_view, std::string> ReadWith(
     const std::filesystem::path& path, Parse parse) {
-  const Expected<std::string> text = ReadTextFile(path);
-  if (!text) return tl::unexpected<Error>(text.error());
-  return parse(std::string_view{*text}, path.string());
+  SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
+  return parse(std::string_view{text}, path.string());
 }
 
 }  // namespace sextant

@@ -46,13 +46,12 @@ double LidarSpot::RadiusAt(double range_m) const {
 
 Expected<LidarBeams> LidarBeams::Make(const Scene& scene, const LidarSpot& spot,
                                       double pulse_length_m) {
-  Expected<std::vector<LidarTarget>> targets = MakeLidarTargets(scene);
-  if (!targets) return tl::unexpected<Error>(targets.error());
+  SEXTANT_ASSIGN_OR_RETURN(std::vector<LidarTarget> targets, MakeLidarTargets(scene));
   LidarBeams beams;
   beams.world_from_lidar_ = scene.lidar.world_from_lidar;
   beams.spot_ = spot;
   beams.pulse_length_m_ = pulse_length_m;
-  for (LidarTarget& target : *targets) {
+  for (LidarTarget& target : targets) {
     Coned coned;
     const double distance = target.center_in_lidar.norm();
     coned.spot_radius_m = spot.RadiusAt(distance + target.reach_m);

@@ -78,9 +78,7 @@ Rigid3d LidarTarget::TargetFromLidar(const Rigid3d& world_from_lidar, double tim
 }
 
 Expected<std::vector<LidarTarget>> MakeLidarTargets(const Scene& scene) {
-  if (const Expected<void> ok = CheckLidarScene(scene); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  SEXTANT_RETURN_IF_ERROR(CheckLidarScene(scene));
   const Rigid3d lidar_from_world = scene.lidar.world_from_lidar.Inverse();
   std::vector<LidarTarget> targets;
   const auto add = [&targets](LidarTarget target, std::size_t index) {
@@ -107,9 +105,7 @@ Expected<std::vector<LidarTarget>> MakeLidarTargets(const Scene& scene) {
   for (std::size_t i = 0; i < scene.cylinders.size(); ++i) {
     add(FromCylinder(scene.cylinders[i], lidar_from_world), i);
   }
-  if (const Expected<void> ok = CheckLidarOutside(scene, targets); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  SEXTANT_RETURN_IF_ERROR(CheckLidarOutside(scene, targets));
   return targets;
 }
 

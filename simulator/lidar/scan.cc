@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/lidar/scan.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -162,9 +162,7 @@ SimulatedScan Collect(const std::vector<Slot>& slots, int beams, bool with_rings
 
 Expected<SimulatedScan> SimulateScan(const Scene& scene, const LidarModel& model,
                                      const ScanOptions& options) {
-  if (const Expected<void> valid = ValidateLidarModel(model); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  SEXTANT_RETURN_IF_ERROR(ValidateLidarModel(model));
   LidarSpot spot;
   if (options.divergence) {
     spot = {.aperture_h_m = model.aperture_h_m,
@@ -172,9 +170,9 @@ Expected<SimulatedScan> SimulateScan(const Scene& scene, const LidarModel& model
             .divergence_h_rad = model.divergence_h_rad,
             .divergence_v_rad = model.divergence_v_rad};
   }
-  const Expected<LidarBeams> beams = LidarBeams::Make(scene, spot, model.pulse_length_m);
-  if (!beams) return tl::unexpected<Error>(beams.error());
-  const Scanner scanner(model, options, *beams);
+  SEXTANT_ASSIGN_OR_RETURN(const LidarBeams beams,
+                           LidarBeams::Make(scene, spot, model.pulse_length_m));
+  const Scanner scanner(model, options, beams);
   const int columns = ColumnCount(model);
   const int per_column = scanner.Beams();
   std::vector<Slot> slots(static_cast<std::size_t>(columns) * static_cast<std::size_t>(per_column));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/scene/camera_model.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <array>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/scene/scene_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "base/units.h"
 #include "io/blocks/board_block.h"
@@ -175,22 +175,21 @@ Expected<Scene> ReadScene(const std::filesystem::path& path) { return ReadWith(p
 Expected<Scene> ParseScene(std::string_view text, const std::string& file) {
   static const Keys kKeys = {"sextant_scene", "name",  "lidar",     "cameras",          "boards",
                              "walls",         "boxes", "cylinders", "background_albedo"};
-  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
-  if (!root) return tl::unexpected<Error>(root.error());
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
   YamlFields in(file);
   Scene scene;
-  if (in.IsMap(*root, "scene", kKeys)) {
-    in.IntegerAt(*root, "sextant_scene", 1, 1);
-    scene.name = NameAt(in, *root);
-    scene.lidar = ReadLidar(in, in.Require(*root, "lidar"));
-    for (const YamlNode* item : ItemsAt(in, *root, "cameras", kMaxSceneCameras)) {
+  if (in.IsMap(root, "scene", kKeys)) {
+    in.IntegerAt(root, "sextant_scene", 1, 1);
+    scene.name = NameAt(in, root);
+    scene.lidar = ReadLidar(in, in.Require(root, "lidar"));
+    for (const YamlNode* item : ItemsAt(in, root, "cameras", kMaxSceneCameras)) {
       ReadCamera(in, *item, scene.cameras);
     }
-    ReadBoards(in, *root, scene);
-    ReadList(in, *root, "walls", ReadWall, scene.walls);
-    ReadList(in, *root, "boxes", ReadBox, scene.boxes);
-    ReadList(in, *root, "cylinders", ReadCylinder, scene.cylinders);
-    scene.background_albedo = in.RealAt(*root, "background_albedo", scene.background_albedo);
+    ReadBoards(in, root, scene);
+    ReadList(in, root, "walls", ReadWall, scene.walls);
+    ReadList(in, root, "boxes", ReadBox, scene.boxes);
+    ReadList(in, root, "cylinders", ReadCylinder, scene.cylinders);
+    scene.background_albedo = in.RealAt(root, "background_albedo", scene.background_albedo);
   }
   if (!in.ok()) return in.TakeError();
   return scene;

@@ -168,20 +168,18 @@ cv::Mat ImagePanel(const cv::Mat& image) {
 }  // namespace
 
 Expected<cv::Mat> DrawContactSheet(const Scene& scene, std::uint64_t seed) {
-  if (Expected<void> ok = ValidateScene(scene); !ok) return tl::unexpected<Error>(ok.error());
-  const Expected<LidarModel> model = FindLidarModel(scene.lidar.model);
-  if (!model) return tl::unexpected<Error>(model.error());
-  const Expected<SimulatedScan> scan = SimulateScan(scene, *model, {.seed = seed});
-  if (!scan) return tl::unexpected<Error>(scan.error());
-  const double middle_s = 0.5 * model->turn_period_s;
-  const Expected<cv::Mat> image = RenderImage(scene, 0, UsualImageOptions(seed, middle_s));
-  if (!image) return tl::unexpected<Error>(image.error());
+  SEXTANT_RETURN_IF_ERROR(ValidateScene(scene));
+  SEXTANT_ASSIGN_OR_RETURN(const LidarModel model, FindLidarModel(scene.lidar.model));
+  SEXTANT_ASSIGN_OR_RETURN(const SimulatedScan scan, SimulateScan(scene, model, {.seed = seed}));
+  const double middle_s = 0.5 * model.turn_period_s;
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat image,
+                           RenderImage(scene, 0, UsualImageOptions(seed, middle_s)));
   const std::vector<BoardTruth> boards = BoardsAt(scene, middle_s);
   const FrontView view(boards);
-  std::vector<cv::Mat> panels = {ImagePanel(*image), DrawScan(view, scan->cloud),
-                                 DrawEdges(view, scan->cloud, boards)};
+  std::vector<cv::Mat> panels = {ImagePanel(image), DrawScan(view, scan.cloud),
+                                 DrawEdges(view, scan.cloud, boards)};
   Caption(panels[0], "image of " + scene.cameras[0].name);
-  Caption(panels[1], "scan of " + model->name + ", seen from it; colour: range");
+  Caption(panels[1], "scan of " + model.name + ", seen from it; colour: range");
   Caption(panels[2], "points at jumps in range; grey: true outlines");
   cv::Mat sheet;
   cv::hconcat(panels, sheet);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/session/session.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -141,9 +141,8 @@ class Session {
 
   Expected<void> Complete(const std::string& name,
                           const std::function<Expected<std::string>()>& make) {
-    const Expected<bool> written = folder_.Complete(name, make);
-    if (!written) return tl::unexpected<Error>(written.error());
-    *written ? ++report_.written : ++report_.kept;
+    SEXTANT_ASSIGN_OR_RETURN(const bool written, folder_.Complete(name, make));
+    written ? ++report_.written : ++report_.kept;
     if (options_.step) options_.step();
     return {};
   }
@@ -160,16 +159,16 @@ class Session {
 
   Expected<std::string> ScanFile(const ScanTruth& truth) const {
     const bool real = !options_.ideal;
-    const Expected<SimulatedScan> scan = SimulateScan(scene_, lidar_,
-                                                      {.seed = options_.seed,
-                                                       .scan_index = truth.index,
-                                                       .start_time_s = truth.start_time_s,
-                                                       .noise = real,
-                                                       .quantisation = real,
-                                                       .divergence = real,
-                                                       .dropouts = real});
-    if (!scan) return tl::unexpected<Error>(scan.error());
-    return FormatPcd(scan->cloud, options_.encoding);
+    SEXTANT_ASSIGN_OR_RETURN(const SimulatedScan scan,
+                             SimulateScan(scene_, lidar_,
+                                          {.seed = options_.seed,
+                                           .scan_index = truth.index,
+                                           .start_time_s = truth.start_time_s,
+                                           .noise = real,
+                                           .quantisation = real,
+                                           .divergence = real,
+                                           .dropouts = real}));
+    return FormatPcd(scan.cloud, options_.encoding);
   }
 
   Expected<std::string> ImageFile(const ScanTruth& truth, std::size_t camera) const {
@@ -177,9 +176,9 @@ class Session {
     ideal.time_s = truth.image_time_s;
     const ImageOptions image_options =
         options_.ideal ? ideal : UsualImageOptions(truth.image_seeds[camera], truth.image_time_s);
-    const Expected<cv::Mat> image = RenderImage(scene_, static_cast<int>(camera), image_options);
-    if (!image) return tl::unexpected<Error>(image.error());
-    return options_.encode_image(*image);
+    SEXTANT_ASSIGN_OR_RETURN(const cv::Mat image,
+                             RenderImage(scene_, static_cast<int>(camera), image_options));
+    return options_.encode_image(image);
   }
 
   // More scans than an earlier run had change this file, so it is written anew.
@@ -240,14 +239,13 @@ long CountSessionFiles(const Scene& scene, const SessionOptions& options) {
 
 Expected<SessionReport> SimulateSession(const Scene& scene, std::string_view scene_text,
                                         const SessionOptions& options) {
-  if (Expected<void> ok = CheckOptions(options); !ok) return tl::unexpected<Error>(ok.error());
-  if (Expected<void> ok = ValidateScene(scene); !ok) return tl::unexpected<Error>(ok.error());
-  Expected<LidarModel> lidar = FindLidarModel(scene.lidar.model);
-  if (!lidar) return tl::unexpected<Error>(lidar.error());
+  SEXTANT_RETURN_IF_ERROR(CheckOptions(options));
+  SEXTANT_RETURN_IF_ERROR(ValidateScene(scene));
+  SEXTANT_ASSIGN_OR_RETURN(LidarModel lidar, FindLidarModel(scene.lidar.model));
   Expected<SessionFolder> folder =
       SessionFolder::Open(options.folder, scene_text, Configuration(options));
   if (!folder) return tl::unexpected<Error>(folder.error());
-  return Session(scene, options, std::move(*lidar), std::move(*folder)).Run();
+  return Session(scene, options, std::move(lidar), std::move(*folder)).Run();
 }
 
 }  // namespace sextant

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/session/session_folder.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <system_error>
 #include <vector>
@@ -26,9 +26,8 @@ Error FolderError(const fs::path& path, const std::error_code& reason) {
 }
 
 Expected<void> RequireSame(const fs::path& path, std::string_view expected) {
-  const Expected<std::string> text = ReadTextFile(path);
-  if (!text) return tl::unexpected<Error>(text.error());
-  if (*text == expected) return {};
+  SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
+  if (text == expected) return {};
   return MakeError(ErrorCode::kInvalidInput,
                    fmt::format("{}: the folder holds another simulation; remove it, or name "
                                "another folder",
@@ -89,9 +88,8 @@ Expected<bool> SessionFolder::Complete(const std::string& name,
                                        const std::function<Expected<std::string>()>& make) const {
   std::error_code ignored;
   if (fs::is_regular_file(path_ / name, ignored)) return false;
-  const Expected<std::string> text = make();
-  if (!text) return tl::unexpected<Error>(text.error());
-  if (auto ok = Write(name, *text); !ok) return tl::unexpected<Error>(ok.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::string text, make());
+  if (auto ok = Write(name, text); !ok) return tl::unexpected<Error>(ok.error());
   return true;
 }
 

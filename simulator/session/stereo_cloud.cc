@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/session/stereo_cloud.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <opencv2/calib3d.hpp>
@@ -47,10 +47,9 @@ Expected<Scene> RectifiedPair(const Scene& scene, int camera_index, double basel
                                  scene.name, scene.cameras.size(), camera_index));
   }
   SceneCamera left = scene.cameras[static_cast<std::size_t>(camera_index)];
-  const Expected<Camera> camera = RenderingCamera(left);
-  if (!camera) return tl::unexpected<Error>(camera.error());
+  SEXTANT_ASSIGN_OR_RETURN(const Camera camera, RenderingCamera(left));
   left.model.clear();
-  left.intrinsics = *camera;
+  left.intrinsics = camera;
   left.intrinsics.model = CameraModel::kPinhole;
   left.intrinsics.distortion.fill(0.0);
   left.told_intrinsics.reset();
@@ -67,15 +66,12 @@ Expected<StereoImages> RenderStereo(const Scene& scene, int camera_index, double
     return MakeError(ErrorCode::kInvalidInput,
                      fmt::format("expected a positive baseline, got {} m", baseline_m));
   }
-  const Expected<Scene> pair = RectifiedPair(scene, camera_index, baseline_m);
-  if (!pair) return tl::unexpected<Error>(pair.error());
+  SEXTANT_ASSIGN_OR_RETURN(const Scene pair, RectifiedPair(scene, camera_index, baseline_m));
   ImageOptions right_image = image;
   right_image.seed = DeriveSeed(image.seed, "stereo: right image", 0, 0);
-  Expected<cv::Mat> left = RenderImage(*pair, 0, image);
-  if (!left) return tl::unexpected<Error>(left.error());
-  Expected<cv::Mat> right = RenderImage(*pair, 1, right_image);
-  if (!right) return tl::unexpected<Error>(right.error());
-  return StereoImages{*left, *right, pair->cameras[0].intrinsics, baseline_m};
+  SEXTANT_ASSIGN_OR_RETURN(cv::Mat left, RenderImage(pair, 0, image));
+  SEXTANT_ASSIGN_OR_RETURN(cv::Mat right, RenderImage(pair, 1, right_image));
+  return StereoImages{left, right, pair.cameras[0].intrinsics, baseline_m};
 }
 
 std::optional<Eigen::Vector3d> Triangulate(const StereoImages& images, const Eigen::Vector2d& left,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/averaging/average.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,11 +67,10 @@ Expected<Eigen::Quaterniond> AverageRotation(std::span<const Rigid3d> poses, Rot
 }  // namespace
 
 Expected<Rigid3d> AveragePoses(std::span<const Rigid3d> poses, RotationAverage kind) {
-  const Expected<Eigen::Quaterniond> rotation = AverageRotation(poses, kind);
-  if (!rotation) return tl::unexpected<Error>(rotation.error());
+  SEXTANT_ASSIGN_OR_RETURN(const Eigen::Quaterniond rotation, AverageRotation(poses, kind));
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Rigid3d& pose : poses) sum += pose.translation;
-  return Rigid3d{*rotation, sum / static_cast<double>(poses.size())};
+  return Rigid3d{rotation, sum / static_cast<double>(poses.size())};
 }
 
 std::optional<Matrix6d> AverageCovariance(std::span<const Rigid3d> poses,
@@ -133,10 +132,9 @@ class AverageSolver final : public Solver {
       return MakeError(first_error->code,
                        fmt::format("{}: no view could be solved{}", spec().name, failures));
     }
-    const Expected<Rigid3d> average = AveragePoses(poses, options_.rotation);
-    if (!average) return tl::unexpected<Error>(average.error());
-    estimate.cam_from_lidar = *average;
-    estimate.covariance = AverageCovariance(poses, covariances, *average, options_.rotation);
+    SEXTANT_ASSIGN_OR_RETURN(const Rigid3d average, AveragePoses(poses, options_.rotation));
+    estimate.cam_from_lidar = average;
+    estimate.covariance = AverageCovariance(poses, covariances, average, options_.rotation);
     std::sort(estimate.inliers.begin(), estimate.inliers.end());
     return estimate;
   }
@@ -193,9 +191,7 @@ SolverEntry AverageEntry() {
                                        "of pairs",
                                        arguments.name, arguments.inner->spec().name));
         }
-        if (Expected<void> ok = CheckKeepsCamera(*arguments.inner, arguments.name); !ok) {
-          return tl::unexpected<Error>(std::move(ok.error()));
-        }
+        SEXTANT_RETURN_IF_ERROR(CheckKeepsCamera(*arguments.inner, arguments.name));
         return AverageOptionSet()
             .Parse(arguments.options)
             .map([&](const AverageOptions& o) -> SolverPtr {

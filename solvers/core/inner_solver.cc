@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/core/inner_solver.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace sextant {
 
@@ -14,9 +14,7 @@ Expected<void> CheckKeepsCamera(const Solver& inner, const std::string& outer) {
 }
 
 Expected<PairKind> KindOfPairs(const Solver& inner, const std::string& outer) {
-  if (Expected<void> ok = CheckKeepsCamera(inner, outer); !ok) {
-    return tl::unexpected<Error>(std::move(ok.error()));
-  }
+  SEXTANT_RETURN_IF_ERROR(CheckKeepsCamera(inner, outer));
   const DataNeeds& needs = inner.spec().needs;
   if (needs.board_views > 0) {
     return MakeError(

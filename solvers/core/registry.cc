@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/core/registry.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 
@@ -57,9 +57,7 @@ Expected<SolverPtr> SolverRegistry::Make(const SpecNode& node) const {
         fmt::format("solver '{}' takes {} solver in its parentheses, got {}; write {}", node.name,
                     wanted == 0 ? "no" : "one", node.inner.size(), entry->example));
   }
-  if (Expected<void> ok = CheckOptions(*entry, node); !ok) {
-    return tl::unexpected<Error>(std::move(ok.error()));
-  }
+  SEXTANT_RETURN_IF_ERROR(CheckOptions(*entry, node));
   SolverArguments arguments{FormatSpec(node), node.options, nullptr};
   if (wanted == 1) {
     Expected<SolverPtr> inner = Make(node.inner.front());

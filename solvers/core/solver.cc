@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/core/solver.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <chrono>
 #include <utility>
@@ -185,9 +185,7 @@ Expected<void> CheckProblem(const CalibrationProblem& problem, const SolverSpec&
 
 Expected<SolveReport> Solver::Solve(const CalibrationProblem& problem) const {
   const auto start = std::chrono::steady_clock::now();
-  if (Expected<void> ok = CheckProblem(problem, spec_); !ok) {
-    return tl::unexpected<Error>(std::move(ok.error()));
-  }
+  SEXTANT_RETURN_IF_ERROR(CheckProblem(problem, spec_));
   Expected<Estimate> estimate = DoSolve(problem);
   const auto end = std::chrono::steady_clock::now();
   if (!estimate) return tl::unexpected<Error>(std::move(estimate.error()));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/icp/projective_icp.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -126,18 +126,16 @@ Expected<ProjectiveIcpFit> FitProjectiveIcp(std::span<const Eigen::Vector3d> tar
                                             std::span<const Eigen::Vector3d> source,
                                             const Rigid3d& start,
                                             const ProjectiveIcpSettings& settings) {
-  Expected<ScanWindows> of_target = WindowsOf(target, "camera", settings.cell_rad);
-  if (!of_target) return tl::unexpected<Error>(of_target.error());
-  Expected<ScanWindows> of_source = WindowsOf(source, "LiDAR", settings.cell_rad);
-  if (!of_source) return tl::unexpected<Error>(of_source.error());
-  TakeOffRingOffsets(*of_target, *of_source);
-  const Expected<ScanSurfaces> in_target = SurfacesOf(*of_target, target.size(), "camera");
-  if (!in_target) return tl::unexpected<Error>(in_target.error());
-  const Expected<ScanSurfaces> in_source = SurfacesOf(*of_source, source.size(), "LiDAR");
-  if (!in_source) return tl::unexpected<Error>(in_source.error());
-  const double sigma_m = std::max(in_target->range_sigma_m(), in_source->range_sigma_m());
+  SEXTANT_ASSIGN_OR_RETURN(ScanWindows of_target, WindowsOf(target, "camera", settings.cell_rad));
+  SEXTANT_ASSIGN_OR_RETURN(ScanWindows of_source, WindowsOf(source, "LiDAR", settings.cell_rad));
+  TakeOffRingOffsets(of_target, of_source);
+  SEXTANT_ASSIGN_OR_RETURN(const ScanSurfaces in_target,
+                           SurfacesOf(of_target, target.size(), "camera"));
+  SEXTANT_ASSIGN_OR_RETURN(const ScanSurfaces in_source,
+                           SurfacesOf(of_source, source.size(), "LiDAR"));
+  const double sigma_m = std::max(in_target.range_sigma_m(), in_source.range_sigma_m());
 
-  BothWays matches(*in_target, *in_source);
+  BothWays matches(in_target, in_source);
   ProjectiveIcpFit fit;
   fit.target_from_source = start;
   double gate_m = settings.max_distance_m;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/joint/board_view_information.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "geometry/symmetric.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,31 +55,26 @@ class JointSolver final : public Solver {
 
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
-    Expected<SolveReport> start = inner_->Solve(problem);
-    if (!start) return tl::unexpected<Error>(std::move(start.error()));
-    Expected<JointUnknowns> unknowns = UnknownsOf(problem);
-    if (!unknowns) return tl::unexpected<Error>(unknowns.error());
-    std::vector<JointView> views = ViewsOf(problem, *unknowns);
-    JointState state = StateAt(problem, start->cam_from_lidar, *unknowns, views);
+    SEXTANT_ASSIGN_OR_RETURN(SolveReport start, inner_->Solve(problem));
+    SEXTANT_ASSIGN_OR_RETURN(JointUnknowns unknowns, UnknownsOf(problem));
+    std::vector<JointView> views = ViewsOf(problem, unknowns);
+    JointState state = StateAt(problem, start.cam_from_lidar, unknowns, views);
     Estimate estimate;
-    FixUnobservable(problem, InformationAt(views, *unknowns, state), *unknowns, views, state,
+    FixUnobservable(problem, InformationAt(views, unknowns, state), unknowns, views, state,
                     estimate.warnings);
     while (true) {
-      Expected<JointAnswer> answer = SearchJointly(views, *unknowns, state, options_);
-      if (!answer) return tl::unexpected<Error>(std::move(answer.error()));
-      estimate.iterations += answer->iterations;
-      const Eigen::MatrixXd information = SharedInformation(answer->minimum.system);
-      if (FixUnobservable(problem, information, *unknowns, views, state, estimate.warnings)) {
+      SEXTANT_ASSIGN_OR_RETURN(JointAnswer answer, SearchJointly(views, unknowns, state, options_));
+      estimate.iterations += answer.iterations;
+      const Eigen::MatrixXd information = SharedInformation(answer.minimum.system);
+      if (FixUnobservable(problem, information, unknowns, views, state, estimate.warnings)) {
         continue;
       }
-      if (Expected<void> ok = Report(problem, *unknowns, *answer, information, estimate); !ok) {
-        return tl::unexpected<Error>(std::move(ok.error()));
-      }
+      SEXTANT_RETURN_IF_ERROR(Report(problem, unknowns, answer, information, estimate));
       break;
     }
-    estimate.stages = std::move(start->stages);
+    estimate.stages = std::move(start.stages);
     estimate.stages.push_back(
-        {start->solver, start->cam_from_lidar, start->iterations, start->wall_time_us});
+        {start.solver, start.cam_from_lidar, start.iterations, start.wall_time_us});
     return estimate;
   }
 
@@ -296,12 +291,9 @@ class JointSolver final : public Solver {
 };
 
 Expected<SolverPtr> MakeJoint(const SolverArguments& arguments) {
-  const Expected<JointOptions> options = JointOptionSet().Parse(arguments.options);
-  if (!options) return tl::unexpected<Error>(options.error());
-  if (Expected<void> ok = CheckKeepsCamera(*arguments.inner, arguments.name); !ok) {
-    return tl::unexpected<Error>(std::move(ok.error()));
-  }
-  return std::make_shared<JointSolver>(arguments, *options);
+  SEXTANT_ASSIGN_OR_RETURN(const JointOptions options, JointOptionSet().Parse(arguments.options));
+  SEXTANT_RETURN_IF_ERROR(CheckKeepsCamera(*arguments.inner, arguments.name));
+  return std::make_shared<JointSolver>(arguments, options);
 }
 
 }  // namespace

@@ -47,11 +47,11 @@ SolverEntry RansacEntry(const std::string& name, std::string summary, std::strin
       .example = name,
       .options = options.Describe(),
       .make = [options, run](const SolverArguments& arguments) -> Expected<SolverPtr> {
-        const Expected<OpenCvRansacOptions> parsed = options.Parse(arguments.options);
-        if (!parsed) return tl::unexpected<Error>(parsed.error());
+        SEXTANT_ASSIGN_OR_RETURN(const OpenCvRansacOptions parsed,
+                                 options.Parse(arguments.options));
         return std::make_shared<PnpSolver>(
             SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = 4}},
-            [run, ransac = *parsed](const PnpInput& input) { return run(input, ransac); },
+            [run, ransac = parsed](const PnpInput& input) { return run(input, ransac); },
             PnpCovariance::kLeastSquares);
       },
   };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/pnp/correspondences.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -20,11 +20,11 @@ Expected<Correspondences> PrepareCorrespondences(std::span<const Eigen::Vector2d
         ErrorCode::kTooFewPairs,
         fmt::format("expected at least {} 2D-3D pairs, got {}", min_points, points.size()));
   }
-  const Expected<PointCloudFrame> frame = FramePointCloud(points, static_cast<int>(min_points));
-  if (!frame) return tl::unexpected<Error>(frame.error());
-  const Expected<ImageMoments> moments = ComputeImageMoments(image_points, points, *frame);
-  if (!moments) return tl::unexpected<Error>(moments.error());
-  return Correspondences{image_points, points, *frame, *moments};
+  SEXTANT_ASSIGN_OR_RETURN(const PointCloudFrame frame,
+                           FramePointCloud(points, static_cast<int>(min_points)));
+  SEXTANT_ASSIGN_OR_RETURN(const ImageMoments moments,
+                           ComputeImageMoments(image_points, points, frame));
+  return Correspondences{image_points, points, frame, moments};
 }
 
 ImageFit FitOf(const Correspondences& data, const Eigen::Matrix3d& rotation,

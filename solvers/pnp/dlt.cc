@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/pnp/dlt.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/LU>
 #include <optional>
@@ -120,9 +120,8 @@ SolverEntry DltEntry() {
       .example = "dlt",
       .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
         const auto kernel = [](const PnpInput& input) -> Expected<PnpPoses> {
-          const Expected<Rigid3d> pose = SolveDlt(input.image_points, input.points);
-          if (!pose) return tl::unexpected<Error>(pose.error());
-          return PnpPoses{.poses = {*pose}, .count = 1};
+          SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, SolveDlt(input.image_points, input.points));
+          return PnpPoses{.poses = {pose}, .count = 1};
         };
         return std::make_shared<PnpSolver>(
             SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = kMinDltPoints}}, kernel,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/pnp/ippe.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -240,12 +240,11 @@ Expected<IppeFit> SolveIppe(std::span<const Eigen::Vector2d> image_points,
     return MakeError(ErrorCode::kTooFewPairs, fmt::format("ippe needs at least {} pairs, got {}",
                                                           kMinPoints, points_in_lidar.size()));
   }
-  const Expected<PlaneFrame> frame = FramePlane(points_in_lidar);
-  if (!frame) return tl::unexpected<Error>(frame.error());
-  const Eigen::Vector2d extent = frame->deviation.head<2>();
+  SEXTANT_ASSIGN_OR_RETURN(const PlaneFrame frame, FramePlane(points_in_lidar));
+  const Eigen::Vector2d extent = frame.deviation.head<2>();
   const Eigen::Matrix<double, 2, 3> unit_from_lidar =
-      extent.cwiseInverse().asDiagonal() * frame->axes.leftCols<2>().transpose();
-  const Moments moments(image_points, points_in_lidar, frame->centroid, unit_from_lidar);
+      extent.cwiseInverse().asDiagonal() * frame.axes.leftCols<2>().transpose();
+  const Moments moments(image_points, points_in_lidar, frame.centroid, unit_from_lidar);
   const Eigen::Matrix3d reduced = moments.Reduced();
   const NullDirection depth = FindNullDirection(reduced);
   constexpr double kMinGap = 1e-13;
@@ -254,7 +253,7 @@ Expected<IppeFit> SolveIppe(std::span<const Eigen::Vector2d> image_points,
   constexpr double kGapOfNoise = 0.03;
   if (!(reduced.trace() > kMinLeft * moments.square.trace()) || !(depth.gap > kMinGap) ||
       (depth.gap < kGapOfNoise &&
-       !FixHomography(points_in_lidar, frame->centroid, unit_from_lidar))) {
+       !FixHomography(points_in_lidar, frame.centroid, unit_from_lidar))) {
     return MakeError(ErrorCode::kDegenerate,
                      "the pixels or the points are less than four, or three of four are on one "
                      "line, which leaves the plane's pose undetermined; use four that span a "
@@ -264,14 +263,14 @@ Expected<IppeFit> SolveIppe(std::span<const Eigen::Vector2d> image_points,
   homography.leftCols<2>() *= extent.cwiseInverse().asDiagonal();
 
   const AlgebraicError error(moments, extent);
-  const Eigen::Quaterniond plane_from_lidar(Eigen::Matrix3d(frame->axes.transpose()));
+  const Eigen::Quaterniond plane_from_lidar(Eigen::Matrix3d(frame.axes.transpose()));
   IppeFit fit;
   for (const Eigen::Matrix3d& start : InfinitesimalRotations(homography)) {
     const Eigen::Quaterniond cam_from_plane = error.Minimise(Eigen::Quaterniond(start));
     Rigid3d pose;
     pose.rotation = (cam_from_plane * plane_from_lidar).normalized();
     pose.translation =
-        error.BestOrigin(cam_from_plane.toRotationMatrix()) - pose.rotation * frame->centroid;
+        error.BestOrigin(cam_from_plane.toRotationMatrix()) - pose.rotation * frame.centroid;
     AddDifferent(pose, SumSquares(pose, image_points, points_in_lidar), fit);
   }
   if (fit.count == 0) {

@@ -16,10 +16,9 @@ SolverEntry IppeEntry() {
       .example = "ippe",
       .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
         const auto kernel = [](const PnpInput& input) -> Expected<PnpPoses> {
-          const Expected<IppeFit> fit = SolveIppe(input.image_points, input.points);
-          if (!fit) return tl::unexpected<Error>(fit.error());
-          PnpPoses poses{.poses = {}, .count = fit->count};
-          std::copy_n(fit->cam_from_lidar.begin(), fit->count, poses.poses.begin());
+          SEXTANT_ASSIGN_OR_RETURN(const IppeFit fit, SolveIppe(input.image_points, input.points));
+          PnpPoses poses{.poses = {}, .count = fit.count};
+          std::copy_n(fit.cam_from_lidar.begin(), fit.count, poses.poses.begin());
           return poses;
         };
         return std::make_shared<PnpSolver>(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/pnp/pnp_solver.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <numeric>
@@ -65,9 +65,9 @@ Expected<View> MakeView(const Camera& camera, std::span<const Pair2d3d> pairs) {
     rays[i] = *ray;
     view.points[i] = pairs[i].point_in_lidar;
   }
-  const Expected<Eigen::Quaterniond> cam_from_view = ProjectRays(rays, view.image_points);
-  if (!cam_from_view) return tl::unexpected<Error>(cam_from_view.error());
-  view.cam_from_view = *cam_from_view;
+  SEXTANT_ASSIGN_OR_RETURN(const Eigen::Quaterniond cam_from_view,
+                           ProjectRays(rays, view.image_points));
+  view.cam_from_view = cam_from_view;
   return view;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>
@@ -88,19 +88,18 @@ class RefineSolver final : public Solver {
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
     if (std::optional<Estimate> quick = FromTriples(problem)) return *std::move(quick);
-    Expected<SolveReport> start = inner_->Solve(problem);
-    if (!start) return tl::unexpected<Error>(std::move(start.error()));
-    const UsedPairs used = Choose(problem, *start);
+    SEXTANT_ASSIGN_OR_RETURN(SolveReport start, inner_->Solve(problem));
+    const UsedPairs used = Choose(problem, start);
     const PairTerms terms = TermsOf(problem, used);
     Expected<Estimate> estimate = options_.intrinsics == 0U
-                                      ? PoseOf(terms, start->cam_from_lidar)
-                                      : PoseAndCameraOf(terms, start->cam_from_lidar);
+                                      ? PoseOf(terms, start.cam_from_lidar)
+                                      : PoseAndCameraOf(terms, start.cam_from_lidar);
     if (!estimate) return estimate;
     estimate->termination = Termination::kConverged;
     estimate->inliers = spec().needs.pairs_3d3d > 0 ? used.points : used.pixels;
-    estimate->stages = std::move(start->stages);
+    estimate->stages = std::move(start.stages);
     estimate->stages.push_back(
-        {start->solver, start->cam_from_lidar, start->iterations, start->wall_time_us});
+        {start.solver, start.cam_from_lidar, start.iterations, start.wall_time_us});
     return estimate;
   }
 
@@ -147,9 +146,7 @@ class RefineSolver final : public Solver {
   }
 
   Expected<Estimate> EstimateOf(const PairTerms& terms, const RefinedPose& refined) const {
-    if (Expected<void> ok = CheckOutcome(refined); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
+    SEXTANT_RETURN_IF_ERROR(CheckOutcome(refined));
     std::optional<Matrix6d> inverse = InvertInformation(refined.information);
     if (!inverse) {
       return MakeError(ErrorCode::kDegenerate,
@@ -166,9 +163,9 @@ class RefineSolver final : public Solver {
   }
 
   Expected<Estimate> PoseAndCameraOf(const PairTerms& terms, const Rigid3d& start) const {
-    const Expected<std::vector<int>> free = FreeIntrinsics(terms.camera, options_.intrinsics);
-    if (!free) return tl::unexpected<Error>(free.error());
-    return RefinePoseAndCamera(terms, start, *free, options_.Loss(), Limits())
+    SEXTANT_ASSIGN_OR_RETURN(const std::vector<int> free,
+                             FreeIntrinsics(terms.camera, options_.intrinsics));
+    return RefinePoseAndCamera(terms, start, free, options_.Loss(), Limits())
         .map([](const RefinedPoseAndCamera& refined) {
           Estimate estimate;
           estimate.cam_from_lidar = refined.cam_from_lidar;

@@ -2,7 +2,7 @@
 #include "solvers/refine/refine_camera.h"
 
 #include <ceres/ceres.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -213,8 +213,7 @@ Expected<RefinedPoseAndCamera> RefinePoseAndCamera(const PairTerms& terms, const
   const ceres::Solver::Summary summary = Minimise(terms, free, loss, limits, state);
   if (!SumUp(terms, free, loss, state)) return NotConverged("a point left the image");
   // Before the outcome: data that tells nothing also keeps the iteration from settling.
-  const Expected<Eigen::MatrixXd> covariance = Judge(terms, free, state);
-  if (!covariance) return tl::unexpected<Error>(covariance.error());
+  SEXTANT_ASSIGN_OR_RETURN(const Eigen::MatrixXd covariance, Judge(terms, free, state));
   if (OutcomeOf(summary.termination_type) != RefineOutcome::kConverged) {
     return NotConverged("no convergence within max_iterations");
   }
@@ -226,12 +225,12 @@ Expected<RefinedPoseAndCamera> RefinePoseAndCamera(const PairTerms& terms, const
     return NotConverged("the distortion found folds the image");
   }
   const bool is_known = terms.noise_known || Freedom(terms, free.size()) > 0.0;
-  if (is_known) refined.covariance = covariance->topLeftCorner<6, 6>();
+  if (is_known) refined.covariance = covariance.topLeftCorner<6, 6>();
   for (std::size_t k = 0; k < free.size(); ++k) {
     const auto i = 6 + static_cast<Eigen::Index>(k);
     EstimatedIntrinsic estimated{std::string(IntrinsicName(terms.camera.model, free[k])),
                                  state.numbers[free[k]], std::nullopt};
-    if (is_known) estimated.sigma = std::sqrt((*covariance)(i, i));
+    if (is_known) estimated.sigma = std::sqrt((covariance)(i, i));
     refined.camera.estimated.push_back(std::move(estimated));
   }
   return refined;

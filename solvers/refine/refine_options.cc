@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/refine/refine_options.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "solvers/core/inner_solver.h"
 #include "solvers/kernels/pair_terms.h"
@@ -57,13 +57,10 @@ OptionSet<RefineOptions> RefineOptionSet() {
 Expected<RefineOptions> ParseRefineOptions(const SolverArguments& arguments) {
   Expected<RefineOptions> options = RefineOptionSet().Parse(arguments.options);
   if (!options) return options;
-  const Expected<RefineOn> on = ResolveOn(arguments, options->on);
-  if (!on) return tl::unexpected<Error>(on.error());
-  options->on = *on;
-  if (Expected<void> ok = CheckKeepsCamera(*arguments.inner, "refine"); !ok) {
-    return tl::unexpected<Error>(std::move(ok.error()));
-  }
-  if (options->intrinsics != 0U && !Uses2d3d(*on)) {
+  SEXTANT_ASSIGN_OR_RETURN(const RefineOn on, ResolveOn(arguments, options->on));
+  options->on = on;
+  SEXTANT_RETURN_IF_ERROR(CheckKeepsCamera(*arguments.inner, "refine"));
+  if (options->intrinsics != 0U && !Uses2d3d(on)) {
     return MakeError(ErrorCode::kInvalidOption,
                      "refine: intrinsics needs pixels to refine on: on=2d3d or on=both");
   }

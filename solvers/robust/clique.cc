@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <memory>
@@ -57,16 +57,11 @@ class CliqueSolver final : public Solver {
     const BitGraph graph = judge->Graph();
     const Clique clique = FindMaximumClique(graph, options_.max_nodes);
     const int least = spec().needs.pairs_3d3d;
-    if (Expected<void> ok = judge->Check(clique.vertices, least); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
-    const Expected<Rigid3d> pose = PoseFrom(problem, *judge, graph, clique);
-    if (!pose) return tl::unexpected<Error>(pose.error());
-    Expected<Estimate> estimate = judge->Answer(*pose);
+    SEXTANT_RETURN_IF_ERROR(judge->Check(clique.vertices, least));
+    SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, PoseFrom(problem, *judge, graph, clique));
+    Expected<Estimate> estimate = judge->Answer(pose);
     if (!estimate) return estimate;
-    if (Expected<void> ok = judge->Check(estimate->inliers, least); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
+    SEXTANT_RETURN_IF_ERROR(judge->Check(estimate->inliers, least));
     estimate->iterations = static_cast<int>(std::min<std::int64_t>(clique.nodes, 1'000'000'000));
     estimate->termination =
         clique.is_maximum ? Termination::kConverged : Termination::kMaxIterations;
@@ -157,11 +152,10 @@ SolverEntry CliqueEntry() {
       .wraps_solver = true,
       .options = CliqueOptionSet().Describe(),
       .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
-        const Expected<CliqueOptions> options = CliqueOptionSet().Parse(arguments.options);
-        if (!options) return tl::unexpected<Error>(options.error());
-        const Expected<PairKind> kind = KindOfPairs(*arguments.inner, "clique");
-        if (!kind) return tl::unexpected<Error>(kind.error());
-        if (*kind != PairKind::k3d3d) {
+        SEXTANT_ASSIGN_OR_RETURN(const CliqueOptions options,
+                                 CliqueOptionSet().Parse(arguments.options));
+        SEXTANT_ASSIGN_OR_RETURN(const PairKind kind, KindOfPairs(*arguments.inner, "clique"));
+        if (kind != PairKind::k3d3d) {
           return MakeError(
               ErrorCode::kInvalidOption,
               fmt::format(
@@ -169,7 +163,7 @@ SolverEntry CliqueEntry() {
                   "of 3D-3D pairs such as kabsch, or use ransac",
                   arguments.inner->spec().name));
         }
-        return std::make_shared<CliqueSolver>(arguments, *options);
+        return std::make_shared<CliqueSolver>(arguments, options);
       },
   };
 }

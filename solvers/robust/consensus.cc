@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/robust/consensus.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -158,11 +158,10 @@ double WantedSamples(std::size_t count, std::size_t inliers, int sample_size, do
 }
 
 Expected<Estimate> SolveWhole(const Solver& inner, const CalibrationProblem& problem) {
-  Expected<SolveReport> report = inner.Solve(problem);
-  if (!report) return tl::unexpected<Error>(std::move(report.error()));
-  Estimate estimate = std::move(static_cast<Estimate&>(*report));
+  SEXTANT_ASSIGN_OR_RETURN(SolveReport report, inner.Solve(problem));
+  Estimate estimate = std::move(static_cast<Estimate&>(report));
   estimate.stages.push_back(
-      {report->solver, report->cam_from_lidar, report->iterations, report->wall_time_us});
+      {report.solver, report.cam_from_lidar, report.iterations, report.wall_time_us});
   return estimate;
 }
 
@@ -198,9 +197,7 @@ Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem&
   std::vector<int> next;
   find_inliers(pose, inliers);
   for (int refit = 0;; ++refit) {
-    if (Expected<void> ok = CheckEnough(inner, inliers.size()); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
+    SEXTANT_RETURN_IF_ERROR(CheckEnough(inner, inliers.size()));
     Expected<Estimate> estimate = SolveSubset(inner, problem, inliers);
     if (!estimate) return estimate;
     find_inliers(estimate->cam_from_lidar, next);
@@ -255,9 +252,7 @@ Expected<Estimate> BetterOnInliers(const Solver& inner, const CalibrationProblem
   constexpr double kRounding = 1e-9;
   std::vector<int> inliers;
   scorer.Inliers(pose, inliers);
-  if (Expected<void> ok = CheckEnough(inner, inliers.size()); !ok) {
-    return tl::unexpected<Error>(std::move(ok.error()));
-  }
+  SEXTANT_RETURN_IF_ERROR(CheckEnough(inner, inliers.size()));
   const Expected<Rigid3d> refit = PoseOfSubset(inner, problem, terms, inliers);
   if (refit && scorer.Cost(*refit) <= (1.0 + kRounding) * scorer.Cost(pose)) {
     return RefitOnInliers(inner, problem, scorer, pose);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <numeric>
@@ -51,9 +51,8 @@ class DropWorstSolver final : public Solver {
     int solves = 0;
     while (true) {
       ++solves;
-      const Expected<Rigid3d> pose = PoseOfSubset(*inner_, problem, terms, kept);
-      if (!pose) return tl::unexpected<Error>(pose.error());
-      scorer.SquaredResiduals(*pose, squared);
+      SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, PoseOfSubset(*inner_, problem, terms, kept));
+      scorer.SquaredResiduals(pose, squared);
       const auto worst = std::max_element(kept.begin(), kept.end(), [&](int a, int b) {
         return squared[static_cast<std::size_t>(a)] < squared[static_cast<std::size_t>(b)];
       });
@@ -100,17 +99,16 @@ SolverEntry DropWorstEntry() {
       .wraps_solver = true,
       .options = DropWorstOptionSet().Describe(),
       .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
-        const Expected<DropWorstOptions> options = DropWorstOptionSet().Parse(arguments.options);
-        if (!options) return tl::unexpected<Error>(options.error());
-        const Expected<PairKind> kind = KindOfPairs(*arguments.inner, "drop_worst");
-        if (!kind) return tl::unexpected<Error>(kind.error());
+        SEXTANT_ASSIGN_OR_RETURN(const DropWorstOptions options,
+                                 DropWorstOptionSet().Parse(arguments.options));
+        SEXTANT_ASSIGN_OR_RETURN(const PairKind kind, KindOfPairs(*arguments.inner, "drop_worst"));
         const int least = MinPairs(arguments.inner->spec().needs);
-        if (options->keep > 0 && options->keep < least) {
+        if (options.keep > 0 && options.keep < least) {
           return MakeError(ErrorCode::kInvalidOption,
-                           fmt::format("option keep={}: '{}' needs at least {} pairs",
-                                       options->keep, arguments.inner->spec().name, least));
+                           fmt::format("option keep={}: '{}' needs at least {} pairs", options.keep,
+                                       arguments.inner->spec().name, least));
         }
-        return std::make_shared<DropWorstSolver>(arguments, *kind, *options);
+        return std::make_shared<DropWorstSolver>(arguments, kind, options);
       },
   };
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -116,14 +116,11 @@ class GncSolver final : public Solver {
     const PairTerms terms = MakeTerms(problem, kind_, options_.Assumed());
     const PoseScorer scorer(terms, options_.MaxSquared(kind_));
     int iterations = 0;
-    const Expected<Rigid3d> pose = Anneal(problem, terms, scorer, iterations);
-    if (!pose) return tl::unexpected<Error>(pose.error());
-    Expected<Estimate> estimate = BetterOnInliers(*inner_, problem, terms, scorer, *pose);
+    SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, Anneal(problem, terms, scorer, iterations));
+    Expected<Estimate> estimate = BetterOnInliers(*inner_, problem, terms, scorer, pose);
     if (!estimate) return estimate;
     const int least = MinPairs(spec().needs);
-    if (Expected<void> ok = CheckConsensus(terms, scorer, estimate->inliers, least); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
+    SEXTANT_RETURN_IF_ERROR(CheckConsensus(terms, scorer, estimate->inliers, least));
     SetIterations(iterations, *estimate);
     return estimate;
   }
@@ -229,11 +226,9 @@ SolverEntry GncEntry() {
       .wraps_solver = true,
       .options = GncOptionSet().Describe(),
       .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
-        const Expected<GncOptions> options = GncOptionSet().Parse(arguments.options);
-        if (!options) return tl::unexpected<Error>(options.error());
-        const Expected<PairKind> kind = KindOfPairs(*arguments.inner, "gnc");
-        if (!kind) return tl::unexpected<Error>(kind.error());
-        return std::make_shared<GncSolver>(arguments, *kind, *options);
+        SEXTANT_ASSIGN_OR_RETURN(const GncOptions options, GncOptionSet().Parse(arguments.options));
+        SEXTANT_ASSIGN_OR_RETURN(const PairKind kind, KindOfPairs(*arguments.inner, "gnc"));
+        return std::make_shared<GncSolver>(arguments, kind, options);
       },
   };
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <optional>
@@ -105,9 +105,7 @@ class RansacSolver final : public Solver {
     if (!search.found()) return NoPose(search.iterations(), sampling.sample_size);
     Expected<Estimate> estimate = finish_from(search.best());
     if (!estimate) return estimate;
-    if (Expected<void> ok = check(estimate->inliers); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
+    SEXTANT_RETURN_IF_ERROR(check(estimate->inliers));
     return Checked(problem, search.iterations(), std::move(*estimate));
   }
 
@@ -136,9 +134,7 @@ class RansacSolver final : public Solver {
                                                  .seed = options_.seed});
     if (!found.found) return NoPose(found.samples, 3);
     Estimate estimate = LeastSquaresOnInliers(terms, scorer, found.cam_from_lidar);
-    if (Expected<void> ok = CheckConsensus(terms, scorer, estimate.inliers, LeastInliers()); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
+    SEXTANT_RETURN_IF_ERROR(CheckConsensus(terms, scorer, estimate.inliers, LeastInliers()));
     estimate.iterations = found.samples;
     estimate.termination = found.samples < options_.max_iterations ? Termination::kConverged
                                                                    : Termination::kMaxIterations;
@@ -211,17 +207,16 @@ SolverEntry RansacEntry() {
       .wraps_solver = true,
       .options = RansacOptionSet().Describe(),
       .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
-        const Expected<RansacOptions> options = RansacOptionSet().Parse(arguments.options);
-        if (!options) return tl::unexpected<Error>(options.error());
-        const Expected<PairKind> kind = KindOfPairs(*arguments.inner, "ransac");
-        if (!kind) return tl::unexpected<Error>(kind.error());
+        SEXTANT_ASSIGN_OR_RETURN(const RansacOptions options,
+                                 RansacOptionSet().Parse(arguments.options));
+        SEXTANT_ASSIGN_OR_RETURN(const PairKind kind, KindOfPairs(*arguments.inner, "ransac"));
         const int least = MinPairs(arguments.inner->spec().needs);
-        if (options->sample_size > 0 && options->sample_size < least) {
+        if (options.sample_size > 0 && options.sample_size < least) {
           return MakeError(ErrorCode::kInvalidOption,
                            fmt::format("option sample_size={}: '{}' needs at least {} pairs",
-                                       options->sample_size, arguments.inner->spec().name, least));
+                                       options.sample_size, arguments.inner->spec().name, least));
         }
-        return std::make_shared<RansacSolver>(arguments, *kind, *options);
+        return std::make_shared<RansacSolver>(arguments, kind, options);
       },
   };
 }

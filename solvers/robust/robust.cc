@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -200,11 +200,11 @@ SolverEntry RobustEntry() {
       .wraps_solver = true,
       .options = RobustOptionSet().Describe(),
       .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
-        const Expected<RobustOptions> options = RobustOptionSet().Parse(arguments.options);
-        if (!options) return tl::unexpected<Error>(options.error());
+        SEXTANT_ASSIGN_OR_RETURN(const RobustOptions options,
+                                 RobustOptionSet().Parse(arguments.options));
         Expected<SolverPtr> clique = MakeClique(arguments);
         if (!clique) return clique;
-        return std::make_shared<RobustSolver>(arguments, *options, std::move(*clique));
+        return std::make_shared<RobustSolver>(arguments, options, std::move(*clique));
       },
   };
 }

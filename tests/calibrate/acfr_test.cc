@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The seven real pairs of acfr/cam_lidar_calibration, nobody clicking.
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `sextant mark` as a person uses it: a window on a display, a mouse and keys.
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -13,9 +13,8 @@ Expected<Experiment> ParseExperiment(std::string_view text, const std::string& f
   const Expected<std::vector<SpecNode>> specs =
       solvers.empty() ? std::vector<SpecNode>() : ParseSpecList(solvers);
   if (!specs) return tl::unexpected<Error>(specs.error());
-  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
-  if (!root) return tl::unexpected<Error>(root.error());
-  return ExperimentParser(file, kinds, registry, *specs).Parse(*root);
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  return ExperimentParser(file, kinds, registry, *specs).Parse(root);
 }
 
 Expected<Experiment> ReadExperiment(const std::filesystem::path& path,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The solvers of an experiment file.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "eval/experiment/definition/experiment_parser.h"
 #include "io/text/number_text.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of an experiment file that says what its report shows.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

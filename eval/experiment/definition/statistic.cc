@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/definition/statistic.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 
@@ -85,13 +85,11 @@ Expected<void> Fill(const SpecNode& node, const std::vector<Metric>& metrics,
                      fmt::format("expected {} in its parentheses, got {}",
                                  takes_two ? "two metrics" : "one metric", node.inner.size()));
   }
-  Expected<int> metric = FindMetric(node.inner[0].name, metrics);
-  if (!metric) return tl::unexpected<Error>(metric.error());
-  statistic.metric = *metric;
+  SEXTANT_ASSIGN_OR_RETURN(int metric, FindMetric(node.inner[0].name, metrics));
+  statistic.metric = metric;
   if (takes_two) {
-    Expected<int> reference = FindMetric(node.inner[1].name, metrics);
-    if (!reference) return tl::unexpected<Error>(reference.error());
-    statistic.reference = *reference;
+    SEXTANT_ASSIGN_OR_RETURN(int reference, FindMetric(node.inner[1].name, metrics));
+    statistic.reference = reference;
   }
   for (const auto& [key, value] : node.options) {
     if (Expected<void> ok = SetOption(key, value, metrics, statistic); !ok) return ok;

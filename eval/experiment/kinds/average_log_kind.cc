@@ -89,15 +89,12 @@ class AverageLogTrials final : public Trials {
 };
 
 Expected<TrialsPtr> MakeAverageLogTrials(const KindArguments& arguments) {
-  const Expected<AverageLogSettings> settings = AverageLogParameters().Parse(arguments.parameters);
-  if (!settings) return tl::unexpected<Error>(settings.error());
-  const Expected<fs::path> path = RealFile(settings->log, arguments.folder);
-  if (!path) return tl::unexpected<Error>(path.error());
-  const Expected<std::vector<RunningAverageRow>> rows = ReadAverageLog(*path);
-  if (!rows) return tl::unexpected<Error>(rows.error());
-  Expected<RunningAverageAnalysis> analysis = AnalyseRunningAverage(*rows);
-  if (!analysis) return tl::unexpected<Error>(analysis.error());
-  return std::make_shared<AverageLogTrials>(std::move(*analysis));
+  SEXTANT_ASSIGN_OR_RETURN(const AverageLogSettings settings,
+                           AverageLogParameters().Parse(arguments.parameters));
+  SEXTANT_ASSIGN_OR_RETURN(const fs::path path, RealFile(settings.log, arguments.folder));
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<RunningAverageRow> rows, ReadAverageLog(path));
+  SEXTANT_ASSIGN_OR_RETURN(RunningAverageAnalysis analysis, AnalyseRunningAverage(rows));
+  return std::make_shared<AverageLogTrials>(std::move(analysis));
 }
 
 }  // namespace

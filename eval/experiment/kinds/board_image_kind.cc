@@ -77,12 +77,11 @@ class BoardImageTrials final : public Trials {
   static Expected<TrialsPtr> Make(const BoardImageSettings& settings) {
     auto trials = std::make_shared<BoardImageTrials>();
     trials->settings_ = settings;
-    const Expected<Camera> camera = FindCameraModel(settings.camera_model);
-    if (!camera) return tl::unexpected<Error>(camera.error());
+    SEXTANT_ASSIGN_OR_RETURN(const Camera camera, FindCameraModel(settings.camera_model));
     for (std::size_t i = 0; i < trials->subjects().size(); ++i) {
-      Expected<BoardFinder> finder = BoardFinder::Make({PrintedBoard(settings, i)}, *camera);
-      if (!finder) return tl::unexpected<Error>(finder.error());
-      trials->finders_.push_back(std::move(*finder));
+      SEXTANT_ASSIGN_OR_RETURN(BoardFinder finder,
+                               BoardFinder::Make({PrintedBoard(settings, i)}, camera));
+      trials->finders_.push_back(std::move(finder));
     }
     return trials;
   }
@@ -146,9 +145,9 @@ class BoardImageTrials final : public Trials {
 };
 
 Expected<TrialsPtr> MakeBoardImageTrials(const KindArguments& arguments) {
-  const Expected<BoardImageSettings> settings = BoardImageParameters().Parse(arguments.parameters);
-  if (!settings) return tl::unexpected<Error>(settings.error());
-  return BoardImageTrials::Make(*settings);
+  SEXTANT_ASSIGN_OR_RETURN(const BoardImageSettings settings,
+                           BoardImageParameters().Parse(arguments.parameters));
+  return BoardImageTrials::Make(settings);
 }
 
 }  // namespace

@@ -177,17 +177,16 @@ class BoardScanTrials final : public Trials {
 };
 
 Expected<TrialsPtr> MakeBoardScanTrials(const KindArguments& arguments) {
-  const Expected<BoardScanSettings> settings = BoardScanParameters().Parse(arguments.parameters);
-  if (!settings) return tl::unexpected<Error>(settings.error());
-  Expected<LidarModel> lidar = FindLidarModel(settings->lidar_model);
-  if (!lidar) return tl::unexpected<Error>(lidar.error());
-  if (!settings->extractor.empty()) {
-    if (const auto known = ExtractCorners(settings->extractor, {}, {});
+  SEXTANT_ASSIGN_OR_RETURN(const BoardScanSettings settings,
+                           BoardScanParameters().Parse(arguments.parameters));
+  SEXTANT_ASSIGN_OR_RETURN(LidarModel lidar, FindLidarModel(settings.lidar_model));
+  if (!settings.extractor.empty()) {
+    if (const auto known = ExtractCorners(settings.extractor, {}, {});
         !known && known.error().code == ErrorCode::kUnknownName) {
       return tl::unexpected<Error>(known.error());
     }
   }
-  return std::make_shared<BoardScanTrials>(*settings, std::move(*lidar));
+  return std::make_shared<BoardScanTrials>(settings, std::move(lidar));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "eval/experiment/kinds/problem_trials.h"
 #include "eval/synthetic/simulate_views.h"
@@ -67,27 +67,26 @@ Expected<KnownProblem> MakeBoardViewsProblem(const BoardViewsSettings& settings,
                                              const TrialId& id) {
   ViewSimulation simulation = settings;
   simulation.seed = id.seed;
-  Expected<SimulatedViews> views = SimulateViews(simulation);
-  if (!views) return tl::unexpected<Error>(views.error());
+  SEXTANT_ASSIGN_OR_RETURN(SimulatedViews views, SimulateViews(simulation));
   KnownProblem known;
-  known.cam_from_lidar = views->true_cam_from_lidar;
-  known.cam_from_board = std::move(views->true_cam_from_board);
-  known.inliers = views->problem;
-  known.problem = std::move(views->problem);
+  known.cam_from_lidar = views.true_cam_from_lidar;
+  known.cam_from_board = std::move(views.true_cam_from_board);
+  known.inliers = views.problem;
+  known.problem = std::move(views.problem);
   if (settings.size_error != 0.0) StateWrongSize(settings.size_error, known.problem);
   return known;
 }
 
 Expected<TrialsPtr> MakeBoardViewsTrials(const KindArguments& arguments) {
-  Expected<BoardViewsSettings> settings = BoardViewsParameters().Parse(arguments.parameters);
-  if (!settings) return tl::unexpected<Error>(settings.error());
-  if (settings->farthest_m < settings->nearest_m) {
+  SEXTANT_ASSIGN_OR_RETURN(BoardViewsSettings settings,
+                           BoardViewsParameters().Parse(arguments.parameters));
+  if (settings.farthest_m < settings.nearest_m) {
     return MakeError(ErrorCode::kInvalidOption,
-                     fmt::format("farthest_m = {} is below nearest_m = {}", settings->farthest_m,
-                                 settings->nearest_m));
+                     fmt::format("farthest_m = {} is below nearest_m = {}", settings.farthest_m,
+                                 settings.nearest_m));
   }
   return MakeProblemTrials(
-      {[s = *settings](const TrialId& id) { return MakeBoardViewsProblem(s, id); }, *settings},
+      {[s = settings](const TrialId& id) { return MakeBoardViewsProblem(s, id); }, settings},
       arguments.solvers);
 }
 

@@ -100,22 +100,19 @@ class FusionTrials final : public Trials {
       const Expected<KabschFit> fit = FitKabsch(points.in_cam, points.in_lidar);
       if (fit) answers.push_back(fit->b_from_a);
     }
-    const Expected<Rigid3d> mean = AveragePoses(answers, RotationAverage::kChordal);
-    if (!mean) return tl::unexpected<Error>(mean.error());
+    SEXTANT_ASSIGN_OR_RETURN(const Rigid3d mean, AveragePoses(answers, RotationAverage::kChordal));
     // A chain has no loop for the weights to matter in; any covariance gives the same answer.
-    return UncertainPose{*mean, 1e-6 * Matrix6d::Identity()};
+    return UncertainPose{mean, 1e-6 * Matrix6d::Identity()};
   }
 
   Expected<Rigid3d> ByPipeline(std::uint64_t seed, int scans) const {
     std::vector<PoseEdge> edges;
     for (std::size_t i = 0; i < 2; ++i) {
-      const Expected<UncertainPose> pose = Calibrate(sights_[i], seed, scans);
-      if (!pose) return tl::unexpected<Error>(pose.error());
-      edges.push_back({.from = "lidar", .to = i == 0 ? "cam1" : "cam2", .to_from = *pose});
+      SEXTANT_ASSIGN_OR_RETURN(const UncertainPose pose, Calibrate(sights_[i], seed, scans));
+      edges.push_back({.from = "lidar", .to = i == 0 ? "cam1" : "cam2", .to_from = pose});
     }
-    const Expected<SensorGraph> graph = SensorGraph::Solve(edges);
-    if (!graph) return tl::unexpected<Error>(graph.error());
-    return graph->Between("cam2", "cam1").map([](const UncertainPose& p) { return p.b_from_a; });
+    SEXTANT_ASSIGN_OR_RETURN(const SensorGraph graph, SensorGraph::Solve(edges));
+    return graph.Between("cam2", "cam1").map([](const UncertainPose& p) { return p.b_from_a; });
   }
 
   void Measure(const Expected<Rigid3d>& cam2_from_cam1, const Rigid3d& truth,
@@ -139,18 +136,16 @@ class FusionTrials final : public Trials {
 };
 
 Expected<TrialsPtr> MakeFusionTrials(const KindArguments& arguments) {
-  const Expected<FusionSettings> settings = FusionParameters().Parse(arguments.parameters);
-  if (!settings) return tl::unexpected<Error>(settings.error());
-  if (!settings->translation_m.empty() || !settings->rotation_deg.empty()) {
+  SEXTANT_ASSIGN_OR_RETURN(const FusionSettings settings,
+                           FusionParameters().Parse(arguments.parameters));
+  if (!settings.translation_m.empty() || !settings.rotation_deg.empty()) {
     return MakeError(ErrorCode::kInvalidOption,
                      "both cameras stand where the scene says; leave out translation_m and "
                      "rotation_deg");
   }
-  Expected<SceneSight> first = SceneSight::Make(*settings, arguments.folder, 0);
-  if (!first) return tl::unexpected<Error>(first.error());
-  Expected<SceneSight> second = SceneSight::Make(*settings, arguments.folder, 1);
-  if (!second) return tl::unexpected<Error>(second.error());
-  return std::make_shared<FusionTrials>(std::move(*first), std::move(*second), *settings);
+  SEXTANT_ASSIGN_OR_RETURN(SceneSight first, SceneSight::Make(settings, arguments.folder, 0));
+  SEXTANT_ASSIGN_OR_RETURN(SceneSight second, SceneSight::Make(settings, arguments.folder, 1));
+  return std::make_shared<FusionTrials>(std::move(first), std::move(second), settings);
 }
 
 }  // namespace

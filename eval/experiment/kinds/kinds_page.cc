@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/kinds/kinds_page.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "eval/statistics/text_table.h"
 

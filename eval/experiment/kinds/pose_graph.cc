@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/kinds/pose_graph.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -130,11 +130,10 @@ Expected<SensorGraph> SensorGraph::Solve(const std::vector<PoseEdge>& edges) {
   SensorGraph graph;
   std::vector<Link> links;
   for (const PoseEdge& edge : edges) {
-    const Expected<Matrix6d> information = InformationOf(edge);
-    if (!information) return tl::unexpected<Error>(information.error());
+    SEXTANT_ASSIGN_OR_RETURN(const Matrix6d information, InformationOf(edge));
     const std::size_t from = NumberOf(edge.from, graph.frames_);
     const std::size_t to = NumberOf(edge.to, graph.frames_);
-    links.push_back({from, to, edge.to_from.b_from_a, *information});
+    links.push_back({from, to, edge.to_from.b_from_a, information});
   }
   std::vector<Rigid3d> poses;
   for (const std::optional<Rigid3d>& pose : ChainedPoses(links, graph.frames_.size())) {
@@ -182,15 +181,13 @@ Expected<std::size_t> SensorGraph::Find(std::string_view name) const {
 }
 
 Expected<UncertainPose> SensorGraph::Between(std::string_view to, std::string_view from) const {
-  const Expected<std::size_t> a = Find(from);
-  if (!a) return tl::unexpected<Error>(a.error());
-  const Expected<std::size_t> b = Find(to);
-  if (!b) return tl::unexpected<Error>(b.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::size_t a, Find(from));
+  SEXTANT_ASSIGN_OR_RETURN(const std::size_t b, Find(to));
   UncertainPose pose;
-  pose.b_from_a = frame_from_reference_[*b] * frame_from_reference_[*a].Inverse();
+  pose.b_from_a = frame_from_reference_[b] * frame_from_reference_[a].Inverse();
   const auto [by_to, by_from] =
-      JacobiansBetween(frame_from_reference_[*b], frame_from_reference_[*a]);
-  const std::pair<std::size_t, Matrix6d> parts[] = {{*b, by_to}, {*a, by_from}};
+      JacobiansBetween(frame_from_reference_[b], frame_from_reference_[a]);
+  const std::pair<std::size_t, Matrix6d> parts[] = {{b, by_to}, {a, by_from}};
   for (const auto& [frame, by_frame] : parts) {
     for (const auto& [other, by_other] : parts) {
       if (frame == 0 || other == 0) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/kinds/problem_trials.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <numbers>
 
@@ -97,10 +97,9 @@ class ProblemTrials final : public Trials {
 }  // namespace
 
 Expected<TrialsPtr> MakeProblemTrials(ProblemMaker maker, std::vector<SolverPtr> solvers) {
-  const Expected<KnownProblem> sample = maker.make({.trial = 0, .seed = 1});
-  if (!sample) return tl::unexpected<Error>(sample.error());
-  CalibrationProblem problem = sample->problem;
-  if (!problem.initial_cam_from_lidar) problem.initial_cam_from_lidar = sample->cam_from_lidar;
+  SEXTANT_ASSIGN_OR_RETURN(const KnownProblem sample, maker.make({.trial = 0, .seed = 1}));
+  CalibrationProblem problem = sample.problem;
+  if (!problem.initial_cam_from_lidar) problem.initial_cam_from_lidar = sample.cam_from_lidar;
   std::string reasons;
   std::erase_if(solvers, [&](const SolverPtr& solver) {
     Expected<void> met = CheckProblem(problem, solver->spec());

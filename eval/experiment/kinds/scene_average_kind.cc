@@ -125,9 +125,8 @@ Expected<TrialsPtr> MakeSceneAverageTrials(const KindArguments& arguments) {
   const Expected<SceneAverageSettings> settings =
       SceneAverageParameters().Parse(arguments.parameters);
   if (!settings) return tl::unexpected<Error>(settings.error());
-  Expected<SceneSight> sight = SceneSight::Make(*settings, arguments.folder);
-  if (!sight) return tl::unexpected<Error>(sight.error());
-  return std::make_shared<AverageTrials>(std::move(*sight), *settings);
+  SEXTANT_ASSIGN_OR_RETURN(SceneSight sight, SceneSight::Make(*settings, arguments.folder));
+  return std::make_shared<AverageTrials>(std::move(sight), *settings);
 }
 
 }  // namespace

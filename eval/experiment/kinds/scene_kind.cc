@@ -99,15 +99,14 @@ Expected<KnownProblem> MakeKnown(const SceneSight& sight, int views, const Trial
 }
 
 Expected<TrialsPtr> MakeSceneViewsTrials(const KindArguments& arguments) {
-  const Expected<SceneViewsSettings> settings = SceneViewsParameters().Parse(arguments.parameters);
-  if (!settings) return tl::unexpected<Error>(settings.error());
-  Expected<SceneSight> made = SceneSight::Make(*settings, arguments.folder);
-  if (!made) return tl::unexpected<Error>(made.error());
-  const auto sight = std::make_shared<const SceneSight>(std::move(*made));
-  const int views = settings->views;
+  SEXTANT_ASSIGN_OR_RETURN(const SceneViewsSettings settings,
+                           SceneViewsParameters().Parse(arguments.parameters));
+  SEXTANT_ASSIGN_OR_RETURN(SceneSight made, SceneSight::Make(settings, arguments.folder));
+  const auto sight = std::make_shared<const SceneSight>(std::move(made));
+  const int views = settings.views;
   return MakeProblemTrials(
       {.make = [sight, views](const TrialId& id) { return MakeKnown(*sight, views, id); },
-       .limits = *settings,
+       .limits = settings,
        .measure_more =
            [](const KnownProblem& known, const Expected<SolveReport>& report, MetricValues values) {
              MeasureExtras(report, values);

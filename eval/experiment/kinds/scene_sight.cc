@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/kinds/scene_sight.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -42,16 +42,16 @@ void Enlarge(double scale, Board& board) {
 Expected<Rigid3d> ExtrinsicOf(const SceneSettings& settings, const Rigid3d& of_scene) {
   Rigid3d cam_from_lidar = of_scene;
   if (!settings.translation_m.empty()) {
-    const auto xyz = ParseNumbers("translation_m", settings.translation_m, 3);
-    if (!xyz) return tl::unexpected<Error>(xyz.error());
-    cam_from_lidar.translation = {(*xyz)[0], (*xyz)[1], (*xyz)[2]};
+    SEXTANT_ASSIGN_OR_RETURN(const auto xyz,
+                             ParseNumbers("translation_m", settings.translation_m, 3));
+    cam_from_lidar.translation = {xyz[0], xyz[1], xyz[2]};
   }
   if (!settings.rotation_deg.empty()) {
-    const auto angles = ParseNumbers("rotation_deg", settings.rotation_deg, 3);
-    if (!angles) return tl::unexpected<Error>(angles.error());
-    const Eigen::Quaterniond turn = FromEulerZyx({.yaw = kRadPerDeg * (*angles)[0],
-                                                  .pitch = kRadPerDeg * (*angles)[1],
-                                                  .roll = kRadPerDeg * (*angles)[2]});
+    SEXTANT_ASSIGN_OR_RETURN(const auto angles,
+                             ParseNumbers("rotation_deg", settings.rotation_deg, 3));
+    const Eigen::Quaterniond turn = FromEulerZyx({.yaw = kRadPerDeg * angles[0],
+                                                  .pitch = kRadPerDeg * angles[1],
+                                                  .roll = kRadPerDeg * angles[2]});
     cam_from_lidar.rotation = (turn * AxesCamFromLidar().rotation).normalized();
   }
   return cam_from_lidar;
@@ -60,12 +60,12 @@ Expected<Rigid3d> ExtrinsicOf(const SceneSettings& settings, const Rigid3d& of_s
 Expected<Camera> PublishedCameraOf(const SceneSettings& settings, const Camera& true_camera) {
   Camera told = true_camera;
   if (!settings.told_intrinsics.empty()) {
-    const auto numbers = ParseNumbers("told_intrinsics", settings.told_intrinsics, 4);
-    if (!numbers) return tl::unexpected<Error>(numbers.error());
-    told.fx_px = (*numbers)[0];
-    told.fy_px = (*numbers)[1];
-    told.cx_px = (*numbers)[2];
-    told.cy_px = (*numbers)[3];
+    SEXTANT_ASSIGN_OR_RETURN(const auto numbers,
+                             ParseNumbers("told_intrinsics", settings.told_intrinsics, 4));
+    told.fx_px = numbers[0];
+    told.fy_px = numbers[1];
+    told.cx_px = numbers[2];
+    told.cy_px = numbers[3];
   }
   told.fx_px *= 1.0 + settings.told_focal_error;
   told.fy_px *= 1.0 + settings.told_focal_error;
@@ -73,9 +73,7 @@ Expected<Camera> PublishedCameraOf(const SceneSettings& settings, const Camera& 
     told.model = CameraModel::kPinhole;
     told.distortion.fill(0.0);
   }
-  if (const Expected<void> ok = ValidateCamera(told); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  SEXTANT_RETURN_IF_ERROR(ValidateCamera(told));
   return told;
 }
 
@@ -92,9 +90,8 @@ Expected<std::vector<double>> ParseNumbers(const std::string& name, const std::s
   std::istringstream words(text);
   std::vector<double> numbers;
   for (std::string word; words >> word;) {
-    const Expected<double> number = ParseFinite(word, {.file = name});
-    if (!number) return tl::unexpected<Error>(number.error());
-    numbers.push_back(*number);
+    SEXTANT_ASSIGN_OR_RETURN(const double number, ParseFinite(word, {.file = name}));
+    numbers.push_back(number);
   }
   if (numbers.size() == count) return numbers;
   return MakeError(ErrorCode::kInvalidOption,
@@ -112,9 +109,8 @@ Expected<SceneSight> SceneSight::Make(const SceneSettings& settings,
   SceneSight sight;
   sight.settings_ = settings;
   sight.camera_index_ = camera;
-  const Expected<Scene> scene = ReadScene(folder / settings.scene);
-  if (!scene) return tl::unexpected<Error>(scene.error());
-  sight.scene_ = *scene;
+  SEXTANT_ASSIGN_OR_RETURN(const Scene scene, ReadScene(folder / settings.scene));
+  sight.scene_ = scene;
   for (SceneBoard& board : sight.scene_.boards) Enlarge(settings.board_scale, board.board);
   if (!settings.lidar_model.empty()) sight.scene_.lidar.model = settings.lidar_model;
   if (static_cast<int>(sight.scene_.cameras.size()) <= camera) {
@@ -140,18 +136,17 @@ Expected<SceneSight> SceneSight::Make(const SceneSettings& settings,
     return MakeError(ErrorCode::kMissingData,
                      fmt::format("{}: camera {} can find no board", settings.scene, camera));
   }
-  const Expected<Camera> told = PublishedCameraOf(settings, *PublishedCamera(scene_camera));
-  if (!told) return tl::unexpected<Error>(told.error());
-  sight.told_ = *told;
+  SEXTANT_ASSIGN_OR_RETURN(const Camera told,
+                           PublishedCameraOf(settings, *PublishedCamera(scene_camera)));
+  sight.told_ = told;
   sight.lidar_ = *FindLidarModel(sight.scene_.lidar.model);
   if (const auto known = ExtractCorners(settings.extractor, {}, {});
       !known && known.error().code == ErrorCode::kUnknownName) {
     return tl::unexpected<Error>(known.error());
   }
   if (settings.camera == CameraSight::kRendered) {
-    Expected<BoardFinder> finder = BoardFinder::Make(sight.Boards(), sight.told_);
-    if (!finder) return tl::unexpected<Error>(finder.error());
-    sight.finder_ = std::make_shared<const BoardFinder>(std::move(*finder));
+    SEXTANT_ASSIGN_OR_RETURN(BoardFinder finder, BoardFinder::Make(sight.Boards(), sight.told_));
+    sight.finder_ = std::make_shared<const BoardFinder>(std::move(finder));
   }
   return sight;
 }
@@ -194,14 +189,12 @@ Expected<CalibrationProblem> SceneSight::Look(const Scene& scene, std::uint64_t 
   CalibrationProblem problem;
   problem.camera = told_;
   problem.boards = Boards();
-  const auto in_lidar = LookWithLidar(scene, unit_seed, view, time_s);
-  if (!in_lidar) return tl::unexpected<Error>(in_lidar.error());
+  SEXTANT_ASSIGN_OR_RETURN(const auto in_lidar, LookWithLidar(scene, unit_seed, view, time_s));
   if (settings_.camera == CameraSight::kMarked) {
-    MarkCorners(scene, *in_lidar, unit_seed, view, time_s, problem);
+    MarkCorners(scene, in_lidar, unit_seed, view, time_s, problem);
   } else {
-    const auto in_cam = LookWithCamera(scene, unit_seed, view, time_s);
-    if (!in_cam) return tl::unexpected<Error>(in_cam.error());
-    PairCorners(*in_cam, *in_lidar, view, problem);
+    SEXTANT_ASSIGN_OR_RETURN(const auto in_cam, LookWithCamera(scene, unit_seed, view, time_s));
+    PairCorners(in_cam, in_lidar, view, problem);
   }
   if (!problem.pairs_2d3d.empty() || !problem.pairs_3d3d.empty()) return problem;
   return MakeError(ErrorCode::kTooFewPairs,

@@ -55,14 +55,14 @@ Expected<std::vector<SceneSight::SeenCorners>> SceneSight::LookWithLidar(const S
       seen[b].covariance = sigma * sigma * Eigen::MatrixXd::Identity(size, size);
     }
   } else {
-    const Expected<SimulatedScan> scan = SimulateScan(
-        scene, lidar_, {.seed = unit_seed, .scan_index = view, .start_time_s = time_s});
-    if (!scan) return tl::unexpected<Error>(scan.error());
-    const Expected<ScanRings> rings = ScanRings::Build(scan->cloud);
-    if (!rings) return tl::unexpected<Error>(rings.error());
+    SEXTANT_ASSIGN_OR_RETURN(
+        const SimulatedScan scan,
+        SimulateScan(scene, lidar_,
+                     {.seed = unit_seed, .scan_index = view, .start_time_s = time_s}));
+    SEXTANT_ASSIGN_OR_RETURN(const ScanRings rings, ScanRings::Build(scan.cloud));
     const std::vector<Board> boards = Boards();
     const Expected<BoardSearch> search =
-        FindBoards(*rings, boards, {.correct_edges = settings_.correct_edges});
+        FindBoards(rings, boards, {.correct_edges = settings_.correct_edges});
     if (!search) return tl::unexpected<Error>(search.error());
     for (const BoardPatch& patch : search->found) {
       const auto b = static_cast<std::size_t>(patch.board);
@@ -117,10 +117,9 @@ Expected<std::vector<SceneSight::SeenCorners>> SceneSight::CornersInImage(const 
   const Expected<cv::Mat> image =
       RenderImage(scene, camera_index_, UsualImageOptions(seed, time_s));
   if (!image) return tl::unexpected<Error>(image.error());
-  const Expected<SeenBoards> found = finder_->Find(*image);
-  if (!found) return tl::unexpected<Error>(found.error());
+  SEXTANT_ASSIGN_OR_RETURN(const SeenBoards found, finder_->Find(*image));
   std::vector<SeenCorners> seen(scene.boards.size());
-  for (const SeenBoard& board : found->boards) {
+  for (const SeenBoard& board : found.boards) {
     if (!board.pose || !*board.pose) continue;
     seen[board.index] = {board.corners.points, board.corners.covariance};
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/kinds/stereo_scene.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <limits>
@@ -24,12 +24,12 @@ Expected<std::vector<Eigen::Vector3d>> CheckerCorners(const Scene& scene,
   std::vector<Eigen::Vector3d> corners;
   for (const SceneBoard& board : scene.boards) {
     if (!board.board.checker) continue;
-    const auto detector = MakeTagDetector(fmt::format("checkerboard(columns={},rows={})",
-                                                      board.board.checker->inner_columns,
-                                                      board.board.checker->inner_rows));
-    if (!detector) return tl::unexpected<Error>(detector.error());
-    const Expected<Detections> left = (*detector)->Detect(images.left);
-    const Expected<Detections> right = (*detector)->Detect(images.right);
+    SEXTANT_ASSIGN_OR_RETURN(const auto detector,
+                             MakeTagDetector(fmt::format("checkerboard(columns={},rows={})",
+                                                         board.board.checker->inner_columns,
+                                                         board.board.checker->inner_rows)));
+    const Expected<Detections> left = (detector)->Detect(images.left);
+    const Expected<Detections> right = (detector)->Detect(images.right);
     if (!left || !right || left->checkers.empty() || right->checkers.empty()) continue;
     const std::vector<Eigen::Vector2d>& in_left = left->checkers[0].corners_px;
     const std::vector<Eigen::Vector2d>& in_right = right->checkers[0].corners_px;
@@ -69,12 +69,10 @@ Expected<StereoPair> LookInStereo(const Scene& full_scene) {
         RenderStereo(scene, static_cast<int>(i), kBaseline_m,
                      UsualImageOptions(DeriveSeed(1, "stereo", i, 0), 0.0));
     if (!images) return tl::unexpected<Error>(images.error());
-    Expected<PointCloud> cloud = MatchStereo(*images, {});
-    if (!cloud) return tl::unexpected<Error>(cloud.error());
-    pair.clouds[i] = std::move(*cloud);
-    Expected<std::vector<Eigen::Vector3d>> checker = CheckerCorners(scene, *images);
-    if (!checker) return tl::unexpected<Error>(checker.error());
-    pair.checker[i] = std::move(*checker);
+    SEXTANT_ASSIGN_OR_RETURN(PointCloud cloud, MatchStereo(*images, {}));
+    pair.clouds[i] = std::move(cloud);
+    SEXTANT_ASSIGN_OR_RETURN(std::vector<Eigen::Vector3d> checker, CheckerCorners(scene, *images));
+    pair.checker[i] = std::move(checker);
     for (std::size_t w = 0; w < scene.walls.size(); ++w) {
       const SceneWall& wall = scene.walls[w];
       const Rigid3d wall_from_cam =

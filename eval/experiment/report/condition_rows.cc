@@ -51,9 +51,8 @@ Expected<ConditionRows> ConditionRows::Open(const Experiment& experiment,
   for (const RowBlockPlace& block : reader.blocks()) {
     if (block.number / per_condition != condition) continue;
     rows.blocks_.push_back(block);
-    const Expected<std::vector<std::uint64_t>> keys = reader.ReadKeys(block);
-    if (!keys) return tl::unexpected<Error>(keys.error());
-    for (const std::uint64_t key : *keys) rows.cells_.push_back(CellOf(key));
+    SEXTANT_ASSIGN_OR_RETURN(const std::vector<std::uint64_t> keys, reader.ReadKeys(block));
+    for (const std::uint64_t key : keys) rows.cells_.push_back(CellOf(key));
     std::sort(rows.cells_.begin(), rows.cells_.end());
     rows.cells_.erase(std::unique(rows.cells_.begin(), rows.cells_.end()), rows.cells_.end());
   }
@@ -74,20 +73,18 @@ Expected<void> ColumnPasses::Pass(const std::function<void(const Rows&)>& visit)
       visit(kept_[i]);
       continue;
     }
-    Expected<Rows> rows = Read(rows_->blocks_[i]);
-    if (!rows) return tl::unexpected<Error>(std::move(rows.error()));
-    visit(*rows);
-    if (keep_) kept_.push_back(std::move(*rows));
+    SEXTANT_ASSIGN_OR_RETURN(Rows rows, Read(rows_->blocks_[i]));
+    visit(rows);
+    if (keep_) kept_.push_back(std::move(rows));
   }
   return {};
 }
 
 Expected<ColumnPasses::Rows> ColumnPasses::Read(const RowBlockPlace& block) const {
   Rows rows;
-  const Expected<std::vector<std::uint64_t>> keys = rows_->reader_->ReadKeys(block);
-  if (!keys) return tl::unexpected<Error>(keys.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<std::uint64_t> keys, rows_->reader_->ReadKeys(block));
   CellFinder finder(rows_->cells_);
-  for (const std::uint64_t key : *keys)
+  for (const std::uint64_t key : keys)
     rows.cells.push_back(static_cast<std::uint32_t>(finder.Find(CellOf(key))));
   for (const int column : columns_) {
     rows.columns.emplace_back();

@@ -129,9 +129,7 @@ Expected<std::vector<Figure>> ComputeFigures(const Statistic& statistic, const C
   };
   const auto is_done = [](const FigureGatherer& gatherer) { return gatherer.done(); };
   while (!std::all_of(gatherers.begin(), gatherers.end(), is_done)) {
-    if (Expected<void> ok = passes.Pass(visit); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
+    SEXTANT_RETURN_IF_ERROR(passes.Pass(visit));
     for (FigureGatherer& gatherer : gatherers) gatherer.EndPass();
   }
   std::vector<Figure> figures;

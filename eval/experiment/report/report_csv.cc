@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <iterator>
@@ -47,17 +47,15 @@ void AppendNumber(double value, std::string& text) {
 Expected<std::string> RowsText(const RowFileReader& reader, const RowBlockPlace& block,
                                std::uint64_t first_trial,
                                const std::vector<std::string>& beginnings) {
-  const Expected<std::vector<std::uint64_t>> keys = reader.ReadKeys(block);
-  if (!keys) return tl::unexpected<Error>(keys.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<std::uint64_t> keys, reader.ReadKeys(block));
   std::vector<std::vector<double>> columns;
   for (std::size_t column = 0; column < reader.columns(); ++column) {
-    Expected<std::vector<double>> values = reader.ReadColumn(block, column);
-    if (!values) return tl::unexpected<Error>(values.error());
-    columns.push_back(std::move(*values));
+    SEXTANT_ASSIGN_OR_RETURN(std::vector<double> values, reader.ReadColumn(block, column));
+    columns.push_back(std::move(values));
   }
   std::string text;
-  for (std::size_t row = 0; row < keys->size(); ++row) {
-    const std::uint64_t key = (*keys)[row];
+  for (std::size_t row = 0; row < keys.size(); ++row) {
+    const std::uint64_t key = keys[row];
     text += beginnings[static_cast<std::size_t>(SubjectOfKey(key))];
     fmt::format_to(std::back_inserter(text), ",{},{}", first_trial + TrialOfKey(key),
                    IndexOfKey(key));
@@ -71,9 +69,8 @@ Expected<std::string> RowsText(const RowFileReader& reader, const RowBlockPlace&
 
 Expected<void> WriteRowsCsv(const Experiment& experiment, const RowFileReader& reader,
                             const std::filesystem::path& path) {
-  Expected<AtomicFileWriter> writer = AtomicFileWriter::Open(path);
-  if (!writer) return tl::unexpected<Error>(std::move(writer.error()));
-  if (Expected<void> ok = writer->Append(Header(experiment)); !ok) return ok;
+  SEXTANT_ASSIGN_OR_RETURN(AtomicFileWriter writer, AtomicFileWriter::Open(path));
+  if (Expected<void> ok = writer.Append(Header(experiment)); !ok) return ok;
   const std::uint64_t per_condition = BlocksPerCondition(experiment);
   const auto block_trials = static_cast<std::uint64_t>(experiment.trials_per_block);
   for (const RowBlockPlace& block : reader.blocks()) {
@@ -82,9 +79,9 @@ Expected<void> WriteRowsCsv(const Experiment& experiment, const RowFileReader& r
         RowsText(reader, block, block.number % per_condition * block_trials,
                  Beginnings(experiment, condition));
     if (!text) return tl::unexpected<Error>(text.error());
-    if (Expected<void> ok = writer->Append(*text); !ok) return ok;
+    if (Expected<void> ok = writer.Append(*text); !ok) return ok;
   }
-  return writer->Commit();
+  return writer.Commit();
 }
 
 }  // namespace sextant

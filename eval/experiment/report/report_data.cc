@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 #include "eval/experiment/report/report.h"
@@ -31,18 +31,17 @@ Expected<ReportData> ReportData::Compute(const Experiment& experiment,
   const std::vector<Statistic> statistics = StatisticsOf(experiment);
   ReportData data;
   for (std::size_t c = 0; c < experiment.conditions.size(); ++c) {
-    const Expected<ConditionRows> rows = ConditionRows::Open(experiment, reader, c);
-    if (!rows) return tl::unexpected<Error>(rows.error());
+    SEXTANT_ASSIGN_OR_RETURN(const ConditionRows rows, ConditionRows::Open(experiment, reader, c));
     std::vector<Expected<std::vector<Figure>>> computed(statistics.size());
     tbb::parallel_for(std::size_t{0}, statistics.size(), [&](std::size_t i) {
-      computed[i] = ComputeFigures(statistics[i], *rows, experiment.seed);
+      computed[i] = ComputeFigures(statistics[i], rows, experiment.seed);
     });
     std::map<std::string, std::vector<Figure>> figures;
     for (std::size_t i = 0; i < statistics.size(); ++i) {
       if (!computed[i]) return tl::unexpected<Error>(std::move(computed[i].error()));
       figures.emplace(statistics[i].text, std::move(*computed[i]));
     }
-    data.cells_.push_back(rows->cells());
+    data.cells_.push_back(rows.cells());
     data.figures_.push_back(std::move(figures));
   }
   return data;

@@ -106,11 +106,10 @@ Expected<std::string> FormatSummary(const Experiment& experiment, const RowFileR
   }
   for (std::size_t c = 0; c < experiment.conditions.size(); ++c) {
     const Condition& condition = experiment.conditions[c];
-    const Expected<ConditionRows> rows = ConditionRows::Open(experiment, reader, c);
-    if (!rows) return tl::unexpected<Error>(rows.error());
+    SEXTANT_ASSIGN_OR_RETURN(const ConditionRows rows, ConditionRows::Open(experiment, reader, c));
     Json cells = Json::array();
-    for (std::size_t i = 0; i < rows->cells().size(); ++i) {
-      const CellKey& cell = rows->cells()[i];
+    for (std::size_t i = 0; i < rows.cells().size(); ++i) {
+      const CellKey& cell = rows.cells()[i];
       cells.push_back(
           {{"subject", condition.trials->subjects()[static_cast<std::size_t>(cell.subject)]},
            {"index", cell.index},
@@ -118,7 +117,7 @@ Expected<std::string> FormatSummary(const Experiment& experiment, const RowFileR
            {"figures", ReportFigures(experiment, data, c, i)}});
     }
     const Expected<std::vector<std::vector<Description>>> descriptions =
-        DescribeAll(experiment, *rows);
+        DescribeAll(experiment, rows);
     if (!descriptions) return tl::unexpected<Error>(descriptions.error());
     for (std::size_t m = 0; m < experiment.metrics.size(); ++m) {
       if (!experiment.wanted[m]) continue;

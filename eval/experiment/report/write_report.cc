@@ -26,23 +26,20 @@ Expected<std::string> WriteReport(const Experiment& experiment,
                                   const std::filesystem::path& rows_path,
                                   const std::filesystem::path& folder,
                                   const ReportSettings& settings) {
-  const Expected<RowFileReader> reader = RowFileReader::Open(rows_path);
-  if (!reader) return tl::unexpected<Error>(reader.error());
-  const Expected<ReportData> data = ReportData::Compute(experiment, *reader);
-  if (!data) return tl::unexpected<Error>(data.error());
-  const Expected<std::string> summary = FormatSummary(experiment, *reader, *data);
-  if (!summary) return tl::unexpected<Error>(summary.error());
+  SEXTANT_ASSIGN_OR_RETURN(const RowFileReader reader, RowFileReader::Open(rows_path));
+  SEXTANT_ASSIGN_OR_RETURN(const ReportData data, ReportData::Compute(experiment, reader));
+  SEXTANT_ASSIGN_OR_RETURN(const std::string summary, FormatSummary(experiment, reader, data));
   Expected<void> ok;
   const auto write = [&](const char* name, const std::string& text) {
     if (ok) ok = WriteFileAtomically(folder / name, text);
   };
-  if (settings.csv) ok = WriteRowsCsv(experiment, *reader, folder / "rows.csv");
-  write("summary.json", *summary);
-  write("report.md", FormatMarkdown(experiment, *data));
-  write("tables.tex", FormatLatex(experiment, *data));
-  if (ok && settings.plots) ok = DrawPlots(experiment, *data, folder);
+  if (settings.csv) ok = WriteRowsCsv(experiment, reader, folder / "rows.csv");
+  write("summary.json", summary);
+  write("report.md", FormatMarkdown(experiment, data));
+  write("tables.tex", FormatLatex(experiment, data));
+  if (ok && settings.plots) ok = DrawPlots(experiment, data, folder);
   if (!ok) return tl::unexpected<Error>(std::move(ok.error()));
-  return FormatPlain(experiment, *data);
+  return FormatPlain(experiment, data);
 }
 
 }  // namespace sextant

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/reproduction/claims.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -96,21 +96,20 @@ Expected<ClaimsFile> ReadClaims(const std::filesystem::path& path) {
 
 Expected<ClaimsFile> ParseClaims(std::string_view text, const std::string& file) {
   static const Keys kKeys = {"paper", "experiments", "claims", "errata"};
-  const Expected<YamlNode> root = ParseYaml(std::string(text), file);
-  if (!root) return tl::unexpected<Error>(root.error());
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
   YamlFields in(file);
   ClaimsFile claims;
-  in.IsMap(*root, "claims file", kKeys);
-  claims.paper = in.TextAt(*root, "paper");
-  if (const YamlNode& list = in.Require(*root, "experiments"); in.IsSequence(list, "experiments")) {
+  in.IsMap(root, "claims file", kKeys);
+  claims.paper = in.TextAt(root, "paper");
+  if (const YamlNode& list = in.Require(root, "experiments"); in.IsSequence(list, "experiments")) {
     for (const YamlNode& item : list.items) claims.experiments.push_back(item.text);
   }
-  if (const YamlNode& list = in.Require(*root, "claims"); in.IsSequence(list, "claims")) {
+  if (const YamlNode& list = in.Require(root, "claims"); in.IsSequence(list, "claims")) {
     for (const YamlNode& item : list.items) {
       claims.claims.push_back(ReadClaim(in, item, claims.experiments));
     }
   }
-  if (const YamlNode* list = root->Find("errata");
+  if (const YamlNode* list = root.Find("errata");
       list != nullptr && in.IsSequence(*list, "errata")) {
     for (const YamlNode& item : list->items) claims.errata.push_back(ReadErratum(in, item));
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/reproduction/judge_claim.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -54,38 +54,38 @@ Expected<std::size_t> FindCell(const Condition& condition, const ConditionRows& 
 
 Expected<Figure> FigureOf(const Statistic& statistic, const ConditionRows& rows, std::size_t cell,
                           std::uint64_t seed) {
-  const Expected<std::vector<Figure>> figures = ComputeFigures(statistic, rows, seed);
-  if (!figures) return tl::unexpected<Error>(figures.error());
-  return (*figures)[cell];
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<Figure> figures,
+                           ComputeFigures(statistic, rows, seed));
+  return figures[cell];
 }
 
 Expected<OurFigure> Compute(const ClaimFigure& figure, bool is_draw, const RowsOf& rows) {
   const Experiment& experiment = *rows.experiment;
-  const Expected<std::size_t> condition = FindCondition(experiment, figure.condition);
-  if (!condition) return tl::unexpected<Error>(condition.error());
-  Expected<Statistic> statistic = ParseStatistic(figure.statistic, experiment.metrics);
-  if (!statistic) return tl::unexpected<Error>(statistic.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::size_t condition,
+                           FindCondition(experiment, figure.condition));
+  SEXTANT_ASSIGN_OR_RETURN(Statistic statistic,
+                           ParseStatistic(figure.statistic, experiment.metrics));
   const Expected<ConditionRows> of_condition =
-      ConditionRows::Open(experiment, *rows.reader, *condition);
+      ConditionRows::Open(experiment, *rows.reader, condition);
   if (!of_condition) return tl::unexpected<Error>(of_condition.error());
   const Expected<std::size_t> cell =
-      FindCell(experiment.conditions[*condition], *of_condition, figure);
+      FindCell(experiment.conditions[condition], *of_condition, figure);
   if (!cell) return tl::unexpected<Error>(cell.error());
-  const Expected<Figure> middle = FigureOf(*statistic, *of_condition, *cell, experiment.seed);
-  if (!middle) return tl::unexpected<Error>(middle.error());
-  OurFigure ours{.value = middle->value,
-                 .interval = middle->interval.value_or(Interval{middle->value, middle->value}),
-                 .decimals = statistic->decimals,
-                 .trials = middle->trials};
+  SEXTANT_ASSIGN_OR_RETURN(const Figure middle,
+                           FigureOf(statistic, *of_condition, *cell, experiment.seed));
+  OurFigure ours{.value = middle.value,
+                 .interval = middle.interval.value_or(Interval{middle.value, middle.value}),
+                 .decimals = statistic.decimals,
+                 .trials = middle.trials};
   if (!is_draw) return ours;
   // Where single trials fall.
-  statistic->kind = Statistic::Kind::kQuantile;
+  statistic.kind = Statistic::Kind::kQuantile;
   for (const auto& [q, end] :
        {std::pair{0.025, &ours.interval.low}, {0.975, &ours.interval.high}}) {
-    statistic->quantile = q;
-    const Expected<Figure> quantile = FigureOf(*statistic, *of_condition, *cell, experiment.seed);
-    if (!quantile) return tl::unexpected<Error>(quantile.error());
-    *end = quantile->value;
+    statistic.quantile = q;
+    SEXTANT_ASSIGN_OR_RETURN(const Figure quantile,
+                             FigureOf(statistic, *of_condition, *cell, experiment.seed));
+    *end = quantile.value;
   }
   return ours;
 }

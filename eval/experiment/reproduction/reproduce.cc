@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/reproduction/reproduce.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <chrono>
 #include <map>
@@ -47,9 +47,8 @@ Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const 
   const Expected<std::string> tables =
       WriteReport(*experiment, rows, folder, {.csv = false, .plots = true});
   if (!tables) return tl::unexpected<Error>(tables.error());
-  Expected<RowFileReader> reader = RowFileReader::Open(rows);
-  if (!reader) return tl::unexpected<Error>(reader.error());
-  return std::make_unique<Done>(Done{std::move(*experiment), std::move(*reader)});
+  SEXTANT_ASSIGN_OR_RETURN(RowFileReader reader, RowFileReader::Open(rows));
+  return std::make_unique<Done>(Done{std::move(*experiment), std::move(reader)});
 }
 
 }  // namespace
@@ -57,12 +56,11 @@ Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const 
 Expected<Reproduction> Reproduce(const ReproduceSettings& settings,
                                  const SolverRegistry& registry) {
   const auto start = std::chrono::steady_clock::now();
-  const Expected<ClaimsFile> file = ReadClaims(settings.claims);
-  if (!file) return tl::unexpected<Error>(file.error());
+  SEXTANT_ASSIGN_OR_RETURN(const ClaimsFile file, ReadClaims(settings.claims));
   Reproduction reproduction;
   std::map<std::string, std::unique_ptr<Done>> done;
   std::map<std::string, RowsOf> rows;
-  for (const std::string& name : file->experiments) {
+  for (const std::string& name : file.experiments) {
     Expected<std::unique_ptr<Done>> one = RunOne(settings, name, registry);
     if (!one && one.error().code == ErrorCode::kMissingData) {
       reproduction.skipped.push_back(name + ": " + one.error().message);
@@ -72,16 +70,15 @@ Expected<Reproduction> Reproduce(const ReproduceSettings& settings,
     rows[name] = {&(*one)->experiment, &(*one)->reader};
     done[name] = std::move(*one);
   }
-  for (const Claim& claim : file->claims) {
-    Expected<JudgedClaim> judged = JudgeClaim(claim, rows);
-    if (!judged) return tl::unexpected<Error>(judged.error());
-    reproduction.claims.push_back(std::move(*judged));
+  for (const Claim& claim : file.claims) {
+    SEXTANT_ASSIGN_OR_RETURN(JudgedClaim judged, JudgeClaim(claim, rows));
+    reproduction.claims.push_back(std::move(judged));
   }
   const std::string command = fmt::format("sextant reproduce{}", settings.quick ? " --quick" : "");
-  const Expected<void> written = WriteFileAtomically(
-      settings.out / "REPRODUCTION.md",
-      FormatReproduction(*file, reproduction.claims, reproduction.skipped, command));
-  if (!written) return tl::unexpected<Error>(written.error());
+  SEXTANT_ASSIGN_OR_RETURN(const void written,
+                           WriteFileAtomically(settings.out / "REPRODUCTION.md",
+                                               FormatReproduction(file, reproduction.claims,
+                                                                  reproduction.skipped, command)));
   reproduction.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return reproduction;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -32,14 +32,13 @@ std::uint64_t ExpectedBlocks(const std::string& configuration) {
 Expected<std::vector<RowFileReader>> OpenAll(const std::vector<std::filesystem::path>& shards) {
   std::vector<RowFileReader> readers;
   for (const std::filesystem::path& path : shards) {
-    Expected<RowFileReader> reader = RowFileReader::Open(path);
-    if (!reader) return tl::unexpected<Error>(reader.error());
-    if (!readers.empty() && reader->configuration() != readers[0].configuration()) {
+    SEXTANT_ASSIGN_OR_RETURN(RowFileReader reader, RowFileReader::Open(path));
+    if (!readers.empty() && reader.configuration() != readers[0].configuration()) {
       return MakeError(ErrorCode::kInvalidInput,
                        fmt::format("'{}' holds the rows of another experiment than '{}'",
                                    path.string(), shards[0].string()));
     }
-    readers.push_back(std::move(*reader));
+    readers.push_back(std::move(reader));
   }
   return readers;
 }
@@ -76,17 +75,14 @@ Expected<void> MergeRowFiles(const std::vector<std::filesystem::path>& shards,
                      fmt::format("'{}' is itself one of the files to merge; name another folder",
                                  merged.string()));
   }
-  const Expected<std::vector<RowFileReader>> readers = OpenAll(shards);
-  if (!readers) return tl::unexpected<Error>(readers.error());
-  const Expected<std::vector<Piece>> pieces = SortPieces(*readers);
-  if (!pieces) return tl::unexpected<Error>(pieces.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<RowFileReader> readers, OpenAll(shards));
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<Piece> pieces, SortPieces(readers));
   Expected<RowFileWriter> writer =
-      RowFileWriter::Open(merged, readers->front().configuration(), /*fresh=*/true);
+      RowFileWriter::Open(merged, readers.front().configuration(), /*fresh=*/true);
   if (!writer) return tl::unexpected<Error>(writer.error());
-  for (const Piece& piece : *pieces) {
-    const Expected<std::string> bytes = (*readers)[piece.file].ReadBytes(piece.place);
-    if (!bytes) return tl::unexpected<Error>(bytes.error());
-    if (Expected<void> ok = writer->Append(*bytes); !ok) return ok;
+  for (const Piece& piece : pieces) {
+    SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, readers[piece.file].ReadBytes(piece.place));
+    if (Expected<void> ok = writer->Append(bytes); !ok) return ok;
   }
   return writer->Flush();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/run/part_files.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <fstream>
@@ -67,16 +67,15 @@ Expected<std::vector<std::uint64_t>> BlocksHeldBy(const std::vector<std::filesys
                                                   const std::string& configuration) {
   std::vector<std::uint64_t> blocks;
   for (const std::filesystem::path& path : files) {
-    const Expected<RowFileReader> reader = RowFileReader::Open(path);
-    if (!reader) return tl::unexpected<Error>(reader.error());
-    if (reader->configuration() != configuration) {
+    SEXTANT_ASSIGN_OR_RETURN(const RowFileReader reader, RowFileReader::Open(path));
+    if (reader.configuration() != configuration) {
       return MakeError(ErrorCode::kInvalidInput,
                        fmt::format("'{}' holds the rows of another configuration of the "
                                    "experiment; start anew with --fresh, or name another folder "
                                    "with --out",
                                    path.string()));
     }
-    for (const RowBlockPlace& block : reader->blocks()) blocks.push_back(block.number);
+    for (const RowBlockPlace& block : reader.blocks()) blocks.push_back(block.number);
   }
   std::sort(blocks.begin(), blocks.end());
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -75,9 +75,7 @@ Expected<RowFileReader> RowFileReader::Open(const std::filesystem::path& path) {
   if (reader.fd_ < 0 || fstat(reader.fd_, &status) != 0) return Unreadable(path);
   if (!S_ISREG(status.st_mode)) return Damaged(path);
   reader.file_bytes_ = static_cast<std::uint64_t>(status.st_size);
-  if (Expected<void> ok = reader.ReadHeader(); !ok) {
-    return tl::unexpected<Error>(std::move(ok.error()));
-  }
+  SEXTANT_RETURN_IF_ERROR(reader.ReadHeader());
   reader.FindBlocks();
   return reader;
 }

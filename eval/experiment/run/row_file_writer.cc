@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -68,13 +68,11 @@ Expected<RowFileWriter> RowFileWriter::Open(const std::filesystem::path& path,
     return MakeError(ErrorCode::kIo, fmt::format("cannot write '{}': it is not a regular file",
                                                  Printable(path.string(), 300)));
   }
-  if (Expected<void> ok = writer.Lock(); !ok) return tl::unexpected<Error>(std::move(ok.error()));
+  SEXTANT_RETURN_IF_ERROR(writer.Lock());
   const std::string header = RowFileHeader(configuration);
   const auto size = static_cast<std::uint64_t>(status.st_size);
   if (!fresh && !IsTornHeader(writer.fd_, size, header)) {
-    if (Expected<void> ok = writer.Keep(configuration); !ok) {
-      return tl::unexpected<Error>(std::move(ok.error()));
-    }
+    SEXTANT_RETURN_IF_ERROR(writer.Keep(configuration));
     return writer;
   }
   if (ftruncate(writer.fd_, 0) != 0 || !WriteAll(writer.fd_, header, 0)) return Unwritable(path);
@@ -90,16 +88,15 @@ Expected<void> RowFileWriter::Lock() {
 }
 
 Expected<void> RowFileWriter::Keep(const std::string& configuration) {
-  const Expected<RowFileReader> reader = RowFileReader::Open(path_);
-  if (!reader) return tl::unexpected<Error>(reader.error());
-  if (reader->configuration() != configuration) {
+  SEXTANT_ASSIGN_OR_RETURN(const RowFileReader reader, RowFileReader::Open(path_));
+  if (reader.configuration() != configuration) {
     return MakeError(ErrorCode::kInvalidInput,
                      fmt::format("'{}' holds the rows of another configuration of the experiment; "
                                  "start anew with --fresh, or name another folder with --out",
                                  Printable(path_.string(), 300)));
   }
-  bytes_ = reader->whole_bytes();
-  for (const RowBlockPlace& block : reader->blocks()) kept_.push_back(block.number);
+  bytes_ = reader.whole_bytes();
+  for (const RowBlockPlace& block : reader.blocks()) kept_.push_back(block.number);
   if (ftruncate(fd_, static_cast<off_t>(bytes_)) != 0) return Unwritable(path_);
   return {};
 }

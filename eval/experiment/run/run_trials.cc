@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/run/run_trials.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
@@ -192,9 +192,7 @@ Expected<RunOutcome> RunTrials(const Experiment& experiment, const RunSettings& 
       RowFileWriter::Open(settings.rows_path, ConfigurationOf(experiment), settings.fresh);
   if (!writer) return tl::unexpected<Error>(writer.error());
   std::vector<std::uint64_t> blocks = BlocksOfShard(experiment, settings.shard);
-  if (Expected<void> ok = CheckKept(writer->kept(), blocks, settings); !ok) {
-    return tl::unexpected<Error>(std::move(ok.error()));
-  }
+  SEXTANT_RETURN_IF_ERROR(CheckKept(writer->kept(), blocks, settings));
   RunOutcome outcome;
   for (const std::uint64_t block : writer->kept()) {
     outcome.kept_trials += TrialsOfBlock(experiment, block);
@@ -204,7 +202,7 @@ Expected<RunOutcome> RunTrials(const Experiment& experiment, const RunSettings& 
       BlockPipeline(experiment, std::move(blocks), settings, *writer).Run();
   if (!run) return tl::unexpected<Error>(run.error());
   outcome.run_trials = *run;
-  if (Expected<void> ok = writer->Flush(); !ok) return tl::unexpected<Error>(std::move(ok.error()));
+  SEXTANT_RETURN_IF_ERROR(writer->Flush());
   return outcome;
 }
 
