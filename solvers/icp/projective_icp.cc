@@ -19,7 +19,7 @@ constexpr double kAtRest = 3e-4;  ///< Steps [rad, m] below which matches are ke
 constexpr int kMinMatches = 30;
 constexpr std::size_t kMinPatches = 30;
 /// Of the normal matrix, rotations scaled by the scene's size: a motion below it is free.
-constexpr double kMinEigenvalue = 1e-4;
+constexpr double kMinStiffness = 1e-4;
 
 // Both ways of matching, and their sum by (dphi, dt) of target_from_source.
 class BothWays {
@@ -152,7 +152,7 @@ Expected<ProjectiveIcpFit> FitProjectiveIcp(std::span<const Eigen::Vector3d> tar
                                    "start, or raise max_distance_m",
                                    fit.iterations, equations.matches, kMinMatches));
     }
-    if (RelativeStiffness(equations.normal) < kMinEigenvalue) {
+    if (RelativeStiffness(equations.normal) < kMinStiffness) {
       return MakeError(ErrorCode::kDegenerate,
                        fmt::format("projective icp, iteration {}: the surfaces that both scans "
                                    "show leave a motion free",

@@ -45,7 +45,7 @@ NullDirection FindNullDirection(const Eigen::Matrix3d& q) {
 // homography is the identity and its other candidates show in the upper left.
 bool FixHomography(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& centroid,
                    const Eigen::Matrix<double, 2, 3>& unit_from_points) {
-  constexpr double kMinRelativeGap = 1e-12;
+  constexpr double kMinRelativeDeterminant = 1e-12;
   constexpr double kMinReduced = 1e-6;
   Eigen::Matrix3d u = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d v = Eigen::Matrix3d::Zero();
@@ -61,7 +61,7 @@ bool FixHomography(std::span<const Eigen::Vector3d> points, const Eigen::Vector3
   const double determinant = reduced(0, 0) * reduced(1, 1) - reduced(0, 1) * reduced(1, 0);
   // What three points leave is rounding throughout.
   const double size = std::max(reduced.trace(), kMinReduced * square.trace());
-  return determinant > kMinRelativeGap * size * size;
+  return determinant > kMinRelativeDeterminant * size * size;
 }
 
 // The two rotations of the plane z = 0 whose image at the plane's origin has value (h02, h12) / h22
