@@ -59,77 +59,74 @@ class JointSearch {
   Expected<JointAnswer> Run(const JointState& start) {
     answer_.minimum.state = start;
     SEXTANT_RETURN_IF_ERROR(FollowLosses());
-    if (options_.cut > 0.0) {
-      SEXTANT_RETURN_IF_ERROR(Cut());
-      answer_.noise = NoiseOf(Residuals());
-      return std::move(answer_);
-    }
+    if (options_.cut > 0.0) SEXTANT_RETURN_IF_ERROR(Cut());
+    answer_.noise = NoiseOf(Residuals());
+    return std::move(answer_);
+  }
 
-   private:
-    std::vector<BoardViewResiduals> Residuals() const {
-      return JointResidualsAt(views_, unknowns_, answer_.minimum.state);
-    }
+ private:
+  std::vector<BoardViewResiduals> Residuals() const {
+    return JointResidualsAt(views_, unknowns_, answer_.minimum.state);
+  }
 
-    Expected<void> FollowLosses() {
-      const double tolerance = options_.cut > 0.0 ? std::max(options_.step_tolerance, kNearEnough)
-                                                  : options_.step_tolerance;
-      JointNoise noise;
-      for (int round = 0; round < kMaxRounds; ++round) {
-        const std::vector<BoardViewResiduals> residuals = Residuals();
-        const JointNoise now = NoiseOf(residuals);
-        JointSelection seen = SelectSeen(residuals);
-        LeaveOutOneSided(seen);
-        if (round > 0 && seen == answer_.selection && IsSame(now, noise)) break;
-        noise = now;
-        answer_.selection = std::move(seen);
-        if (Expected<void> ok = Minimise(LossesOf(options_, noise), tolerance); !ok) return ok;
-      }
-      return {};
+  Expected<void> FollowLosses() {
+    const double tolerance = options_.cut > 0.0 ? std::max(options_.step_tolerance, kNearEnough)
+                                                : options_.step_tolerance;
+    JointNoise noise;
+    for (int round = 0; round < kMaxRounds; ++round) {
+      const std::vector<BoardViewResiduals> residuals = Residuals();
+      const JointNoise now = NoiseOf(residuals);
+      JointSelection seen = SelectSeen(residuals);
+      LeaveOutOneSided(seen);
+      if (round > 0 && seen == answer_.selection && IsSame(now, noise)) break;
+      noise = now;
+      answer_.selection = std::move(seen);
+      SEXTANT_RETURN_IF_ERROR(Minimise(LossesOf(options_, noise), tolerance));
     }
+    return {};
+  }
 
-    Expected<void> Cut() {
-      for (int round = 0; round < kMaxRounds; ++round) {
-        const std::vector<BoardViewResiduals> residuals = Residuals();
-        JointSelection within = SelectWithin(views_, residuals, NoiseOf(residuals), options_.cut);
-        LeaveOutOneSided(within);
-        if (round > 0 && within == answer_.selection) break;
-        answer_.selection = std::move(within);
-        if (Expected<void> ok = Minimise({}, options_.step_tolerance); !ok) return ok;
-      }
-      return {};
+  Expected<void> Cut() {
+    for (int round = 0; round < kMaxRounds; ++round) {
+      const std::vector<BoardViewResiduals> residuals = Residuals();
+      JointSelection within = SelectWithin(views_, residuals, NoiseOf(residuals), options_.cut);
+      LeaveOutOneSided(within);
+      if (round > 0 && within == answer_.selection) break;
+      answer_.selection = std::move(within);
+      SEXTANT_RETURN_IF_ERROR(Minimise({}, options_.step_tolerance));
     }
+    return {};
+  }
 
-    Expected<void> Minimise(const JointLosses& losses, double step_tolerance) {
-      if (!AnyView(answer_.selection)) {
-        return MakeError(
-            ErrorCode::kDegenerate,
-            "no view has a board that both sensors see at these poses; give views with "
-            "printed points and returns, or a better start");
-      }
-      answer_.minimum =
-          MinimiseJointly(Selected(views_, answer_.selection), unknowns_, losses,
-                          answer_.minimum.state, options_.max_iterations, step_tolerance);
-      answer_.iterations += answer_.minimum.iterations;
-      if (answer_.minimum.converged) return {};
-      return MakeError(
-          ErrorCode::kNoConvergence,
-          fmt::format(
-              "no convergence within {} iterations; raise max_iterations, or wrap the inner "
-              "solver in gnc for a better start",
-              options_.max_iterations));
+  Expected<void> Minimise(const JointLosses& losses, double step_tolerance) {
+    if (!AnyView(answer_.selection)) {
+      return MakeError(ErrorCode::kDegenerate,
+                       "no view has a board that both sensors see at these poses; give views with "
+                       "printed points and returns, or a better start");
     }
+    answer_.minimum =
+        MinimiseJointly(Selected(views_, answer_.selection), unknowns_, losses,
+                        answer_.minimum.state, options_.max_iterations, step_tolerance);
+    answer_.iterations += answer_.minimum.iterations;
+    if (answer_.minimum.converged) return {};
+    return MakeError(
+        ErrorCode::kNoConvergence,
+        fmt::format("no convergence within {} iterations; raise max_iterations, or wrap the inner "
+                    "solver in gnc for a better start",
+                    options_.max_iterations));
+  }
 
-    const std::vector<JointView>& views_;
-    const JointUnknowns& unknowns_;
-    const JointOptions& options_;
-    JointAnswer answer_;
-  };
+  const std::vector<JointView>& views_;
+  const JointUnknowns& unknowns_;
+  const JointOptions& options_;
+  JointAnswer answer_;
+};
 
 }  // namespace
 
-Expected<JointAnswer>
-SearchJointly(const std::vector<JointView>& views, const JointUnknowns& unknowns,
-              const JointState& start, const JointOptions& options) {
+Expected<JointAnswer> SearchJointly(const std::vector<JointView>& views,
+                                    const JointUnknowns& unknowns, const JointState& start,
+                                    const JointOptions& options) {
   return JointSearch(views, unknowns, options).Run(start);
 }
 
