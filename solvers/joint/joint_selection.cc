@@ -11,7 +11,7 @@ namespace sextant {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-// Of the absolute value of a standard normal number.
+// Median of the absolute value of a standard normal variable.
 constexpr double kNormalMedian = 0.6744897501960817;
 
 BoardViewResiduals ResidualsOfView(const JointView& view, const JointUnknowns& unknowns,
