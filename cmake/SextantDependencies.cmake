@@ -16,6 +16,8 @@ endmacro()
 sextant_dependency(Eigen3 3.4 REQUIRED NO_MODULE)
 sextant_dependency(tl-expected REQUIRED)
 sextant_dependency(fmt 9 REQUIRED)
+# Its headers alone.
+sextant_dependency(Boost 1.74 REQUIRED CONFIG)
 sextant_dependency(Ceres 2.1 REQUIRED)
 sextant_dependency(nanoflann REQUIRED)
 sextant_dependency(yaml-cpp REQUIRED)

@@ -15,10 +15,10 @@ struct BoardTag {
   int id = 0;
   double edge_m = 0.0;  ///< Side of the square whose corners detectors report.
   Eigen::Vector2d center_in_board_m = Eigen::Vector2d::Zero();
-  double rotation_rad = 0.0;  ///< Clockwise as seen; 0: the tag's own top along the board's.
+  double rotation_rad = 0.0;  ///< Clockwise as seen; 0: the tag's top points to the board's.
 };
 
-/// A checkerboard printed on a board, centred where `center_in_board_m` says.
+/// A checkerboard printed on a board, centred at `center_in_board_m`.
 struct BoardChecker {
   int inner_columns = 0;  ///< Inner corners along x.
   int inner_rows = 0;     ///< Inner corners along y.
@@ -33,19 +33,19 @@ struct BoardHole {
   Eigen::Vector2d center_in_board_m = Eigen::Vector2d::Zero();
 };
 
-/// A rectangular board, usually hung from a corner.
+/// A rectangular board, usually held with one corner up.
 ///
-/// Board frame: origin at the centre of the front, x right and y down along its edges as one sees
-/// the front, z into the board, so that a board that faces the camera squarely has the camera's
-/// axes. Corners are numbered clockwise as seen, from (-x, -y): 0 top, 1 right, 2 bottom, 3 left of
-/// a board that hangs from corner 0.
+/// Board frame: origin at the centre of the front, x right and y down along its edges as seen from
+/// the front, z into the board, so that the axes of a board that directly faces the camera are
+/// those of the camera. Corners are numbered clockwise as seen, from (-x, -y): 0 top, 1 right, 2
+/// bottom, 3 left for a board with corner 0 up.
 struct Board {
   int id = 0;
   double top_right_m = 0.0;     ///< Along x: edge from the top to the right corner, and opposite.
   double right_bottom_m = 0.0;  ///< Along y: edge from the right to the bottom corner.
   std::string name{};
   double thickness_m = 0.0;
-  std::optional<BoardHole> hole{};  ///< Its corners follow the outer ones as 4 to 7, same order.
+  std::optional<BoardHole> hole{};  ///< Its corners are 4 to 7, in the same order.
   std::vector<BoardTag> tags{};
   std::optional<BoardChecker> checker{};
 

@@ -12,7 +12,7 @@ namespace {
 using Quad = std::array<Eigen::Vector2d, 4>;
 using Part = BoardFault::Part;
 
-// Files give decimals: parts that touch by their figures may overlap by rounding.
+// Files have decimal numbers: parts that touch exactly there may overlap by rounding.
 constexpr double kTouch_m = 1e-9;
 
 Quad Rectangle(const Eigen::Vector2d& center, double width, double height) {
@@ -86,7 +86,7 @@ std::optional<BoardFault> FindHoleFault(const Board& board) {
   return std::nullopt;
 }
 
-// Of a print that covers `quad`; `what` names it.
+// Fault of the position of a print that covers `quad`.
 std::optional<BoardFault> FindPlaceFault(const Board& board, Part part, int tag, const Quad& quad) {
   if (!IsOnBoard(board, quad)) {
     return BoardFault{part, tag, "center_in_board_m", "it reaches over the board's edge"};
@@ -132,7 +132,7 @@ std::optional<BoardFault> FindTagFault(const Board& board, int index) {
       return BoardFault{
           Part::kTag, index, "id",
           "the id " + std::to_string(tag.id) + " of " + tag.family +
-              " is on this board a second time; a detector could not tell them apart"};
+              " is on this board a second time; a detector cannot distinguish the two"};
     }
     if (Overlap(quad, TagCorners(before))) {
       return BoardFault{

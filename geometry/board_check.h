@@ -9,19 +9,19 @@
 
 namespace sextant {
 
-/// A contradiction in a board's description: which part and field of it, and what is wrong.
+/// A contradiction in a board's description: its part and field, and the reason.
 struct BoardFault {
   enum class Part { kBoard, kHole, kTag, kChecker };
 
   Part part = Part::kBoard;
-  int tag = 0;          ///< Into Board::tags, where the part is one.
+  int tag = 0;          ///< Index into Board::tags, where the part is a tag.
   std::string field{};  ///< "edge_m", as the board file names it; empty: the part as a whole.
   std::string message{};
 };
 
 /// The first fault of a board: sizes that are not positive and finite, a hole or print that is not
-/// wholly on the board, prints that overlap each other or the hole, an id of one family twice.
-/// Touching is no overlap. Whether a family has an id only features/camera knows.
+/// entirely on the board, prints that overlap each other or the hole, an id of one family twice.
+/// Touching is not an overlap. Whether a family has an id is checked in features/camera.
 std::optional<BoardFault> FindBoardFault(const Board& board);
 
 /// Corners of a tag in the board frame [m], clockwise as seen from the tag's own top-left.

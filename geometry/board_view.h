@@ -8,35 +8,34 @@
 
 namespace sextant {
 
-/// Points printed on a board and where a camera saw them, with errors that may go together: the
-/// four corners of a tag, or the inner corners of a checkerboard.
+/// Points printed on a board and their pixels in an image, with correlated errors: the four corners
+/// of a tag, or the inner corners of a checkerboard.
 struct BoardPoints {
   std::vector<Eigen::Vector2d> in_board_m{};
   std::vector<Eigen::Vector2d> pixels{};
-  Eigen::MatrixXd covariance_px2{};  ///< 2n x 2n, of (x0, y0, x1, y1, ...).
+  Eigen::MatrixXd covariance_px2{};  ///< 2n x 2n, in the order (x0, y0, x1, y1, ...).
 };
 
-/// A ray of the LiDAR that meets the board's plane where one of its sides is.
+/// A ray of the LiDAR that intersects the board's plane on one of its sides.
 struct EdgeRay {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< Unit, in the LiDAR frame.
-  int side = 0;  ///< 0 from corner 0 to 1, clockwise; 4 to 7 of the opening.
-  /// Standard deviation of where it meets the plane, across the side, in the plane: half a step
+  int side = 0;  ///< 0 from corner 0 to 1, clockwise; 4 to 7 for the opening.
+  /// Standard deviation of the intersection, across the side, in the plane: from half a step
   /// between samples (uniform) and the beam's spot.
   double sigma_m = 0.0;
 };
 
-/// What both sensors saw of one board at one moment, before anything is fitted to it: the data of
-/// the joint solver. Which board and which corner is which has been settled: both poses place the
-/// same corner 0.
+/// Raw observations of one board by both sensors at one time: the data of the joint solver. Boards
+/// and corners are already associated: both poses have the same corner 0.
 struct BoardView {
-  int view = 0;   ///< The moment: an image and a scan.
+  int view = 0;   ///< Number of the image and scan.
   int board = 0;  ///< Board::id.
   std::vector<BoardPoints> printed{};
   std::vector<Eigen::Vector3d> face_in_lidar{};  ///< Returns from the face, as measured [m].
-  double range_sigma_m = 0.0;                    ///< Of each of them, along its ray.
+  double range_sigma_m = 0.0;                    ///< Of each return, along its ray.
   std::vector<EdgeRay> edges{};
-  Rigid3d cam_from_board{};    ///< By the image alone.
-  Rigid3d lidar_from_board{};  ///< By the scan alone.
+  Rigid3d cam_from_board{};    ///< From the image alone.
+  Rigid3d lidar_from_board{};  ///< From the scan alone.
 };
 
 }  // namespace sextant

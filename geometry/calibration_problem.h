@@ -13,7 +13,7 @@
 
 namespace sextant {
 
-/// Where a pair was measured. Pairs of one view were taken at the same moment.
+/// Where a pair was measured. Pairs of one view were taken at the same time.
 struct PairId {
   int view = 0;
   int board = 0;
@@ -56,23 +56,23 @@ struct PointSets {
   std::vector<Eigen::Vector3d> in_lidar;
 };
 
-/// All that is known of one LiDAR and one camera. Solvers state which parts they need.
+/// The data of one LiDAR and one camera. Solvers state which parts they need.
 struct CalibrationProblem {
   std::optional<Camera> camera;
   std::vector<Pair3d3d> pairs_3d3d;
   std::vector<Pair2d3d> pairs_2d3d;
-  PointSets point_sets;  ///< Their pairing is not known.
+  PointSets point_sets;  ///< With unknown pairing.
   /// Raw observations; their boards are among `boards`, and they need the camera.
   std::vector<BoardView> board_views;
-  std::vector<Board> boards;  ///< Known boards, by the id that pairs and views name; may be empty.
+  std::vector<Board> boards;  ///< Known boards, with the ids used in pairs and views; may be empty.
   std::optional<Rigid3d> initial_cam_from_lidar;
 };
 
 /// The points of the pairs, still paired by index.
 PointSets PointsOf(std::span<const Pair3d3d> pairs);
 
-/// The points of the pairs as unpaired sets, each sorted by coordinates so that the order tells
-/// nothing of the pairing.
+/// The points of the pairs as unpaired sets, each sorted by coordinates so that the order contains
+/// no information on the pairing.
 PointSets WithholdPairing(std::span<const Pair3d3d> pairs);
 
 }  // namespace sextant

@@ -53,7 +53,7 @@ std::optional<Eigen::Vector2d> UndistortPlane(const Camera& camera, const Eigen:
     const Eigen::Vector2d residual = target - image->point;
     if (residual.norm() <= rounding) return guess;
     const Eigen::Vector2d full = image->by_undistorted.inverse() * residual;
-    // Newton's method squares its error: this step is the last that counts.
+    // Newton's method squares its error: the next step would be rounding.
     if (full.norm() < kLastStep) return Distort(camera, guess + full) ? guess + full : guess;
     double fraction = 1.0;
     std::optional<Distorted> next;
@@ -63,7 +63,7 @@ std::optional<Eigen::Vector2d> UndistortPlane(const Camera& camera, const Eigen:
       if (next && (target - next->point).norm() < residual.norm()) break;
     }
     if (fraction <= kMinFraction) {
-      // Rounding leaves nothing to gain, or the border of the domain is in the way.
+      // The residual is rounding, or the step ends at the border of the domain.
       return residual.norm() <= 1e3 * rounding ? std::optional(guess) : std::nullopt;
     }
     guess += fraction * full;
@@ -94,7 +94,7 @@ std::optional<double> UndistortAngle(const Camera& camera, double target) {
 Expected<void> ValidateCamera(const Camera& camera) {
   if (!IsFinite(camera)) {
     return MakeError(ErrorCode::kNonFinite,
-                     "the camera's intrinsics or distortion have a NaN or infinite number");
+                     "the camera's intrinsics or distortion contain a NaN or infinite number");
   }
   if (!(camera.fx_px > 0.0 && camera.fy_px > 0.0)) {
     return MakeError(ErrorCode::kInvalidInput,

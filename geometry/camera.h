@@ -20,7 +20,7 @@ enum class CameraModel {
 ///
 /// Domain: points in front of the camera (z > 0, so less than 90 degrees from the axis also for a
 /// fisheye), up to the radius at which the distorted image first stops growing. Beyond it two
-/// points share a pixel and the polynomial means nothing. Equations: geometry/distortion.h.
+/// points share a pixel and the polynomial is meaningless. Equations: geometry/distortion.h.
 struct Camera {
   CameraModel model = CameraModel::kPinhole;
   int width_px = 0;   ///< 0 where unknown.

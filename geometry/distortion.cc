@@ -27,8 +27,8 @@ double Slope(const Polynomial<kTerms>& p, double x) {
   return sum;
 }
 
-// A polynomial lies between the least and the largest of its Bernstein coefficients, and halving
-// the interval closes in on it; what 30 halvings leave open touches zero.
+// A polynomial lies between the smallest and the largest of its Bernstein coefficients, which
+// converge to it as the interval is halved. Undecided after 30 halvings means that it touches zero.
 constexpr int kMaxHalvings = 30;
 
 template <std::size_t kTerms>
@@ -46,8 +46,8 @@ bool IsPositiveByHalving(Polynomial<kTerms> bernstein, int halvings) {
   return IsPositiveByHalving(left, halvings - 1) && IsPositiveByHalving(bernstein, halvings - 1);
 }
 
-// Whether p > 0 on all of [0, end]. Allocates nothing and needs no search for roots, so that the
-// domain of a camera is known without a cache beside its coefficients.
+// Whether p > 0 on all of [0, end]. Allocates nothing and needs no root search, so that the
+// domain of a camera is checked without a cache besides its coefficients.
 template <std::size_t kTerms>
 bool IsPositiveUpTo(const Polynomial<kTerms>& p, double end) {
   Polynomial<kTerms> scaled;

@@ -8,7 +8,7 @@
 
 namespace sextant {
 
-/// Where the lens sends a point of the plane z = 1, both in units of the focal length.
+/// The distorted image of a point of the plane z = 1, both in units of the focal length.
 struct Distorted {
   Eigen::Vector2d point;
   Eigen::Matrix2d by_undistorted;  ///< Its derivative; positive determinant.

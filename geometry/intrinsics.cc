@@ -12,7 +12,7 @@ namespace {
 
 using ByDistortion = Eigen::Matrix<double, 2, 8>;
 
-// Of the plane of Distort; the equations stand in distortion.h.
+// Derivative of the point of Distort by the coefficients; the equations are in distortion.h.
 ByDistortion BrownByCoefficients(const Camera& camera, const Eigen::Vector2d& m) {
   const std::array<double, 8>& k = camera.distortion;
   const double s = m.squaredNorm();

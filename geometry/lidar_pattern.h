@@ -5,7 +5,7 @@
 
 namespace sextant {
 
-/// Where a spinning LiDAR samples, and how well: what is needed to foresee a scan.
+/// Sampling pattern and noise of a spinning LiDAR: the parameters for predicting a scan.
 struct LidarPattern {
   std::vector<double> elevations_rad{};  ///< Of the rings, ascending.
   double azimuth_step_rad = 0.0;         ///< Between samples of a ring.

@@ -33,7 +33,7 @@ std::optional<Matrix6d> PropagateCovariance(std::span<const Pair3d3d> pairs,
     Eigen::Matrix<double, 3, 6> jacobian;
     jacobian << Hat(arm), -Eigen::Matrix3d::Identity();
     hessian += w * jacobian.transpose() * jacobian;
-    // Second order of Exp(dphi) arm: the curvature that a large residual adds.
+    // Second order of Exp(dphi) arm: the curvature contributed by a large residual.
     const Eigen::Matrix3d outer = residual * arm.transpose();
     hessian.topLeftCorner<3, 3>() +=
         w * (residual.dot(arm) * Eigen::Matrix3d::Identity() - 0.5 * (outer + outer.transpose()));

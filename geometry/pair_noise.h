@@ -22,8 +22,8 @@ std::vector<double> IsotropicWeights(std::span<const Pair3d3d> pairs);
 /// Covariance of (dphi, dt) of the minimum of sum_i w_i |q_i - R p_i - t|^2 at `pose`.
 ///
 /// Implicit function theorem: with H the Hessian of the cost and J_i the Jacobian of residual i,
-/// cov = H^-1 (sum_i w_i^2 J_i^T Sigma_i J_i) H^-1. Sigma_i is what the pairs state; where they
-/// state nothing it is the residual variance sum w r^2 / (3 n - 6) times 1/w_i, and there is no
+/// cov = H^-1 (sum_i w_i^2 J_i^T Sigma_i J_i) H^-1. Sigma_i is the stated covariance; where
+/// none is stated it is the residual variance sum w r^2 / (3 n - 6) times 1/w_i, and there is no
 /// covariance for n < 3. Shapes: weights has the size of pairs. Source: Haralick 1998,
 /// "Propagating covariance in computer vision".
 /// None where H is singular.

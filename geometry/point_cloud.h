@@ -10,7 +10,7 @@ namespace sextant {
 /// One scan of a LiDAR, in the LiDAR frame (x forward, y left, z up) [m].
 ///
 /// Points without a return are NaN or absent. Each field besides `points` is either empty, where
-/// the sensor or the file does not tell it, or as long as `points`.
+/// the sensor or the file does not provide it, or as long as `points`.
 struct PointCloud {
   std::vector<Eigen::Vector3d> points;
   std::vector<float> intensity;     ///< In the sensor's own units.

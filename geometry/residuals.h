@@ -9,7 +9,7 @@
 
 namespace sextant {
 
-/// The two residuals of the library, in one place for evaluation, consensus scoring and Ceres.
+/// The two residuals of the library, shared by evaluation, consensus scoring and Ceres.
 
 /// point_in_cam - (R point_in_lidar + t) [m], for any scalar type.
 template <class T>

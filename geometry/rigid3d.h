@@ -31,14 +31,14 @@ struct Rigid3d {
   bool IsFinite() const { return rotation.coeffs().allFinite() && translation.allFinite(); }
 };
 
-/// The pose disturbed by delta = (dphi [rad], dt [m]): R = Exp(dphi) R_hat, t = t_hat + dt.
+/// The pose perturbed by delta = (dphi [rad], dt [m]): R = Exp(dphi) R_hat, t = t_hat + dt.
 /// Every 6x6 covariance of the library is of this delta, in this order.
 Rigid3d Perturb(const Rigid3d& pose, const Vector6d& delta);
 
 /// The delta with Perturb(reference, delta) = pose.
 Vector6d PoseDifference(const Rigid3d& pose, const Rigid3d& reference);
 
-/// How far apart two answers are.
+/// The distance between two poses.
 struct PoseDistance {
   double rotation_rad = 0.0;   ///< Geodesic.
   double translation_m = 0.0;  ///< Between the two translations.

@@ -28,7 +28,7 @@ Eigen::Quaterniond ExpSo3(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Vector3d LogSo3(const Eigen::Quaterniond& rotation) {
-  // q and -q are the same rotation; w >= 0 picks the short way round.
+  // q and -q are the same rotation; w >= 0 selects the angle of at most pi.
   const double sign = rotation.w() < 0.0 ? -1.0 : 1.0;
   const double w = sign * rotation.w();
   const Eigen::Vector3d v = sign * rotation.vec();
@@ -55,7 +55,7 @@ Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vec
   const double length = sum.norm();
   Eigen::Quaterniond rotation(0.0, 0.0, 0.0, 0.0);
   if (length > kOpposite) {
-    // Half of the turn leads to the middle between the two.
+    // The bisector of the two is at half the angle, as is the quaternion.
     rotation.w() = a.dot(sum);
     rotation.vec() = a.cross(sum);
   } else {

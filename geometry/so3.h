@@ -15,14 +15,14 @@ Eigen::Matrix3d Hat(const Eigen::Vector3d& v);
 /// Rotation by |phi| radians about phi; exact to rounding at and near zero.
 Eigen::Quaterniond ExpSo3(const Eigen::Vector3d& phi);
 
-/// The rotation vector [rad] of least length, |phi| <= pi. Inverse of ExpSo3 where |phi| < pi.
+/// The shortest rotation vector [rad], |phi| <= pi. Inverse of ExpSo3 where |phi| < pi.
 Eigen::Vector3d LogSo3(const Eigen::Quaterniond& rotation);
 
 /// J with Exp(phi + d) = Exp(J d) Exp(phi) to first order in d.
 Eigen::Matrix3d LeftJacobianSo3(const Eigen::Vector3d& phi);
 
-/// The least rotation that turns one direction to another; where they are opposite to 1e-8 rad,
-/// half a turn about any axis across them. Neither may be zero.
+/// The smallest rotation from one direction to another; where they are opposite to 1e-8 rad, half a
+/// turn about any axis perpendicular to them. Neither may be zero.
 Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 /// Angle of b_from_a's rotation against another, in [0, pi] rad.

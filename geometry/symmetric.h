@@ -6,8 +6,9 @@
 
 namespace sextant {
 
-// What is asked of symmetric matrices all over, compiled once for the sizes that occur: Eigen's
-// decompositions cost seconds in every unit that has one. Of a matrix the lower triangle is read.
+// Operations on symmetric matrices, compiled once for the sizes that occur: Eigen's decompositions
+// cost seconds of compile time in every unit that has one. Only the lower triangle of a matrix is
+// read.
 
 template <int kSize>
 using SquareMatrix = Eigen::Matrix<double, kSize, kSize>;
@@ -24,8 +25,8 @@ struct SymmetricEigen {
 template <int kSize>
 SymmetricEigen<kSize> EigenOf(const SquareMatrix<kSize>& symmetric);
 
-/// x of symmetric x = right, by LDLT. Not finite, or without meaning, where that is singular. Sizes
-/// 3, 6 and any.
+/// Solves symmetric x = right by LDLT. Not finite, or meaningless, where the matrix is singular.
+/// Sizes 3, 6 and any.
 template <int kSize>
 ColumnVector<kSize> SolveSymmetric(const SquareMatrix<kSize>& symmetric,
                                    const ColumnVector<kSize>& right);
@@ -35,8 +36,8 @@ ColumnVector<kSize> SolveSymmetric(const SquareMatrix<kSize>& symmetric,
 template <int kSize>
 std::optional<SquareMatrix<kSize>> InvertSymmetric(const SquareMatrix<kSize>& information);
 
-/// error^T covariance^-1 error: of a Gaussian error chi squared, of the size as mean. Sizes 3, 6
-/// and 8.
+/// error^T covariance^-1 error: for a Gaussian error chi-square distributed, with the size as mean.
+/// Sizes 3, 6 and 8.
 template <int kSize>
 double SquaredMahalanobis(const ColumnVector<kSize>& error, const SquareMatrix<kSize>& covariance);
 

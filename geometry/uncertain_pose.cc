@@ -3,8 +3,8 @@
 
 namespace sextant {
 
-// (Exp(d) R) q + t + dt moves by -[R q]x d + dt where the left factor is disturbed; where the right
-// one is, R Exp(d) R_q = Exp(R d) R R_q, and its translation is turned by R.
+// (Exp(d) R) q + t + dt moves by -[R q]x d + dt where the left factor is perturbed; for the right
+// one, R Exp(d) R_q = Exp(R d) R R_q, and its translation is rotated by R.
 ProductJacobians JacobiansOfProduct(const Rigid3d& b_from_a, const Rigid3d& a_from_c) {
   const Eigen::Matrix3d rotation = b_from_a.rotation.toRotationMatrix();
   ProductJacobians jacobians;

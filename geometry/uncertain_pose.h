@@ -11,15 +11,14 @@ struct UncertainPose {
   Matrix6d covariance = Matrix6d::Zero();
 };
 
-/// How d(b_from_c) follows from the disturbances of the factors of b_from_c = b_from_a * a_from_c,
-/// to first order.
+/// Derivatives of b_from_c = b_from_a * a_from_c by perturbations of its factors, to first order.
 struct ProductJacobians {
   Matrix6d by_left = Matrix6d::Identity();
   Matrix6d by_right = Matrix6d::Identity();
 };
 ProductJacobians JacobiansOfProduct(const Rigid3d& b_from_a, const Rigid3d& a_from_c);
 
-/// d(a_from_b) by d(b_from_a), to first order.
+/// Derivative of a_from_b by a perturbation of b_from_a, to first order.
 Matrix6d JacobianOfInverse(const Rigid3d& b_from_a);
 
 /// c_from_b * b_from_a of independent measurements, its covariance to first order.

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/median.h"
 #include "base/units.h"
 #include "geometry/scan_marks.h"
 #include "solvers/matching/object_match.h"
@@ -85,9 +86,7 @@ double NoiseScale(const MatchExplanation& explanation) {
   }
   // Two boards fit each other; their median says little of the noise.
   if (costs.size() < 3) return 1.0;
-  const auto middle = costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 2);
-  std::nth_element(costs.begin(), middle, costs.end());
-  return std::max(1.0, *middle);
+  return std::max(1.0, UpperMedian(costs));
 }
 
 DroppedBoard Dropped(const Observation& observation, const MatchedBoard& match,

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/median.h"
 #include "calibrate/observe/face_returns.h"
 
 namespace sextant {
@@ -52,9 +53,7 @@ LidarPattern PatternOf(const ScanRings& rings, const LidarBeam& beam) {
       elevations.push_back(std::asin(point.point.z() / point.range_m));
     }
     if (elevations.empty()) continue;
-    const auto middle = elevations.begin() + static_cast<std::ptrdiff_t>(elevations.size() / 2);
-    std::nth_element(elevations.begin(), middle, elevations.end());
-    pattern.elevations_rad.push_back(*middle);
+    pattern.elevations_rad.push_back(UpperMedian(elevations));
   }
   std::ranges::sort(pattern.elevations_rad);
   return pattern;

@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "base/median.h"
 #include "geometry/pair_noise.h"
 #include "geometry/so3.h"
 #include "geometry/symmetric.h"
@@ -28,12 +29,6 @@ constexpr double kPoorPrint_px = 1.0;     // A good lens model leaves a third of
 constexpr double kPoorPrint = 3.0;        // Over the stated noise.
 constexpr double kSamePlace_m = 0.05;
 constexpr double kSameTurn_rad = 5.0 * std::numbers::pi / 180.0;
-
-double UpperMedian(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Where the camera has the middle of each board.
 std::map<std::pair<int, int>, Eigen::Vector3d> CentersInCam(const CalibrationProblem& problem) {
@@ -116,7 +111,7 @@ void DiagnoseSizes(std::span<const SessionView> views, const Assembly& assembly,
       sides[taken.board][(i + turned) % 2].push_back(mean);
     }
   }
-  for (const auto& [b, measured] : sides) {
+  for (auto& [b, measured] : sides) {
     const Board& board = assembly.problem.boards[static_cast<std::size_t>(b)];
     for (std::size_t i = 0; i < 2; ++i) {
       const double known = board.EdgeLengths()[i];

@@ -4,10 +4,10 @@
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "base/median.h"
 #include "base/random.h"
 #include "eval/statistics/text_table.h"
 #include "features/camera/edge_refine.h"
@@ -152,8 +152,7 @@ DetectorRow Summarise(const std::string& detector, const std::vector<Trial>& tri
   row.inward_px /= row.found;
   row.nees /= row.found;
   row.bias_sigma_px = row.rmse_px / std::sqrt(8.0 * row.found);
-  std::ranges::sort(distances);
-  row.median_px = distances[distances.size() / 2];
+  row.median_px = UpperMedian(distances);
   return row;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/median.h"
 #include "base/random.h"
 #include "base/units.h"
 #include "eval/extractors/board_scenes.h"
@@ -179,8 +180,7 @@ ExtractorErrors Summarise(std::size_t extractor, const std::vector<Outcome>& out
   double squares = 0.0;
   for (const double distance : distances) squares += distance * distance;
   errors.rmse_m = std::sqrt(squares / static_cast<double>(distances.size()));
-  std::ranges::sort(distances);
-  errors.median_m = distances[distances.size() / 2];
+  errors.median_m = UpperMedian(distances);
   return errors;
 }
 

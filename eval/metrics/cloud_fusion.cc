@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/median.h"
 #include "solvers/icp/point_tree.h"
 
 namespace sextant {
@@ -86,9 +87,7 @@ CloudAgreement CompareClouds(const PointCloud& a, const Rigid3d& b_from_a, const
   double squares = 0.0;
   for (const double distance : distances) squares += distance * distance;
   agreement.rms_m = std::sqrt(squares / static_cast<double>(distances.size()));
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  agreement.median_m = *middle;
+  agreement.median_m = UpperMedian(distances);
   return agreement;
 }
 

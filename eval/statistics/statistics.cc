@@ -2,6 +2,7 @@
 #include "eval/statistics/statistics.h"
 
 #include <algorithm>
+#include <boost/math/special_functions/beta.hpp>
 #include <cassert>
 #include <cmath>
 #include <vector>
@@ -13,38 +14,16 @@ namespace {
 
 constexpr double kNormalQuantile975 = 1.959963984540054;
 
-// The continued fraction of I_x(a, b) (Abramowitz and Stegun 26.5.8) by Lentz's method; converges
-// fast for x below (a + 1) / (a + b + 2).
-double BetaFraction(double a, double b, double x) {
-  constexpr double kTiny = 1e-300;
-  constexpr int kMaxTerms = 10000;
-  const auto not_zero = [](double v) { return std::abs(v) < kTiny ? kTiny : v; };
-  double c = 1.0;
-  double d = 1.0 / not_zero(1.0 - (a + b) * x / (a + 1.0));
-  double value = d;
-  for (int m = 1; m < kMaxTerms; ++m) {
-    const double even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
-    d = 1.0 / not_zero(1.0 + even * d);
-    c = not_zero(1.0 + even / c);
-    value *= c * d;
-    const double odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
-    d = 1.0 / not_zero(1.0 + odd * d);
-    c = not_zero(1.0 + odd / c);
-    value *= c * d;
-    if (std::abs(c * d - 1.0) < 1e-14) break;
-  }
-  return value;
-}
-
-// The least j in 1..n whose order statistic bounds the resampled k-th from above with at least
+// The minimum j in 1..n whose order statistic bounds the resampled k-th from above with at least
 // `probability`.
 std::size_t RankReaching(std::size_t n, std::size_t k, double probability) {
   std::size_t low = 1;
   std::size_t high = n;
   while (low < high) {
     const std::size_t middle = (low + high) / 2;
-    const double reached = RegularizedBeta(static_cast<double>(k), static_cast<double>(n - k + 1),
-                                           static_cast<double>(middle) / static_cast<double>(n));
+    const double reached =
+        boost::math::ibeta(static_cast<double>(k), static_cast<double>(n - k + 1),
+                           static_cast<double>(middle) / static_cast<double>(n));
     if (reached >= probability) {
       high = middle;
     } else {
@@ -62,16 +41,6 @@ std::vector<double> BatchSums(std::span<const double> values, std::size_t batche
 }
 
 }  // namespace
-
-double RegularizedBeta(double a, double b, double x) {
-  if (x <= 0.0) return 0.0;
-  if (x >= 1.0) return 1.0;
-  if (x > (a + 1.0) / (a + b + 2.0)) return 1.0 - RegularizedBeta(b, a, 1.0 - x);
-  int sign = 0;  // lgamma alone writes a global.
-  const double log_front = lgamma_r(a + b, &sign) - lgamma_r(a, &sign) - lgamma_r(b, &sign) +
-                           a * std::log(x) + b * std::log1p(-x);
-  return std::exp(log_front) * BetaFraction(a, b, x) / a;
-}
 
 Interval WilsonInterval(std::uint64_t successes, std::uint64_t trials) {
   assert(trials > 0 && successes <= trials);

@@ -54,9 +54,4 @@ inline constexpr std::uint64_t kBootstrapRuns = 200;
 Interval BootstrapRatio(std::span<const double> numerators, std::span<const double> denominators,
                         std::uint64_t seed);
 
-/// The regularised incomplete beta function I_x(a, b), the probability that a Beta(a, b) variable
-/// is at most x. The log-gammas that cancel in it leave a relative error of 2^-52 lgamma(a + b):
-/// 1e-12 up to a + b = 1000, 3e-8 at 10^7. Requires a, b > 0 and x in [0, 1].
-double RegularizedBeta(double a, double b, double x);
-
 }  // namespace sextant

@@ -11,7 +11,7 @@
 
 #include "geometry/so3.h"
 #include "geometry/symmetric.h"
-#include "solvers/least_squares/refine_pose.h"
+#include "solvers/least_squares/minimise_pose.h"
 #include "solvers/pnp/ippe.h"
 
 namespace sextant {
@@ -24,21 +24,20 @@ struct Whitened {
   Eigen::LLT<Eigen::MatrixXd> factor;  ///< Of the covariance.
 };
 
-struct Minimum {
-  Rigid3d pose;
-  double chi_square = 0.0;
-  double squares_px2 = 0.0;
+struct Equations {
   Matrix6d information = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
+  double squares = 0.0;  ///< Chi-square.
+  double squares_px2 = 0.0;
 };
+using Minimum = PoseMinimum<Equations>;
 
 Eigen::Vector3d InBoard(const Eigen::Vector2d& point) { return {point.x(), point.y(), 0.0}; }
 
-// Cost, and the normal equations of Perturb's (dphi, dt); none where a point does not project.
-std::optional<Minimum> Evaluate(const Camera& camera, std::span<const Whitened> groups,
-                                const Rigid3d& pose) {
-  Minimum minimum;
-  minimum.pose = pose;
+// False where a point does not project.
+bool Evaluate(const Camera& camera, std::span<const Whitened> groups, const Rigid3d& pose,
+              Equations& sum) {
+  sum = {};
   for (const Whitened& group : groups) {
     const auto n = static_cast<Eigen::Index>(group.points->pixels.size());
     Eigen::VectorXd residual(2 * n);
@@ -47,40 +46,19 @@ std::optional<Minimum> Evaluate(const Camera& camera, std::span<const Whitened> 
       const auto k = static_cast<std::size_t>(i);
       const Eigen::Vector3d turned = pose.rotation * InBoard(group.points->in_board_m[k]);
       const auto image = ProjectWithJacobian(camera, turned + pose.translation);
-      if (!image) return std::nullopt;
-      residual.segment<2>(2 * i) = group.points->pixels[k] - image->pixel;
+      if (!image) return false;
+      residual.segment<2>(2 * i) = image->pixel - group.points->pixels[k];
       jacobian.block<2, 3>(2 * i, 0) = -image->pixel_by_point * Hat(turned);
       jacobian.block<2, 3>(2 * i, 3) = image->pixel_by_point;
     }
-    minimum.squares_px2 += residual.squaredNorm();
+    sum.squares_px2 += residual.squaredNorm();
     group.factor.matrixL().solveInPlace(residual);
     group.factor.matrixL().solveInPlace(jacobian);
-    minimum.chi_square += residual.squaredNorm();
-    minimum.information += jacobian.transpose() * jacobian;
-    minimum.gradient += jacobian.transpose() * residual;
+    sum.squares += residual.squaredNorm();
+    sum.information += jacobian.transpose() * jacobian;
+    sum.gradient += jacobian.transpose() * residual;
   }
-  return minimum;
-}
-
-std::optional<Minimum> Refine(const Camera& camera, std::span<const Whitened> groups,
-                              const Rigid3d& start) {
-  constexpr int kMaxIterations = 100;
-  constexpr double kLastStep = 1e-10;
-  std::optional<Minimum> best = Evaluate(camera, groups, start);
-  double damping = 1e-4;
-  for (int i = 0; best && i < kMaxIterations; ++i) {
-    Matrix6d damped = best->information;
-    damped.diagonal() *= 1.0 + damping;
-    const Vector6d step = SolveSymmetric(damped, best->gradient);
-    if (!step.allFinite()) return std::nullopt;
-    const auto next = Evaluate(camera, groups, Perturb(best->pose, step));
-    const bool fell = next && next->chi_square <= best->chi_square;
-    if (fell) best = next;
-    if (step.norm() < kLastStep * (1.0 + best->pose.translation.norm())) return best;
-    damping = fell ? std::max(0.1 * damping, 1e-12) : 10.0 * damping;
-    if (damping > 1e12) return best;
-  }
-  return std::nullopt;
+  return true;
 }
 
 Expected<std::vector<Whitened>> Whiten(std::span<const BoardPoints> groups) {
@@ -132,6 +110,9 @@ Expected<BoardPose> EstimateBoardPose(const Camera& camera, std::span<const Boar
     return MakeError(ErrorCode::kTooFewPairs, "no tag or checkerboard of the board was seen");
   }
   SEXTANT_ASSIGN_OR_RETURN(const std::vector<Whitened> whitened, Whiten(groups));
+  const auto evaluate = [&](const Rigid3d& pose, Equations& sum) {
+    return Evaluate(camera, whitened, pose, sum);
+  };
   std::vector<Minimum> minima;
   Error failure{ErrorCode::kNoConvergence, "no pose of the board fits its points"};
   for (const BoardPoints& group : groups) {
@@ -141,28 +122,32 @@ Expected<BoardPose> EstimateBoardPose(const Camera& camera, std::span<const Boar
       continue;
     }
     for (int i = 0; i < starts->count; ++i) {
-      const auto minimum =
-          Refine(camera, whitened, starts->cam_from_lidar[static_cast<std::size_t>(i)]);
-      if (minimum) minima.push_back(*minimum);
+      Minimum minimum = MinimisePose<Equations>(
+          evaluate, starts->cam_from_lidar[static_cast<std::size_t>(i)], {.max_iterations = 100});
+      if (minimum.outcome == RefineOutcome::kConverged ||
+          minimum.outcome == RefineOutcome::kStalled) {
+        minima.push_back(std::move(minimum));
+      }
     }
   }
   if (minima.empty()) return tl::unexpected<Error>(failure);
-  std::ranges::stable_sort(minima, {}, &Minimum::chi_square);
+  const auto chi_square = [](const Minimum& minimum) { return minimum.equations.squares; };
+  std::ranges::stable_sort(minima, {}, chi_square);
   const Minimum& best = minima.front();
-  const std::optional<Matrix6d> inverse = InvertInformation(best.information);
+  const std::optional<Matrix6d> inverse = InvertSymmetric(best.equations.information);
   if (!inverse) {
     return MakeError(ErrorCode::kDegenerate, "the board's points leave its pose undetermined");
   }
-  BoardPose pose{.cam_from_board = best.pose, .chi_square = best.chi_square};
+  BoardPose pose{.cam_from_board = best.pose, .chi_square = chi_square(best)};
   for (const BoardPoints& group : groups)
     pose.residuals += 2 * static_cast<int>(group.pixels.size());
-  pose.rms_px = std::sqrt(2.0 * best.squares_px2 / pose.residuals);
+  pose.rms_px = std::sqrt(2.0 * best.equations.squares_px2 / pose.residuals);
   const double misfit =
-      pose.residuals > 6 ? std::max(1.0, best.chi_square / (pose.residuals - 6)) : 1.0;
+      pose.residuals > 6 ? std::max(1.0, chi_square(best) / (pose.residuals - 6)) : 1.0;
   pose.covariance = misfit * *inverse;
   for (const Minimum& other : minima) {
     if (IsSame(other.pose, best.pose)) continue;
-    const double worse = (other.chi_square - best.chi_square) / misfit;
+    const double worse = (chi_square(other) - chi_square(best)) / misfit;
     if (worse > kOtherWayRefused) break;
     pose.ambiguous_with = other.pose;
     pose.ambiguity_chi_square = worse;

@@ -10,9 +10,11 @@
 #include <cmath>
 #include <utility>
 
+#include "base/median.h"
 #include "features/camera/edge_pixels.h"
 #include "features/camera/tag_model.h"
 #include "geometry/symmetric.h"
+#include "solvers/least_squares/levenberg_marquardt.h"
 
 namespace sextant {
 namespace {
@@ -69,41 +71,43 @@ class Fit {
 
   // True once no step as large as last_step is left to take.
   bool Minimise(int max_iterations, double last_step) {
-    double damping = 1e-4;
+    last_step_ = last_step;
+    size_ = HUGE_VAL;
     model_.Evaluate(state_);
-    for (int iteration = 0; iteration < max_iterations; ++iteration) {
-      const double scale = Scale();
-      model_.Linearise(kHuber * scale, normal_, right_);
-      const double before = Cost(model_.residuals(), scale);
-      double size = 0.0;
-      bool fell = false;
-      for (; damping < 1e8 && !fell; damping *= fell ? 0.1 : 10.0) {
-        TagNormal damped = normal_;
-        damped.diagonal() *= 1.0 + damping;
-        const TagRow step = damped.ldlt().solve(right_);
-        if (!step.allFinite()) return false;
-        size = step.head<8>().cwiseAbs().maxCoeff();
-        const TagState moved = Moved(state_, step);
-        next_.Evaluate(moved);
-        fell = Cost(next_.residuals(), scale) < before;
-        if (fell) {
-          state_ = moved;
-          std::swap(model_, next_);
-        }
-        if (size < last_step) return true;
-      }
-      if (!fell) return size < kStalledStep;
-      damping = std::max(damping, 1e-9);
+    Linearise();
+    const MinimiserOutcome outcome =
+        LevenbergMarquardt(*this, max_iterations, {.first = 1e-4, .max = 1e8}).outcome;
+    return outcome == MinimiserOutcome::kConverged ||
+           (outcome == MinimiserOutcome::kStalled && size_ < kStalledStep);
+  }
+
+  // The two steps that LevenbergMarquardt takes.
+  bool Solve(double damping) {
+    TagNormal damped = normal_;
+    damped.diagonal() *= 1.0 + damping;
+    step_ = damped.ldlt().solve(right_);
+    return step_.allFinite();
+  }
+  Trial Try(double /*damping*/) {
+    size_ = step_.head<8>().cwiseAbs().maxCoeff();
+    const TagState moved = Moved(state_, step_);
+    next_.Evaluate(moved);
+    const bool falls = Cost(next_.residuals(), scale_) < cost_;
+    if (falls) {
+      state_ = moved;
+      std::swap(model_, next_);
     }
-    return false;
+    if (size_ < last_step_) return Trial::kConverged;
+    if (!falls) return Trial::kRejected;
+    Linearise();
+    return Trial::kTaken;
   }
 
   // Of the homography's 8, all else estimated too; to be called at the minimum.
   Matrix8d Covariance(double* noise) {
-    const double scale = Scale();
-    model_.Linearise(kHuber * scale, normal_, right_);
+    Linearise();
     const Eigen::VectorXd& residuals = model_.residuals();
-    const double squares = residuals.cwiseAbs().cwiseMin(kHuber * scale).squaredNorm();
+    const double squares = residuals.cwiseAbs().cwiseMin(kHuber * scale_).squaredNorm();
     const double variance = squares / static_cast<double>(residuals.size() - kTagUnknowns);
     *noise = std::sqrt(variance);
     return variance * normal_.ldlt().solve(TagNormal::Identity()).eval().topLeftCorner<8, 8>();
@@ -112,6 +116,13 @@ class Fit {
   const TagState& state() const { return state_; }
 
  private:
+  // Normal equations at the state, with the weights and the cost of its own scale.
+  void Linearise() {
+    scale_ = Scale();
+    model_.Linearise(kHuber * scale_, normal_, right_);
+    cost_ = Cost(model_.residuals(), scale_);
+  }
+
   static double Cost(const Eigen::VectorXd& residuals, double scale) {
     const Eigen::ArrayXd size = residuals.array().abs() / scale;
     return (size < kHuber).select(0.5 * size.square(), kHuber * (size - 0.5 * kHuber)).sum();
@@ -120,10 +131,9 @@ class Fit {
   // Robust standard deviation of the residuals.
   double Scale() {
     sizes_ = model_.residuals().cwiseAbs();
-    const auto middle = sizes_.begin() + sizes_.size() / 2;
-    std::nth_element(sizes_.begin(), middle, sizes_.end());
     constexpr double kMin = 0.3;  // Rounding to whole grey levels alone.
-    return std::max(1.4826 * *middle, kMin);
+    return std::max(1.4826 * UpperMedian({sizes_.data(), static_cast<std::size_t>(sizes_.size())}),
+                    kMin);
   }
 
   static TagState Moved(const TagState& state, const TagRow& step) {
@@ -146,6 +156,11 @@ class Fit {
   Eigen::VectorXd sizes_;
   TagNormal normal_ = TagNormal::Zero();
   TagRow right_ = TagRow::Zero();
+  TagRow step_ = TagRow::Zero();
+  double scale_ = 0.0;
+  double cost_ = 0.0;
+  double size_ = 0.0;  // The largest entry of the step of the homography.
+  double last_step_ = 0.0;
 };
 
 std::optional<Eigen::Matrix3d> TagFromStraight(const Quad& corners_px,

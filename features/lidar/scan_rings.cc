@@ -8,6 +8,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/median.h"
+
 namespace sextant {
 namespace {
 
@@ -16,13 +18,6 @@ constexpr int kMaxRings = 256;
 constexpr int kMinRepeating = 4;  // Fewer rings are told by being narrow.
 constexpr double kNarrow_rad = 0.0035;
 constexpr double kNeighbour_cos = 0.99985;  // 1 degree.
-
-double Median(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Rings by elevations that repeat: sorted, they fall into steps with empty gaps between them. Beams
 // that leave beside the origin smear a ring's elevations, so that small gaps may part one ring: the
@@ -48,7 +43,7 @@ std::vector<int> RingsOfElevations(const std::vector<double>& elevations) {
     std::vector<double> steps;
     for (std::size_t i = 1; i < lows.size(); ++i) steps.push_back(lows[i] - lows[i - 1]);
     const double least = *std::ranges::min_element(steps);
-    const double usual = Median(steps);
+    const double usual = UpperMedian(steps);
     if (least > 0.25 * usual && widest < 0.5 * usual) return rings;
   }
   return {};
@@ -90,7 +85,7 @@ bool AreRings(const std::vector<int>& ring_of, const std::vector<double>& sines)
   std::vector<double> spreads;
   for (std::vector<double>& ring : of_ring) {
     if (ring.empty()) continue;
-    middles.push_back(Median(ring));
+    middles.push_back(UpperMedian(ring));
     const auto middle = static_cast<std::ptrdiff_t>(ring.size() / 2);
     const auto quarter = static_cast<std::ptrdiff_t>(ring.size() / 4);
     std::nth_element(ring.begin(), ring.begin() + quarter, ring.begin() + middle);
@@ -100,7 +95,7 @@ bool AreRings(const std::vector<int>& ring_of, const std::vector<double>& sines)
   std::ranges::sort(middles);
   std::vector<double> steps;
   for (std::size_t i = 1; i < middles.size(); ++i) steps.push_back(middles[i] - middles[i - 1]);
-  return Median(spreads) < std::max(kNarrow_rad, Median(steps));
+  return UpperMedian(spreads) < std::max(kNarrow_rad, UpperMedian(steps));
 }
 
 double Bend(const RingPoint& a, const RingPoint& b, const RingPoint& c) {
@@ -123,7 +118,8 @@ double RangeSigma(const ScanRings& scan, std::span<const RingPoint> swept) {
         bends.push_back(Bend(swept[i - 2], swept[i - 1], swept[i]));
       }
     }
-    if (2 * bends.size() > swept.size()) return kSigmaOfMedian * Median(bends) / std::sqrt(6.0);
+    if (2 * bends.size() > swept.size())
+      return kSigmaOfMedian * UpperMedian(bends) / std::sqrt(6.0);
     bends.clear();
   }
   bends.reserve(scan.points().size());
@@ -133,7 +129,7 @@ double RangeSigma(const ScanRings& scan, std::span<const RingPoint> swept) {
       bends.push_back(Bend(points[i - 2], points[i - 1], points[i]));
     }
   }
-  return kSigmaOfMedian * Median(bends) / std::sqrt(6.0);
+  return kSigmaOfMedian * UpperMedian(bends) / std::sqrt(6.0);
 }
 
 }  // namespace
@@ -185,7 +181,7 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
   std::vector<std::pair<double, int>> by_elevation;
   for (std::size_t ring = 0; ring < of_ring.size(); ++ring) {
     if (!of_ring[ring].empty())
-      by_elevation.emplace_back(std::asin(Median(of_ring[ring])), static_cast<int>(ring));
+      by_elevation.emplace_back(std::asin(UpperMedian(of_ring[ring])), static_cast<int>(ring));
   }
   std::ranges::sort(by_elevation);
 
@@ -212,13 +208,13 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
       steps.push_back((it + 1)->azimuth_rad - it->azimuth_rad);
     }
   }
-  scan.azimuth_step_rad_ = scan.has_rings_ ? Median(steps) : bands.step_rad;
+  scan.azimuth_step_rad_ = scan.has_rings_ ? UpperMedian(steps) : bands.step_rad;
   scan.range_sigma_m_ = RangeSigma(scan, kept);
   steps.clear();
   for (std::size_t i = 1; i < by_elevation.size(); ++i) {
     steps.push_back(by_elevation[i].first - by_elevation[i - 1].first);
   }
-  scan.elevation_step_rad_ = scan.has_rings_ ? Median(steps) : bands.height_rad;
+  scan.elevation_step_rad_ = scan.has_rings_ ? UpperMedian(steps) : bands.height_rad;
   return scan;
 }
 

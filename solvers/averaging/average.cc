@@ -16,11 +16,11 @@
 namespace sextant {
 namespace {
 
-// Fewer views than this leave the 6x6 scatter matrix singular.
+// With fewer views the 6x6 scatter matrix is singular.
 constexpr std::size_t kMinViewsForCorrelations = 7;
 constexpr std::size_t kMinViewsForScatter = 3;
 
-// Sum of the squared weights that the views' rotations have in the average, of sum one: 1/n for a
+// Sum of the squared weights (which sum to one) of the views' rotations in the average: 1/n for a
 // mean, and 4^-(n-1) + sum_(k=1)^(n-1) 4^-k for the original's halving.
 double SumOfSquaredWeights(RotationAverage kind, std::size_t views) {
   const double n = static_cast<double>(views);
@@ -29,7 +29,7 @@ double SumOfSquaredWeights(RotationAverage kind, std::size_t views) {
   return oldest + (1.0 - oldest) / 3.0;
 }
 
-// Covariance of the average of poses that each have the given one.
+// Covariance of the average of poses with the given covariance each.
 Matrix6d ScaleToAverage(const Matrix6d& of_one, RotationAverage kind, std::size_t views) {
   Matrix6d scaled = of_one / static_cast<double>(views);
   scaled.topLeftCorner<3, 3>() = of_one.topLeftCorner<3, 3>() * SumOfSquaredWeights(kind, views);
@@ -96,7 +96,7 @@ struct AverageOptions {
 const OptionSet<AverageOptions>& AverageOptionSet() {
   static const OptionSet<AverageOptions> options = OptionSet<AverageOptions>().Choice(
       "rotation", &AverageOptions::rotation, {"chordal", "quaternion_sum", "original_running"},
-      "mean of least squares, the paper's formula, or what its package really computes");
+      "least-squares mean, the paper's formula, or what its package actually computes");
   return options;
 }
 
@@ -154,7 +154,7 @@ class AverageSolver final : public Solver {
     return views;
   }
 
-  // Adds what the view's answer rests on and how it was found.
+  // Adds the inliers and the stage of one view.
   static void Append(const SolveReport& report, int view, std::span<const int> indices,
                      Estimate& estimate) {
     for (const int i : report.inliers) {
@@ -186,10 +186,11 @@ SolverEntry AverageEntry() {
       .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
         const DataNeeds& needs = arguments.inner->spec().needs;
         if (needs.pairs_3d3d == 0 && needs.pairs_2d3d == 0) {
-          return MakeError(ErrorCode::kInvalidOption,
-                           fmt::format("{}: {} works on data that names no views; average a solver "
-                                       "of pairs",
-                                       arguments.name, arguments.inner->spec().name));
+          return MakeError(
+              ErrorCode::kInvalidOption,
+              fmt::format("{}: {} works on data without view numbers; average a solver "
+                          "of pairs",
+                          arguments.name, arguments.inner->spec().name));
         }
         SEXTANT_RETURN_IF_ERROR(CheckKeepsCamera(*arguments.inner, arguments.name));
         return AverageOptionSet()

@@ -9,19 +9,20 @@
 
 namespace sextant {
 
-/// How the rotations of several answers become one; see rotation_average.h.
+/// The formula for averaging rotations; see rotation_average.h.
 enum class RotationAverage { kChordal, kQuaternionSum, kOriginalRunning };
 
-/// Mean of the translations (of the original package too) with the average of the rotations, in the
-/// order given. Errors: kMissingData (no poses), kDegenerate (rotations without a mean).
+/// Mean of the translations (as in the original package) and average of the rotations, in the given
+/// order. Errors: kMissingData (no poses), kDegenerate (rotations without a mean).
 Expected<Rigid3d> AveragePoses(std::span<const Rigid3d> poses, RotationAverage kind);
 
 /// Covariance of (dphi, dt) of the average of independent answers.
 ///
-/// From 3 poses on it is their scatter about the mean (n - 1 in the divisor) times the squared
-/// weights: 1/n, and for the rotation of kOriginalRunning up to 1/3 however many there are. Fewer
-/// than 7 poses cannot show six-dimensional correlations, so only the variances are given. One or
-/// two poses show no scatter: their own covariances are propagated, none where one has none.
+/// From 3 poses on it is their scatter about the mean (divisor n - 1) times the sum of squared
+/// weights: 1/n, and for the rotation of kOriginalRunning at least 1/3 for any n. Fewer than 7
+/// poses do not determine six-dimensional correlations, so that only the variances are given. One
+/// or two poses do not determine a scatter: their own covariances are propagated; none where one is
+/// missing.
 std::optional<Matrix6d> AverageCovariance(std::span<const Rigid3d> poses,
                                           std::span<const std::optional<Matrix6d>> covariances,
                                           const Rigid3d& average, RotationAverage kind);

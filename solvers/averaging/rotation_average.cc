@@ -17,7 +17,7 @@ tl::unexpected<Error> NothingToAverage() {
   return MakeError(ErrorCode::kMissingData, "no rotations to average");
 }
 
-// Adds `q` to `sum` with the sign that brings it nearer to `reference`; false where it has none.
+// Adds `q` to `sum` with the sign that is nearer to `reference`; false where both are equally near.
 bool AddAligned(const Eigen::Vector4d& q, const Eigen::Vector4d& reference, Eigen::Vector4d& sum) {
   const double cosine = q.dot(reference);
   if (!(std::abs(cosine) > kAngleRounding)) return false;

@@ -19,7 +19,7 @@ using PointSpan = std::span<const Eigen::Vector3d>;
 
 std::size_t Place(int i) { return static_cast<std::size_t>(i); }
 
-// Finds and trims the matches; what it keeps from one iteration to the next saves allocations.
+// Finds and trims the matches. Keeps its buffers between iterations to save allocations.
 class ClosestPoints {
  public:
   ClosestPoints(const PointTree& tree, PointSpan source, const IcpSettings& settings)
@@ -43,7 +43,7 @@ class ClosestPoints {
   }
 
  private:
-  // Keeps the order by source, and every match that ties with the worst that stays.
+  // Keeps the order by source, and all matches with the same distance as the worst one kept.
   void Trim() {
     distances_.clear();
     for (const IcpMatch& match : matches_) distances_.push_back(match.squared_distance_m2);
@@ -58,12 +58,13 @@ class ClosestPoints {
   PointSpan source_;
   double trim_;
   double closer_than_m2_ = std::numeric_limits<double>::infinity();
-  std::vector<int> nearest_;  // Of each source point, as last seen.
+  std::vector<int> nearest_;  // Last match of each source point.
   std::vector<IcpMatch> matches_;
   std::vector<double> distances_;
 };
 
-// What a metric does with the matches of an iteration, and of the last one.
+// A metric: sets the matches of an iteration, computes its pose, and after the last one the
+// statistics.
 class PointMetric {
  public:
   static constexpr std::size_t kMinMatches = 3;

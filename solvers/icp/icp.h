@@ -18,8 +18,8 @@ enum class IcpMetric {
 
 struct IcpSettings {
   IcpMetric metric = IcpMetric::kPoint;
-  double max_distance_m = 0.0;  ///< Matches at or beyond are dropped; 0 keeps every match.
-  double trim = 0.0;            ///< Fraction of the matches, the worst, dropped in each iteration.
+  double max_distance_m = 0.0;  ///< Matches at or beyond this are dropped; 0 keeps every match.
+  double trim = 0.0;            ///< Fraction of worst matches dropped in each iteration.
   int neighbours = 10;          ///< Points that a normal is fitted to, itself included; 3 or more.
   int max_iterations = 100;
   double rotation_tolerance_rad = 1e-6;
@@ -34,19 +34,20 @@ struct IcpMatch {
 
 struct IcpFit {
   Rigid3d target_from_source;
-  std::vector<IcpMatch> matches;  ///< That the pose was fitted to, by ascending source.
-  double rmse_m = 0.0;            ///< Of the metric's distance over the matches.
+  std::vector<IcpMatch> matches;  ///< Matches that the pose was fitted to, by ascending source.
+  double rmse_m = 0.0;            ///< RMS of the metric's distance over the matches.
   int iterations = 0;
   /// Whether the last step had |dphi| <= rotation_tolerance_rad and |dt| <=
   /// translation_tolerance_m.
   bool converged = false;
-  /// Of (dphi, dt), given the matches: that these may be wrong is not in it.
+  /// Covariance of (dphi, dt) for correct matches; it does not include errors of matching.
   std::optional<Matrix6d> covariance;
 };
 
 /// Iterative closest point: matches each source point to the nearest target point, fits the pose to
-/// the matches, and again, until a step is within both tolerances or max_iterations are done. Finds
-/// the optimum near `start` only. Deterministic; the k-d tree over the target is built once.
+/// the matches, and repeats until a step is within both tolerances or max_iterations are done.
+/// Local: finds the optimum near `start` only. Deterministic; the k-d tree over the target is built
+/// once.
 ///
 /// Each iteration lowers sum |p_j(i) - R a_i - t|^2 (metric kPoint, closed form by FitKabsch), or
 /// takes a Gauss-Newton step on sum (n_j(i)^T (R a_i + t - p_j(i)))^2 (kPlane).
@@ -54,8 +55,8 @@ struct IcpFit {
 /// (trimming).
 ///
 /// Shapes: 3 or more points [m] each, finite; kPlane needs `neighbours` or more target points.
-/// Errors: kTooFewPairs; kDegenerate (the matches are on a line, or their planes leave a motion
-/// free); kNoConsensus (under 3 matches, 6 for planes, are closer than max_distance_m, or the
+/// Errors: kTooFewPairs; kDegenerate (the matches are on a line, or their planes do not determine
+/// a motion); kNoConsensus (under 3 matches, 6 for planes, are closer than max_distance_m, or the
 /// matches look mirrored: the start is too far off).
 Expected<IcpFit> FitIcp(std::span<const Eigen::Vector3d> target,
                         std::span<const Eigen::Vector3d> source, const Rigid3d& start,

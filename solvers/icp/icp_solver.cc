@@ -21,7 +21,7 @@ const OptionSet<IcpOptions>& IcpOptionSet() {
   static const OptionSet<IcpOptions> options =
       OptionSet<IcpOptions>()
           .Choice("init", &IcpOptions::init, {"identity", "centroid", "pose"},
-                  "where to start: nowhere, centroids aligned without a turn, or the problem's "
+                  "the start: identity, aligned centroids without rotation, or the problem's "
                   "initial pose")
           .Choice("match", &IcpOptions::match, {"nearest", "projective"},
                   "nearest points, or whole scans by the surface that the other sensor sees in the "
@@ -35,14 +35,15 @@ const OptionSet<IcpOptions>& IcpOptionSet() {
                 "matches at or beyond this are dropped; 0 keeps all (of projective matches: 0.5 at "
                 "the start)")
           .Real("trim", &IcpOptions::trim, "1", 0.0, 0.95,
-                "fraction of the matches, the worst, dropped in each iteration (match=nearest)")
+                "fraction of worst matches dropped in each iteration (match=nearest)")
           .Count<int>("neighbours", &IcpOptions::neighbours, 3, 1000,
                       "camera points that a normal is fitted to (metric=plane)")
-          .Count<int>("max_iterations", &IcpOptions::max_iterations, 1, 1000000, "most iterations")
+          .Count<int>("max_iterations", &IcpOptions::max_iterations, 1, 1000000,
+                      "maximum number of iterations")
           .Real("rotation_tolerance_rad", &IcpOptions::rotation_tolerance_rad, "rad", 0.0, 1.0,
-                "converged when a step turns by no more and ...")
+                "converged when a step rotates by at most this and ...")
           .Real("translation_tolerance_m", &IcpOptions::translation_tolerance_m, "m", 0.0, 1e3,
-                "... moves by no more");
+                "... moves by at most this");
   return options;
 }
 

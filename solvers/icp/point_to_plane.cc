@@ -11,11 +11,11 @@
 namespace sextant {
 namespace {
 
-// Neighbours whose second spread is this much below the first lie on a line but for rounding.
+// Ratio of the second to the first principal variance below which neighbours lie on a line.
 constexpr double kMinRelativeSpread = 1e-10;
 
-// Of the normalised Hessian, whose eigenvalues are of the order of one: what rounding leaves of a
-// free motion is 1e-16, while one percent of curvature or tilt leaves 1e-4.
+// For the normalised Hessian, whose eigenvalues are of the order of one: that of an undetermined
+// motion is 1e-16 by rounding, while one percent of curvature or tilt gives 1e-4.
 constexpr double kMinEigenvalue = 1e-10;
 
 double DistanceToPlane(const PlaneMatch& match, const Rigid3d& b_from_a) {

@@ -12,7 +12,7 @@
 
 namespace sextant {
 
-/// Unit normals of a point set, each computed when first asked for: the direction of least variance
+/// Unit normals of a point set, each computed on first access: the direction of smallest variance
 /// of the point's nearest neighbours (itself included). The sign is arbitrary.
 class SurfaceNormals {
  public:
@@ -33,17 +33,17 @@ class SurfaceNormals {
   std::vector<bool> known_;
 };
 
-/// A point of the moving set and the plane that it belongs to.
+/// A point of the moving set and its matched plane.
 struct PlaneMatch {
   Eigen::Vector3d point_in_a;        ///< Metres.
   Eigen::Vector3d plane_point_in_b;  ///< Metres.
   Eigen::Vector3d normal_in_b;       ///< Unit.
 };
 
-/// One Gauss-Newton step from `b_from_a` on sum_i (n_i^T (R a_i + t - p_i))^2, linear in the turn
-/// about the centre of the points (Chen and Medioni 1992; Low 2004).
-/// Errors: kTooFewPairs (under 6); kDegenerate: the planes leave a motion free, as one plane alone,
-/// parallel planes, or a sphere do.
+/// One Gauss-Newton step from `b_from_a` on sum_i (n_i^T (R a_i + t - p_i))^2, linear in the
+/// rotation about the centre of the points (Chen and Medioni 1992; Low 2004). Errors: kTooFewPairs
+/// (under 6); kDegenerate: the planes leave a motion undetermined, as one plane alone, parallel
+/// planes, or a sphere do.
 Expected<Rigid3d> StepToPlanes(std::span<const PlaneMatch> matches, const Rigid3d& b_from_a);
 
 /// sqrt(mean_i (n_i^T (R a_i + t - p_i))^2) [m]. Requires matches.

@@ -28,7 +28,7 @@ using SearchParameters = nanoflann::SearchParameters;
 using SearchParameters = nanoflann::SearchParams;
 #endif
 
-// A result set in nanoflann's sense that starts from a bound, which its own cannot.
+// A result set for nanoflann that starts from an upper bound, which nanoflann's own cannot.
 struct NearestWithin {
   using DistanceType = double;
 

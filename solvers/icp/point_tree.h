@@ -11,19 +11,19 @@ namespace sextant {
 /// nothing.
 class PointTree {
  public:
-  /// The points [m] must outlive the tree. n log n to build, 4 bytes a point.
+  /// The points [m] must outlive the tree. O(n log n) to build, 4 bytes per point.
   explicit PointTree(std::span<const Eigen::Vector3d> points);
   ~PointTree();
   PointTree(const PointTree&) = delete;
   PointTree& operator=(const PointTree&) = delete;
 
   struct Neighbour {
-    int index = -1;  ///< -1 where no point is closer than asked for.
+    int index = -1;  ///< -1 where no point is within the bound.
     double squared_distance_m2 = 0.0;
   };
 
-  /// The nearest point that is closer than sqrt(closer_than_m2). `hint` may name a point that is
-  /// likely near (-1 for none): the search is the faster for it and its answer is the same.
+  /// The nearest point closer than sqrt(closer_than_m2). `hint` is the index of a point that is
+  /// likely near (-1 for none): it makes the search faster and does not change the result.
   Neighbour Nearest(const Eigen::Vector3d& query, double closer_than_m2, int hint = -1) const;
 
   /// Fills `indices` with the nearest points, nearest first, and returns how many there are.

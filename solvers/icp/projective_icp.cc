@@ -3,7 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -14,17 +13,19 @@
 namespace sextant {
 namespace {
 
-constexpr double kNearer = 0.6;   ///< Each iteration's gate over the last.
-constexpr double kAtRest = 3e-4;  ///< Steps [rad, m] below which matches are kept.
+constexpr double kNearer = 0.6;   ///< Ratio of successive gates.
+constexpr double kAtRest = 3e-4;  ///< Steps [rad, m] below which matches stay fixed.
 constexpr int kMinMatches = 30;
 constexpr std::size_t kMinPatches = 30;
-/// Of the normal matrix, rotations scaled by the scene's size: a motion below it is free.
-constexpr double kMinStiffness = 1e-4;
+/// Relative eigenvalue of the normal matrix, with rotations scaled by the scene's size, below which
+/// a motion is undetermined.
+constexpr double kMinEigenvalue = 1e-4;
 
-// Both ways of matching, and their sum by (dphi, dt) of target_from_source.
-class BothWays {
+// Matching in both directions, and the summed normal equations for (dphi, dt) of
+// target_from_source.
+class TwoWayMatch {
  public:
-  BothWays(const ScanSurfaces& target, const ScanSurfaces& source)
+  TwoWayMatch(const ScanSurfaces& target, const ScanSurfaces& source)
       : forward_(target, source), backward_(source, target) {}
 
   void Match(const Rigid3d& target_from_source) {
@@ -44,7 +45,8 @@ class BothWays {
             .matches = there.matches + back.matches};
   }
 
-  // Both ways are of the same returns: what they add to the noise is nearly the same.
+  // Both directions use the same returns, so that their noise is almost fully correlated: hence
+  // the 2.
   Matrix6d NoiseOfRight(const Rigid3d& target_from_source) const {
     const Matrix6d by_target = ByTarget(target_from_source);
     const Matrix6d by_source = BySource(target_from_source);
@@ -55,14 +57,14 @@ class BothWays {
   }
 
  private:
-  // Turning the target about its origin by dphi moves it by dphi x t besides.
+  // A rotation dphi of the target about its origin also moves it by dphi x t.
   static Matrix6d ByTarget(const Rigid3d& target_from_source) {
     Matrix6d by_pose = Matrix6d::Identity();
     by_pose.bottomLeftCorner<3, 3>() = Hat(target_from_source.translation);
     return by_pose;
   }
 
-  // What turns the target one way turns the source the other, in its own frame.
+  // A motion of the target is the opposite motion of the source, in the source's frame.
   static Matrix6d BySource(const Rigid3d& target_from_source) {
     const Eigen::Matrix3d back = target_from_source.rotation.toRotationMatrix().transpose();
     Matrix6d by_pose = Matrix6d::Zero();
@@ -84,8 +86,8 @@ Expected<ScanWindows> WindowsOf(std::span<const Eigen::Vector3d> points, const c
   return ScanWindows(points, cell_rad);
 }
 
-// Offsets that are large against the noise are told roughly at first.
-void TakeOffRingOffsets(ScanWindows& target, ScanWindows& source) {
+// Two passes, as large offsets bias the noise estimate that the first pass uses.
+void SubtractRingOffsets(ScanWindows& target, ScanWindows& source) {
   constexpr int kPasses = 2;
   for (int pass = 0; pass < kPasses; ++pass) {
     const RingOffsets offsets = EstimateRingOffsets(target, source);
@@ -109,7 +111,7 @@ Expected<ScanSurfaces> SurfacesOf(const ScanWindows& windows, std::size_t points
   return surfaces;
 }
 
-// The least eigenvalue over the largest, a rotation measured by what it moves at the scene's size.
+// The smallest eigenvalue over the largest, with rotations scaled by the scene's size.
 double RelativeStiffness(const Matrix6d& normal) {
   const double size = std::sqrt(normal.topLeftCorner<3, 3>().trace() /
                                 std::max(normal.bottomRightCorner<3, 3>().trace(), 1e-300));
@@ -128,14 +130,14 @@ Expected<ProjectiveIcpFit> FitProjectiveIcp(std::span<const Eigen::Vector3d> tar
                                             const ProjectiveIcpSettings& settings) {
   SEXTANT_ASSIGN_OR_RETURN(ScanWindows of_target, WindowsOf(target, "camera", settings.cell_rad));
   SEXTANT_ASSIGN_OR_RETURN(ScanWindows of_source, WindowsOf(source, "LiDAR", settings.cell_rad));
-  TakeOffRingOffsets(of_target, of_source);
+  SubtractRingOffsets(of_target, of_source);
   SEXTANT_ASSIGN_OR_RETURN(const ScanSurfaces in_target,
                            SurfacesOf(of_target, target.size(), "camera"));
   SEXTANT_ASSIGN_OR_RETURN(const ScanSurfaces in_source,
                            SurfacesOf(of_source, source.size(), "LiDAR"));
   const double sigma_m = std::max(in_target.range_sigma_m(), in_source.range_sigma_m());
 
-  BothWays matches(in_target, in_source);
+  TwoWayMatch matches(in_target, in_source);
   ProjectiveIcpFit fit;
   fit.target_from_source = start;
   double gate_m = settings.max_distance_m;
@@ -152,12 +154,13 @@ Expected<ProjectiveIcpFit> FitProjectiveIcp(std::span<const Eigen::Vector3d> tar
                                    "start, or raise max_distance_m",
                                    fit.iterations, equations.matches, kMinMatches));
     }
-    if (RelativeStiffness(equations.normal) < kMinStiffness) {
+    if (RelativeStiffness(equations.normal) < kMinEigenvalue) {
       return MakeError(ErrorCode::kDegenerate,
-                       fmt::format("projective icp, iteration {}: the surfaces that both scans "
-                                   "show leave a motion free",
+                       fmt::format("projective icp, iteration {}: the surfaces seen in both scans "
+                                   "leave a motion undetermined",
                                    fit.iterations));
     }
+    // Undamped: the matches change with each step, so that there is no fixed cost to lower.
     const Vector6d step = SolveSymmetric(equations.normal, equations.right);
     fit.target_from_source = Perturb(fit.target_from_source, step);
     const double turn_rad = step.head<3>().norm();
@@ -169,7 +172,7 @@ Expected<ProjectiveIcpFit> FitProjectiveIcp(std::span<const Eigen::Vector3d> tar
   }
   fit.matches = equations.matches;
   fit.rmse = std::sqrt(equations.squares / equations.matches);
-  const Matrix6d inverse = equations.normal.ldlt().solve(Matrix6d::Identity());
+  const Matrix6d inverse = InvertSymmetric(equations.normal).value();  // See RelativeStiffness.
   fit.covariance = inverse * matches.NoiseOfRight(fit.target_from_source) * inverse;
   return fit;
 }

@@ -9,18 +9,20 @@
 namespace sextant {
 namespace {
 
-constexpr std::size_t kMinWindows = 10;  ///< Of a row.
+constexpr std::size_t kMinWindows = 10;  ///< Per row.
 constexpr std::size_t kMinRows = 4;
-constexpr double kMaxOfRow = 4.0;     ///< Of a row's variance, in that of the quieter rows.
-constexpr double kMaxOfWindow = 2.0;  ///< Of a window's variance, in that of its row.
+constexpr double kMaxOfRow = 4.0;  ///< Maximum variance of a row, relative to the lower quartile.
+constexpr double kMaxOfWindow =
+    2.0;  ///< Maximum variance of a window, relative to that of its row.
 constexpr double kWindowsOfACell = 9.0;
-constexpr double kSameSlope = 0.25;     ///< In cells' heights: rows of two scans are the same ring.
-constexpr double kMinStiffness = 2e-3;  ///< Of the stiffest: below, planes take an offset up.
+constexpr double kSameSlope =
+    0.25;  ///< In cell heights: below, rows of two scans are the same ring.
+constexpr double kMinStiffness = 2e-3;  ///< Relative: below, planes absorb an offset.
 constexpr double kMinSigma_m = 0.0005;
 constexpr double kMaxSigma_m = 0.05;
 constexpr double kNextSigma = 1.3;
 constexpr double kMinEvidence = 20.0;      ///< Twice the logarithm of the likelihoods' ratio.
-constexpr double kMaxContradiction = 0.1;  ///< Of what offsets of their own would explain.
+constexpr double kMaxContradiction = 0.1;  ///< Share of what separate offsets explain.
 
 using Eigen::Index;
 
@@ -33,10 +35,10 @@ struct Equations {
   Eigen::VectorXd right;
 };
 
-// Sums over the three cells of a row of a window, by the reciprocal of their range.
+// Sums over the three cells of a row of a window.
 struct RowOfWindow {
   double count = 0.0;
-  double nearness = 0.0;  ///< One by the root mean square of ranges.
+  double nearness = 0.0;  ///< Reciprocal of the RMS range.
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
 };
 
@@ -56,7 +58,8 @@ RowOfWindow SumRow(const ScanCells& cells, int row, int column) {
   return sums;
 }
 
-// What the window round (row, column) tells of the offsets of its three rows.
+// Contribution of the window around (row, column) to the normal equations of the offsets of its
+// three rows.
 struct WindowShare {
   Eigen::Matrix3d normal;
   Eigen::Vector3d right;
@@ -79,7 +82,8 @@ WindowShare ShareOf(const ScanWindows& windows, int row, int column, double vari
     sums.col(r) = of_row.nearness * of_row.sum;
     counts[r] = of_row.nearness * of_row.count;
   }
-  // Noise in the points makes least squares shrink m a little, which would pull all ranges.
+  // Noise in the points biases the least-squares m towards zero, which would shift all ranges:
+  // rescaled.
   const Eigen::Vector3d fitted = inverse_moments * all;
   const double count = counts.cwiseQuotient(nearness.cwiseMax(1e-12)).sum();
   const Eigen::Vector3d m = count / fitted.dot(all) * fitted;
@@ -90,30 +94,30 @@ WindowShare ShareOf(const ScanWindows& windows, int row, int column, double vari
           .right = weight * (sums.transpose() * m - counts)};
 }
 
-// A row's own offset must not make its windows look rough, so that its own quantile is what they
-// are compared with.
+// Windows are compared with the noise quantile of their own row, as its offset must not make them
+// look rough.
 Equations EquationsOf(const ScanWindows& windows, std::span<const Index> ring_of_row, Index rings) {
   const int rows = windows.cells().rows();
   const auto columns = static_cast<std::size_t>(windows.cells().columns());
   std::vector<double> of_row;
-  std::vector<double> told;
+  std::vector<double> variances;
   for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) {
     of_row.push_back(windows.NoiseVariance(row * columns, columns, kMinWindows));
-    if (of_row.back() > 0.0) told.push_back(of_row.back());
+    if (of_row.back() > 0.0) variances.push_back(of_row.back());
   }
   Equations equations(rings);
-  if (told.size() < kMinRows) return equations;
-  const auto quiet = told.begin() + static_cast<std::ptrdiff_t>(told.size() / 4);
-  std::nth_element(told.begin(), quiet, told.end());
+  if (variances.size() < kMinRows) return equations;
+  const auto quartile = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 4);
+  std::nth_element(variances.begin(), quartile, variances.end());
   for (int row = 1; row + 1 < rows; ++row) {
     const auto r = static_cast<std::size_t>(row);
-    if (of_row[r] > kMaxOfRow * *quiet) continue;
+    if (of_row[r] > kMaxOfRow * *quartile) continue;
     for (std::size_t column = 0; column < columns; ++column) {
       const std::size_t cell = r * columns + column;
       const bool is_flat = windows.TellsNoise(cell) &&
                            windows.planes().range_variance[cell] < kMaxOfWindow * of_row[r];
       if (!is_flat) continue;
-      const WindowShare share = ShareOf(windows, row, static_cast<int>(column), *quiet);
+      const WindowShare share = ShareOf(windows, row, static_cast<int>(column), *quartile);
       for (int a = 0; a < 3; ++a) {
         const Index ring = ring_of_row[r + static_cast<std::size_t>(a) - 1];
         equations.right[ring] += share.right[a];
@@ -127,7 +131,7 @@ Equations EquationsOf(const ScanWindows& windows, std::span<const Index> ring_of
   return equations;
 }
 
-// The equations in directions that do not know of each other, those left out that planes take up.
+// The equations diagonalised by eigenvectors, without the directions that planes absorb.
 struct Modes {
   explicit Modes(const Equations& equations) {
     const SymmetricEigen<Eigen::Dynamic> eigen = EigenOf(equations.normal);
@@ -141,7 +145,7 @@ struct Modes {
     right = directions.transpose() * equations.right;
   }
 
-  // Twice the logarithm of the likelihood of a sigma over that of none.
+  // Twice the log likelihood ratio of offsets with this sigma against none.
   double Evidence(double sigma_m) const {
     const Eigen::ArrayXd gain = stiffnesses.array() * (sigma_m * sigma_m);
     return (right.array().square() / stiffnesses.array() * gain / (1.0 + gain) - gain.log1p())
@@ -163,7 +167,7 @@ struct Modes {
     return directions * (right.array() / (stiffnesses.array() + prior)).matrix();
   }
 
-  // Of the squares of residuals, by offsets at their minimum.
+  // Reduction of the sum of squared residuals by the best offsets.
   double Explained() const { return (right.array().square() / stiffnesses.array()).sum(); }
 
   Eigen::MatrixXd directions;
@@ -171,7 +175,7 @@ struct Modes {
   Eigen::VectorXd right;
 };
 
-// Numbers for the rows of both scans, the same where their elevations are.
+// Ring indices for the rows of both scans, equal where their elevations are.
 struct Rings {
   Rings(const ScanCells& target, const ScanCells& source) {
     std::vector<double> slopes;

@@ -8,7 +8,7 @@
 namespace sextant {
 namespace {
 
-// What one sensor tells of the pose of the board in its own frame.
+// Normal equations of one sensor for the pose of the board in its own frame.
 struct PoseInformation {
   Matrix6d normal = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();

@@ -10,10 +10,10 @@ namespace sextant {
 using Vector12d = Eigen::Matrix<double, 12, 1>;
 using Matrix12d = Eigen::Matrix<double, 12, 12>;
 
-/// What one board, seen by both sensors, tells of the poses, to first order at a point.
+/// Normal equations of the observations of one board by both sensors, linearised at two poses.
 struct BoardViewInformation {
   /// J^T J of the whitened residuals by (dphi, dt) of cam_from_lidar, then (dphi, dt) of
-  /// cam_from_board; both poses are disturbed as Perturb does.
+  /// cam_from_board; both poses are perturbed as by Perturb.
   Matrix12d normal = Matrix12d::Zero();
   Vector12d gradient = Vector12d::Zero();  ///< J^T r.
   double cost = 0.0;                       ///< 1/2 |r|^2.
@@ -23,22 +23,21 @@ struct BoardViewInformation {
 Eigen::Matrix<double, 6, 12> RelativePoseByPoses(const Rigid3d& cam_from_lidar,
                                                  const Rigid3d& cam_from_board);
 
-/// A hypothetical view, as of a board that was not held there yet, is a BoardView too: its
-/// observations may be those predicted. Requires a view that CheckBoardView takes.
-/// Errors: kInvalidInput where a printed point does not project, or a ray does not meet the board's
-/// plane, at these poses.
+/// The observations of the view may also be predicted ones of a hypothetical board pose. Requires a
+/// view that passes CheckBoardView. Errors: kInvalidInput where a printed point does not project,
+/// or a ray does not meet the board's plane, at these poses.
 Expected<BoardViewInformation> InformationOfPoses(const BoardView& view, const Board& board,
                                                   const Camera& camera,
                                                   const Rigid3d& cam_from_lidar,
                                                   const Rigid3d& cam_from_board);
 
-/// Of a symmetric matrix without negative eigenvalues, over (rad, m): directions that are singular
-/// after scaling to a unit diagonal are left out.
+/// Pseudo-inverse of a positive semidefinite matrix over (rad, m): directions that are singular
+/// after scaling to a unit diagonal get zero.
 Matrix6d PseudoInverse(const Matrix6d& information);
 
 /// H_xx - H_xb H_bb^+ H_bx: the Fisher information of a view on cam_from_lidar [rad, m], the pose
-/// of its board unknown. Views are independent, so that informations add up. Singular where one of
-/// the sensors leaves a direction of the board open: that is no error.
+/// of its board unknown. Views are independent, so that their informations add up. Singular, which
+/// is no error, where one of the sensors does not determine a direction of the board.
 Matrix6d EliminateBoard(const Matrix12d& normal);
 
 /// Both steps. Errors: those of InformationOfPoses.

@@ -16,14 +16,14 @@ Eigen::MatrixXd WhitenerOf(const Eigen::MatrixXd& covariance) {
       Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()).eval());
 }
 
-/// Where a ray meets the plane.
-struct Meeting {
+/// Intersection of a ray with the plane.
+struct Intersection {
   double distance = 0.0;        // Along the ray.
   double inverse_slope = 0.0;   // 1 / n.d
-  Eigen::Vector3d from_origin;  // Of the board, in the plane.
+  Eigen::Vector3d from_origin;  // From the origin of the board, in the plane.
 };
 
-bool Meet(const Eigen::Vector3d& direction, const BoardPlane& plane, Meeting& out) {
+bool Intersect(const Eigen::Vector3d& direction, const BoardPlane& plane, Intersection& out) {
   const auto normal = plane.axes.col(2);
   out.inverse_slope = 1.0 / normal.dot(direction);
   out.distance = normal.dot(plane.origin) * out.inverse_slope;
@@ -31,7 +31,7 @@ bool Meet(const Eigen::Vector3d& direction, const BoardPlane& plane, Meeting& ou
   return out.distance > 0.0 && std::isfinite(out.distance);
 }
 
-Eigen::Matrix<double, 1, 6> DistanceByPose(const Meeting& at, const BoardPlane& plane) {
+Eigen::Matrix<double, 1, 6> DistanceByPose(const Intersection& at, const BoardPlane& plane) {
   const Eigen::Vector3d normal = plane.axes.col(2);
   Eigen::Matrix<double, 1, 6> by_pose;
   by_pose << at.from_origin.cross(normal).transpose(), normal.transpose();
@@ -50,7 +50,7 @@ BoardSide SideOf(const Board& board, int side) {
     return {outward, half_share.dot(size), half_share};
   }
   const Eigen::Vector2d size(board.hole->width_m, board.hole->height_m);
-  // The material is outside of the opening, so that its side faces inwards.
+  // The material is outside of the opening, so that the outward normal of its sides points inwards.
   return {-outward, -outward.dot(board.hole->center_in_board_m) - half_share.dot(size),
           Eigen::Vector2d::Zero()};
 }
@@ -96,16 +96,16 @@ bool Differentiate(const PrintedTerm& term, const Camera& camera, const Rigid3d&
 }
 
 bool Differentiate(const FaceTerm& term, const BoardPlane& plane, RayResidual& out) {
-  Meeting at;
-  if (!Meet(term.direction, plane, at)) return false;
+  Intersection at;
+  if (!Intersect(term.direction, plane, at)) return false;
   out.value = term.inverse_sigma * (term.range_m - at.distance);
   out.by_pose = -term.inverse_sigma * DistanceByPose(at, plane);
   return true;
 }
 
 bool Differentiate(const EdgeTerm& term, const BoardPlane& plane, RayResidual& out) {
-  Meeting at;
-  if (!Meet(term.direction, plane, at)) return false;
+  Intersection at;
+  if (!Intersect(term.direction, plane, at)) return false;
   // The outward axis a in the LiDAR frame: d(a.m) = (a x m).dphi + (a.d) ds - a.dt.
   const Eigen::Vector3d axis = plane.axes.leftCols<2>() * term.side.outward;
   out.value = term.inverse_sigma * (term.side.offset_m - axis.dot(at.from_origin));

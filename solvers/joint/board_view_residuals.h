@@ -12,16 +12,16 @@
 
 namespace sextant {
 
-/// The residuals of the raw observations of a board, in one place for the joint solver, the bound
-/// and evaluation: measured minus predicted, whitened, so that each has a variance of 1. What the
-/// camera saw depends on cam_from_board alone, what the LiDAR saw on lidar_from_board alone.
+/// The residuals of the raw observations of a board, for the joint solver, the bound and
+/// evaluation: measured minus predicted, whitened, so that each has a variance of 1. Those of the
+/// camera depend on cam_from_board alone, those of the LiDAR on lidar_from_board alone.
 
 /// A straight side in the board's plane: outward.dot(point) = offset_m on it.
 struct BoardSide {
   Eigen::Vector2d outward = Eigen::Vector2d::UnitX();  ///< Unit, away from the material.
   double offset_m = 0.0;
-  /// Derivative of the offset by (top_right_m, right_bottom_m): the outer sides move by half of
-  /// what the board grows, the opening stays.
+  /// Derivative of the offset by (top_right_m, right_bottom_m): 1/2 for the outer sides, 0 for
+  /// those of the opening.
   Eigen::Vector2d offset_by_size = Eigen::Vector2d::Zero();
 };
 
@@ -46,28 +46,28 @@ struct EdgeTerm {
   double inverse_sigma = 0.0;
 };
 
-/// A BoardView made ready: what does not change with the poses is computed once.
+/// A BoardView with everything precomputed that does not change with the poses.
 struct BoardViewTerms {
   std::vector<PrintedTerm> printed;
   std::vector<FaceTerm> face;
   std::vector<EdgeTerm> edges;
 };
 
-/// Requires a view that CheckBoardView takes.
+/// Requires a view that passes CheckBoardView.
 BoardViewTerms TermsOf(const BoardView& view, const Board& board);
 
-/// Of all coordinates of a term, with the derivative by (dphi, dt) of cam_from_board.
+/// Residuals of all coordinates of a term, with their derivative by (dphi, dt) of cam_from_board.
 struct PrintedResidual {
   Eigen::VectorXd value;  ///< 2n.
   Eigen::Matrix<double, Eigen::Dynamic, 6> by_pose;
-  std::vector<Eigen::Vector3d> in_cam;  ///< Where the points are.
+  std::vector<Eigen::Vector3d> in_cam;  ///< The points in the camera frame.
 };
 
 /// False where a point does not project.
 bool Differentiate(const PrintedTerm& term, const Camera& camera, const Rigid3d& cam_from_board,
                    PrintedResidual& out);
 
-/// The pose of a board as rays meet it: axes and origin in the LiDAR frame.
+/// The pose of a board as axes and origin in the LiDAR frame.
 struct BoardPlane {
   explicit BoardPlane(const Rigid3d& lidar_from_board)
       : axes(lidar_from_board.rotation.toRotationMatrix()), origin(lidar_from_board.translation) {}
@@ -76,7 +76,7 @@ struct BoardPlane {
   Eigen::Vector3d origin;
 };
 
-/// Of one ray, with its derivative by (dphi, dt) of lidar_from_board.
+/// Residual of one ray, with its derivative by (dphi, dt) of lidar_from_board.
 struct RayResidual {
   double value = 0.0;
   Eigen::Matrix<double, 1, 6> by_pose;
@@ -84,16 +84,16 @@ struct RayResidual {
 
 /// (range - s) / sigma, s the distance along the ray to the board's plane:
 /// s = n.o / n.d, ds = ((m x n).dphi + n.dt) / n.d with m = s d - o in the plane.
-/// False where the ray does not meet the plane in front of the LiDAR.
+/// False where the ray does not intersect the plane in front of the LiDAR.
 bool Differentiate(const FaceTerm& term, const BoardPlane& plane, RayResidual& out);
 
-/// (offset - outward.u) / sigma, u where the ray meets the plane: the signed distance inwards from
-/// the side. False as above.
+/// (offset - outward.u) / sigma, u the intersection of the ray with the plane: the signed distance
+/// inwards from the side. False as above.
 bool Differentiate(const EdgeTerm& term, const BoardPlane& plane, RayResidual& out);
 
-/// The values alone, for evaluation: per point printed (the norm of the whitened residual of a
-/// whole BoardPoints, over the root of its 2n), per face return, per edge ray; infinite where there
-/// is none.
+/// Residuals without derivatives, for evaluation: per printed point (the norm of the whitened
+/// residual of a whole BoardPoints, over the root of its 2n), per face return, per edge ray;
+/// infinite where there is none.
 struct BoardViewResiduals {
   std::vector<double> printed;
   std::vector<double> face;

@@ -23,7 +23,8 @@ DataNeeds WithViews(DataNeeds needs) {
   return needs;
 }
 
-// Robust cost of one view where its board is at `cam_from_board`; infinite where it is not seen.
+// Robust cost of one view with its board at `cam_from_board`; infinite where a residual is
+// undefined.
 double CostAt(const JointView& view, const JointUnknowns& unknowns, const JointState& state,
               const Rigid3d& cam_from_board) {
   JointState alone = state;
@@ -34,14 +35,14 @@ double CostAt(const JointView& view, const JointUnknowns& unknowns, const JointS
 }
 
 /// argmin of 1/2 sum |r|^2 over cam_from_lidar and the pose of every board, r the whitened
-/// residuals of the raw observations (solvers/joint/board_view_residuals.h), from the inner answer.
+/// residuals of the raw observations (solvers/joint/board_view_residuals.h), from the inner
+/// solver's pose.
 ///
 /// See SearchJointly for outliers and MinimiseJointly for the method. Covariance: inverse of the
-/// information with the boards' poses, and whatever else was estimated, eliminated. Inliers: the
-/// pairs whose board and view the answer rests on. Termination kConverged: every step is under
-/// step_tolerance. An unknown that the views do not tell is taken as given, with a warning.
-/// Errors: kDegenerate, kNoConvergence, kInvalidInput (distortion of a pinhole), those of the inner
-/// solver.
+/// information with the boards' poses, and all else that was estimated, eliminated. Inliers: the
+/// pairs of the boards and views in use. Termination kConverged: every step is under
+/// step_tolerance. An unobservable parameter is fixed at its given value, with a warning. Errors:
+/// kDegenerate, kNoConvergence, kInvalidInput (distortion of a pinhole), those of the inner solver.
 class JointSolver final : public Solver {
  public:
   JointSolver(const SolverArguments& arguments, const JointOptions& options)
@@ -106,7 +107,8 @@ class JointSolver final : public Solver {
     return views;
   }
 
-  // Of the two sensors' poses of a board, the one that explains what both saw of it better.
+  // Starts each board at the one of the two sensors' poses that fits the observations of both
+  // better.
   static JointState StateAt(const CalibrationProblem& problem, const Rigid3d& cam_from_lidar,
                             const JointUnknowns& unknowns, const std::vector<JointView>& views) {
     JointState state;
@@ -125,7 +127,7 @@ class JointSolver final : public Solver {
     return state;
   }
 
-  // Before the search: an unknown that the views leave open would wander.
+  // Used before the search, in which an unobservable parameter would drift.
   static Eigen::MatrixXd InformationAt(const std::vector<JointView>& views,
                                        const JointUnknowns& unknowns, const JointState& state) {
     const JointSelection seen = SelectSeen(JointResidualsAt(views, unknowns, state));
@@ -134,15 +136,15 @@ class JointSolver final : public Solver {
                   : Eigen::MatrixXd::Zero(unknowns.Count(), unknowns.Count());
   }
 
-  // Whether there was one. `state` is where the search starts, again after this.
+  // True where there was one. `state` is the start of the search, which is then repeated.
   static bool FixUnobservable(const CalibrationProblem& problem, Eigen::MatrixXd information,
                               JointUnknowns& unknowns, std::vector<JointView>& views,
                               JointState& state, std::vector<std::string>& warnings) {
     bool any = false;
-    while (const auto untold = FindUnobservable(
+    while (const auto unobservable = FindUnobservable(
                information, UsefulSigmas(views, unknowns, state, problem.boards))) {
-      warnings.push_back(DescribeUnobservable(*untold, unknowns, *problem.camera));
-      LeaveOut(untold->unknown, problem, unknowns, views, state);
+      warnings.push_back(DescribeUnobservable(*unobservable, unknowns, *problem.camera));
+      FixParameter(unobservable->index, problem, unknowns, views, state);
       information = InformationAt(views, unknowns, state);
       any = true;
     }
@@ -156,13 +158,13 @@ class JointSolver final : public Solver {
     if (!covariance) {
       return MakeError(ErrorCode::kDegenerate,
                        "the views leave a direction of the pose undetermined; hold the board at "
-                       "more places and tilts");
+                       "more positions and tilts");
     }
     const JointState& state = answer.minimum.state;
     estimate.cam_from_lidar = state.cam_from_lidar;
     estimate.termination = Termination::kConverged;
     estimate.covariance = covariance->topLeftCorner<6, 6>();
-    ReportNumbers(unknowns, state, *covariance, problem.boards, estimate);
+    ReportParameters(unknowns, state, *covariance, problem.boards, estimate);
     if (estimate.camera && !ValidateCamera(estimate.camera->camera)) {
       return MakeError(ErrorCode::kNoConvergence,
                        "the distortion found folds the image; free fewer intrinsics");
@@ -174,9 +176,9 @@ class JointSolver final : public Solver {
     return {};
   }
 
-  static void ReportNumbers(const JointUnknowns& unknowns, const JointState& state,
-                            const Eigen::MatrixXd& covariance, std::span<const Board> boards,
-                            Estimate& estimate) {
+  static void ReportParameters(const JointUnknowns& unknowns, const JointState& state,
+                               const Eigen::MatrixXd& covariance, std::span<const Board> boards,
+                               Estimate& estimate) {
     if (!unknowns.intrinsics.empty()) estimate.camera = CameraEstimate{state.camera, {}};
     const IntrinsicVector numbers = IntrinsicsOf(state.camera);
     for (int i = 6; i < unknowns.Count(); ++i) {
@@ -236,7 +238,7 @@ class JointSolver final : public Solver {
     return std::sqrt(2.0 * Linearise({view}, unknowns, {}, state)->cost / count);
   }
 
-  // Of the kind of pairs that the inner solver is judged by.
+  // Indices into the kind of pairs that the inner solver uses.
   std::vector<int> InliersOf(const CalibrationProblem& problem,
                              const std::vector<BoardViewFit>& fits) const {
     std::set<std::pair<int, int>> used;
@@ -271,15 +273,15 @@ class JointSolver final : public Solver {
     }
   }
 
-  // Half as much again is more than a wrong guess of a sigma.
+  // A ratio of 1.5 is more than an inaccurate estimate of a sigma.
   static void WarnOfNoise(const JointNoise& noise, Estimate& estimate) {
     constexpr double kMuch = 1.5;
     const auto warn = [&](double ratio, const char* what) {
       if (ratio <= kMuch) return;
-      estimate.warnings.push_back(
-          fmt::format("{} is {:.1f} times as large as stated, so that the covariance is too small; "
-                      "state more, or look for what bends the data (intrinsics, board size)",
-                      what, ratio));
+      estimate.warnings.push_back(fmt::format(
+          "{} is {:.1f} times as large as stated, so that the covariance is too small; "
+          "state a larger noise, or look for a systematic error (intrinsics, board size)",
+          what, ratio));
     };
     warn(noise.printed, "the noise of the printed corners");
     warn(noise.face, "the noise of the ranges on the boards");

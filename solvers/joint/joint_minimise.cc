@@ -7,16 +7,14 @@
 #include <utility>
 
 #include "geometry/symmetric.h"
+#include "solvers/least_squares/levenberg_marquardt.h"
 
 namespace sextant {
 namespace {
 
-// Of the share of the diagonal that is added to it.
-constexpr double kFirstDamping = 1e-6;
-constexpr double kMaxDamping = 1e12;
-// A step that more of it made short is no sign of a minimum.
+// A step that more damping made short is no sign of a minimum.
 constexpr double kMaxDampingAtEnd = 1e-2;
-// Steps under this that raise the cost by no more than this share of it.
+// A step under this that raises the cost by no more than this share of it is lost in rounding.
 constexpr double kSmallStep = 1e-6;
 constexpr double kJointRounding = 1e-12;
 
@@ -34,8 +32,9 @@ struct JointStep {
 
 using BoardByShared = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-// Solves the damped normal equations: boards first, then what is shared, then boards again.
-JointStep Solve(const JointSystem& system, double damping) {
+// Solves the damped normal equations by the Schur complement: boards first, then what is shared,
+// then boards again.
+JointStep SolveDamped(const JointSystem& system, double damping) {
   Eigen::MatrixXd shared = system.ss;
   shared.diagonal() *= 1.0 + damping;
   Eigen::VectorXd gradient = system.s;
@@ -52,7 +51,7 @@ JointStep Solve(const JointSystem& system, double damping) {
       by_shared[i] = factor.solve(view.bs);
       step.boards[i] = factor.solve(view.b);
     } else {
-      // Left out, or not determined: the board stays where it is.
+      // No observations, or singular: the board keeps its pose.
       by_shared[i].setZero(6, view.bs.cols());
       step.boards[i].setZero();
     }
@@ -66,37 +65,49 @@ JointStep Solve(const JointSystem& system, double damping) {
   return step;
 }
 
+// The joint problem as LevenbergMarquardt takes it.
+struct JointProblem {
+  const std::vector<JointView>& views;
+  const JointUnknowns& unknowns;
+  const JointLosses& losses;
+  double step_tolerance;
+  JointMinimum& best;
+  JointStep step = {};
+
+  bool Solve(double damping) {
+    step = SolveDamped(best.system, damping);
+    return step.IsFinite();
+  }
+
+  // Converged where every pose moves by less than step_tolerance, or the cost is lost in rounding.
+  Trial Try(double damping) {
+    JointState tried = Moved(best.state, unknowns, step.shared, step.boards);
+    std::optional<JointSystem> there = Linearise(views, unknowns, losses, tried);
+    const double cost = best.system.cost;
+    const bool better = there && there->cost <= cost;
+    const bool lost_in_rounding =
+        there && !better && step.Size() < kSmallStep && there->cost - cost <= kJointRounding * cost;
+    if (better) {
+      best.state = std::move(tried);
+      best.system = *std::move(there);
+    }
+    if ((step.Size() < step_tolerance && damping <= kMaxDampingAtEnd) || lost_in_rounding) {
+      return Trial::kConverged;
+    }
+    return better ? Trial::kTaken : Trial::kRejected;
+  }
+};
+
 }  // namespace
 
 JointMinimum MinimiseJointly(const std::vector<JointView>& views, const JointUnknowns& unknowns,
                              const JointLosses& losses, const JointState& start, int max_iterations,
                              double step_tolerance) {
-  JointMinimum best;
-  best.state = start;
-  best.system = *Linearise(views, unknowns, losses, start);
-  double damping = kFirstDamping;
-  while (best.iterations < max_iterations && damping < kMaxDamping) {
-    ++best.iterations;
-    const JointStep step = Solve(best.system, damping);
-    if (!step.IsFinite()) {
-      damping *= 10.0;
-      continue;
-    }
-    JointState tried = Moved(best.state, unknowns, step.shared, step.boards);
-    std::optional<JointSystem> there = Linearise(views, unknowns, losses, tried);
-    const bool better = there && there->cost <= best.system.cost;
-    const double rise = there ? there->cost - best.system.cost : best.system.cost;
-    if (better) {
-      best.state = std::move(tried);
-      best.system = *std::move(there);
-    }
-    const bool lost_in_rounding =
-        !better && step.Size() < kSmallStep && rise <= kJointRounding * best.system.cost;
-    best.converged =
-        (step.Size() < step_tolerance && damping <= kMaxDampingAtEnd) || lost_in_rounding;
-    if (best.converged) break;
-    damping *= better ? 0.1 : 10.0;
-  }
+  JointMinimum best{.state = start, .system = *Linearise(views, unknowns, losses, start)};
+  JointProblem problem{views, unknowns, losses, step_tolerance, best};
+  const MinimiserSummary summary = LevenbergMarquardt(problem, max_iterations);
+  best.iterations = summary.steps;
+  best.converged = summary.outcome == MinimiserOutcome::kConverged;
   return best;
 }
 

@@ -9,24 +9,24 @@ namespace sextant {
 
 struct JointMinimum {
   JointState state;
-  JointSystem system;  ///< There.
+  JointSystem system;  ///< At that state.
   int iterations = 0;
   bool converged = false;  ///< The last step of every pose is under step_tolerance [rad, m].
 };
 
 /// argmin over the extrinsic, every board's pose and the other unknowns of 1/2 sum rho(|r_i|^2), by
-/// Levenberg and Marquardt's method. Views share only few unknowns: each board's pose is eliminated
-/// by its own 6x6 block, so that an iteration is linear in the number of views (the Schur
-/// complement trick of bundle adjustment; Triggs et al. 2000). Not by Ceres, whose residual blocks
-/// cost a virtual call and a block of memory for each return of the LiDAR: a test compares with it.
+/// LevenbergMarquardt. Views share only few unknowns: each board's pose is eliminated by its own
+/// 6x6 block, so that an iteration is linear in the number of views (the Schur complement trick of
+/// bundle adjustment; Triggs et al. 2000). Not by Ceres, whose residual blocks cost a virtual call
+/// and an allocation for each return of the LiDAR; a test compares the two.
 ///
 /// Requires a start at which every observation has a residual (Linearise).
 JointMinimum MinimiseJointly(const std::vector<JointView>& views, const JointUnknowns& unknowns,
                              const JointLosses& losses, const JointState& start, int max_iterations,
                              double step_tolerance);
 
-/// The information of the shared unknowns, all boards' poses eliminated. A view whose board's pose
-/// is not determined adds nothing.
+/// The information of the shared unknowns with the boards' poses eliminated. Directions of a
+/// board's pose that its view does not determine contribute nothing.
 Eigen::MatrixXd SharedInformation(const JointSystem& system);
 
 }  // namespace sextant

@@ -33,7 +33,7 @@ double LeverOf(const std::vector<JointView>& views, const JointState& state, int
   return lever;
 }
 
-// Pairs of intrinsics that are freed together have one.
+// Intrinsics that are freed together share a kind.
 int KindOf(int intrinsic) { return intrinsic < kFirstDistortion ? intrinsic / 2 : intrinsic; }
 
 bool IsSize(const JointUnknowns& unknowns, int unknown) {
@@ -76,8 +76,8 @@ std::optional<UnobservableParameter> FindUnobservable(const Eigen::MatrixXd& inf
   return UnobservableParameter{kPose + static_cast<int>(worst), sigma[worst], useful[worst]};
 }
 
-void LeaveOut(int unknown, const CalibrationProblem& problem, JointUnknowns& unknowns,
-              std::vector<JointView>& views, JointState& state) {
+void FixParameter(int unknown, const CalibrationProblem& problem, JointUnknowns& unknowns,
+                  std::vector<JointView>& views, JointState& state) {
   if (unknowns.range_bias && unknown == unknowns.Bias()) {
     unknowns.range_bias = false;
     state.range_bias_m = 0.0;
@@ -93,8 +93,7 @@ void LeaveOut(int unknown, const CalibrationProblem& problem, JointUnknowns& unk
     }
     state.size.setZero(unknowns.SizeCount());
   } else {
-    // Both focal lengths, or both coordinates of the centre: one without the other would lean on
-    // it.
+    // Both focal lengths, or both coordinates of the centre, as each pair is freed together.
     const auto at = static_cast<std::size_t>(unknown - unknowns.Intrinsic());
     const int kind = KindOf(unknowns.intrinsics[at]);
     std::erase_if(unknowns.intrinsics, [kind](int other) { return KindOf(other) == kind; });
@@ -114,12 +113,12 @@ std::string NameOf(const JointUnknowns& unknowns, const Camera& camera, int unkn
   return std::string(IntrinsicName(camera.model, unknowns.intrinsics[index]));
 }
 
-std::string DescribeUnobservable(const UnobservableParameter& untold, const JointUnknowns& unknowns,
-                                 const Camera& camera) {
+std::string DescribeUnobservable(const UnobservableParameter& unobservable,
+                                 const JointUnknowns& unknowns, const Camera& camera) {
   return fmt::format(
-      "{} was taken as given: the views tell it to {:.2g} only, and beyond {:.2g} that is no "
-      "knowledge; hold the board at more distances and tilts",
-      NameOf(unknowns, camera, untold.unknown), untold.sigma, untold.useful);
+      "{} was fixed at its given value: the views determine it only to {:.2g}, and above {:.2g} it "
+      "counts as unobservable; hold the board at more distances and tilts",
+      NameOf(unknowns, camera, unobservable.index), unobservable.sigma, unobservable.useful);
 }
 
 }  // namespace sextant

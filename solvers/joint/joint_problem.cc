@@ -19,7 +19,7 @@ struct LidarSums {
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
 };
 
-/// One view's part of the system at a state.
+/// Adds the normal equations of one view at a state.
 class ViewLineariser {
  public:
   ViewLineariser(const JointView& view, const JointUnknowns& unknowns, const JointLosses& losses,
@@ -98,11 +98,11 @@ class ViewLineariser {
     const double value = at.residual.value;
     const LossValue loss = ApplyLoss(robust.kind, robust.scale, value * value);
     cost_ += 0.5 * loss.rho;
-    const Eigen::Matrix<double, 1, 6> weighed = loss.slope * at.residual.by_pose;
-    lidar_.pose.normal.noalias() += weighed.transpose() * at.residual.by_pose;
-    lidar_.pose.gradient.noalias() += weighed.transpose() * value;
+    const Eigen::Matrix<double, 1, 6> weighted = loss.slope * at.residual.by_pose;
+    lidar_.pose.normal.noalias() += weighted.transpose() * at.residual.by_pose;
+    lidar_.pose.gradient.noalias() += weighted.transpose() * value;
     if (unknowns_.Intrinsic() == 6) return;
-    lidar_.mixed.noalias() += weighed.transpose() * at.by_extras;
+    lidar_.mixed.noalias() += weighted.transpose() * at.by_extras;
     lidar_.extras.noalias() += loss.slope * at.by_extras.transpose() * at.by_extras;
     lidar_.gradient.noalias() += loss.slope * value * at.by_extras.transpose();
   }
@@ -118,7 +118,7 @@ class ViewLineariser {
     system.ss.topLeftCorner<6, 6>().noalias() += by_extrinsic.transpose() * half;
     system.s.head<6>().noalias() += by_extrinsic.transpose() * lidar_.pose.gradient;
     for (int i = 0; i < kLidarExtras; ++i) {
-      const int row = model_.PlaceOf(i);
+      const int row = model_.IndexOf(i);
       if (row < 0) continue;
       const Vector6d shared = by_extrinsic.transpose() * lidar_.mixed.col(i);
       own.bs.col(row) += by_board.transpose() * lidar_.mixed.col(i);
@@ -126,7 +126,7 @@ class ViewLineariser {
       system.ss.block<1, 6>(row, 0) += shared.transpose();
       system.s[row] += lidar_.gradient[i];
       for (int j = 0; j < kLidarExtras; ++j) {
-        if (model_.PlaceOf(j) >= 0) system.ss(row, model_.PlaceOf(j)) += lidar_.extras(i, j);
+        if (model_.IndexOf(j) >= 0) system.ss(row, model_.IndexOf(j)) += lidar_.extras(i, j);
       }
     }
   }
@@ -170,7 +170,7 @@ bool JointRayModel::Differentiate(const EdgeTerm& term, const BoardPlane& plane,
   return true;
 }
 
-int JointRayModel::PlaceOf(int lidar_extra) const {
+int JointRayModel::IndexOf(int lidar_extra) const {
   if (lidar_extra == 0) return unknowns_.range_bias ? unknowns_.Bias() : -1;
   if (unknowns_.board_size == JointBoardSize::kScale) {
     return lidar_extra == 1 ? unknowns_.Size() : -1;
@@ -180,13 +180,13 @@ int JointRayModel::PlaceOf(int lidar_extra) const {
 }
 
 LossValue ApplyLoss(LossKind kind, double scale, double squared) {
-  const double bend = scale * scale;
-  if (kind == LossKind::kHuber && squared > bend) {
+  const double transition = scale * scale;
+  if (kind == LossKind::kHuber && squared > transition) {
     const double root = std::sqrt(squared);
-    return {2.0 * scale * root - bend, scale / root};
+    return {2.0 * scale * root - transition, scale / root};
   }
   if (kind == LossKind::kCauchy) {
-    return {bend * std::log1p(squared / bend), 1.0 / (1.0 + squared / bend)};
+    return {transition * std::log1p(squared / transition), 1.0 / (1.0 + squared / transition)};
   }
   return {squared, 1.0};
 }

@@ -14,14 +14,14 @@ namespace sextant {
 
 enum class JointBoardSize { kGiven, kScale, kSides };
 
-/// Which numbers all views share, and their order: (dphi, dt) of cam_from_lidar, then the range
-/// bias, then the size of the boards (one scale, or (top_right_m, right_bottom_m) of each board),
-/// then intrinsics.
+/// The parameters shared by all views, and their order: (dphi, dt) of cam_from_lidar, then the
+/// range bias, then the size of the boards (one scale, or (top_right_m, right_bottom_m) of each
+/// board), then intrinsics.
 struct JointUnknowns {
   bool range_bias = false;
   JointBoardSize board_size = JointBoardSize::kGiven;
-  std::vector<int> sized_boards;  ///< Ids of which both sides are estimated; with kSides only.
-  std::vector<int> intrinsics;    ///< Into IntrinsicsOf, ascending.
+  std::vector<int> sized_boards;  ///< Ids of boards whose sides are estimated; with kSides only.
+  std::vector<int> intrinsics;    ///< Ascending indices into IntrinsicsOf.
 
   int Bias() const { return 6; }
   int Size() const { return 6 + (range_bias ? 1 : 0); }
@@ -31,23 +31,23 @@ struct JointUnknowns {
 };
 
 /// A robust loss for each kind of observation. A BoardPoints of n points counts as one observation,
-/// its norm measured from the sqrt(2 n) that it has on average.
+/// with its norm relative to the mean norm sqrt(2 n).
 struct JointLosses {
   RobustLoss printed;
   RobustLoss face;
   RobustLoss edges;
 };
 
-/// What is estimated.
+/// The estimated parameters.
 struct JointState {
   Rigid3d cam_from_lidar;
-  std::vector<Rigid3d> cam_from_board;  ///< Of each view.
+  std::vector<Rigid3d> cam_from_board;  ///< One per view.
   double range_bias_m = 0.0;            ///< Added by the LiDAR to every range.
-  Eigen::VectorXd size;                 ///< Growth [m], or of the scale; see JointUnknowns.
+  Eigen::VectorXd size;  ///< Change of sides [m], or of the scale; see JointUnknowns.
   Camera camera;
 };
 
-/// What one view says, to first order; `b` is its board's pose, `s` what all share.
+/// Normal equations of one view; `b` stands for its board's pose, `s` for the shared parameters.
 struct JointViewSystem {
   Matrix6d bb = Matrix6d::Zero();
   Eigen::Matrix<double, 6, Eigen::Dynamic> bs;
@@ -61,10 +61,10 @@ struct JointSystem {
   double cost = 0.0;  ///< 1/2 sum rho
 };
 
-/// One view made ready for a set of unknowns.
+/// One view prepared for a set of unknowns.
 struct JointView {
   BoardViewTerms terms;
-  int sized_board = -1;  ///< Into JointUnknowns::sized_boards; -1: none.
+  int sized_board = -1;  ///< Index into JointUnknowns::sized_boards; -1: none.
 };
 
 // Range bias, then size along x and y, or the scale.
@@ -75,18 +75,18 @@ struct JointRay {
   Eigen::Matrix<double, 1, kLidarExtras> by_extras;
 };
 
-/// The residual of a ray where the LiDAR's bias and the board's size are estimated too.
+/// The residual of a ray, with derivatives by the LiDAR's bias and the board's size.
 class JointRayModel {
  public:
   JointRayModel(const JointView& view, const JointUnknowns& unknowns, const JointState& state)
       : view_(view), unknowns_(unknowns), state_(state) {}
 
-  /// False where the ray does not meet the plane.
+  /// False where the ray does not intersect the plane.
   bool Differentiate(const FaceTerm& term, const BoardPlane& plane, JointRay& out) const;
   bool Differentiate(const EdgeTerm& term, const BoardPlane& plane, JointRay& out) const;
 
-  /// Where an extra stands among the shared unknowns; -1 where it is none.
-  int PlaceOf(int lidar_extra) const;
+  /// Index of an extra parameter among the shared unknowns; -1 where it is not estimated.
+  int IndexOf(int lidar_extra) const;
 
  private:
   const JointView& view_;
@@ -101,12 +101,12 @@ struct LossValue {
 };
 LossValue ApplyLoss(LossKind kind, double scale, double squared);
 
-/// How far a BoardPoints may be from its mean norm at `sigmas`: the norm of 2n whitened normal
-/// numbers has a standard deviation of 1/sqrt(2) about sqrt(2n) (Fisher 1922).
+/// Upper limit of the norm of a BoardPoints at `sigmas`: the norm of 2n whitened normal variables
+/// has mean sqrt(2n) and a standard deviation of 1/sqrt(2) (Fisher 1922).
 double PrintedLimit(std::size_t points, double sigmas);
 
-/// Residuals, derivatives and cost at `state`, the residuals weighed by rho' (iteratively
-/// reweighted least squares). None where an observation has no residual there.
+/// Normal equations and cost at `state`, with weights rho' (iteratively reweighted least squares).
+/// None where a residual is undefined.
 std::optional<JointSystem> Linearise(const std::vector<JointView>& views,
                                      const JointUnknowns& unknowns, const JointLosses& losses,
                                      const JointState& state);

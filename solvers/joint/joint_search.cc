@@ -10,17 +10,17 @@ namespace sextant {
 namespace {
 
 constexpr int kMaxRounds = 10;
-// Losses need not follow the noise closer than this.
+// Relative change of the noise below which the losses are not updated.
 constexpr double kSameNoise = 0.02;
-// Nor their minimum, where it is only the way to that of what is within the cut [rad, m].
+// Tolerance [rad, m] of the minimum of the losses where it is only the start for the cut.
 constexpr double kNearEnough = 1e-4;
 
 bool Any(const std::vector<bool>& chosen) {
   return std::find(chosen.begin(), chosen.end(), true) != chosen.end();
 }
 
-// Of one sensor's observations alone nothing follows.
-void LeaveOutOneSided(JointSelection& selection) {
+// The observations of one sensor alone carry no information on the extrinsic.
+void DropOneSided(JointSelection& selection) {
   for (JointViewSelection& view : selection) {
     if (Any(view.printed) && (Any(view.face) || Any(view.edges))) continue;
     for (std::vector<bool>* kind : {&view.printed, &view.face, &view.edges}) {
@@ -77,7 +77,7 @@ class JointSearch {
       const std::vector<BoardViewResiduals> residuals = Residuals();
       const JointNoise now = NoiseOf(residuals);
       JointSelection seen = SelectSeen(residuals);
-      LeaveOutOneSided(seen);
+      DropOneSided(seen);
       if (round > 0 && seen == answer_.selection && IsSame(now, noise)) break;
       noise = now;
       answer_.selection = std::move(seen);
@@ -90,7 +90,7 @@ class JointSearch {
     for (int round = 0; round < kMaxRounds; ++round) {
       const std::vector<BoardViewResiduals> residuals = Residuals();
       JointSelection within = SelectWithin(views_, residuals, NoiseOf(residuals), options_.cut);
-      LeaveOutOneSided(within);
+      DropOneSided(within);
       if (round > 0 && within == answer_.selection) break;
       answer_.selection = std::move(within);
       SEXTANT_RETURN_IF_ERROR(Minimise({}, options_.step_tolerance));

@@ -8,18 +8,18 @@
 
 namespace sextant {
 
-/// The minimum over what is neither outlier nor unseen, and which observations that is.
+/// The minimum over the inliers, and the selection of these.
 struct JointAnswer {
   JointMinimum minimum;
-  JointSelection selection;  ///< Of all views, in their order.
-  JointNoise noise;          ///< Of all observations, at the answer.
-  int iterations = 0;        ///< Of all rounds.
+  JointSelection selection;  ///< One entry per view.
+  JointNoise noise;          ///< From all observations, at the answer.
+  int iterations = 0;        ///< Total over all rounds.
 };
 
-/// First with the robust losses, widened by the noise that the data shows and narrowed as it falls;
-/// then least squares of what is within `cut`, again and again until that stays the same. A view
-/// that is left without printed points or without rays says nothing and is left out whole.
-/// Errors: kDegenerate (no view is left), kNoConvergence.
+/// First minimises with the robust losses, scaled by the noise estimated from the residuals; then
+/// alternates least squares with the selection of the observations within `cut`, until the
+/// selection stays the same. A view without printed points or without rays carries no information
+/// and is dropped. Errors: kDegenerate (no view is left), kNoConvergence.
 Expected<JointAnswer> SearchJointly(const std::vector<JointView>& views,
                                     const JointUnknowns& unknowns, const JointState& start,
                                     const JointOptions& options);

@@ -5,19 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "base/median.h"
+
 namespace sextant {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-// Of the absolute value of a standard normal number.
+// Median of the absolute value of a standard normal variable.
 constexpr double kNormalMedian = 0.6744897501960817;
-
-double MedianOf(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 BoardViewResiduals ResidualsOfView(const JointView& view, const JointUnknowns& unknowns,
                                    const JointState& state, const Rigid3d& cam_from_board) {
@@ -85,8 +80,8 @@ JointNoise NoiseOf(const std::vector<BoardViewResiduals>& residuals) {
   const auto at_least_stated = [](double ratio) {
     return std::isfinite(ratio) ? std::max(1.0, ratio) : 1.0;
   };
-  return {at_least_stated(MedianOf(printed)), at_least_stated(MedianOf(face) / kNormalMedian),
-          at_least_stated(MedianOf(edges) / kNormalMedian)};
+  return {at_least_stated(UpperMedian(printed)), at_least_stated(UpperMedian(face) / kNormalMedian),
+          at_least_stated(UpperMedian(edges) / kNormalMedian)};
 }
 
 JointSelection SelectSeen(const std::vector<BoardViewResiduals>& residuals) {

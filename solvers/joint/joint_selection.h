@@ -7,7 +7,7 @@
 
 namespace sextant {
 
-/// Which observations of a view are used; as long as its terms.
+/// Which observations of a view are used; shapes as in its terms.
 struct JointViewSelection {
   std::vector<bool> printed;
   std::vector<bool> face;
@@ -17,8 +17,9 @@ struct JointViewSelection {
 };
 using JointSelection = std::vector<JointViewSelection>;
 
-/// By how much the noise of each kind is larger than stated: the median of the absolute whitened
-/// residuals over that of a normal distribution, at least 1. Half of the data may be wrong.
+/// The ratio of the noise of each kind to the stated one: the median of the absolute whitened
+/// residuals over that of a normal distribution, at least 1. Robust to nearly half of the data
+/// being outliers.
 struct JointNoise {
   double printed = 1.0;
   double face = 1.0;
@@ -32,14 +33,14 @@ std::vector<BoardViewResiduals> JointResidualsAt(const std::vector<JointView>& v
 
 JointNoise NoiseOf(const std::vector<BoardViewResiduals>& residuals);
 
-/// All observations that have a residual.
+/// All observations with a defined residual.
 JointSelection SelectSeen(const std::vector<BoardViewResiduals>& residuals);
-/// Those of them within `sigmas` of the noise found.
+/// Those within `sigmas` times the estimated noise.
 JointSelection SelectWithin(const std::vector<JointView>& views,
                             const std::vector<BoardViewResiduals>& residuals,
                             const JointNoise& noise, double sigmas);
 
-/// The views with the selected observations only.
+/// The views, restricted to the selected observations.
 std::vector<JointView> Selected(const std::vector<JointView>& views,
                                 const JointSelection& selection);
 

@@ -8,8 +8,8 @@
 
 namespace sextant {
 
-/// The step -(H + damping diag H)^-1 g of the normal equations by L D L^T, unrolled: Eigen's takes
-/// three times as long. None where a pivot is not positive.
+/// The step -(H + damping diag H)^-1 g of the normal equations by L D L^T of fixed size: Eigen's
+/// takes three times as long. None where a pivot is not positive.
 inline std::optional<Vector6d> DampedStep(const Matrix6d& information, const Vector6d& gradient,
                                           double damping) {
   Matrix6d l = information;
@@ -36,13 +36,14 @@ inline std::optional<Vector6d> DampedStep(const Matrix6d& information, const Vec
   return x;
 }
 
-/// Perturb to second order in dphi, without sine and cosine: what a step of Newton's method needs.
+/// Perturb to second order in dphi, without sine and cosine: accurate enough for a step of an
+/// iteration.
 inline Rigid3d Moved(const Rigid3d& pose, const Vector6d& step) {
   const Eigen::Quaterniond turn(1.0, 0.5 * step[0], 0.5 * step[1], 0.5 * step[2]);
   return {(turn * pose.rotation).normalized(), pose.translation + step.tail<3>()};
 }
 
-/// How large a step is: |dphi| [rad] or |dt| / (1 + |t|) [m].
+/// The size of a step: the larger of |dphi| [rad] and |dt| / (1 + |t|) [m].
 inline double SizeOf(const Vector6d& step, const Rigid3d& pose) {
   return std::max(step.head<3>().norm(), step.tail<3>().norm() / (1.0 + pose.translation.norm()));
 }

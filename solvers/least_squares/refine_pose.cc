@@ -4,21 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/symmetric.h"
 #include "solvers/kernels/pixel_sums.h"
-#include "solvers/least_squares/normal_step.h"
 #include "solvers/least_squares/term_derivatives.h"
 
 namespace sextant {
 namespace {
-
-constexpr double kFirstDamping = 1e-6;
-constexpr double kLargestDamping = 1e12;
-// The cost is a sum of many rounded terms: a rise of this share is no rise.
-constexpr double kCostRounding = 1e-14;
-// Pivots of the information of unit diagonal below this are rounding.
-constexpr double kMinPivot = 1e-13;
-// Under this, what a step changes of J^T J does not matter: it may be the last, without a look.
-constexpr double kLastStep = 1e-6;
 
 using NormalEquations = PixelSums;
 
@@ -87,101 +78,21 @@ bool SumUp(const TermsView& terms, const Rigid3d& pose, NormalEquations& sum) {
 }  // namespace
 
 RefinedPose RefinePose(const TermsView& terms, const Rigid3d& start, const RefineLimits& limits) {
-  RefinedPose best;
-  best.cam_from_lidar = start;
-  NormalEquations here;
-  if (!SumUp(terms, start, here)) {
-    best.outcome = RefineOutcome::kNotProjected;
-    return best;
-  }
-  NormalEquations there;
-  Rigid3d next;
-  double damping = kFirstDamping;
-  double last_size = 0.0;  // Of the last step, where it was taken.
-  best.iterations = 1;
-  while (best.iterations < limits.max_iterations) {
-    const std::optional<Vector6d> step = DampedStep(here.information, here.gradient, damping);
-    const double size = step ? SizeOf(*step, best.cam_from_lidar) : 0.0;
-    // Steps shrink at least as fast as the last two did: the one after this is negligible.
-    const bool is_last = size < kLastStep && size * size <= limits.step_tolerance * last_size;
-    if (step && (is_last || size <= limits.step_tolerance)) {
-      if (is_last) {
-        best.cam_from_lidar = Moved(best.cam_from_lidar, *step);
-        here.squares += here.gradient.dot(*step);
-        if (limits.wants_information && SumUp(terms, best.cam_from_lidar, there)) {
-          here.information = there.information;
-        }
-      }
-      best.outcome = RefineOutcome::kConverged;
-      break;
-    }
-    ++best.iterations;
-    bool falls = false;
-    if (step && step->allFinite()) {
-      next = Moved(best.cam_from_lidar, *step);
-      falls = SumUp(terms, next, there) && there.squares <= (1.0 + kCostRounding) * here.squares;
-    }
-    if (falls) {
-      best.cam_from_lidar = next;
-      std::swap(here, there);
-      damping *= 0.1;
-      last_size = size;
-    } else {
-      damping = std::max(10.0 * damping, kFirstDamping);
-      last_size = 0.0;
-      if (damping > kLargestDamping) {
-        best.outcome = RefineOutcome::kStalled;
-        break;
-      }
-    }
-  }
-  best.cost = 0.5 * std::max(0.0, here.squares);
-  best.information = here.information;
-  return best;
-}
-
-// By L D L^T of the matrix of unit diagonal, unrolled: Eigen's takes four times as long.
-std::optional<Matrix6d> InvertInformation(const Matrix6d& information) {
-  const Vector6d scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  if (!scale.allFinite()) return std::nullopt;
-  Matrix6d l = scale.asDiagonal() * information * scale.asDiagonal();
-  Matrix6d ld;  // l(i, k) d(k)
-  Vector6d inverse_d;
-  for (int j = 0; j < 6; ++j) {
-    double d[6];
-    for (int i = j; i < 6; ++i) {
-      d[i] = l(i, j);
-      for (int k = 0; k < j; ++k) d[i] -= l(i, k) * ld(j, k);
-    }
-    if (!(d[j] > kMinPivot)) return std::nullopt;
-    inverse_d[j] = 1.0 / d[j];
-    for (int i = j + 1; i < 6; ++i) {
-      ld(i, j) = d[i];
-      l(i, j) = d[i] * inverse_d[j];
-    }
-  }
-  Matrix6d lower = Matrix6d::Identity();  // L^-1
-  for (int j = 0; j < 6; ++j) {
-    for (int i = j + 1; i < 6; ++i) {
-      double sum = l(i, j);
-      for (int k = j + 1; k < i; ++k) sum += l(i, k) * lower(k, j);
-      lower(i, j) = -sum;
-    }
-  }
-  Matrix6d inverse;
-  for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      double sum = 0.0;
-      for (int k = i; k < 6; ++k) sum += lower(k, i) * lower(k, j) * inverse_d[k];
-      inverse(i, j) = inverse(j, i) = sum * scale[i] * scale[j];
-    }
-  }
-  return inverse;
+  const auto evaluate = [&terms](const Rigid3d& pose, NormalEquations& sum) {
+    return SumUp(terms, pose, sum);
+  };
+  const PoseMinimum<NormalEquations> best = MinimisePose<NormalEquations>(evaluate, start, limits);
+  RefinedPose refined{
+      .cam_from_lidar = best.pose, .iterations = best.iterations, .outcome = best.outcome};
+  if (best.outcome == RefineOutcome::kNotProjected) return refined;
+  refined.cost = 0.5 * std::max(0.0, best.equations.squares);
+  refined.information = best.equations.information;
+  return refined;
 }
 
 std::optional<Matrix6d> LeastSquaresCovariance(const PairTerms& terms, const Matrix6d& information,
                                                double cost) {
-  std::optional<Matrix6d> covariance = InvertInformation(information);
+  std::optional<Matrix6d> covariance = InvertSymmetric(information);
   if (!covariance || terms.noise_known) return covariance;
   const double freedom = 3.0 * static_cast<double>(terms.points.size()) +
                          2.0 * static_cast<double>(terms.pixels.size()) - 6.0;

@@ -6,16 +6,16 @@
 
 namespace sextant {
 
-/// Whitened residual of a pair and what it takes to differentiate it, by hand: with
+/// Whitened residual of a pair and the factors of its analytic derivative: with
 /// A = -dr / d(point in the camera frame) and d(R p + t) = -[R p]x dphi + dt of Perturb,
-/// dr = A [R p]x dphi - A dt. In this header to be inlined into the loop of RefinePose.
+/// dr = A [R p]x dphi - A dt. A header, so that it is inlined into the loop of RefinePose.
 template <int kResiduals>
 struct TermDerivatives {
   Eigen::Matrix<double, kResiduals, 1> residual;
   Eigen::Matrix<double, kResiduals, 3> slope;  ///< A.
   Eigen::Vector3d arm;                         ///< R p.
 
-  /// By (dphi, dt).
+  /// Derivative by (dphi, dt).
   Eigen::Matrix<double, kResiduals, 6> Jacobian() const {
     Eigen::Matrix<double, kResiduals, 6> jacobian;
     jacobian.template leftCols<3>() = slope * Hat(arm);

@@ -21,7 +21,7 @@ CornerOrder OrderAt(int index, int corners) {
   return {.first = index % corners, .reversed = index >= corners};
 }
 
-// The group in every order; `in_a` of pairing i is in OrderAt(i).
+// The group as a view with one pairing per order: the points `in_a` of pairing i follow OrderAt(i).
 MatchView ViewOf(const CornerGroup& group) {
   const int n = CornersOf(group);
   MatchView view;
@@ -42,7 +42,7 @@ Eigen::Vector3d Centroid(const Points& points) {
   return sum / static_cast<double>(points.size());
 }
 
-// No order changes the centroids.
+// A start that does not depend on the orders, as centroids do not.
 std::vector<Rigid3d> FitOfCentroids(std::span<const CornerGroup> groups) {
   Points in_b;
   Points in_a;

@@ -10,14 +10,14 @@
 
 namespace sextant {
 
-/// The corners of one board as each sensor lists them: both go round the board, but may start at
-/// another corner and turn the other way. Equally many, at least 3; metres.
+/// The corners of one board as each sensor lists them, in cyclic order, but possibly from different
+/// first corners and in opposite directions. Equally many, at least 3 [m].
 struct CornerGroup {
   std::vector<Eigen::Vector3d> in_b;
   std::vector<Eigen::Vector3d> in_a;
 };
 
-/// One of the 2n ways to go round n corners.
+/// One of the 2n cyclic orders of n corners.
 struct CornerOrder {
   int first = 0;  ///< Corner of a that is corner 0 of b.
   bool reversed = false;
@@ -32,16 +32,16 @@ struct CornerOrder {
 struct CornerOrderFit {
   std::vector<CornerOrder> orders;  ///< One for each group.
   Rigid3d b_from_a;
-  double rmse_m = 0.0;  ///< Over all corners.
+  double rmse_m = 0.0;  ///< RMS over all corners.
 };
 
 /// The pose and the orders of all groups together that minimise the sum of squared distances.
 ///
-/// The corners of one board fit under any of its orders, as a board has symmetries; that one pose
-/// must serve all groups is what tells them apart (solvers/matching/object_match.h, each group a
-/// view that may be taken in any order). Starts: the fit of the groups' centroids, which no order
-/// changes, and every order of the groups. With one group, or groups that share a symmetry, the
-/// orders are not determined: those nearest to the order as listed are returned. Errors:
+/// As boards are symmetric, the corners of one board fit in several orders; the orders are
+/// determined by one pose for all groups (solvers/matching/object_match.h, with each group as a
+/// view and each order as a pairing). Starts: the fit of the groups' centroids, which do not depend
+/// on the orders, and every order of the groups. With one group, or groups that share a symmetry,
+/// the orders are not determined: those nearest to the listed order are returned. Errors:
 /// kTooFewPairs (no group); kInvalidInput (uneven or short groups); kDegenerate.
 Expected<CornerOrderFit> ResolveCornerOrders(std::span<const CornerGroup> groups);
 

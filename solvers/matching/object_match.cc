@@ -13,13 +13,13 @@ namespace sextant {
 namespace {
 
 constexpr std::size_t kFinalists = 24;
-constexpr double kDropped = 2.0;  // Of the cap.
+constexpr double kDropped = 2.0;  // Cost of an unmatched object, in units of the cap.
 constexpr int kMaxMatchRounds = 30;
 constexpr double kSameAngle_rad = 0.1;
-constexpr double kSameShift = 1.0 / 3.0;  // Of an object's size.
-constexpr double kNoticeable_m = 1e-6;    // Costs of points that differ by less are equal.
-// Tolerances of the first rounds, of an object's size: a single pairing's pose is a few degrees
-// off.
+constexpr double kSameShift = 1.0 / 3.0;  // Relative to an object's size.
+constexpr double kNoticeable_m = 1e-6;    // Costs of points that differ by less count as equal.
+// Tolerances of the rounds, relative to an object's size: wide at first, as the pose of a single
+// pairing is a few degrees off.
 constexpr std::array<double, 4> kWidths = {0.3, 0.1, 0.03, 0.0};
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -38,7 +38,8 @@ double CostOf(const ObjectPairing& pairing, const Rigid3d& b_from_a, double widt
   return squares / (pairing.sigma_m * pairing.sigma_m + width_m * width_m) + pairing.penalty;
 }
 
-// Nearest first: objects of one view are far apart against a sensible pose's error.
+// Greedy, nearest first: the distances of objects in one view are large compared with the error of
+// a reasonable pose.
 void PairView(const MatchView& view, std::size_t index, const Rigid3d& pose, double cap,
               double width_m, MatchExplanation& explanation) {
   std::vector<TakenPairing> all;
@@ -103,9 +104,9 @@ class Matcher {
 
   std::vector<Rigid3d> Starts() const {
     std::vector<Rigid3d> starts = options_.starts;
-    // Every view where there are few, else some evenly.
+    // Every view where there are few, else an evenly spread subset.
     const double share =
-        std::min(1.0, static_cast<double>(options_.most_starts) / static_cast<double>(pairings_));
+        std::min(1.0, static_cast<double>(options_.max_starts) / static_cast<double>(pairings_));
     double due = 1.0;
     for (const MatchView& view : views_) {
       if (due >= 1.0) {
@@ -152,9 +153,9 @@ class Matcher {
       explanation = {};
       for (int round = 0; round < kMaxMatchRounds; ++round) {
         MatchExplanation next = Explain(views_, pose, options_.cap, width * size_);
-        const bool settled = round > 0 && SamePairings(next, explanation);
+        const bool unchanged = round > 0 && SamePairings(next, explanation);
         explanation = std::move(next);
-        if (settled) break;
+        if (unchanged) break;
         const std::optional<Rigid3d> fitted = Fit(explanation, width * size_);
         if (!fitted) return std::nullopt;
         pose = *fitted;
@@ -163,7 +164,7 @@ class Matcher {
     return explanation;
   }
 
-  // By more than rounding, so that of equals the earlier start stays.
+  // Better by more than rounding, so that the earlier of equal starts is kept.
   bool IsBetter(const MatchExplanation& a, const MatchExplanation& b) const {
     return a.cost < b.cost - noticeable_ * static_cast<double>(a.taken.size());
   }
@@ -195,7 +196,7 @@ class Matcher {
   const MatchOptions& options_;
   std::size_t pairings_ = 0;
   double noticeable_ = 0.0;
-  double size_ = 0.0;  // From an object's middle to one of its points.
+  double size_ = 0.0;  // Mean distance from an object's centroid to its first point.
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
 };
 
@@ -210,7 +211,8 @@ Expected<std::vector<MatchExplanation>> MatchObjects(std::span<const MatchView> 
                                                      const MatchOptions& options) {
   const Matcher matcher(views, options);
   if (matcher.IsEmpty()) {
-    return MakeError(ErrorCode::kTooFewPairs, "nothing was seen by both at the same moment");
+    return MakeError(ErrorCode::kTooFewPairs,
+                     "no object was seen by both sensors at the same time");
   }
   std::vector<MatchExplanation> explanations;
   for (const Rigid3d& start : matcher.Finalists(matcher.Starts())) {

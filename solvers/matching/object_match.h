@@ -11,57 +11,57 @@
 
 namespace sextant {
 
-/// One way in which an object that b saw may be one that a saw: the points that are then the same.
+/// A candidate association of an object seen by b with one seen by a: their corresponding points.
 struct ObjectPairing {
-  int in_b = 0;                                ///< Which of b's objects of the view...
-  int in_a = 0;                                ///< ...would be which of a's.
+  int in_b = 0;                                ///< Index among b's objects of the view.
+  int in_a = 0;                                ///< Index among a's.
   std::vector<Eigen::Vector3d> points_in_b{};  ///< At least 3, not on a line [m].
   std::vector<Eigen::Vector3d> points_in_a{};  ///< As many [m].
   double sigma_m = 1.0;                        ///< Of each point's difference, per axis.
-  double penalty = 0.0;  ///< Chi-square that something else says against this way.
+  double penalty = 0.0;  ///< Additional chi-square from other evidence against this association.
 };
 
-/// What both saw at one moment, in every way in which it may belong together.
+/// All candidate associations of one view.
 struct MatchView {
   std::vector<ObjectPairing> pairings{};
 };
 
 struct MatchOptions {
-  /// A pairing that costs more is none: the object was moved, or is something else. It then counts
-  /// as twice the cap, so that a pose which two objects fit poorly is not given up for one that a
-  /// single object fits well. Infinite: every object has a partner.
+  /// A pairing of higher cost is rejected, as the object was moved or is a different one. It then
+  /// costs twice the cap, so that a pose under which two objects fit poorly is preferred to one
+  /// under which a single object fits well. Infinite: every object has a partner.
   double cap = std::numeric_limits<double>::infinity();
   std::vector<Rigid3d> starts{};  ///< b_from_a, tried before those of single pairings.
-  std::size_t most_starts = 512;  ///< Of all; of many views, some are taken evenly.
+  std::size_t max_starts = 512;   ///< Of many views, an evenly spread subset is used.
 };
 
-/// A pairing that an explanation takes.
+/// A pairing chosen in an explanation.
 struct TakenPairing {
   std::size_t view = 0;
-  std::size_t pairing = 0;  ///< Into MatchView::pairings.
+  std::size_t pairing = 0;  ///< Index into MatchView::pairings.
   double cost = 0.0;        ///< Sum of |b - T a|^2 / sigma^2, and the penalty.
   bool fits = false;        ///< Below the cap.
 };
 
-/// One pose for all views, and what it makes of each.
+/// One pose for all views, with the pairings chosen under it.
 struct MatchExplanation {
   Rigid3d b_from_a{};
   std::vector<TakenPairing> taken{};  ///< By view; each object at most once.
-  double cost = 0.0;  ///< Of all that is taken; twice the cap where it does not fit.
+  double cost = 0.0;  ///< Sum over all pairings taken, with twice the cap where one does not fit.
 };
 
-/// Which object is which and how it lies, solved over all views at once: one pose must serve all.
+/// Finds the association of all objects, and one pose for all views.
 ///
 /// Every single pairing gives a pose (FitKabsch). Under a pose, objects are paired view by view,
-/// nearest first, and the pose is fitted again to all pairings below the cap, until nothing moves.
-/// Poses that differ enough are all followed, from wide to narrow tolerance.
-/// Returns the distinct explanations by ascending cost: neighbours differ by more than 6 degrees or
-/// a third of an object. Of those that fit equally well to a micrometre, the earliest start's is
+/// nearest first, and the pose is fitted again to all pairings below the cap, until these do not
+/// change. All sufficiently different poses are refined, from wide to narrow tolerance. Returns the
+/// distinct explanations by ascending cost: neighbours differ by more than 6 degrees or a third of
+/// an object. Of those that fit equally well to a micrometre, the one with the earliest start is
 /// first. Errors: kTooFewPairs (no pairing); kDegenerate (no pairing gives a pose).
 Expected<std::vector<MatchExplanation>> MatchObjects(std::span<const MatchView> views,
                                                      const MatchOptions& options = {});
 
-/// What the views say of a pose: its pairings and their cost, without fitting it.
+/// The pairings under a given pose and their cost, without a fit.
 MatchExplanation ExplainUnder(std::span<const MatchView> views, const Rigid3d& b_from_a,
                               double cap = std::numeric_limits<double>::infinity());
 

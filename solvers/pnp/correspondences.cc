@@ -12,6 +12,7 @@
 #include "geometry/symmetric.h"
 
 namespace sextant {
+
 Expected<Correspondences> PrepareCorrespondences(std::span<const Eigen::Vector2d> image_points,
                                                  std::span<const Eigen::Vector3d> points,
                                                  std::size_t min_points) {
@@ -35,7 +36,7 @@ ImageFit FitOf(const Correspondences& data, const Eigen::Matrix3d& rotation,
 
 void PolishIfExact(const Correspondences& data, const ImageFit& fit, Eigen::Matrix3d& rotation,
                    Eigen::Vector3d& centroid_in_cam) {
-  // Residuals of 1e-5 of the image of the points: a few thousandths of a pixel.
+  // Residuals of 1e-5 of the extent of the image: a few thousandths of a pixel.
   constexpr double kExact = 1e-10;
   const auto count = static_cast<double>(data.points.size());
   if (fit.behind > 0 || !(fit.sum_squares < kExact * count * data.moments.Spread())) return;

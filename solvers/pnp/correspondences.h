@@ -14,17 +14,17 @@
 
 namespace sextant {
 
-/// Which of its candidates an algebraic solver answers with.
+/// Which of its candidates an algebraic solver returns.
 struct PnpChoice {
-  /// The best, though points are behind the camera or their image is not explained: for steps on
-  /// the way to an answer, whose data still holds outliers. Otherwise that is an error.
+  /// The best, even if points are behind the camera or their image is not explained, which is an
+  /// error otherwise: for intermediate steps on data that still contains outliers.
   bool unchecked = false;
-  /// The nearest to this pose in place of the best, unchecked: its answer is followed while the
-  /// image is displaced.
+  /// The candidate nearest to this pose instead of the best, unchecked: to differentiate a solution
+  /// by the image points.
   const Rigid3d* near = nullptr;
 };
 
-/// Points and their images, checked, with what every algebraic solver for them starts from.
+/// Points and their images, checked, with the sums that every algebraic solver starts from.
 struct Correspondences {
   std::span<const Eigen::Vector2d> image_points;  ///< (x/z, y/z).
   std::span<const Eigen::Vector3d> points;        ///< In the LiDAR frame [m].
@@ -37,17 +37,17 @@ Expected<Correspondences> PrepareCorrespondences(std::span<const Eigen::Vector2d
                                                  std::span<const Eigen::Vector3d> points,
                                                  std::size_t min_points);
 
-/// How a rotation with the centroid in the camera frame explains the image.
+/// Reprojection errors of a rotation and the centroid in the camera frame.
 ImageFit FitOf(const Correspondences& data, const Eigen::Matrix3d& rotation,
                const Eigen::Vector3d& centroid_in_cam);
 
-/// One Gauss-Newton step on x - u z and y - v z. The algebraic solvers work on squares of the data,
-/// which costs an exact pose half its digits where the points are badly spread; this gives them
-/// back. Does nothing where the residuals are not those of exact data.
+/// One undamped Gauss-Newton step on x - u z and y - v z. The algebraic solvers work on squares of
+/// the data, which costs half the digits of an exact pose where the points are badly spread; this
+/// restores them. Does nothing where the residuals are larger than those of exact data.
 void PolishIfExact(const Correspondences& data, const ImageFit& fit, Eigen::Matrix3d& rotation,
                    Eigen::Vector3d& centroid_in_cam);
 
-/// Of the first four different points, the three that span the largest triangle.
+/// The three of the first four different points that span the largest triangle.
 std::array<std::size_t, 3> WidestTriangle(const Correspondences& data);
 
 struct TrianglePoses {
@@ -58,8 +58,8 @@ struct TrianglePoses {
 /// P3P on the widest triangle.
 TrianglePoses PosesOfWidestTriangle(const Correspondences& data);
 
-/// How many times better, in squares, an impossible pose must fit before the points count as
-/// mirrored: more than noise does once in 10^5 trials (ratio of two chi^2 of 2 count - 6 degrees of
+/// The ratio of squared errors above which a pose behind the camera, or a mirror image, counts as a
+/// better fit: noise exceeds it once in 10^5 trials (ratio of two chi^2 of 2 count - 6 degrees of
 /// freedom). Five in RMSE for many points, as in kabsch; infinite for three, which always fit.
 double MirrorRatio(std::size_t count);
 

@@ -110,7 +110,8 @@ SEXTANT_INLINE void DepthKernel<kAxes>::SumLengthEquations(const Depths& z, Dept
   }
 }
 
-/// One step on d_j . d_k = delta_jk deviation_j^2; whether it was worth another.
+/// One undamped step on d_j . d_k = delta_jk deviation_j^2, whose starts are near the solution;
+/// true where another one is worthwhile.
 template <int kAxes>
 bool DepthKernel<kAxes>::GaussNewtonStep(Depths& z) const {
   Square normal;
@@ -121,7 +122,7 @@ bool DepthKernel<kAxes>::GaussNewtonStep(Depths& z) const {
   if (factor.info() != Eigen::Success) return false;
   const Depths step = factor.solve(right);
   z -= step;
-  // Of the turn that the step amounts to.
+  // The angle by which the step rotates the axes.
   constexpr double kSmallStep_rad = 1e-6;
   return step.template tail<kAxes>().squaredNorm() >
          kSmallStep_rad * kSmallStep_rad * deviation_.squaredNorm();
@@ -153,7 +154,7 @@ std::optional<EpnpCandidate> DepthKernel<kAxes>::PoseOf(const Depths& z, bool mi
   candidate.rotation = turned * data_.frame.axes.transpose();
   const Eigen::Matrix<double, 3, kAxes> d = turned.leftCols<kAxes>() * deviation_.asDiagonal();
   // Image points and the rotated cloud, both about their means: u z = x. Multiplied by x (not by
-  // the noisy u, which would draw the depth towards the camera) and summed, this gives the depth.
+  // the noisy u, which would bias the depth towards the camera) and summed, this gives the depth.
   const Eigen::Matrix<double, 1, kAxes> dx = d.row(0) - mean_.x() * d.row(2);
   const Eigen::Matrix<double, 1, kAxes> dy = d.row(1) - mean_.y() * d.row(2);
   const Eigen::Matrix<double, 1, kDepths> slope =
@@ -178,7 +179,7 @@ ImageFit DepthKernel<kAxes>::Judge(const EpnpCandidate& candidate) const {
 
 template <int kAxes>
 void DepthKernel<kAxes>::Consider(const Depths& z) {
-  // Most starts lead to the same depths.
+  // Most starts converge to the same depths.
   constexpr double kSameDepths = 1e-10;
   for (int i = 0; i < considered_count_; ++i) {
     const Depths& other = considered_[static_cast<std::size_t>(i)];
@@ -198,8 +199,8 @@ void DepthKernel<kAxes>::SearchFromKernel() {
   Consider(Refined(FromTwoEigenvectors()));
 }
 
-/// All points at the depth of the centroid give the first two rows of the rotation and that depth;
-/// the third row follows but for the sign of its slope.
+/// With all points at the depth of the centroid, the equations give the first two rows of the
+/// rotation and that depth; the third row follows up to the sign of its depths.
 template <int kAxes>
 void DepthKernel<kAxes>::SearchFromWeakPerspective() {
   Eigen::Matrix<double, 2, kAxes> rows;

@@ -10,7 +10,7 @@
 
 namespace sextant {
 
-/// A pose with the centroid in place of the origin, and how well it explains the image.
+/// A pose given by its rotation and the centroid in the camera frame, with its reprojection errors.
 struct EpnpCandidate {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
@@ -30,20 +30,19 @@ class DepthKernel {
   /// Depths of the centroid and of each d_k.
   using Depths = Eigen::Matrix<double, kDepths, 1>;
 
-  /// EpnpCandidates are judged by how well they explain the image, or by how near they are to
-  /// `near`.
+  /// Candidates are ranked by reprojection error, or by distance from `near` where it is given.
   DepthKernel(const Correspondences& data, const Rigid3d* near);
 
   const EpnpCandidate& best() const { return best_; }
 
   void SearchFromKernel();
   void SearchFromWeakPerspective();
-  /// The candidates that the answer `near` may have been.
+  /// The candidates from which the solution `near` may have come.
   void SearchNear();
   /// Starts Gauss-Newton at a pose.
   void SearchFrom(const Rigid3d& cam_from_lidar);
-  /// The error of the best improper rotation that the first eigenvector gives; infinite where that
-  /// is a proper one.
+  /// The error of the best improper rotation from the first eigenvector; infinite where the nearest
+  /// orthogonal matrix is a proper rotation.
   double MirroredSumSquares() const;
 
  protected:
@@ -66,7 +65,7 @@ class DepthKernel {
   const Correspondences& data_;
   const Rigid3d* near_;
   Eigen::Matrix<double, kAxes, 1> deviation_;
-  Eigen::Vector2d mean_;  ///< Of the image points.
+  Eigen::Vector2d mean_;  ///< Mean of the image points.
   // The moments for coordinates in standard deviations.
   Square about_u_;
   Square about_v_;

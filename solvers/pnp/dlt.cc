@@ -17,10 +17,10 @@ namespace {
 
 constexpr int kMinDltPoints = 6;
 
-// Thinner than this over its length, noise of rounding decides the axis across.
+// In sets thinner than this share of their length, rounding determines the third axis.
 constexpr double kMinThickness = 1e-5;
 
-// Two null directions closer than this cannot be told apart.
+// Two null directions with a smaller gap of eigenvalues are indistinguishable.
 constexpr double kMinRelativeGap = 1e-13;
 
 /// The moments in coordinates (1, p) of unit covariance, and the problem that the depths solve.
@@ -81,7 +81,7 @@ Expected<Rigid3d> PoseOf(const Correspondences& data) {
   return PoseOf(frame, data.moments, unit, eigen.vectors.col(0));
 }
 
-/// PoseOf with the depths' first perturbation, reduced z = lambda z, in place of another
+/// PoseOf with the first-order perturbation of the depths, reduced z = lambda z, instead of another
 /// decomposition.
 PoseOfMoments DltOfMoments(const Correspondences& data, const Rigid3d&) {
   const UnitMoments unit(data.frame, data.moments);

@@ -13,11 +13,11 @@ namespace sextant {
 ///
 /// argmin over all 3x4 matrices P with |last row| = 1 of sum_i |z_i (u_i, v_i) - (x_i, y_i)|^2,
 /// (x, y, z)_i = P (p_i, 1), in coordinates of unit covariance; then the rotation nearest to the
-/// left 3x3 part (Frobenius norm) and the translation over its mean scale. The five numbers that P
-/// has above a pose are fitted to the noise and thrown away, which is why it is a baseline.
-/// Source: Abdel-Aziz and Karara 1971; Hartley and Zisserman 2004, section 7.1. In the
-/// moments of image_moments.h the first two rows are U and V times the last, and the 12x12 problem
-/// is one of 4x4.
+/// left 3x3 part (Frobenius norm) and the translation divided by its mean scale. The five degrees
+/// of freedom that P has beyond a pose are fitted to the noise and discarded, which is why this is
+/// a baseline. Source: Abdel-Aziz and Karara 1971; Hartley and Zisserman 2004, section 7.1. With
+/// the moments of image_moments.h the first two rows are U and V times the last, which reduces the
+/// 12x12 problem to 4x4.
 ///
 /// Shapes: image points (x/z, y/z), and as many points [m], at least 6 different ones.
 /// Errors: kTooFewPairs; kDegenerate (fewer than 6 different points, all on one plane or on

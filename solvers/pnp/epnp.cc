@@ -4,18 +4,20 @@
 #include <Eigen/Geometry>
 #include <limits>
 
+#include "solvers/core/registry.h"
 #include "solvers/pnp/correspondences.h"
 #include "solvers/pnp/depth_kernel.h"
 #include "solvers/pnp/nearest_depths.h"
+#include "solvers/pnp/pnp_solver.h"
 
 namespace sextant {
 namespace {
 
-// Thinner sets than this (standard deviations) are also solved as a plane: pixel noise then says
-// more of the third axis than its points do.
+// Sets thinner than this ratio of standard deviations are also solved as a plane: there pixel noise
+// dominates the third axis.
 constexpr double kNearlyFlat = 0.05;
 
-/// Tries every start, and gives the error of the best improper rotation.
+/// Tries every start. Returns the error of the best improper rotation.
 template <int kAxes>
 double SearchAxes(const Correspondences& data, const Rigid3d* near, EpnpCandidate& best) {
   DepthKernel<kAxes> kernel(data, near);
@@ -42,7 +44,7 @@ Rigid3d PoseOf(const Correspondences& data, const EpnpCandidate& candidate) {
   return pose;
 }
 
-/// The best candidate over the axes that the points have, and the error of the best mirror image.
+/// The best candidate over the axes of the points. Returns the error of the best mirror image.
 double Search(const Correspondences& data, const Rigid3d* near, EpnpCandidate& best) {
   double mirrored = std::numeric_limits<double>::infinity();
   if (!data.frame.IsPlanar()) mirrored = SearchAxes<3>(data, near, best);
@@ -52,7 +54,7 @@ double Search(const Correspondences& data, const Rigid3d* near, EpnpCandidate& b
   return mirrored;
 }
 
-/// Whether the best candidate is an answer.
+/// Whether the best candidate is a valid solution.
 Expected<void> Check(const Correspondences& data, const EpnpCandidate& best, double mirrored) {
   const std::size_t count = data.points.size();
   const double spread = data.moments.Spread() * static_cast<double>(count);
@@ -103,6 +105,26 @@ PoseOfMoments EpnpOfMoments(const Correspondences& data, const Rigid3d& near) {
     };
   };
   return is_plane ? pose_by(*of_plane) : pose_by(*of_space);
+}
+
+SolverEntry EpnpEntry() {
+  return {
+      .name = "epnp",
+      .summary = "pose from control points: kernel of the linear equations, then their lengths",
+      .needs = "4 or more 2D-3D pairs, not on one line",
+      .reference = "Lepetit, Moreno-Noguer and Fua 2009 (IJCV)",
+      .example = "epnp",
+      .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
+        return std::make_shared<PnpSolver>(
+            SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = 4}},
+            [](const PnpInput& input) -> Expected<PnpPoses> {
+              SEXTANT_ASSIGN_OR_RETURN(const EpnpFit fit,
+                                       SolveEpnp(input.image_points, input.points, input.choice));
+              return PnpPoses{.poses = {fit.cam_from_lidar}, .count = 1};
+            },
+            EpnpOfMoments);
+      },
+  };
 }
 
 }  // namespace sextant

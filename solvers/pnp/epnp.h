@@ -26,13 +26,14 @@ struct EpnpFit {
 /// the camera frame. Lepetit takes the kernel of the 12x12 normal matrix. As sum_i a_ij a_ik =
 /// n delta_jk here, the x and y coordinates follow from the depths Z of the control points by a
 /// division, and what is left is a symmetric 4x4 problem S Z = lambda Z (3x3 for a plane) with the
-/// same kernel. Its metric |Z| = 1 is also the one under which pixel noise leaves no bias, as the
+/// same kernel. Its metric |Z| = 1 is also the one for which pixel noise causes no bias, as the
 /// noise multiplies depths only.
 /// The combination of the eigenvectors is fixed by the lengths of the d_k and their right angles.
 /// Candidates: the first eigenvector scaled; from there, from the linear solution for two
 /// eigenvectors, and from both weak-perspective poses, Gauss-Newton over all of them. The one
-/// with the least reprojection error wins. Where the camera sees only four different points the
-/// kernel may have dimension four; the poses of three of them then start Gauss-Newton too.
+/// with the smallest reprojection error is the answer. Where the camera sees only four different
+/// points the kernel may have dimension four; the poses of three of them then start Gauss-Newton
+/// too.
 ///
 /// Shapes: image points (x/z, y/z), and as many points [m], at least 4 different ones.
 /// Errors: kTooFewPairs; kDegenerate (fewer than 4 different points, on one line, a single ray,
@@ -43,8 +44,8 @@ Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
                             std::span<const Eigen::Vector3d> points_in_lidar,
                             const PnpChoice& choice = {});
 
-/// The answer `near` of SolveEpnp as a function of the moments: the candidate that it was, its
-/// depths to first order and their pose in full. Empty where no candidate is found.
+/// The solution `near` of SolveEpnp as a function of the moments: its candidate, with the depths to
+/// first order and the exact pose for these depths. Empty where no candidate is found.
 PoseOfMoments EpnpOfMoments(const Correspondences& data, const Rigid3d& near);
 
 }  // namespace sextant

@@ -8,7 +8,7 @@
 namespace sextant {
 namespace {
 
-// Rays within 1e-9 rad of each other do not tell a direction.
+// Rays within 1e-9 rad of each other count as one.
 constexpr double kMinSpread = 1e-18;
 
 // The upper triangle of a symmetric 4x4 matrix, row by row.

@@ -9,13 +9,13 @@
 
 namespace sextant {
 
-/// All that the linear equations x - u z = y - v z = 0 of a point set say, whatever its size.
+/// Sufficient statistics of the linear equations x - u z = y - v z = 0 of a point set of any size.
 ///
 /// With h_i = (1, coordinates of point i about the centroid along the principal axes [m]) and the
 /// image point (u_i, v_i) about the mean image point, the means over i of u h h^T, v h h^T and
 /// (u^2 + v^2) h h^T.
 struct ImageMoments {
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();  ///< Of the image points.
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();  ///< Mean of the image points.
   Eigen::Matrix4d u;
   Eigen::Matrix4d v;
   Eigen::Matrix4d w;

@@ -11,8 +11,10 @@
 #include <utility>
 
 #include "geometry/so3.h"
+#include "solvers/core/registry.h"
 #include "solvers/pnp/plane_frame.h"
 #include "solvers/pnp/plane_image_moments.h"
+#include "solvers/pnp/pnp_solver.h"
 
 namespace sextant {
 namespace {
@@ -21,8 +23,8 @@ constexpr std::size_t kMinPoints = 4;
 
 using Moments = PlaneImageMoments;
 
-// The eigenvector of the least eigenvalue, near enough to start from. The adjugate has the same
-// eigenvectors, the wanted one by far the largest.
+// The eigenvector of the smallest eigenvalue, accurate enough as a start. The adjugate has the same
+// eigenvectors, and there the one sought has by far the largest eigenvalue.
 struct NullDirection {
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   double gap = 0.0;  // Product of the other eigenvalues over their squared sum: 0 to 1/4.
@@ -40,9 +42,9 @@ NullDirection FindNullDirection(const Eigen::Matrix3d& q) {
   return {square.col(widest), scale / (q.trace() * q.trace())};
 }
 
-// Whether points of a plane fix a homography. Three of four on a line, or a point twice, do not,
-// but noise of the pixels hides it: so the points are taken for their own image, where the
-// homography is the identity and its other candidates show in the upper left.
+// Whether points of a plane determine a homography. Three of four on a line, or a duplicated point,
+// do not, but pixel noise hides that. The test therefore uses the points as their own image: the
+// homography is then the identity, and any other solution shows in the upper left block.
 bool FixHomography(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& centroid,
                    const Eigen::Matrix<double, 2, 3>& unit_from_points) {
   constexpr double kMinRelativeDeterminant = 1e-12;
@@ -59,7 +61,7 @@ bool FixHomography(std::span<const Eigen::Vector3d> points, const Eigen::Vector3
   }
   const Eigen::Matrix3d reduced = square - (u * u + v * v) / static_cast<double>(points.size());
   const double determinant = reduced(0, 0) * reduced(1, 1) - reduced(0, 1) * reduced(1, 0);
-  // What three points leave is rounding throughout.
+  // With three points all of the remainder is rounding.
   const double size = std::max(reduced.trace(), kMinReduced * square.trace());
   return determinant > kMinRelativeDeterminant * size * size;
 }
@@ -95,11 +97,11 @@ std::array<Eigen::Matrix3d, 2> InfinitesimalRotations(const Eigen::Matrix3d& h) 
   return rotations;
 }
 
-// The algebraic error as a function of the rotation alone. The translation that is best for it is
-// linear in the first two columns of the rotation of the plane, and so the error is a constant
-// quadratic form of these: (Y1, Y2)^T [A B; B^T C] (Y1, Y2) with Y = T R, T to the normalised
-// image: (x, y, z) to ((x, y) - z centre) / size, z. There the translation's own block is n times
-// identity.
+// The algebraic error as a function of the rotation alone. The best translation is linear in the
+// first two columns of the plane's rotation, so that the error is a constant quadratic form of
+// these: (Y1, Y2)^T [A B; B^T C] (Y1, Y2) with Y = T R, where T maps to the normalised image, (x,
+// y, z) to
+// (((x, y) - z centre) / size, z). There the block of the translation is n times the identity.
 class AlgebraicError {
  public:
   AlgebraicError(const Moments& moments, const Eigen::Vector2d& extent)
@@ -112,7 +114,7 @@ class AlgebraicError {
     c_ = extent.y() * extent.y() * Block(moments, 1, 1) - n * to_origin_[1] * to_origin_[1];
   }
 
-  // Where the plane's origin is for a rotation.
+  // The plane's origin in the camera frame for a rotation.
   Eigen::Vector3d BestOrigin(const Eigen::Matrix3d& cam_from_plane) const {
     const Eigen::Matrix3d y = Normalise(cam_from_plane);
     const Eigen::Vector3d origin = to_origin_[0] * y.col(0) + to_origin_[1] * y.col(1);
@@ -120,13 +122,14 @@ class AlgebraicError {
             size_ * origin.y() + centre_.y() * origin.z(), origin.z()};
   }
 
-  // The nearest minimum by Newton's method. A last step under the tolerance leaves its square.
+  // The nearest minimum by Newton's method: three unknowns with an exact Hessian, which need no
+  // damping. After a last step under the tolerance the error is of the order of its square.
   Eigen::Quaterniond Minimise(Eigen::Quaterniond cam_from_plane) const {
     constexpr int kMaxSteps = 10;
     constexpr double kTolerance = 3e-5;
     for (int step = 0; step < kMaxSteps; ++step) {
       const Eigen::Vector3d psi = Step(Normalise(cam_from_plane.toRotationMatrix()));
-      // Exp(psi) to first order, which is enough on the way to psi = 0.
+      // Exp(psi) to first order suffices, as psi converges to 0.
       const Eigen::Quaterniond turn(1.0, 0.5 * psi.x(), 0.5 * psi.y(), 0.5 * psi.z());
       cam_from_plane = (cam_from_plane * turn).normalized();
       if (!(psi.squaredNorm() > kTolerance * kTolerance)) break;
@@ -135,7 +138,7 @@ class AlgebraicError {
   }
 
  private:
-  // Of the quadratic form of the normalised homography, what joins its columns k and l.
+  // The block of columns k and l in the quadratic form of the normalised homography.
   static Eigen::Matrix3d Block(const Moments& moments, int k, int l) {
     const double n = k == l ? moments.count : 0.0;
     Eigen::Matrix3d block;
@@ -151,8 +154,8 @@ class AlgebraicError {
     return y;
   }
 
-  // The turn psi in R Exp(psi). To second order Y1 moves by psi_3 Y2 - psi_2 Y3 + (psi_1 Y psi -
-  // |psi|^2 Y1) / 2, and Y2 by psi_1 Y3 - psi_3 Y1 + (psi_2 Y psi - |psi|^2 Y2) / 2.
+  // The rotation vector psi in R Exp(psi). To second order Y1 moves by psi_3 Y2 - psi_2 Y3 + (psi_1
+  // Y psi - |psi|^2 Y1) / 2, and Y2 by psi_1 Y3 - psi_3 Y1 + (psi_2 Y psi - |psi|^2 Y2) / 2.
   Eigen::Vector3d Step(const Eigen::Matrix3d& y) const {
     const Eigen::Vector3d y1 = y.col(0);
     const Eigen::Vector3d y2 = y.col(1);
@@ -179,7 +182,7 @@ class AlgebraicError {
     newton.xz += 0.5 * force1.z();
     newton.yz += 0.5 * force2.z();
     Eigen::Vector3d psi = Eigen::Vector3d::Zero();
-    // Where the error is not convex Newton's step may climb; that of Gauss and Newton does not.
+    // Where the error is not convex Newton's step may increase it; the Gauss-Newton step does not.
     if (!newton.Solve(-gradient, psi)) gauss_newton.Solve(-gradient, psi);
     return psi;
   }
@@ -187,7 +190,7 @@ class AlgebraicError {
   struct Hessian {
     double xx, xy, xz, yy, yz, zz;
 
-    // False, without a solution, where it is not positive definite.
+    // False, and `solution` unchanged, where it is not positive definite.
     bool Solve(const Eigen::Vector3d& right, Eigen::Vector3d& solution) const {
       const Eigen::Vector3d first(yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
       const double minor = xx * yy - xy * xy;
@@ -216,10 +219,10 @@ double SumSquares(const Rigid3d& pose, std::span<const Eigen::Vector2d> image_po
   return fit.behind > 0 ? std::numeric_limits<double>::infinity() : fit.sum_squares;
 }
 
-// Adds a pose in front of the camera. Where there is one minimum both starts end in it, and the
-// better one stays.
+// Adds a pose in front of the camera. Where both starts end in the same minimum, the better one is
+// kept.
 void AddDifferent(const Rigid3d& pose, double sum_squares, IppeFit& fit) {
-  // Half an angle of 1e-5 rad.
+  // Cosine of half an angle of 1e-5 rad.
   constexpr double kSameCosine = 1.0 - 1.25e-11;
   if (!std::isfinite(sum_squares)) return;
   std::size_t slot = static_cast<std::size_t>(fit.count);
@@ -248,14 +251,14 @@ Expected<IppeFit> SolveIppe(std::span<const Eigen::Vector2d> image_points,
   const Eigen::Matrix3d reduced = moments.Reduced();
   const NullDirection depth = FindNullDirection(reduced);
   constexpr double kMinGap = 1e-13;
-  // Three points fit any direction: what is left is rounding.
+  // Three points fit any direction: the remainder is rounding.
   constexpr double kMinLeft = 1e-13;
   constexpr double kGapOfNoise = 0.03;
   if (!(reduced.trace() > kMinLeft * moments.square.trace()) || !(depth.gap > kMinGap) ||
       (depth.gap < kGapOfNoise &&
        !FixHomography(points_in_lidar, frame.centroid, unit_from_lidar))) {
     return MakeError(ErrorCode::kDegenerate,
-                     "the pixels or the points are less than four, or three of four are on one "
+                     "fewer than four pixels or points differ, or three of four are on one "
                      "line, which leaves the plane's pose undetermined; use four that span a "
                      "quadrilateral");
   }
@@ -283,6 +286,27 @@ Expected<IppeFit> SolveIppe(std::span<const Eigen::Vector2d> image_points,
     std::swap(fit.sum_squares[0], fit.sum_squares[1]);
   }
   return fit;
+}
+
+SolverEntry IppeEntry() {
+  return {
+      .name = "ippe",
+      .summary = "both poses of a plane from the first order of its homography, each polished",
+      .needs = "4 or more 2D-3D pairs on one plane, not three of four on one line",
+      .reference = "Collins and Bartoli 2014 (IJCV 109)",
+      .example = "ippe",
+      .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
+        const auto kernel = [](const PnpInput& input) -> Expected<PnpPoses> {
+          SEXTANT_ASSIGN_OR_RETURN(const IppeFit fit, SolveIppe(input.image_points, input.points));
+          PnpPoses poses{.poses = {}, .count = fit.count};
+          std::copy_n(fit.cam_from_lidar.begin(), fit.count, poses.poses.begin());
+          return poses;
+        };
+        return std::make_shared<PnpSolver>(
+            SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = 4, .points_on_plane = true}},
+            kernel, PnpCovariance::kObjectSpace);
+      },
+  };
 }
 
 }  // namespace sextant

@@ -14,20 +14,20 @@ struct IppeFit {
   std::array<Rigid3d, 2> cam_from_lidar;  ///< Best first.
   /// sum_i |x_i - projection_i|^2 of each on the plane z = 1.
   std::array<double, 2> sum_squares{};
-  int count = 0;  ///< 1 where the second minimum has vanished (strong perspective).
+  int count = 0;  ///< 1 where there is no second minimum (strong perspective).
 };
 
-/// Both poses of a plane that explain its image: a small or distant board seen through pixel noise
-/// may lean to either side of the line of sight.
+/// Both poses of a plane that explain its image: with pixel noise, the tilt of a small or distant
+/// board against the line of sight is ambiguous.
 ///
 /// The homography of the plane (linear, plane_image_moments.h) has at the points' centroid a value
 /// and a 2x2 Jacobian. Seen along the ray of that value, the Jacobian over depth is the upper left
 /// of a rotation, which the orthonormality of its columns completes in two ways (Collins and
 /// Bartoli 2014, "Infinitesimal Plane-Based Pose Estimation", IJCV 109). That uses 6 of the
-/// homography's 8 numbers and has a square root that loses half the digits where the plane faces
-/// the ray, so each of the two then goes to the nearest minimum of the algebraic error sum_i z_i^2
-/// |x_i - projection_i|^2 over all poses, by Gauss-Newton steps whose cost does not depend on the
-/// number of points. Allocates nothing.
+/// homography's 8 parameters, and its square root loses half the digits where the plane faces the
+/// ray. Each of the two poses is therefore refined to the nearest minimum of the algebraic error
+/// sum_i z_i^2 |x_i - projection_i|^2 over all poses, by Newton steps whose cost does not depend on
+/// the number of points. Allocates nothing.
 ///
 /// Shapes: image points (x/z, y/z), and as many points [m] on a plane, anywhere in the LiDAR
 /// frame; at least 4 different ones, no three of the four on a line.

@@ -10,14 +10,14 @@ namespace {
 
 constexpr Eigen::Index kMoments = 30;
 
-/// An orthonormal basis, in columns, of what the moments see of displaced image points; rows are
-/// u_0, v_0, u_1, v_1 and so on.
+/// An orthonormal basis, in columns, of the displacements of image points that change the moments;
+/// rows are u_0, v_0, u_1, v_1 and so on.
 Eigen::MatrixXd Displacements(std::span<const Eigen::Vector2d> image_points,
                               std::span<const Eigen::Vector3d> points) {
   const auto rows = static_cast<Eigen::Index>(2 * points.size());
   if (rows <= kMoments) return Eigen::MatrixXd::Identity(rows, rows);
   const auto count = static_cast<double>(points.size());
-  // About the means the moments differ by combinations of one another, and are better scaled.
+  // Moments about the means are linear combinations of the others, and better scaled.
   const Eigen::Vector3d centroid =
       std::accumulate(points.begin(), points.end(), Eigen::Vector3d(Eigen::Vector3d::Zero())) /
       count;
@@ -40,7 +40,8 @@ Eigen::MatrixXd Displacements(std::span<const Eigen::Vector2d> image_points,
       }
     }
   }
-  // Where moments coincide, as on a plane, the basis holds vectors to spare, which do no harm.
+  // Where moments are dependent, as on a plane, the basis has superfluous vectors, which do no
+  // harm.
   const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> factor(slopes);
   return factor.householderQ() * Eigen::MatrixXd::Identity(rows, kMoments);
 }
@@ -51,7 +52,7 @@ std::optional<Matrix6d> MomentCovariance(std::span<const Eigen::Vector2d> image_
                                          std::span<const Eigen::Matrix2d> image_covariances,
                                          std::span<const Eigen::Vector3d> points,
                                          const PoseOfImage& estimate) {
-  // Truncation leaves 1e-10 relative; rounding of the estimate, 1e-13, leaves 1e-8.
+  // The truncation error is 1e-10 relative; rounding of the estimate, 1e-13, adds 1e-8.
   constexpr double kLargestDisplacement = 1e-5;
   const Eigen::MatrixXd basis = Displacements(image_points, points);
   Eigen::Matrix<double, 6, Eigen::Dynamic> slopes(6, basis.cols());

@@ -6,7 +6,7 @@
 namespace sextant {
 namespace {
 
-// Truncation leaves 1e-10 relative; rounding of the estimate, 1e-13, leaves 1e-8.
+// The truncation error is 1e-10 relative; rounding of the estimate, 1e-13, adds 1e-8.
 constexpr double kDisplacement = 1e-5;
 
 // The upper triangle of a symmetric 4x4 matrix, row by row.
@@ -34,7 +34,8 @@ class Differences {
   Differences(const ImageMoments& moments, const PoseOfMoments& estimate)
       : moments_(moments), estimate_(estimate) {}
 
-  // By a number that `displace(moments, step)` moves; none where the estimator fails.
+  // Derivative by the parameter that `displace(moments, step)` changes; none where the estimator
+  // fails.
   template <class Displace>
   std::optional<Vector6d> By(double step, const Displace& displace) const {
     ImageMoments displaced = moments_;
@@ -54,7 +55,7 @@ class Differences {
 
 std::optional<Slopes> Differentiate(const Correspondences& data, const PoseOfMoments& estimate) {
   const Differences differences(data.moments, estimate);
-  // How large the coordinates in h are.
+  // Magnitudes of the coordinates in h.
   Eigen::Vector4d size;
   size << 1.0, data.frame.deviation.cwiseMax(1e-7 * data.frame.deviation.x());
   const double image_size = std::sqrt(data.moments.Spread());
@@ -99,7 +100,7 @@ Eigen::Vector4d InFrame(const PointCloudFrame& frame, const Eigen::Vector3d& poi
   return h;
 }
 
-// Coordinate by coordinate, each along what it does to the moments: as the mean moves with image
+// One image coordinate at a time, along its derivative of the moments: as the mean moves with image
 // point i, d(u h h^T) = (h_i h_i^T - mean h h^T) / n du_i, d(w h h^T) = 2 (u_i h_i h_i^T - u) / n.
 std::optional<Matrix6d> CoordinateByCoordinate(const Correspondences& data,
                                                std::span<const Eigen::Matrix2d> image_covariances,
@@ -136,7 +137,7 @@ std::optional<Matrix6d> CoordinateByCoordinate(const Correspondences& data,
 std::optional<Matrix6d> ChainedMomentCovariance(const Correspondences& data,
                                                 std::span<const Eigen::Matrix2d> image_covariances,
                                                 const PoseOfMoments& estimate) {
-  // With more points the 30 moments are fewer numbers than the image coordinates.
+  // With more points there are fewer moments (30) than image coordinates.
   constexpr std::size_t kFewPoints = 15;
   if (data.points.size() <= kFewPoints) {
     return CoordinateByCoordinate(data, image_covariances, estimate);

@@ -11,22 +11,22 @@
 
 namespace sextant {
 
-/// The pose that an estimator finds where the moments of the image are a little others, right to
-/// first order; it must not look at the image points themselves.
+/// The pose that an estimator finds for slightly displaced moments of the image, correct to first
+/// order; it must not use the image points themselves.
 using PoseOfMoments = std::function<std::optional<Rigid3d>(const ImageMoments&)>;
 
-/// That of an estimator near its answer, from which it may take all that does not change to first
-/// order; empty where it cannot. Refers to `data`.
+/// Makes a PoseOfMoments near the solution `near`, from which it may take all that does not change
+/// to first order; empty where that is not possible. Refers to `data`.
 using MomentsKernel =
     std::function<PoseOfMoments(const Correspondences& data, const Rigid3d& near)>;
 
-/// MomentCovariance by the chain rule, pose by moments by image points, for an estimator that is
-/// given the moments: one pass over the points, and 60 calls that see no point, or 4n where there
-/// are 15 points or fewer.
+/// MomentCovariance by the chain rule, pose by moments by image points, for an estimator that takes
+/// the moments: one pass over the points, and 60 calls whose cost does not depend on their number,
+/// or 4n calls for 15 points or fewer.
 ///
-/// The derivatives by the moments, or along what an image coordinate does to them, are central
-/// differences of what moving image points by 1e-5 would change; those of the moments by the image
-/// points are exact. None where the estimator fails.
+/// The derivatives by the moments, or along their derivative by an image coordinate, are central
+/// differences with steps that correspond to moving image points by 1e-5; those of the moments by
+/// the image points are exact. None where the estimator fails.
 std::optional<Matrix6d> ChainedMomentCovariance(const Correspondences& data,
                                                 std::span<const Eigen::Matrix2d> image_covariances,
                                                 const PoseOfMoments& estimate);

@@ -29,7 +29,7 @@ NearestDepths<kAxes>::NearestDepths(const Correspondences& data, const Rigid3d& 
   found_ = inverse_hessian_.allFinite();
 }
 
-/// Of half the sum of squares of the length equations.
+/// The Hessian of half the sum of squares of the length equations.
 template <int kAxes>
 auto NearestDepths<kAxes>::HessianOfLengths(const Depths& z) const -> Square {
   Depths gradient;
@@ -41,10 +41,10 @@ auto NearestDepths<kAxes>::HessianOfLengths(const Depths& z) const -> Square {
       const double deviation = this->deviation_(j - 1);
       const double wanted = j == k ? deviation * deviation : 0.0;
       const double residual = d.col(j).dot(d.col(k)) - wanted;
-      Square bend = this->x_by_depth_.col(j) * this->x_by_depth_.col(k).transpose() +
-                    this->y_by_depth_.col(j) * this->y_by_depth_.col(k).transpose();
-      bend(j, k) += 1.0;
-      hessian += residual * (bend + bend.transpose());
+      Square curvature = this->x_by_depth_.col(j) * this->x_by_depth_.col(k).transpose() +
+                         this->y_by_depth_.col(j) * this->y_by_depth_.col(k).transpose();
+      curvature(j, k) += 1.0;
+      hessian += residual * (curvature + curvature.transpose());
     }
   }
   return hessian;

@@ -7,9 +7,9 @@
 
 namespace sextant {
 
-/// The candidate nearest to an answer, and what it becomes where the moments are a little others:
-/// its depths follow to first order, as the first eigenvector's perturbation or by a Newton step on
-/// the length equations, whichever they were from.
+/// The candidate nearest to a solution, and the same candidate for slightly displaced moments: its
+/// depths follow to first order, by perturbation of the first eigenvector or by a Newton step on
+/// the length equations, depending on which of the two the candidate came from.
 template <int kAxes>
 class NearestDepths : private DepthKernel<kAxes> {
  public:

@@ -2,6 +2,7 @@
 #include "solvers/pnp/object_space_covariance.h"
 
 #include "geometry/so3.h"
+#include "geometry/symmetric.h"
 #include "solvers/least_squares/refine_pose.h"
 
 namespace sextant {
@@ -19,14 +20,14 @@ std::optional<Matrix6d> ObjectSpaceCovariance(std::span<const Eigen::Vector2d> i
     const Eigen::Vector3d arm = rotation * points[i];
     const Eigen::Vector3d in_cam = arm + pose.translation;
     const Eigen::Vector2d error = in_cam.head<2>() - in_cam.z() * image_points[i];
-    Eigen::Matrix<double, 2, 6> slope;  // of the error by (dphi, dt)
+    Eigen::Matrix<double, 2, 6> slope;  // Derivative of the error by (dphi, dt).
     for (int axis = 0; axis < 2; ++axis) {
       Eigen::Vector3d by_point = Eigen::Vector3d::Unit(axis);
       by_point.z() = -image_points[i](axis);
       slope.row(axis) << arm.cross(by_point).transpose(), by_point.transpose();
     }
     hessian.noalias() += slope.transpose() * slope;
-    // What Exp(dphi) arm bends by, against the force on the point.
+    // Second derivative of Exp(dphi) arm, times the derivative of the cost by the point.
     const Eigen::Vector3d force(error.x(), error.y(), -u * error.x() - v * error.y());
     hessian.topLeftCorner<3, 3>() += 0.5 * (arm * force.transpose() + force * arm.transpose()) -
                                      arm.dot(force) * Eigen::Matrix3d::Identity();
@@ -38,7 +39,7 @@ std::optional<Matrix6d> ObjectSpaceCovariance(std::span<const Eigen::Vector2d> i
     gradient_by_image << Hat(arm) * force_by_image, force_by_image;
     noise.noalias() += gradient_by_image * image_covariances[i] * gradient_by_image.transpose();
   }
-  const std::optional<Matrix6d> inverse = InvertInformation(hessian);
+  const std::optional<Matrix6d> inverse = InvertSymmetric(hessian);
   if (!inverse) return std::nullopt;
   const Matrix6d covariance = *inverse * noise * *inverse;
   return Matrix6d(0.5 * (covariance + covariance.transpose()));

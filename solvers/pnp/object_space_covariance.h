@@ -13,7 +13,7 @@ namespace sextant {
 /// over all poses (sqpnp, ippe), by the implicit function theorem.
 ///
 /// The gradient g(pose, image) vanishes at the minimum, so the pose moves by -H^-1 dg/d(u_i, v_i)
-/// with the image, H the exact second derivative, and the covariance is
+/// with the image, where H is the exact second derivative, and the covariance is
 /// H^-1 (sum_i G_i Sigma_i G_i^T) H^-1, G_i = dg/d(u_i, v_i) (6x2). One pass over the points.
 ///
 /// Shapes: image points (x/z, y/z) with their covariances, and as many points [m]; `pose` takes

@@ -10,16 +10,16 @@
 #include "geometry/residuals.h"
 #include "solvers/core/registry.h"
 #include "solvers/kernels/p3p.h"
-#include "solvers/pnp/triple_covariance.h"
+#include "solvers/pnp/reprojection_covariance.h"
 
 namespace sextant {
 namespace {
 
-// More points give little: the triples of the outermost five hold one close to the best.
+// More points gain little: the triples of the outermost five include one close to the best.
 constexpr std::size_t kMaxCorners = 5;
 
-// Pairs far apart in the image: the one farthest from the centre, then whichever is farthest from
-// those chosen; the first of equals.
+// Pairs far apart in the image: the one farthest from the centre, then repeatedly the one farthest
+// from those chosen; of equal ones the first.
 std::vector<std::size_t> SpreadPairs(std::span<const Pair2d3d> pairs) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const Pair2d3d& pair : pairs) sum += pair.pixel;
@@ -53,7 +53,8 @@ std::vector<Triple> TriplesOf(const std::vector<std::size_t>& chosen) {
   return triples;
 }
 
-// Whether the points of a triple leave the turn about a line to rounding, as SolveP3p judges it.
+// Whether the points of a triple are so close to a line that the rotation about it is lost in
+// rounding, by the criterion of SolveP3p.
 bool IsFlat(std::span<const Pair2d3d> pairs, const Triple& triple) {
   const Eigen::Vector3d& origin = pairs[triple[0]].point_in_lidar;
   const Eigen::Vector3d a = pairs[triple[1]].point_in_lidar - origin;
@@ -61,8 +62,8 @@ bool IsFlat(std::span<const Pair2d3d> pairs, const Triple& triple) {
   return !(a.cross(b).norm() > 1e-6 * std::max(a.squaredNorm(), b.squaredNorm()));
 }
 
-// How badly a pose explains the pairs: points that it does not project, then squared pixels. Only
-// that it is worse where it is worse than `give_up`.
+// The misfit of a pose: the number of points that it does not project, then squared pixels. The sum
+// stops early once it exceeds `give_up`.
 using Misfit = std::pair<int, double>;
 
 Misfit MisfitOf(const CalibrationProblem& problem, const Rigid3d& pose, const Misfit& give_up) {
@@ -100,8 +101,9 @@ TriplePoses SolveTriple(const CalibrationProblem& problem, const Indices& indice
   return found;
 }
 
-// The triple whose pixel noise disturbs the projections of all pairs least, at a pose near the
-// answer. It does not look at residuals, so the covariance of its solution stays honest.
+// The triple whose pixel noise perturbs the projections of all pairs the least, at a pose near the
+// solution. The choice does not use residuals, so that the covariance of the solution stays
+// unbiased.
 Triple SteadiestTriple(const CalibrationProblem& problem, const std::vector<Triple>& triples,
                        const Rigid3d& near_answer) {
   const Camera& camera = *problem.camera;
@@ -122,8 +124,8 @@ Triple SteadiestTriple(const CalibrationProblem& problem, const std::vector<Trip
   return best;
 }
 
-/// Of the outermost pairs, the three that fix the pose best are solved; the others only choose
-/// among the solutions. With exactly three pairs the alternatives are as good as the answer.
+/// Solves the three of the outermost pairs that determine the pose best; the others only select one
+/// of the solutions. With exactly three pairs the alternatives are as good as the answer.
 class P3pSolver final : public Solver {
  public:
   explicit P3pSolver(const std::string& name)

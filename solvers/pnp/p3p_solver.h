@@ -5,8 +5,8 @@
 
 namespace sextant {
 
-/// Whether kernels that solve triples of pixels side by side (FindP3pConsensus, StartFromTriples)
-/// may stand for `solver`: it is p3p, and the camera has no distortion.
+/// Whether the vectorised kernels for triples of pixels (FindP3pConsensus, StartFromTriples) may
+/// replace `solver`: it is p3p, and the camera has no distortion.
 bool IsP3pOfPinhole(const Solver& solver, const CalibrationProblem& problem);
 
 }  // namespace sextant

@@ -8,15 +8,16 @@
 #include <cmath>
 
 #include "solvers/kernels/cloud_sums.h"
-#include "solvers/pnp/frame_limits.h"
+#include "solvers/pnp/point_cloud_frame.h"
 
 namespace sextant {
 namespace {
 
 constexpr double kMaxFlatness = 0.1;
 
-// The eigenvector of the least eigenvalue: the adjugate has the same eigenvectors, and each
-// squaring squares how far the wanted one stands out, which is 100 or more within kMaxFlatness.
+// The eigenvector of the smallest eigenvalue: the adjugate has the same eigenvectors, and each
+// squaring squares the ratio of its largest eigenvalue to the others, which is 100 or more within
+// kMaxFlatness.
 Eigen::Vector3d LeastDirection(const Eigen::Matrix3d& symmetric) {
   Eigen::Matrix3d power;
   power.col(0) = symmetric.col(1).cross(symmetric.col(2));
@@ -39,10 +40,11 @@ Expected<PlaneFrame> FramePlane(std::span<const Eigen::Vector3d> points) {
   const Eigen::Matrix3d covariance = ScatterAbout(frame.centroid, points);
   const double variance = covariance.trace();
   if (!(std::sqrt(variance) + frame.centroid.norm() < kMaxDistance_m)) {
-    return MakeError(ErrorCode::kDegenerate,
-                     fmt::format("the points are further than {:g} m away, where rounding eats the "
-                                 "translation; give LiDAR points in metres",
-                                 kMaxDistance_m));
+    return MakeError(
+        ErrorCode::kDegenerate,
+        fmt::format("the points are further than {:g} m away, where rounding destroys the "
+                    "translation; give LiDAR points in metres",
+                    kMaxDistance_m));
   }
   const Eigen::Vector3d normal = LeastDirection(covariance / variance);
   const Eigen::Vector3d across = normal.unitOrthogonal();
@@ -67,7 +69,7 @@ Expected<PlaneFrame> FramePlane(std::span<const Eigen::Vector3d> points) {
                                  "smaller extent, expected under {:.0f}; use epnp or sqpnp",
                                  frame.deviation.z(), 100.0 * flatness, 100.0 * kMaxFlatness));
   }
-  // (wide - yy, xy) and (xy, wide - xx) are the widest axis both; the longer has more digits.
+  // Both (wide - yy, xy) and (xy, wide - xx) are along the widest axis; the longer has more digits.
   const Eigen::Vector2d widest =
       xx > yy ? Eigen::Vector2d(wide - yy, xy) : Eigen::Vector2d(xy, wide - xx);
   const bool is_round = !(widest.squaredNorm() > 0.0);

@@ -10,13 +10,13 @@
 
 namespace sextant {
 
-/// What the homography of a plane needs of its points and their image, in one pass.
+/// The sums over the points of a plane and their image that determine its homography, in one pass.
 ///
 /// A homography sends the plane's coordinates a (unit covariance, zero mean, last entry 1, so that
 /// sum a a^T = n I) to image coordinates (h1.a / h3.a, h2.a / h3.a). The algebraic error
-/// sum_i |(h3.a) (u, v) - (h1.a, h2.a)|^2 is smallest for h1 = U h3 / n, h2 = V h3 / n, and what is
-/// left is h3^T Q h3: a problem of 3 numbers in place of 9. The image coordinates are centred and
-/// scaled to unit size as well.
+/// sum_i |(h3.a) (u, v) - (h1.a, h2.a)|^2 is smallest for h1 = U h3 / n, h2 = V h3 / n, where it is
+/// h3^T Q h3: a problem of 3 unknowns instead of 9. The image coordinates are centred and scaled to
+/// unit size as well.
 struct PlaneImageMoments {
   double count = 0.0;
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
@@ -53,7 +53,7 @@ struct PlaneImageMoments {
   }
 
  private:
-  // Of the moments of (1, x, y, z) those of (x, y, 1).
+  // Selects the moments of (x, y, 1) from those of (1, x, y, z).
   static Eigen::Matrix3d OnPlane(const std::array<double, 10>& s) {
     Eigen::Matrix3d m;
     m << s[4], s[5], s[1], s[5], s[7], s[2], s[1], s[2], s[0];

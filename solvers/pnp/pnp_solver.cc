@@ -3,11 +3,11 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <numeric>
 
 #include "geometry/so3.h"
-#include "solvers/pnp/image_noise.h"
 #include "solvers/pnp/moment_covariance.h"
 #include "solvers/pnp/object_space_covariance.h"
 #include "solvers/pnp/plane_frame.h"
@@ -16,10 +16,11 @@
 namespace sextant {
 namespace {
 
-// Rays more than 84 deg off the view's axis would dwarf the others on its image plane.
+// On the image plane, rays more than 84 deg off the view's axis would outweigh all others.
 constexpr double kMinRayZ = 0.1;
 
-/// Unit rays onto the image plane of a view that sees them all; how the camera is turned to it.
+/// Projects unit rays onto the image plane of a view that contains them all. Returns the rotation
+/// of that view in the camera frame.
 Expected<Eigen::Quaterniond> ProjectRays(std::span<const Eigen::Vector3d> rays,
                                          std::span<Eigen::Vector2d> image_points) {
   Eigen::Quaterniond cam_from_view = Eigen::Quaterniond::Identity();
@@ -42,7 +43,7 @@ Expected<Eigen::Quaterniond> ProjectRays(std::span<const Eigen::Vector3d> rays,
   return cam_from_view;
 }
 
-/// What the kernel works on, and how the camera is turned from it.
+/// The input of the kernel, and the rotation from its view to the camera.
 struct View {
   Eigen::Quaterniond cam_from_view = Eigen::Quaterniond::Identity();
   std::vector<Eigen::Vector2d> image_points = {};
@@ -77,8 +78,8 @@ Rigid3d Turned(const Eigen::Quaterniond& turn, const Rigid3d& pose) {
 
 double FocalLengthPx(const Camera& camera) { return 0.5 * (camera.fx_px + camera.fy_px); }
 
-/// The covariance through the moments; none of four different points, of which the kernel also
-/// looks at the pixels.
+/// The covariance through the moments; none for four different points, where the kernel also uses
+/// the pixels themselves.
 std::optional<Matrix6d> ThroughChain(const MomentsKernel& of_moments, const View& view,
                                      std::span<const Eigen::Matrix2d> image_covariances,
                                      const Rigid3d& view_from_lidar) {
@@ -91,7 +92,7 @@ std::optional<Matrix6d> ThroughChain(const MomentsKernel& of_moments, const View
   return ChainedMomentCovariance(*data, image_covariances, estimate);
 }
 
-/// The covariance through the kernel, whose answer `view_from_lidar` is.
+/// The covariance through the kernel, with its solution `view_from_lidar`.
 std::optional<Matrix6d> ThroughMoments(const PnpKernel& kernel, double focal_length_px,
                                        const View& view,
                                        std::span<const Eigen::Matrix2d> image_covariances,
@@ -100,7 +101,7 @@ std::optional<Matrix6d> ThroughMoments(const PnpKernel& kernel, double focal_len
     const Expected<PnpPoses> found =
         kernel({image, view.points, focal_length_px, {.near = &view_from_lidar}});
     if (!found) return std::nullopt;
-    // Of several poses, the one that continues the answer.
+    // Of several poses, the one nearest to the solution.
     const auto distance = [&](const Rigid3d& pose) {
       return PoseDifference(pose, view_from_lidar).squaredNorm();
     };
@@ -111,7 +112,31 @@ std::optional<Matrix6d> ThroughMoments(const PnpKernel& kernel, double focal_len
   return MomentCovariance(view.image_points, image_covariances, view.points, estimate);
 }
 
-/// In the camera's frame; the view that the kernel worked in is taken as given.
+/// Covariance of each image point (x/z, y/z) of a view that is turned from the camera by
+/// `cam_from_view`, to first order in the noise of its pixel: sigma^2 (dm/dpixel)(dm/dpixel)^T by
+/// the camera's own model. `unstated_variance` [px^2] is that of pixels that state no sigma. None
+/// where a pixel does not determine a direction (the model's domain ends there).
+std::optional<std::vector<Eigen::Matrix2d>> ImageCovariances(
+    const Camera& camera, std::span<const Pair2d3d> pairs,
+    std::span<const Eigen::Vector2d> image_points, const Eigen::Quaterniond& cam_from_view,
+    double unstated_variance) {
+  const Eigen::Matrix3d turn = cam_from_view.toRotationMatrix();
+  std::vector<Eigen::Matrix2d> covariances;
+  covariances.reserve(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto projection = ProjectWithJacobian(camera, turn * image_points[i].homogeneous());
+    if (!projection) return std::nullopt;
+    const Eigen::Matrix2d pixel_by_image = projection->pixel_by_point * turn.leftCols<2>();
+    const Eigen::Matrix2d image_by_pixel = pixel_by_image.inverse();
+    if (!image_by_pixel.allFinite()) return std::nullopt;
+    const double variance =
+        HasKnownNoise(pairs[i]) ? pairs[i].sigma_px * pairs[i].sigma_px : unstated_variance;
+    covariances.emplace_back(variance * image_by_pixel * image_by_pixel.transpose());
+  }
+  return covariances;
+}
+
+/// The covariance in the camera frame; the rotation of the kernel's view is not differentiated.
 std::optional<Matrix6d> KernelCovariance(const PnpKernel& kernel, PnpCovariance kind,
                                          const MomentsKernel& of_moments, const Camera& camera,
                                          std::span<const Pair2d3d> pairs, const View& view,

@@ -11,16 +11,16 @@
 #include "solvers/core/solver.h"
 #include "solvers/pnp/correspondences.h"
 #include "solvers/pnp/moment_slopes.h"
-#include "solvers/pnp/triple_covariance.h"
+#include "solvers/pnp/reprojection_covariance.h"
 
 namespace sextant {
 
-/// What a kernel for 2D-3D pairs works on, whatever the camera model.
+/// Input of a kernel for 2D-3D pairs, independent of the camera model.
 struct PnpInput {
   std::span<const Eigen::Vector2d> image_points;  ///< (x/z, y/z).
   std::span<const Eigen::Vector3d> points;        ///< In the LiDAR frame [m].
   double focal_length_px = 1.0;                   ///< Pixels per unit of the image plane.
-  PnpChoice choice = {};                          ///< For kernels that have several candidates.
+  PnpChoice choice = {};                          ///< For kernels with several candidates.
 };
 
 struct PnpPoses {
@@ -28,12 +28,13 @@ struct PnpPoses {
   int count = 0;
   std::vector<int> inliers = {};  ///< Ascending; empty for all.
   int iterations = 0;
-  std::optional<Triple> fixed_by = {};  ///< Where three pairs fix the poses and others only choose.
+  /// The triple, where three pairs determine the poses and the others only select one.
+  std::optional<Triple> fixed_by = {};
 };
 
 using PnpKernel = std::function<Expected<PnpPoses>(const PnpInput&)>;
 
-/// What is known of a kernel's answer, which says how its covariance is found.
+/// What a kernel's solution minimises, which determines the formula of its covariance.
 enum class PnpCovariance {
   kObjectSpace,   ///< A minimum of the squares of x - u z, y - v z: ObjectSpaceCovariance.
   kMoments,       ///< A function of the image's moments: MomentCovariance.
@@ -41,13 +42,13 @@ enum class PnpCovariance {
   kLeastSquares,  ///< Minimum of the reprojection error over the inliers: ReprojectionCovariance.
 };
 
-/// Any kernel behind the solver interface: pixels become image points by the camera's own model.
-/// Where a wide lens sees pixels near or beyond 90 deg from the optical axis, the kernel gets the
-/// image points of a camera turned onto the mean ray.
+/// Makes a Solver of any kernel: the camera's own model converts pixels to image points. Where
+/// pixels of a wide lens are near or beyond 90 deg from the optical axis, the kernel gets the image
+/// points of a camera rotated onto the mean ray.
 class PnpSolver final : public Solver {
  public:
   PnpSolver(SolverSpec spec, PnpKernel kernel, PnpCovariance covariance);
-  /// Of kind kMoments, for a kernel that can be given displaced moments.
+  /// With covariance kMoments, for a kernel that takes displaced moments.
   PnpSolver(SolverSpec spec, PnpKernel kernel, MomentsKernel of_moments);
 
  private:

@@ -7,7 +7,6 @@
 
 #include "geometry/symmetric.h"
 #include "solvers/kernels/cloud_sums.h"
-#include "solvers/pnp/frame_limits.h"
 
 namespace sextant {
 namespace {
@@ -37,10 +36,11 @@ Expected<PointCloudFrame> FramePointCloud(std::span<const Eigen::Vector3d> point
   const Eigen::Matrix3d scatter = ScatterAbout(frame.centroid, points);
   const double variance = scatter.trace();
   if (!(std::sqrt(variance) + frame.centroid.norm() < kMaxDistance_m)) {
-    return MakeError(ErrorCode::kDegenerate,
-                     fmt::format("the points are further than {:g} m away, where rounding eats the "
-                                 "translation; give LiDAR points in metres",
-                                 kMaxDistance_m));
+    return MakeError(
+        ErrorCode::kDegenerate,
+        fmt::format("the points are further than {:g} m away, where rounding destroys the "
+                    "translation; give LiDAR points in metres",
+                    kMaxDistance_m));
   }
   FindDifferent(points, variance, frame);
   if (frame.different_count < min_different) {

@@ -40,7 +40,7 @@ RotationCost::RotationCost(const Correspondences& data) {
       m.w.bottomRightCorner<3, 3>() - u0 * u0.transpose() - v0 * v0.transpose();
   omega_ -= m.Spread() * depth * depth.transpose();
 
-  // From those coordinates back to the camera's, on both sides.
+  // Transforms both sides back to camera coordinates.
   const Eigen::Vector2d mean = m.mean;
   omega_.rightCols<3>() -= mean.x() * omega_.leftCols<3>() + mean.y() * omega_.middleCols<3>(3);
   omega_.bottomRows<3>() -= mean.x() * omega_.topRows<3>() + mean.y() * omega_.middleRows<3>(3);
@@ -69,7 +69,7 @@ Eigen::Matrix3d RotationCost::Minimize(Eigen::Matrix3d rotation) const {
     const Eigen::Vector3d r1 = rotation.row(0);
     const Eigen::Vector3d r2 = rotation.row(1);
     const Eigen::Vector3d r3 = rotation.row(2);
-    // Derivative of the entries by a turn omega: row k of Hat(omega) R.
+    // Derivative of the entries by a rotation vector omega: row k of Hat(omega) R.
     Eigen::Matrix<double, 9, 3> turn = Eigen::Matrix<double, 9, 3>::Zero();
     turn.block<3, 1>(0, 1) = r3;
     turn.block<3, 1>(0, 2) = -r2;
@@ -81,7 +81,7 @@ Eigen::Matrix3d RotationCost::Minimize(Eigen::Matrix3d rotation) const {
     const Eigen::Vector3d gradient = turn.transpose() * slope;
     const Eigen::Matrix<double, 9, 3> turned_slope = omega_.lazyProduct(turn);
     const Eigen::Matrix3d convex = turn.transpose().lazyProduct(turned_slope);
-    // Second order of Exp(omega) R against the slope: the curvature of the constraints.
+    // Second order of Exp(omega) R times the slope: the curvature of the constraints.
     const Eigen::Matrix3d product = rotation * Eigen::Map<const Eigen::Matrix3d>(slope.data());
     Eigen::Matrix3d hessian = convex + 0.5 * (product + product.transpose());
     hessian.diagonal().array() -= product.trace();

@@ -8,7 +8,7 @@
 namespace sextant {
 
 /// The cost mean_i |x_i - u_i z_i|^2 + |y_i - v_i z_i|^2 = r^T omega r, with the entries of the
-/// rotation (camera from principal axes) row by row in r, and the centroid that goes with it.
+/// rotation (camera from principal axes) row by row in r, and the best centroid for a rotation.
 class RotationCost {
  public:
   explicit RotationCost(const Correspondences& data);
@@ -16,7 +16,7 @@ class RotationCost {
   const Eigen::Matrix<double, 9, 9>& omega() const { return omega_; }
   double operator()(const Eigen::Matrix3d& rotation) const;
   Eigen::Vector3d Centroid(const Eigen::Matrix3d& rotation) const;
-  /// Descends to the nearest minimum.
+  /// The nearest minimum by Newton's method: three unknowns with an exact Hessian need no damping.
   Eigen::Matrix3d Minimize(Eigen::Matrix3d rotation) const;
 
  private:

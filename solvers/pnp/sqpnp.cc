@@ -8,22 +8,24 @@
 #include <limits>
 #include <optional>
 
+#include "solvers/core/registry.h"
 #include "solvers/kernels/max_trace_rotation.h"
 #include "solvers/pnp/correspondences.h"
+#include "solvers/pnp/pnp_solver.h"
 #include "solvers/pnp/rotation_cost.h"
 
 namespace sextant {
 namespace {
 
-// Costs of exact data, relative to the points' variance, with a wide margin.
+// Cost of exact data from rounding, relative to the variance of the points, with a wide margin.
 constexpr double kRounding = 1e-12;
 
-// Thinner sets than this (standard deviations) have two minima when far away.
+// Sets thinner than this ratio of standard deviations have two minima when far away.
 constexpr double kThin = 0.05;
 
-// Up to five points leave omega a kernel of two or more dimensions, whose basis says little of the
-// rotation, and so do a few others by chance, which then fit badly: poses of three of the points
-// are starts too.
+// With up to five points omega has a kernel of two or more dimensions, whose basis is a poor start;
+// so it is for some larger sets, which then fit badly. The P3P poses of three points are starts
+// too.
 constexpr int kMaxForTriangle = 5;
 constexpr double kWellExplained = 1e-3;
 
@@ -35,7 +37,7 @@ struct Minimum {
   ImageFit fit;
 };
 
-/// The different minima found so far, in ascending order of cost, and the least of those that have
+/// The different minima found so far, in ascending order of cost, and the lowest of those with
 /// points behind the camera.
 class Minima {
  public:
@@ -67,7 +69,7 @@ class Minima {
   std::array<Minimum, kMaxSqpnpPoses> found_;
   std::size_t count_ = 0;
   double best_cost_behind_ = kNone;
-  double best_depth_behind_ = 0.0;  ///< Of the centroid, of that minimum.
+  double best_depth_behind_ = 0.0;  ///< Depth of the centroid at that minimum.
 };
 
 void Minima::Sort() {
@@ -106,7 +108,7 @@ void Minima::SearchFrom(const Eigen::Matrix3d& start) {
 
 bool Minima::AreMirrored() const {
   if (best_cost_behind_ == kNone) return false;
-  // Where no pose in front fits, one image point for all is what there is to compare with.
+  // Where no pose in front fits, the comparison is with a single image point for all.
   const double single = data_.moments.Spread() * best_depth_behind_ * best_depth_behind_;
   const double rounding = kRounding * data_.frame.deviation.squaredNorm();
   return std::min(best_cost(), single) >
@@ -127,7 +129,7 @@ void SearchFromEigenvectors(const RotationCost& cost, Minima& minima) {
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kEntries, kEntries>> eigen(omega);
   for (int i = 0; i < kEntries; ++i) {
-    // No rotation made of this and the later eigenvectors costs less.
+    // Every rotation composed of this and the later eigenvectors costs at least this.
     if (kColumns * eigen.eigenvalues()(i) > minima.best_cost()) break;
     Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
     cross.topRows<kColumns>() =
@@ -139,7 +141,8 @@ void SearchFromEigenvectors(const RotationCost& cost, Minima& minima) {
   }
 }
 
-/// A flat set has a second minimum near its mirror image in a plane across the line of sight.
+/// A flat set has a second minimum near its mirror image in a plane perpendicular to the line of
+/// sight.
 void SearchFromMirrorImage(Minima& minima) {
   if (minima.found().empty()) return;
   const Minimum& best = minima.found()[0];
@@ -196,6 +199,26 @@ Expected<SqpnpFit> SolveSqpnp(std::span<const Eigen::Vector2d> image_points,
   }
   if (fit.count == 0) return UnexplainedError();
   return fit;
+}
+
+SolverEntry SqpnpEntry() {
+  return {
+      .name = "sqpnp",
+      .summary = "global least squares of the distances from the lines of sight, times depth",
+      .needs = "3 or more 2D-3D pairs, not on one line; with 3 the answer is ambiguous",
+      .reference = "Terzakis and Lourakis 2020 (ECCV)",
+      .example = "sqpnp",
+      .make = [](const SolverArguments& arguments) -> Expected<SolverPtr> {
+        return std::make_shared<PnpSolver>(
+            SolverSpec{.name = arguments.name, .needs = {.pairs_2d3d = 3}},
+            [](const PnpInput& input) -> Expected<PnpPoses> {
+              SEXTANT_ASSIGN_OR_RETURN(const SqpnpFit fit,
+                                       SolveSqpnp(input.image_points, input.points, input.choice));
+              return PnpPoses{.poses = fit.cam_from_lidar, .count = fit.count};
+            },
+            PnpCovariance::kObjectSpace);
+      },
+  };
 }
 
 }  // namespace sextant

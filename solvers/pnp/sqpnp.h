@@ -16,24 +16,24 @@ inline constexpr std::size_t kMaxSqpnpPoses = 4;
 /// Minima of the sum of squared distances of the points from their lines of sight, best first.
 struct SqpnpFit {
   std::array<Rigid3d, kMaxSqpnpPoses> cam_from_lidar;
-  /// sum_i (x_i - u_i z_i)^2 + (y_i - v_i z_i)^2 [m^2] of each.
+  /// sum_i (x_i - u_i z_i)^2 + (y_i - v_i z_i)^2 [m^2], one for each pose.
   std::array<double, kMaxSqpnpPoses> sum_squares{};
   int count = 0;
 };
 
-/// The pose of least squares of x - u z and y - v z over the points, by SQPnP (Terzakis and
-/// Lourakis 2020, "A consistently fast and globally optimal solution to the perspective-n-point
-/// problem").
+/// The pose that minimises the sum of squares of x - u z and y - v z over the points, by SQPnP
+/// (Terzakis and Lourakis 2020, "A consistently fast and globally optimal solution to the
+/// perspective-n-point problem").
 ///
 /// The best translation is linear in the rotation r (9 entries), which leaves the minimum of
 /// r^T Omega r over rotations. Starts are the rotations nearest to +-sqrt(3) times the eigenvectors
 /// of Omega, in ascending order, until an eigenvalue alone costs more than the best found; for a
-/// plane Omega is that of the two columns that it has. Two more kinds of start: for flat sets the
-/// mirror image of the best pose; up to five points, and where the best fits badly, the poses of
-/// three of them. From each, Newton steps on the rotation (the quadratic programme with its
-/// constraints linearised, with their curvature too where that keeps it convex).
-/// The other poses of the answer are minima that cost at most twice the best; with three points
-/// there are up to four without any cost.
+/// plane Omega is restricted to the first two columns. Two more kinds of start: for flat sets the
+/// mirror image of the best pose; for up to five points, and where the best fits badly, the P3P
+/// poses of three of them. From each, Newton steps on the rotation (the quadratic programme with
+/// its constraints linearised, and with their curvature where that keeps it convex). The other
+/// poses of the answer are minima with at most twice the cost of the best; three points have up to
+/// four of cost zero.
 ///
 /// Shapes: image points (x/z, y/z), and as many points [m], at least 3; unique from 4 on.
 /// Errors: kTooFewPairs; kDegenerate (fewer than 3 different points, on one line, a single ray, or

@@ -6,7 +6,7 @@
 namespace sextant {
 namespace {
 
-// Nearer to 0 or 2 than this the general formula loses more digits than the limit is wrong by.
+// Closer to 0 or 2 than this, the rounding of the general formula exceeds the error of the limit.
 constexpr double kAtLimit = 1e-7;
 
 }  // namespace

@@ -7,9 +7,7 @@
 
 namespace sextant {
 
-/// What every ceres::Problem of this library is made of.
-
-/// To be owned by a ceres::Problem; null for plain least squares.
+/// A loss to be owned by a ceres::Problem; null for plain least squares.
 ceres::LossFunction* NewLoss(const RobustLoss& loss);
 
 ceres::Solver::Options CeresOptions(const RefineLimits& limits);

@@ -15,16 +15,16 @@ constexpr std::size_t kMaxCorners = 5;
 constexpr std::size_t kMaxBlocks = 4;
 constexpr std::size_t kMaxTerms = kMaxBlocks * kSimdWidth;
 
-// Of the triples of five, those that together use each corner about as often.
+// Triples of five corners, chosen so that each corner is used about equally often.
 constexpr std::size_t kTriples[kSimdWidth][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3},
                                                  {0, 1, 4}, {0, 2, 4}, {1, 2, 4}, {0, 3, 4}};
 
-// How many of them are of the first so many corners.
+// The number of triples that use only the first `corners` corners.
 std::size_t TriplesOf(std::size_t corners) {
   return corners < 4 ? 1 : corners == 4 ? 4 : kSimdWidth;
 }
 
-// Some of the terms, evenly spread over all.
+// A subset of the terms, evenly spread.
 struct FewTerms {
   explicit FewTerms(PixelTermsView all) {
     const std::span<const PixelBlock> from = all.blocks();
@@ -42,8 +42,8 @@ struct FewTerms {
   PixelTermsView view;
 };
 
-// Far apart in the image: the one farthest from the centre, then whichever is farthest from those
-// chosen; the first of equals.
+// Terms far apart in the image: the one farthest from the centre, then repeatedly the one farthest
+// from those chosen; of equal ones the first.
 std::size_t SpreadTerms(PixelTermsView terms, std::array<std::size_t, kMaxCorners>& chosen) {
   std::array<double, kMaxTerms> distances;
   const auto farthest_from = [&](double u, double v, bool is_first) {
@@ -96,7 +96,7 @@ std::optional<Rigid3d> StartFromTriples(PixelTermsView terms, const Camera& came
   const std::size_t triple_count = TriplesOf(SpreadTerms(few.view, corners));
   P3pTriples triples;
   for (std::size_t k = 0; k < kSimdWidth; ++k) {
-    // Places to spare repeat a triple.
+    // Unused elements of the vector repeat a triple.
     const auto& triple = kTriples[k < triple_count ? k : 0];
     for (std::size_t to = 0; to < 3; ++to) {
       Place(few.view[corners[triple[to]]], camera, to, k, triples);
@@ -104,7 +104,7 @@ std::optional<Rigid3d> StartFromTriples(PixelTermsView terms, const Camera& came
   }
   P3pPoses poses;
   SolveP3pBatch(triples, poses);
-  // More than any pose in front of all points, but a number: points behind the camera count.
+  // Cost of a point behind the camera: finite, but above that of any pose with all points in front.
   constexpr double kBehind = 1e12;
   double least = std::numeric_limits<double>::infinity();
   std::optional<std::array<std::size_t, 2>> best;

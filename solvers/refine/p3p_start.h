@@ -9,10 +9,10 @@
 
 namespace sextant {
 
-/// A pose from which least squares on all pixels of a pinhole camera finds its minimum: of the
-/// poses of up to eight triples of pixels far apart in the image, solved side by side, the one with
-/// the least squares over the terms. Looks at 32 terms at the most. Allocates nothing. None where
-/// no triple gives a pose.
+/// A start for least squares on all pixels of a pinhole camera: the P3P pose with the smallest sum
+/// of squares over the terms, from up to eight triples of pixels far apart in the image, which are
+/// solved in one SIMD vector of 8 doubles. Uses at most 32 terms. Allocates nothing. None where no
+/// triple has a pose.
 std::optional<Rigid3d> StartFromTriples(PixelTermsView terms, const Camera& camera);
 
 }  // namespace sextant

@@ -9,11 +9,12 @@
 namespace sextant {
 
 /// The residual of one pair and its derivatives by (dphi, dt), lifted to the quaternion: Ceres
-/// multiplies by PlusJacobian, whose left inverse is MinusJacobian. Writes where `jacobians` asks.
+/// multiplies by PlusJacobian, whose left inverse is MinusJacobian. Null entries of `jacobians` are
+/// skipped.
 template <int kResiduals>
 bool WritePoseCost(const TermDerivatives<kResiduals>& at, const double* rotation, double* residuals,
                    double** jacobians) {
-  // Ceres prints numbers that are not finite, but not refusals.
+  // Ceres logs values that are not finite, but not a false return.
   const Eigen::Matrix<double, kResiduals, 6> jacobian = at.Jacobian();
   if (!at.residual.allFinite() || !jacobian.allFinite()) return false;
   Eigen::Map<Eigen::Matrix<double, kResiduals, 1>> residual(residuals);
@@ -32,7 +33,8 @@ bool WritePoseCost(const TermDerivatives<kResiduals>& at, const double* rotation
   return true;
 }
 
-/// A pair under the pose (quaternion, translation), the camera given.
+/// The residual of a pair as a function of the pose (quaternion, translation); the camera is
+/// constant.
 template <class Term, int kResiduals>
 class PairCost final : public ceres::SizedCostFunction<kResiduals, 4, 3> {
  public:

@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "geometry/symmetric.h"
 #include "solvers/core/registry.h"
 #include "solvers/least_squares/refine_pose.h"
 #include "solvers/pnp/p3p_solver.h"
@@ -21,7 +22,7 @@
 namespace sextant {
 namespace {
 
-// Fewer pairs than this leave a direction undetermined whatever their places.
+// Fewer pairs than this never determine a pose.
 constexpr int kMinPairs = 3;
 
 DataNeeds WithRefined(DataNeeds needs, RefineOn on) {
@@ -38,7 +39,7 @@ std::vector<Pair> PairsAt(const std::vector<Pair>& pairs, const std::vector<int>
   return selected;
 }
 
-/// Indices of the pairs of each kind that are refined on.
+/// Indices of the pairs of each kind used in the refinement.
 struct UsedPairs {
   std::vector<int> points;
   std::vector<int> pixels;
@@ -50,29 +51,30 @@ std::vector<int> AllOf(std::size_t count) {
   return all;
 }
 
-// Indices of `others` but those whose id is that of a pair at none of `kept`, and of none that is.
+// Indices of `others`, without those whose id occurs among the rejected `pairs` and not among the
+// pairs at `kept`.
 template <class Pair, class Other>
-std::vector<int> NotLeftOut(const std::vector<Pair>& pairs, const std::vector<int>& kept,
-                            const std::vector<Other>& others) {
+std::vector<int> NotRejected(const std::vector<Pair>& pairs, const std::vector<int>& kept,
+                             const std::vector<Other>& others) {
   using Key = std::tuple<int, int, int>;
   const auto key = [](const PairId& id) { return Key(id.view, id.board, id.corner); };
-  std::set<Key> left_out;
-  for (const Pair& pair : pairs) left_out.insert(key(pair.id));
-  for (const int i : kept) left_out.erase(key(pairs[static_cast<std::size_t>(i)].id));
+  std::set<Key> rejected;
+  for (const Pair& pair : pairs) rejected.insert(key(pair.id));
+  for (const int i : kept) rejected.erase(key(pairs[static_cast<std::size_t>(i)].id));
   std::vector<int> chosen;
   for (std::size_t i = 0; i < others.size(); ++i) {
-    if (!left_out.contains(key(others[i].id))) chosen.push_back(static_cast<int>(i));
+    if (!rejected.contains(key(others[i].id))) chosen.push_back(static_cast<int>(i));
   }
   return chosen;
 }
 
-/// argmin over SE(3) of 1/2 sum rho(|r_i|^2) from the inner solver's answer, r_i whitened by what
-/// the pairs state (full 3x3 covariances included), on the pairs that this answer rests on.
+/// argmin over SE(3) of 1/2 sum rho(|r_i|^2) from the inner solver's pose, r_i whitened by the
+/// stated noise of the pairs (full 3x3 covariances included), over the inliers of the inner solver.
 ///
-/// Plain least squares runs in RefinePose, robust losses in Ceres. With on=both, so are the
-/// other kind's pairs but for the ids that this answer left out. Covariance: inverse of sum rho'
-/// J^T J; with free intrinsics see refine_camera.h. Termination kConverged: the last step is under
-/// step_tolerance. Errors: kNoConvergence, kDegenerate, those of the inner solver.
+/// Plain least squares runs in RefinePose, robust losses in Ceres. With on=both, the pairs of the
+/// other kind are used too, without the ids that the inner solver rejected. Covariance: inverse of
+/// sum rho' J^T J; with free intrinsics see refine_camera.h. Termination kConverged: the last step
+/// is under step_tolerance. Errors: kNoConvergence, kDegenerate, those of the inner solver.
 class RefineSolver final : public Solver {
  public:
   RefineSolver(const SolverArguments& arguments, const RefineOptions& options)
@@ -103,9 +105,9 @@ class RefineSolver final : public Solver {
     return estimate;
   }
 
-  // Plain least squares on pixels from p3p: from triples solved side by side, without what only p3p
-  // itself reports. None where that is not what is asked for, or where the residuals say that the
-  // start was a bad one.
+  // Plain least squares on pixels from p3p, with the vectorised StartFromTriples in place of p3p
+  // itself. None for other settings, and where the residuals are too large, so that the start was a
+  // bad one.
   std::optional<Estimate> FromTriples(const CalibrationProblem& problem) const {
     if (options_.on != RefineOn::k2d3d || options_.Loss().kind != LossKind::kNone ||
         options_.intrinsics != 0U || !IsP3pOfPinhole(*inner_, problem)) {
@@ -118,7 +120,8 @@ class RefineSolver final : public Solver {
         std::chrono::steady_clock::now() - begin;
     if (!start) return std::nullopt;
     RefineLimits limits = Limits();
-    // To 1e-6 of it, as of the answer itself it would take a fifth of the time of 1000 pixels.
+    // At a pose within 1e-6: at the answer itself it would take a fifth of the time for 1000
+    // pixels.
     limits.wants_information = false;
     const RefinedPose refined = RefinePose(terms.View(), *start, limits);
     if (terms.noise_known && !IsExplained(refined, terms.size())) return std::nullopt;
@@ -138,8 +141,8 @@ class RefineSolver final : public Solver {
     return EstimateOf(terms, refined);
   }
 
-  // Whether noise as stated leaves such residuals of pixels: the sum of squares is chi-square, ten
-  // standard deviations above its mean at the most.
+  // Whether the stated noise explains the residuals of the pixels: their sum of squares is
+  // chi-square, and must be at most ten standard deviations above its mean.
   static bool IsExplained(const RefinedPose& refined, std::size_t pixels) {
     const double freedom = std::max(1.0, 2.0 * static_cast<double>(pixels) - 6.0);
     return 2.0 * refined.cost <= freedom + 10.0 * std::sqrt(2.0 * freedom);
@@ -147,7 +150,7 @@ class RefineSolver final : public Solver {
 
   Expected<Estimate> EstimateOf(const PairTerms& terms, const RefinedPose& refined) const {
     SEXTANT_RETURN_IF_ERROR(CheckOutcome(refined));
-    std::optional<Matrix6d> inverse = InvertInformation(refined.information);
+    std::optional<Matrix6d> inverse = InvertSymmetric(refined.information);
     if (!inverse) {
       return MakeError(ErrorCode::kDegenerate,
                        "the pairs leave a direction of the pose undetermined; use points that span "
@@ -180,17 +183,17 @@ class RefineSolver final : public Solver {
 
   RefineLimits Limits() const { return {options_.max_iterations, options_.step_tolerance}; }
 
-  // Of the inner solver's kind, the inliers; of the other, all but those that carry the id of a
-  // pair left out, since an outlier of one kind comes from a sensor that both share.
+  // The inliers of the inner solver's kind of pairs; of the other kind, all without the id of a
+  // rejected pair, since an outlier of one kind comes from a sensor that both share.
   UsedPairs Choose(const CalibrationProblem& problem, const Estimate& start) const {
     const DataNeeds& inner = inner_->spec().needs;
     UsedPairs used;
     if (inner.pairs_3d3d > 0) {
       used.points = start.inliers;
-      used.pixels = NotLeftOut(problem.pairs_3d3d, start.inliers, problem.pairs_2d3d);
+      used.pixels = NotRejected(problem.pairs_3d3d, start.inliers, problem.pairs_2d3d);
     } else if (inner.pairs_2d3d > 0) {
       used.pixels = start.inliers;
-      used.points = NotLeftOut(problem.pairs_2d3d, start.inliers, problem.pairs_3d3d);
+      used.points = NotRejected(problem.pairs_2d3d, start.inliers, problem.pairs_3d3d);
     } else {
       used.points = AllOf(problem.pairs_3d3d.size());
       used.pixels = AllOf(problem.pairs_2d3d.size());

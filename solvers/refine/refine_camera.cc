@@ -16,11 +16,11 @@
 namespace sextant {
 namespace {
 
-// Share of the focal length, or of the distorted radius, beyond which a sigma is no knowledge: the
-// answer is then far outside the linear range that the sigma itself rests on.
+// Share of the focal length, or of the distorted radius, above which a parameter counts as
+// unobservable: its sigma is then far outside the linear range from which it was computed.
 constexpr double kLargestSigma = 0.25;
 
-/// A pixel under the pose and the numbers of the camera.
+/// The residual of a pixel as a function of the pose and the intrinsics.
 class CameraCost final : public ceres::SizedCostFunction<2, 4, 3, kIntrinsicCount> {
  public:
   CameraCost(const PixelTerm& term, const Camera& given) : term_(term), given_(given) {}
@@ -47,7 +47,7 @@ class CameraCost final : public ceres::SizedCostFunction<2, 4, 3, kIntrinsicCoun
   Camera given_;
 };
 
-// Ceres takes the numbers that stay, and none of an empty list.
+// A manifold on which all parameters except `free` are constant.
 ceres::Manifold* NewIntrinsicManifold(const std::vector<int>& free) {
   std::vector<int> fixed;
   for (int i = 0; i < kIntrinsicCount; ++i) {
@@ -56,13 +56,13 @@ ceres::Manifold* NewIntrinsicManifold(const std::vector<int>& free) {
   return new ceres::SubsetManifold(kIntrinsicCount, fixed);
 }
 
-/// Pose and numbers of the camera as they are improved, and what is known of them there.
+/// Pose and intrinsics during the iteration, with the cost and the information there.
 struct State {
   Rigid3d pose;
   IntrinsicVector numbers;
   double cost = 0.0;            // 1/2 sum rho
-  Eigen::MatrixXd information;  // Of (dphi, dt, free numbers).
-  Eigen::VectorXd levers;       // Largest shift in focal lengths by one unit of each free number.
+  Eigen::MatrixXd information;  // Over (dphi, dt, free intrinsics).
+  Eigen::VectorXd levers;  // Largest shift, in focal lengths, by one unit of each free intrinsic.
 };
 
 void AddPoint(const PointTerm& term, const ceres::LossFunction* loss, State& sum) {
@@ -90,7 +90,7 @@ bool AddPixel(const PixelTerm& term, const Camera& camera, const std::vector<int
   for (Eigen::Index k = 0; k < count; ++k) {
     const int number = free[static_cast<std::size_t>(k)];
     jacobian.col(6 + k) = -term.inverse_sigma * pixel_by->col(number);
-    // What a focal length or the centre acts on is the focal length itself.
+    // The shift by a focal length or the centre is relative to the focal length itself.
     const double lever = number < kFirstDistortion ? 1.0 : pixel_by->col(number).norm();
     sum.levers[k] = std::max(sum.levers[k], lever / camera.fx_px);
   }
@@ -99,18 +99,18 @@ bool AddPixel(const PixelTerm& term, const Camera& camera, const std::vector<int
   return true;
 }
 
-// Fills in all but pose and numbers; false where a point does not project.
+// Fills in all but pose and intrinsics; false where a point does not project.
 bool SumUp(const PairTerms& terms, const std::vector<int>& free, const RobustLoss& loss,
            State& sum) {
-  const std::unique_ptr<ceres::LossFunction> weigh(NewLoss(loss));
+  const std::unique_ptr<ceres::LossFunction> rho(NewLoss(loss));
   const auto count = static_cast<Eigen::Index>(free.size());
   sum.cost = 0.0;
   sum.information.setZero(6 + count, 6 + count);
   sum.levers.setZero(count);
   const Camera camera = WithIntrinsics(terms.camera, sum.numbers);
-  for (const PointTerm& term : terms.points) AddPoint(term, weigh.get(), sum);
+  for (const PointTerm& term : terms.points) AddPoint(term, rho.get(), sum);
   for (const PixelTerm term : terms.pixels) {
-    if (!AddPixel(term, camera, free, weigh.get(), sum)) return false;
+    if (!AddPixel(term, camera, free, rho.get(), sum)) return false;
   }
   return std::isfinite(sum.cost);
 }
@@ -142,9 +142,9 @@ double Freedom(const PairTerms& terms, std::size_t free) {
          2.0 * static_cast<double>(terms.pixels.size()) - 6.0 - static_cast<double>(free);
 }
 
-// The inverse of the information, if it says something of every free number.
-Expected<Eigen::MatrixXd> Judge(const PairTerms& terms, const std::vector<int>& free,
-                                const State& state) {
+// The inverse of the information, if every free intrinsic is observable.
+Expected<Eigen::MatrixXd> ObservableCovariance(const PairTerms& terms, const std::vector<int>& free,
+                                               const State& state) {
   std::optional<Eigen::MatrixXd> inverse = InvertSymmetric(state.information);
   if (!inverse) {
     return MakeError(ErrorCode::kDegenerate,
@@ -159,7 +159,7 @@ Expected<Eigen::MatrixXd> Judge(const PairTerms& terms, const std::vector<int>& 
     if (sigma * state.levers[i] <= kLargestSigma) continue;
     return MakeError(
         ErrorCode::kDegenerate,
-        fmt::format("the pairs do not tell {}: {:.3g} with a sigma of {:.2g}; use points at "
+        fmt::format("the pairs do not determine {}: {:.3g} with a sigma of {:.2g}; use points at "
                     "different depths, or free fewer intrinsics",
                     IntrinsicName(terms.camera.model, free[k]), state.numbers[free[k]], sigma));
   }
@@ -212,8 +212,9 @@ Expected<RefinedPoseAndCamera> RefinePoseAndCamera(const PairTerms& terms, const
   }
   const ceres::Solver::Summary summary = Minimise(terms, free, loss, limits, state);
   if (!SumUp(terms, free, loss, state)) return NotConverged("a point left the image");
-  // Before the outcome: data that tells nothing also keeps the iteration from settling.
-  SEXTANT_ASSIGN_OR_RETURN(const Eigen::MatrixXd covariance, Judge(terms, free, state));
+  // Checked before the outcome: unobservable parameters also prevent convergence.
+  SEXTANT_ASSIGN_OR_RETURN(const Eigen::MatrixXd covariance,
+                           ObservableCovariance(terms, free, state));
   if (OutcomeOf(summary.termination_type) != RefineOutcome::kConverged) {
     return NotConverged("no convergence within max_iterations");
   }

@@ -13,17 +13,17 @@ namespace sextant {
 enum IntrinsicKind : unsigned {
   kFocal = 1U,       ///< fx, fy.
   kCenter = 2U,      ///< cx, cy.
-  kDistortion = 4U,  ///< The first of the model (Brown-Conrady: k1 k2 p1 p2, equidistant: k1 k2)
-                     ///< and those others that are not 0 in the camera given.
+  kDistortion = 4U,  ///< The first coefficients of the model (Brown-Conrady: k1 k2 p1 p2,
+                     ///< equidistant: k1 k2) and all others that are not 0 in the given camera.
 };
 
-/// Indices, ascending, into IntrinsicsOf of what a set of kinds frees. Error: kInvalidInput for
+/// Ascending indices into IntrinsicsOf of the intrinsics of these kinds. Error: kInvalidInput for
 /// the distortion of a pinhole.
 Expected<std::vector<int>> FreeIntrinsics(const Camera& camera, unsigned kinds);
 
 struct RefinedPoseAndCamera {
   Rigid3d cam_from_lidar;
-  std::optional<Matrix6d> covariance;  ///< Of (dphi, dt), marginal over the intrinsics.
+  std::optional<Matrix6d> covariance;  ///< (dphi, dt), marginal over the intrinsics.
   CameraEstimate camera;
   int iterations = 0;
 };
@@ -35,8 +35,9 @@ struct RefinedPoseAndCamera {
 /// The covariance is the inverse of sum rho' J^T J over pose and intrinsics, times the residual
 /// variance where the noise was only assumed.
 /// Errors: kTooFewPairs (fewer residuals than unknowns), kDegenerate (a singular information, or
-/// an intrinsic with a sigma of over a quarter of what it acts on: of one plane that faces the
-/// camera, or points all at one depth, focal length and distance cannot be told apart),
+/// an intrinsic with a sigma of over a quarter of the focal length or radius that it acts on: with
+/// one plane that faces the camera, or all points at one depth, focal length and distance are not
+/// separable),
 /// kNoConvergence (also where the refined camera would fold the image).
 Expected<RefinedPoseAndCamera> RefinePoseAndCamera(const PairTerms& terms, const Rigid3d& start,
                                                    const std::vector<int>& free,

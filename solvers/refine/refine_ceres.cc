@@ -13,10 +13,10 @@
 namespace sextant {
 namespace {
 
-// The problem of one pose; `pose` and `terms` must live as long.
-class PoseProblem {
+// The problem of one pose; `pose` and `terms` must outlive it.
+class CeresPoseProblem {
  public:
-  PoseProblem(const TermsView& terms, Rigid3d& pose, const RobustLoss& loss)
+  CeresPoseProblem(const TermsView& terms, Rigid3d& pose, const RobustLoss& loss)
       : rotation_(pose.rotation.coeffs().data()), translation_(pose.translation.data()) {
     problem_.AddParameterBlock(rotation_, 4, new RotationManifold);
     problem_.AddParameterBlock(translation_, 3);
@@ -59,11 +59,11 @@ bool AddWeighted(const Terms& terms, const Camera* camera, const ceres::LossFunc
 
 // Cost and information at the pose in `sum`; false where they are not numbers.
 bool SumUp(const TermsView& terms, const RobustLoss& loss, RefinedPose& sum) {
-  const std::unique_ptr<ceres::LossFunction> weigh(NewLoss(loss));
+  const std::unique_ptr<ceres::LossFunction> rho(NewLoss(loss));
   sum.cost = 0.0;
   sum.information.setZero();
-  return AddWeighted<3>(terms.points, nullptr, weigh.get(), sum) &&
-         AddWeighted<2>(terms.pixels, terms.camera, weigh.get(), sum) && std::isfinite(sum.cost);
+  return AddWeighted<3>(terms.points, nullptr, rho.get(), sum) &&
+         AddWeighted<2>(terms.pixels, terms.camera, rho.get(), sum) && std::isfinite(sum.cost);
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ RefinedPose RefinePoseWithCeres(const TermsView& terms, const Rigid3d& start,
     refined.outcome = RefineOutcome::kNotProjected;
     return refined;
   }
-  PoseProblem pose_problem(terms, refined.cam_from_lidar, loss);
+  CeresPoseProblem pose_problem(terms, refined.cam_from_lidar, loss);
   ceres::Solver::Summary summary;
   ceres::Solve(CeresOptions(limits), &pose_problem.problem(), &summary);
   refined.iterations = static_cast<int>(summary.iterations.size());
@@ -87,7 +87,7 @@ RefinedPose RefinePoseWithCeres(const TermsView& terms, const Rigid3d& start,
 
 std::optional<Matrix6d> CeresCovariance(const TermsView& terms, const Rigid3d& pose) {
   Rigid3d at = pose;
-  PoseProblem pose_problem(terms, at, {});
+  CeresPoseProblem pose_problem(terms, at, {});
   const std::vector<const double*> blocks = {pose_problem.rotation(), pose_problem.translation()};
   ceres::Covariance::Options options;
   options.algorithm_type = ceres::DENSE_SVD;

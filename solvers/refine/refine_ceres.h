@@ -7,11 +7,11 @@ namespace sextant {
 
 enum class LossKind { kNone, kHuber, kCauchy, kTukey, kBarron };
 
-/// What a pair of squared whitened residual s costs: 1/2 rho(s).
+/// The cost 1/2 rho(s) of a pair with squared whitened residual s.
 struct RobustLoss {
   LossKind kind = LossKind::kNone;
   double scale = 2.0;   ///< Sigmas.
-  double shape = -2.0;  ///< Of barron only; see BarronLoss.
+  double shape = -2.0;  ///< For kBarron only; see BarronLoss.
 };
 
 /// As RefinePose, with a robust loss on each pair, by ceres::Problem. `cost` is
@@ -19,8 +19,8 @@ struct RobustLoss {
 RefinedPose RefinePoseWithCeres(const TermsView& terms, const Rigid3d& start,
                                 const RobustLoss& loss, const RefineLimits& limits);
 
-/// What ceres::Covariance says of (dphi, dt) at `pose` under plain least squares; none where the
-/// information is singular. Slower than InvertInformation and there to check it.
+/// The covariance of (dphi, dt) at `pose` under plain least squares by ceres::Covariance; none
+/// where the information is singular. Slower than InvertSymmetric; tests compare the two.
 std::optional<Matrix6d> CeresCovariance(const TermsView& terms, const Rigid3d& pose);
 
 }  // namespace sextant

@@ -16,7 +16,7 @@ Expected<RefineOn> ResolveOn(const SolverArguments& arguments, RefineOn on) {
   if (needs.pairs_3d3d > 0) return RefineOn::k3d3d;
   if (needs.pairs_2d3d > 0) return RefineOn::k2d3d;
   return MakeError(ErrorCode::kInvalidOption,
-                   fmt::format("refine: '{}' works on point sets; say on which pairs to refine: "
+                   fmt::format("refine: '{}' works on point sets; state on which pairs to refine: "
                                "on=3d3d, on=2d3d or on=both",
                                arguments.inner->spec().name));
 }
@@ -24,7 +24,7 @@ Expected<RefineOn> ResolveOn(const SolverArguments& arguments, RefineOn on) {
 }  // namespace
 
 RobustLoss RefineOptions::Loss() const {
-  // Beyond most residuals of clean pairs, whose root mean square is sqrt(3) or sqrt(2).
+  // Above most residuals of inliers, whose root mean square is sqrt(3) or sqrt(2).
   constexpr double kScales[] = {2.0, 2.0, 3.0, 6.0, 3.0};
   const double scale = loss_scale > 0.0 ? loss_scale : kScales[static_cast<std::size_t>(loss)];
   return {loss, scale, loss_shape};
@@ -38,19 +38,19 @@ OptionSet<RefineOptions> RefineOptionSet() {
       .Choice("loss", &RefineOptions::loss, {"none", "huber", "cauchy", "tukey", "barron"},
               "robust loss on each pair")
       .Real("loss_scale", &RefineOptions::loss_scale, "sigma", 0.0, 1e6,
-            "where the loss bends; 0: huber 2, cauchy 3, tukey 6, barron 3")
+            "transition point of the loss; 0: huber 2, cauchy 3, tukey 6, barron 3")
       .Real("loss_shape", &RefineOptions::loss_shape, "1", -100.0, 2.0,
-            "of barron: 2 squares, 1 Charbonnier, 0 Cauchy, -2 Geman-McClure")
+            "for barron: 2 squares, 1 Charbonnier, 0 Cauchy, -2 Geman-McClure")
       .Set("intrinsics", &RefineOptions::intrinsics, {"focal", "center", "distortion"},
            "estimated along with the pose, which then accounts for them; needs pixels")
       .Count("max_iterations", &RefineOptions::max_iterations, 1, 1'000'000,
-             "more are kNoConvergence")
+             "limit; reaching it is the error kNoConvergence")
       .Real("step_tolerance", &RefineOptions::step_tolerance, "rad and m", 1e-15, 1.0,
             "the iteration ends with a step smaller than this")
       .Real("sigma_m", &RefineOptions::sigma_m, "m", 1e-9, 1e6,
-            "assumed of pairs that state no sigma")
+            "assumed for pairs that state no sigma")
       .Real("sigma_px", &RefineOptions::sigma_px, "px", 1e-6, 1e6,
-            "assumed of pairs that state no sigma");
+            "assumed for pairs that state no sigma");
   return options;
 }
 

@@ -29,8 +29,8 @@ struct RefineOptions {
 
 OptionSet<RefineOptions> RefineOptionSet();
 
-/// The options of a `refine` with `on` settled. Errors: kInvalidOption, also for what does not fit
-/// the inner solver or each other.
+/// The options of a `refine` with `on` resolved. Errors: kInvalidOption, also for options that
+/// contradict the inner solver or each other.
 Expected<RefineOptions> ParseRefineOptions(const SolverArguments& arguments);
 
 }  // namespace sextant

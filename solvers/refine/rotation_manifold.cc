@@ -10,7 +10,7 @@ namespace {
 
 using ConstQuaternion = Eigen::Map<const Eigen::Quaterniond>;
 
-// The vector v and scalar w of the derivative of (dphi / 2, 0) * q: see PlusJacobian.
+// Twice the derivative of (dphi / 2, 0) * q by dphi, vector part first: see PlusJacobian.
 Eigen::Matrix<double, 4, 3> HalfTurns(const ConstQuaternion& q) {
   Eigen::Matrix<double, 4, 3> m;
   m.topRows<3>() = q.w() * Eigen::Matrix3d::Identity() - Hat(q.vec());

@@ -8,8 +8,8 @@ namespace sextant {
 /// Unit quaternions in Eigen's order (x, y, z, w) with the library's perturbation
 /// Plus(q, dphi) = Exp(dphi) q, dphi the full angle [rad] in the outer frame.
 ///
-/// Ceres 2.1's EigenQuaternionManifold takes half angles, so that its covariances are a quarter of
-/// what this library states; hence our own.
+/// Ceres 2.1's EigenQuaternionManifold uses half angles, so that its covariances would be a quarter
+/// of those of this library.
 class RotationManifold final : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 4; }

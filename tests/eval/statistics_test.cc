@@ -13,35 +13,6 @@
 namespace sextant {
 namespace {
 
-TEST(RegularizedBeta, AgreesWithClosedForms) {
-  for (const double x : {0.01, 0.2, 0.5, 0.77, 0.99}) {
-    EXPECT_NEAR(RegularizedBeta(1.0, 1.0, x), x, 1e-12);
-    EXPECT_NEAR(RegularizedBeta(3.0, 1.0, x), x * x * x, 1e-12);
-    EXPECT_NEAR(RegularizedBeta(1.0, 4.0, x), 1.0 - std::pow(1.0 - x, 4), 1e-12);
-    EXPECT_NEAR(RegularizedBeta(0.5, 0.5, x), 2.0 / std::acos(-1.0) * std::asin(std::sqrt(x)),
-                1e-12);
-  }
-  EXPECT_EQ(RegularizedBeta(2.0, 3.0, 0.0), 0.0);
-  EXPECT_EQ(RegularizedBeta(2.0, 3.0, 1.0), 1.0);
-}
-
-TEST(RegularizedBeta, IsTheTailOfABinomial) {
-  // P(Bin(10, 0.3) >= 4), summed.
-  double tail = 0.0;
-  for (int k = 4; k <= 10; ++k) {
-    tail += std::exp(std::lgamma(11) - std::lgamma(k + 1) - std::lgamma(11 - k)) *
-            std::pow(0.3, k) * std::pow(0.7, 10 - k);
-  }
-  EXPECT_NEAR(RegularizedBeta(4.0, 7.0, 0.3), tail, 1e-12);
-}
-
-TEST(RegularizedBeta, HoldsForLargeSamples) {
-  // What the cancelling log-gammas leave: 2^-52 lgamma(10^7).
-  EXPECT_NEAR(RegularizedBeta(5e6, 5e6, 0.5), 0.5, 0x1p-52 * std::lgamma(1e7));
-  // Normal to the third digit: sd 0.5 / sqrt(1e7 + 1).
-  EXPECT_NEAR(RegularizedBeta(5e6, 5e6, 0.5 + 1.959964 * 0.5 / std::sqrt(1e7)), 0.975, 1e-4);
-}
-
 TEST(WilsonInterval, IsThatOfThePaperAndNeverEmpty) {
   // 7 of 10: the roots of (p - 0.7)^2 = z^2 p (1 - p) / 10.
   const Interval interval = WilsonInterval(7, 10);

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "base/median.h"
 #include "io/clouds/pcd_file.h"
 #include "io/problems/acfr_poses.h"
 #include "simulator/lidar/scan.h"
@@ -48,9 +49,7 @@ BoardStatistics Measure(const RingPoints& board) {
                       std::numbers::pi);
     }
   }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::ranges::nth_element(steps, middle);
-  result.step_deg = *middle;
+  result.step_deg = UpperMedian(steps);
   result.plane_rms_mm = test::FitPlane(board).rms_m * 1e3;
   return result;
 }

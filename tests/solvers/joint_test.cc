@@ -265,8 +265,8 @@ TEST(Joint, TakesAsGivenWhatTheViewsDoNotTell) {
   const auto plain = Solve(session.problem, "joint(kabsch)");
   const auto report = Solve(session.problem, "joint(kabsch,range_bias=true,intrinsics=focal)");
   ASSERT_TRUE(plain && report) << report.error().message;
-  EXPECT_THAT(report->warnings, Contains(HasSubstr("range_bias_m was taken as given")));
-  EXPECT_THAT(report->warnings, Contains(HasSubstr("fx_px was taken as given")));
+  EXPECT_THAT(report->warnings, Contains(HasSubstr("range_bias_m was fixed at its given value")));
+  EXPECT_THAT(report->warnings, Contains(HasSubstr("fx_px was fixed at its given value")));
   EXPECT_THAT(report->extras, IsEmpty());
   EXPECT_LT(PoseDifference(report->cam_from_lidar, plain->cam_from_lidar).norm(), 1e-8);
 }

@@ -189,7 +189,7 @@ TEST(ObjectMatch, WhatSpeaksAgainstAPairingCounts) {
 TEST(ObjectMatch, ManyViewsAreNotAllTriedAndStillFound) {
   Random random(4);
   const MatchedSession session = MakeMatchedSession(100, 2, random);
-  const auto found = MatchObjects(session.views, {.cap = kCap, .most_starts = 64});
+  const auto found = MatchObjects(session.views, {.cap = kCap, .max_starts = 64});
   ASSERT_TRUE(found) << found.error().message;
   ExpectTruth(session, found->front(), 0);
 }

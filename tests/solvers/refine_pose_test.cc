@@ -117,7 +117,7 @@ TEST(RefinePose, AgreesWithCeresOnEveryKindAndCamera) {
       EXPECT_LT(distance.translation_m, 1e-9);
       EXPECT_NEAR(ours.cost, theirs.cost, 1e-9 * ours.cost);
 
-      const std::optional<Matrix6d> covariance = InvertInformation(ours.information);
+      const std::optional<Matrix6d> covariance = InvertSymmetric(ours.information);
       const std::optional<Matrix6d> reference = CeresCovariance(terms.View(), ours.cam_from_lidar);
       ASSERT_TRUE(covariance && reference);
       EXPECT_TRUE(covariance->isApprox(*reference, 1e-8));
@@ -155,7 +155,7 @@ TEST(RefinePose, RefusesAStartThatDoesNotProject) {
             RefineOutcome::kNotProjected);
 }
 
-TEST(InvertInformation, DoesNotDependOnTheUnits) {
+TEST(InvertSymmetric, DoesNotDependOnTheUnits) {
   Random random(5);
   const PairScene scene = MakeScene({.pairs = 8, .sigma_m = 0.01}, random);
   const PairTerms terms = TermsOf(scene.problem, Kinds::kPoints);
@@ -163,15 +163,15 @@ TEST(InvertInformation, DoesNotDependOnTheUnits) {
   Vector6d units;
   units << 1e8, 1e8, 1e8, 1e-8, 1e-8, 1e-8;
   const Matrix6d scaled = units.asDiagonal() * information * units.asDiagonal();
-  const std::optional<Matrix6d> inverse = InvertInformation(scaled);
+  const std::optional<Matrix6d> inverse = InvertSymmetric(scaled);
   ASSERT_TRUE(inverse);
   const Matrix6d back = units.asDiagonal() * *inverse * units.asDiagonal();
-  EXPECT_TRUE(back.isApprox(*InvertInformation(information), 1e-9));
+  EXPECT_TRUE(back.isApprox(*InvertSymmetric(information), 1e-9));
   Matrix6d singular = information;
   singular.row(2) = singular.row(1);
   singular.col(2) = singular.col(1);
-  EXPECT_FALSE(InvertInformation(singular));
-  EXPECT_FALSE(InvertInformation(Matrix6d::Zero()));
+  EXPECT_FALSE(InvertSymmetric(singular));
+  EXPECT_FALSE(InvertSymmetric(Matrix6d::Zero()));
 }
 
 struct NeesCase {

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <vector>
+
+#include "base/median.h"
 
 namespace sextant::test {
 
-/// The upper one of an even number. Requires values.
-inline double Median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
+/// UpperMedian of a copy. Requires values.
+inline double Median(std::vector<double> values) { return UpperMedian(values); }
 
 }  // namespace sextant::test
