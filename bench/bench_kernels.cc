@@ -11,7 +11,6 @@
 #include "geometry/random_vectors.h"
 #include "geometry/so3.h"
 #include "solvers/kernels/kabsch.h"
-#include "solvers/kernels/kabsch_batch.h"
 
 namespace sextant::bench {
 namespace {
@@ -90,55 +89,6 @@ void UmeyamaFixed(benchmark::State& state) {
   Umeyama<Eigen::Matrix<double, 3, kCount>>(state);
 }
 
-// As many problems at once as one call of FitKabschBatch gets here; the peers take them in turn.
-constexpr std::size_t kBatch = 64;
-
-std::vector<PointPairs> FullBatch(const benchmark::State& state) {
-  std::vector<PointPairs> problems = MakePointPairs(state);
-  while (problems.size() < kBatch) problems.push_back(problems[problems.size() / 2]);
-  problems.resize(kBatch);
-  return problems;
-}
-
-void KabschBatch(benchmark::State& state) {
-  const std::vector<PointPairs> problems = FullBatch(state);
-  const auto count = static_cast<std::size_t>(state.range(0));
-  PointBatch batch(kBatch, count);
-  for (std::size_t k = 0; k < kBatch; ++k) {
-    for (std::size_t i = 0; i < count; ++i) {
-      batch.Set(k, i, problems[k].in_cam[i], problems[k].in_lidar[i]);
-    }
-  }
-  std::vector<KabschOutcome> fits(kBatch);
-  FitKabschBatch(batch, fits);
-  for (std::size_t k = 0; k < kBatch; ++k) {
-    if (!fits[k]) return state.SkipWithError("no fit");
-    if (!CheckPose(state, fits[k]->b_from_a, problems[k].cam_from_lidar, kTolerance)) return;
-  }
-  for (auto _ : state) {
-    FitKabschBatch(batch, fits);
-    benchmark::DoNotOptimize(fits.data());
-    benchmark::ClobberMemory();
-  }
-}
-
-template <int kCount>
-void UmeyamaBatch(benchmark::State& state) {
-  using Matrix = Eigen::Matrix<double, 3, kCount>;
-  std::vector<Matrix> in_cam;
-  std::vector<Matrix> in_lidar;
-  for (const PointPairs& points : FullBatch(state)) {
-    in_cam.push_back(Columns<Matrix>(points.in_cam));
-    in_lidar.push_back(Columns<Matrix>(points.in_lidar));
-  }
-  for (auto _ : state) {
-    for (std::size_t k = 0; k < kBatch; ++k) {
-      const Eigen::Matrix4d answer = Eigen::umeyama(in_lidar[k], in_cam[k], false);
-      benchmark::DoNotOptimize(answer);
-    }
-  }
-}
-
 // Ten to one and more: the two larger eigenvalues of Horn's matrix come close.
 void KabschElongated(benchmark::State& state) {
   std::vector<PointPairs> problems(64);
@@ -194,10 +144,6 @@ BENCHMARK(UmeyamaFixed<4>)->Name("kabsch/umeyama_fixed")->Arg(4);
 BENCHMARK(UmeyamaFixed<8>)->Name("kabsch/umeyama_fixed")->Arg(8);
 BENCHMARK(UmeyamaFixed<20>)->Name("kabsch/umeyama_fixed")->Arg(20);
 BENCHMARK(UmeyamaFixed<100>)->Name("kabsch/umeyama_fixed")->Arg(100);
-BENCHMARK(KabschBatch)->Name("kabsch_64_problems/sextant")->Arg(3)->Arg(4)->Arg(8);
-BENCHMARK(UmeyamaBatch<3>)->Name("kabsch_64_problems/umeyama_fixed")->Arg(3);
-BENCHMARK(UmeyamaBatch<4>)->Name("kabsch_64_problems/umeyama_fixed")->Arg(4);
-BENCHMARK(UmeyamaBatch<8>)->Name("kabsch_64_problems/umeyama_fixed")->Arg(8);
 BENCHMARK(KabschElongated)->Name("kabsch_elongated/sextant")->Arg(10)->Arg(30)->Arg(100);
 BENCHMARK(Reading)->Name("read_points/sextant")->Arg(1000000);
 

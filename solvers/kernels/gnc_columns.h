@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <optional>
+#include <span>
 
 #include "geometry/rigid3d.h"
 #include "solvers/kernels/pair_columns.h"
@@ -17,30 +19,30 @@ struct GncWeight {
         scale(max_squared * convexity * (convexity + 1.0)),
         mu(convexity) {}
 
+  /// 0 where `squared` is not a number.
+  double At(double squared) const {
+    if (squared <= full) return 1.0;
+    if (!(squared < none)) return 0.0;
+    return std::sqrt(scale / squared) - mu;
+  }
+
   double full, none, scale, mu;
 };
 
-/// The mu at which the surrogate is convex at the largest residual; 0 if that is an inlier's.
-double FirstGncMu(double largest_squared, double max_squared);
-
-/// The weights are settled when none is further than this from 0 or 1.
-inline constexpr double kGncBinary = 1e-3;
-
-struct GncSchedule {
-  double max_squared = 0.0;
-  double mu_factor = 1.4;
-  int max_iterations = 200;
+struct GncReweighting {
+  /// The largest distance of a weight from 0 or 1, or change of a weight, whichever is larger.
+  double unsettled = 0.0;
+  /// Least squares on the weighted pairs, where it has a closed form and determines a pose.
+  std::optional<Rigid3d> fit;
 };
 
-struct GncPose {
-  Rigid3d cam_from_lidar;
-  int iterations = 0;
-};
+/// The largest finite r_i^2; 0 where there is none.
+double LargestSquaredOf(const PairColumns& pairs, const Rigid3d& cam_from_lidar);
 
-/// Graduated non-convexity on isotropic pairs from `start`, least squares on all of them: each
-/// least squares of weighed pairs is closed, one pass over the pairs. None where weights leave a
-/// turn free. The poses are those of FitKabsch, whether or not it would call them mirrored.
-std::optional<GncPose> AnnealInColumns(const PairColumns& pairs, const Rigid3d& start,
-                                       const GncSchedule& schedule);
+/// Replaces the weights by those at the pose and fits the weighted pairs, in one pass. The fit is
+/// that of FitKabsch, also where FitKabsch calls the pairs mirrored.
+/// Shape: pairs.padded() weights, in the order of the columns.
+GncReweighting ReweightColumns(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
+                               const GncWeight& weight_of, std::span<double> weights);
 
 }  // namespace sextant

@@ -2,10 +2,9 @@
 #include "solvers/kernels/pair_columns.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <limits>
 
+#include "solvers/kernels/bit_graph.h"
 #include "solvers/kernels/column_kernel.h"
 
 namespace sextant {
@@ -14,7 +13,7 @@ namespace {
 constexpr int kColumns = 8;
 constexpr std::size_t kColumnBlock = PairColumns::kBlock;
 
-// Of the padded pairs too, whose residual is not a number and costs as an outlier's.
+// Includes the padding, whose residual is not a number and costs as an outlier's.
 SEXTANT_MULTIVERSION double SumTruncated(const PairColumns& pairs, const ColumnPose& pose,
                                          double max_squared) {
   const Vec8d most = BroadcastVec(max_squared);
@@ -26,17 +25,19 @@ SEXTANT_MULTIVERSION double SumTruncated(const PairColumns& pairs, const ColumnP
   return HorizontalSum(cost);
 }
 
+// Bit i of a word is set where pair i of its block is an inlier. `end` is that of the last block.
 SEXTANT_MULTIVERSION void MarkInliers(const PairColumns& pairs, const ColumnPose& pose,
-                                      double max_squared, std::uint64_t* bits_of_block) {
+                                      double max_squared, std::size_t begin, std::size_t end,
+                                      std::uint64_t* words) {
   const Mask8 shifts = {0, 8, 16, 24, 32, 40, 48, 56};
-  for (std::size_t block = 0; block < pairs.padded(); block += kColumnBlock) {
+  for (std::size_t block = begin; block < end; block += kColumnBlock) {
     Mask8 bits{};
     for (std::size_t k = kSimdWidth; k-- > 0;) {
       const Mask8 is_inlier = SquaredSigmas(pairs, pose, block + kSimdWidth * k) <= max_squared;
       bits = bits + bits - is_inlier;
     }
     bits <<= shifts;
-    bits_of_block[block / kColumnBlock] = static_cast<std::uint64_t>(HorizontalOr(bits));
+    *words++ = static_cast<std::uint64_t>(HorizontalOr(bits));
   }
 }
 
@@ -114,18 +115,19 @@ InlierFit FitInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar, do
   return result;
 }
 
-std::vector<int> InliersOf(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
-                           double max_squared) {
-  std::vector<std::uint64_t> bits(pairs.padded() / kColumnBlock);
-  MarkInliers(pairs, ColumnPoseOf(cam_from_lidar), max_squared, bits.data());
-  std::vector<int> inliers;
+void InliersOf(const PairColumns& pairs, const Rigid3d& cam_from_lidar, double max_squared,
+               std::vector<int>& inliers) {
+  constexpr std::size_t kWords = 16;
+  std::uint64_t words[kWords];
+  const ColumnPose pose = ColumnPoseOf(cam_from_lidar);
+  inliers.clear();
   inliers.reserve(pairs.size());
-  for (std::size_t block = 0; block < bits.size(); ++block) {
-    for (std::uint64_t left = bits[block]; left != 0; left &= left - 1) {
-      inliers.push_back(static_cast<int>(block * kColumnBlock) + std::countr_zero(left));
-    }
+  for (std::size_t begin = 0; begin < pairs.padded(); begin += kWords * kColumnBlock) {
+    const std::size_t end = std::min(begin + kWords * kColumnBlock, pairs.padded());
+    MarkInliers(pairs, pose, max_squared, begin, end, words);
+    ForEachBit(words, (end - begin) / kColumnBlock,
+               [&](int bit) { inliers.push_back(static_cast<int>(begin) + bit); });
   }
-  return inliers;
 }
 
 }  // namespace sextant

@@ -7,8 +7,8 @@
 #include "solvers/core/inner_solver.h"
 #include "solvers/core/registry.h"
 #include "solvers/robust/clique_listing.h"
+#include "solvers/robust/consensus.h"
 #include "solvers/robust/max_clique.h"
-#include "solvers/robust/pair_scorer.h"
 
 namespace sextant {
 namespace {
@@ -17,11 +17,11 @@ struct CliqueOptions : InlierOptions {
   std::int64_t max_nodes = 20'000;
 };
 
-// In a larger clique one false pair does little harm.
+// One false pair in a larger clique does little harm.
 constexpr std::size_t kSmallClique = 16;
 constexpr std::size_t kMaxCliques = 300;
 
-// The graph, twice, takes 100 MB.
+// Two graphs of this size take 100 MB.
 constexpr std::size_t kMaxPairs = 20'000;
 
 /// The largest set of 3D-3D pairs that agree on all distances, then the inner solver on it.
@@ -29,12 +29,12 @@ constexpr std::size_t kMaxPairs = 20'000;
 /// A rigid motion keeps distances: true pairs i and j have | |c_i - c_j| - |l_i - l_j| | within
 /// `threshold` of its sigma sqrt(u^T (S_i + S_j) u), u along c_i - c_j. Outliers agree with each
 /// other by chance only, so the true pairs are the maximum clique of the graph of agreements even
-/// at 95 percent outliers (Leordeanu and Hebert 2005; Shi, Yang and Carlone 2021, ROBIN). The inner
-/// solver's pose then gathers its inliers anew, with FinalMaxSquared of the options, and the inner
+/// at 95 percent outliers (Leordeanu and Hebert 2005; Shi, Yang and Carlone 2021, ROBIN). The
+/// inliers are then chosen again by the pose, within FinalMaxSquared of the options; the inner
 /// solver answers on them unless least squares fits them better. Exact up to max_nodes nodes of the
-/// search; after that the largest so far, and termination kMaxIterations. Memory N^2 / 8 bytes, and
-/// as much again where hardly any pair is false; time N^2 to build. Errors: kNoConsensus (see
-/// CheckConsensus), those of the inner solver.
+/// search; beyond that the largest clique so far, with termination kMaxIterations. Memory N^2 / 8
+/// bytes, and as much again where hardly any pair is false; time N^2 to build. Errors: kNoConsensus
+/// (see CheckConsensus), those of the inner solver.
 class CliqueSolver final : public Solver {
  public:
   CliqueSolver(const SolverArguments& arguments, const CliqueOptions& options)
@@ -53,38 +53,50 @@ class CliqueSolver final : public Solver {
                                    "ransac or gnc",
                                    problem.pairs_3d3d.size(), kMaxPairs));
     }
-    const std::unique_ptr<PairScorer> judge = MakePairScorer(*inner_, problem, options_);
-    const BitGraph graph = judge->Graph();
+    const std::unique_ptr<PairScorer> scorer =
+        MakePairScorer(problem, PairKind::k3d3d, options_.Assumed());
+    const double max_squared = options_.MaxSquared(PairKind::k3d3d);
+    const BitGraph graph = scorer->AgreementGraph(max_squared);
     const Clique clique = FindMaximumClique(graph, options_.max_nodes);
-    const int least = spec().needs.pairs_3d3d;
-    SEXTANT_RETURN_IF_ERROR(judge->Check(clique.vertices, least));
-    SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, PoseFrom(problem, *judge, graph, clique));
-    Expected<Estimate> estimate = judge->Answer(pose);
+    const int min_inliers = spec().needs.pairs_3d3d;
+    SEXTANT_RETURN_IF_ERROR(CheckConsensus(*scorer, max_squared, clique.vertices, min_inliers));
+    const double final_max_squared = options_.FinalMaxSquared(*scorer);
+    SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose,
+                             BestPose(problem, *scorer, final_max_squared, graph, clique));
+    Expected<Estimate> estimate =
+        BetterOnInliers(*inner_, problem, *scorer, pose, final_max_squared);
     if (!estimate) return estimate;
-    SEXTANT_RETURN_IF_ERROR(judge->Check(estimate->inliers, least));
+    SEXTANT_RETURN_IF_ERROR(CheckConsensus(*scorer, max_squared, estimate->inliers, min_inliers));
     estimate->iterations = static_cast<int>(std::min<std::int64_t>(clique.nodes, 1'000'000'000));
     estimate->termination =
         clique.is_maximum ? Termination::kConverged : Termination::kMaxIterations;
     return estimate;
   }
 
-  // Distances do not tell a point from its mirror image: a false pair may have taken the place of
-  // a true one, and as many of chance may agree. So where there are few, all cliques count that are
-  // as large or lack one, and the cheapest pose is taken.
-  Expected<Rigid3d> PoseFrom(const CalibrationProblem& problem, const PairScorer& judge,
-                             const BitGraph& graph, const Clique& clique) const {
+  // Distances do not distinguish a point from its mirror image, so a false pair may have taken the
+  // place of a true one, or an equally large set may agree by chance. Where the clique is small,
+  // all cliques that are as large or one smaller count, and the cheapest pose is taken.
+  Expected<Rigid3d> BestPose(const CalibrationProblem& problem, PairScorer& scorer,
+                             double max_squared, const BitGraph& graph,
+                             const Clique& clique) const {
     std::vector<std::vector<int>> cliques;
     if (clique.vertices.size() <= kSmallClique) {
-      const auto fewest = static_cast<std::size_t>(MinPairs(inner_->spec().needs));
-      cliques = ListCliques(graph, std::max(clique.vertices.size() - 1, fewest), kMaxCliques,
+      const auto min_pairs = static_cast<std::size_t>(MinPairs(inner_->spec().needs));
+      cliques = ListCliques(graph, std::max(clique.vertices.size() - 1, min_pairs), kMaxCliques,
                             options_.max_nodes);
     }
-    // The first, should there be more than are listed.
+    // The list may be cut off before this one.
     cliques.insert(cliques.begin(), clique.vertices);
-    std::vector<ScoredPose> poses;
-    for (const std::vector<int>& vertices : cliques) AddPoses(problem, judge, vertices, poses);
-    if (poses.empty()) return WhyNoPose(problem, clique);
-    return BestOptimised(judge, std::move(poses));
+    std::vector<ScoredPose> candidates;
+    std::vector<Rigid3d> poses;
+    for (const std::vector<int>& vertices : cliques) {
+      poses.clear();
+      inner_->Hypothesize(problem, vertices, poses);
+      for (const Rigid3d& pose : poses)
+        candidates.push_back({scorer.Cost(pose, max_squared), pose});
+    }
+    if (candidates.empty()) return WhyNoPose(problem, clique);
+    return BestOptimised(scorer, max_squared, std::move(candidates));
   }
 
   struct ScoredPose {
@@ -92,31 +104,25 @@ class CliqueSolver final : public Solver {
     Rigid3d pose;
   };
 
-  void AddPoses(const CalibrationProblem& problem, const PairScorer& judge,
-                std::span<const int> vertices, std::vector<ScoredPose>& judged) const {
-    std::vector<Rigid3d> poses;
-    inner_->Hypothesize(problem, vertices, poses);
-    for (const Rigid3d& pose : poses) judged.push_back({judge.Cost(pose), pose});
-  }
-
-  // Of the most promising.
-  Rigid3d BestOptimised(const PairScorer& judge, std::vector<ScoredPose> poses) const {
+  // The best of the cheapest poses after least squares on their inliers.
+  Rigid3d BestOptimised(PairScorer& scorer, double max_squared,
+                        std::vector<ScoredPose> candidates) const {
     constexpr std::size_t kMaxOptimised = 3;
-    const std::size_t optimised = std::min(kMaxOptimised, poses.size());
+    constexpr int kMaxRounds = 20;  // Far fewer are needed.
     const auto is_cheaper = [](const ScoredPose& a, const ScoredPose& b) {
       return a.cost < b.cost;
     };
-    std::stable_sort(poses.begin(), poses.end(), is_cheaper);
-    if (!spec().estimates_rotation) return poses.front().pose;
-    poses.resize(optimised);
-    for (ScoredPose& judged : poses) {
-      judged.pose = judge.Optimise(judged.pose);
-      judged.cost = judge.Cost(judged.pose);
+    std::stable_sort(candidates.begin(), candidates.end(), is_cheaper);
+    if (!spec().estimates_rotation) return candidates.front().pose;
+    candidates.resize(std::min(kMaxOptimised, candidates.size()));
+    for (ScoredPose& candidate : candidates) {
+      candidate.pose = OptimiseOnInliers(scorer, candidate.pose, max_squared, kMaxRounds, {});
+      candidate.cost = scorer.Cost(candidate.pose, max_squared);
     }
-    return std::min_element(poses.begin(), poses.end(), is_cheaper)->pose;
+    return std::min_element(candidates.begin(), candidates.end(), is_cheaper)->pose;
   }
 
-  // The inner solver's reason where most pairs agree on their distances.
+  // The error of the inner solver where most pairs agree on their distances.
   Expected<Rigid3d> WhyNoPose(const CalibrationProblem& problem, const Clique& clique) const {
     if (2 * clique.vertices.size() > problem.pairs_3d3d.size()) {
       return SolveSubset(*inner_, problem, clique.vertices).map([](const Estimate& estimate) {
@@ -136,7 +142,7 @@ class CliqueSolver final : public Solver {
 OptionSet<CliqueOptions> CliqueOptionSet() {
   OptionSet<CliqueOptions> options;
   options.Count("max_nodes", &CliqueOptions::max_nodes, 1, 1'000'000'000'000,
-                "of the search tree; after them the largest clique so far is taken");
+                "maximum nodes of the search tree; after them the largest clique so far is taken");
   return AddInlierOptions(options);
 }
 
@@ -145,8 +151,8 @@ OptionSet<CliqueOptions> CliqueOptionSet() {
 SolverEntry CliqueEntry() {
   return {
       .name = "clique",
-      .summary = "the largest set of pairs that agree on all distances, the inner solver on it",
-      .needs = "what the inner solver of 3D-3D pairs needs and one more; up to 95 percent outliers",
+      .summary = "the inner solver on the largest set of pairs that agree on all distances",
+      .needs = "one 3D-3D pair more than the inner solver needs; up to 95 percent outliers",
       .reference = "Shi, Yang and Carlone 2021 (ROBIN); Tomita and Seki 2003",
       .example = "clique(kabsch)",
       .wraps_solver = true,

@@ -5,10 +5,10 @@
 
 namespace sextant {
 
-/// Every clique of at least `least` vertices, each ascending, in lexical order; the first `most` of
-/// them. Bounded by counting candidates, so quick where few vertices have `least` neighbours in
-/// common; ends after `max_nodes` nodes.
-std::vector<std::vector<int>> ListCliques(const BitGraph& graph, std::size_t least,
-                                          std::size_t most, std::int64_t max_nodes);
+/// The first `max_cliques` cliques of at least `min_size` vertices, in lexical order, each with its
+/// vertices ascending. Branches with too few candidates are cut, so the search is quick where few
+/// vertices have `min_size` neighbours in common; it ends after `max_nodes` nodes.
+std::vector<std::vector<int>> ListCliques(const BitGraph& graph, std::size_t min_size,
+                                          std::size_t max_cliques, std::int64_t max_nodes);
 
 }  // namespace sextant

@@ -7,6 +7,7 @@
 #include "solvers/core/inner_solver.h"
 #include "solvers/core/registry.h"
 #include "solvers/robust/consensus.h"
+#include "solvers/robust/term_scorer.h"
 
 namespace sextant {
 namespace {
@@ -15,13 +16,13 @@ struct DropWorstOptions : InlierOptions {
   int keep = 0;
 };
 
-/// Solves, leaves out the pair of the largest residual, and solves again: the paper's elimination
+/// Solves, removes the pair with the largest residual, and solves again: the paper's elimination
 /// by hand (20 points, then 11, then 8) as a method.
 ///
-/// Ends with `keep` pairs; with keep=0 as soon as every pair left is within the threshold, and then
-/// the pairs left must be a consensus (see CheckConsensus). Residuals are in sigmas, so that a pair
-/// known to be poor is not dropped for it. Errors: kNoConsensus, kTooFewPairs (fewer than `keep`),
-/// those of the inner solver.
+/// Ends with `keep` pairs; with keep=0 as soon as all remaining pairs are within the threshold, and
+/// then these must be a consensus (see CheckConsensus). Residuals are in sigmas, so that a pair
+/// that is known to be noisy is not dropped for it. Errors: kNoConsensus, kTooFewPairs (fewer than
+/// `keep`), those of the inner solver.
 class DropWorstSolver final : public Solver {
  public:
   DropWorstSolver(const SolverArguments& arguments, PairKind kind, const DropWorstOptions& options)
@@ -41,31 +42,29 @@ class DropWorstSolver final : public Solver {
   }
 
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
-    const PairTerms terms = MakeTerms(problem, kind_, options_.Assumed());
-    const PoseScorer scorer(terms, options_.MaxSquared(kind_));
-    std::vector<double> squared(terms.size());
-    std::vector<int> kept(terms.size());
+    const double max_squared = options_.MaxSquared(kind_);
+    const TermScorer scorer(MakeTerms(problem, kind_, options_.Assumed()));
+    std::vector<double> squared(scorer.size());
+    std::vector<int> kept(scorer.size());
     std::iota(kept.begin(), kept.end(), 0);
-    const int least = options_.keep > 0 ? options_.keep : MinPairs(inner_->spec().needs);
+    const int min_kept = options_.keep > 0 ? options_.keep : MinPairs(inner_->spec().needs);
     bool all_within = false;
     int solves = 0;
     while (true) {
       ++solves;
-      SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, PoseOfSubset(*inner_, problem, terms, kept));
+      SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, PoseOfSubset(*inner_, problem, scorer, kept));
       scorer.SquaredResiduals(pose, squared);
       const auto worst = std::max_element(kept.begin(), kept.end(), [&](int a, int b) {
         return squared[static_cast<std::size_t>(a)] < squared[static_cast<std::size_t>(b)];
       });
-      all_within = squared[static_cast<std::size_t>(*worst)] <= scorer.max_squared();
-      if (static_cast<int>(kept.size()) <= least || (options_.keep == 0 && all_within)) break;
+      all_within = squared[static_cast<std::size_t>(*worst)] <= max_squared;
+      if (static_cast<int>(kept.size()) <= min_kept || (options_.keep == 0 && all_within)) break;
       kept.erase(worst);
     }
     if (options_.keep == 0) {
       const std::span<const int> agreeing = all_within ? kept : std::span<const int>();
-      if (Expected<void> ok = CheckConsensus(terms, scorer, agreeing, MinPairs(spec().needs));
-          !ok) {
-        return tl::unexpected<Error>(std::move(ok.error()));
-      }
+      SEXTANT_RETURN_IF_ERROR(
+          CheckConsensus(scorer, max_squared, agreeing, MinPairs(spec().needs)));
     }
     Expected<Estimate> estimate = SolveSubset(*inner_, problem, kept);
     if (!estimate) return estimate;
@@ -91,8 +90,7 @@ OptionSet<DropWorstOptions> DropWorstOptionSet() {
 SolverEntry DropWorstEntry() {
   return {
       .name = "drop_worst",
-      .summary =
-          "leaves out the pair of the largest residual and solves again, until keep are left",
+      .summary = "removes the pair with the largest residual and solves again, until keep are left",
       .needs = "keep pairs, or what the inner solver needs and at least one pair more",
       .reference = "the manual elimination of the paper (20 to 11 to 8 points)",
       .example = "drop_worst(kabsch)",
@@ -102,11 +100,11 @@ SolverEntry DropWorstEntry() {
         SEXTANT_ASSIGN_OR_RETURN(const DropWorstOptions options,
                                  DropWorstOptionSet().Parse(arguments.options));
         SEXTANT_ASSIGN_OR_RETURN(const PairKind kind, KindOfPairs(*arguments.inner, "drop_worst"));
-        const int least = MinPairs(arguments.inner->spec().needs);
-        if (options.keep > 0 && options.keep < least) {
+        const int min_pairs = MinPairs(arguments.inner->spec().needs);
+        if (options.keep > 0 && options.keep < min_pairs) {
           return MakeError(ErrorCode::kInvalidOption,
                            fmt::format("option keep={}: '{}' needs at least {} pairs", options.keep,
-                                       arguments.inner->spec().name, least));
+                                       arguments.inner->spec().name, min_pairs));
         }
         return std::make_shared<DropWorstSolver>(arguments, kind, options);
       },

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <optional>
+#include <vector>
 
 #include "solvers/core/inner_solver.h"
 #include "solvers/core/registry.h"
-#include "solvers/kernels/gnc_columns.h"
-#include "solvers/least_squares/refine_pose.h"
 #include "solvers/robust/consensus.h"
-#include "solvers/robust/pair_scorer.h"
+#include "solvers/robust/term_scorer.h"
 
 namespace sextant {
 namespace {
@@ -22,15 +21,9 @@ struct GncOptions : InlierOptions {
   int max_iterations = 200;
 };
 
-// Pairs of less weight are left out: their sigma would be over a thousand times the stated one.
+// Pairs with less weight are left out: their sigma would be over a thousand times the stated one.
 constexpr double kMinWeight = 1e-6;
 constexpr double kEveryPair = std::numeric_limits<double>::max();
-
-double Weight(double squared, const GncWeight& by) {
-  if (squared <= by.full) return 1.0;
-  if (!(squared < by.none)) return 0.0;
-  return std::sqrt(by.scale / squared) - by.mu;
-}
 
 Pair3d3d Weighted(Pair3d3d pair, double weight, const AssumedNoise& assumed) {
   if (pair.covariance_in_cam) {
@@ -57,12 +50,14 @@ std::vector<Pair> WeightedPairs(const std::vector<Pair>& pairs, const std::vecto
 }
 
 /// Graduated non-convexity with truncated least squares (Yang, Antonante, Tzoumas and Carlone
-/// 2020, RA-L 5): min sum_i min(r_i^2, threshold^2), reached from a convex surrogate that mu
-/// bends, a step of mu_factor at a time, towards the truncated cost.
+/// 2020, RA-L 5): min sum_i min(r_i^2, threshold^2), reached from a convex surrogate that
+/// approaches the truncated cost as mu grows by a factor of mu_factor in each step.
 ///
-/// The weights go to the inner solver as sigma / sqrt(w); weighted least squares from its answer
-/// follows, since not every closed form heeds sigmas. At the end the inner solver gets the inliers
-/// with their true sigmas. Errors: kNoConsensus (see CheckConsensus), those of the inner solver.
+/// 3D-3D pairs with isotropic noise have a closed form of weighted least squares. Otherwise the
+/// inner solver gets the weights as sigma / sqrt(w), and weighted least squares starts from its
+/// answer, since not every closed form uses the sigmas. At the end the inner solver gets the
+/// inliers with their true sigmas. Errors: kNoConsensus (see CheckConsensus), those of the inner
+/// solver.
 class GncSolver final : public Solver {
  public:
   GncSolver(const SolverArguments& arguments, PairKind kind, const GncOptions& options)
@@ -76,97 +71,59 @@ class GncSolver final : public Solver {
 
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
-    const bool in_columns =
-        kind_ == PairKind::k3d3d && spec().estimates_rotation && AreIsotropic(problem.pairs_3d3d);
-    if (in_columns) {
-      std::optional<Estimate> estimate = SolveInColumns(problem);
-      if (estimate) return std::move(*estimate);
-    }
-    return SolveInTerms(problem);
-  }
-
-  // None where that does not answer; the long way then does, or says why not.
-  std::optional<Estimate> SolveInColumns(const CalibrationProblem& problem) const {
     const double max_squared = options_.MaxSquared(kind_);
-    const PairColumns pairs(problem.pairs_3d3d, options_.Assumed());
-    const Expected<Estimate> start = SolveWhole(*inner_, problem);
-    if (!start) return std::nullopt;
-    const InlierFit of_all = FitInliers(pairs, start->cam_from_lidar, kEveryPair);
-    if (!of_all.fitted) return std::nullopt;
-    const std::optional<GncPose> annealed = AnnealInColumns(
-        pairs, of_all.cam_from_lidar, {max_squared, options_.mu_factor, options_.max_iterations});
-    if (!annealed) return std::nullopt;
-    std::optional<Estimate> estimate =
-        RefitIfNoWorse(*inner_, problem, pairs, annealed->cam_from_lidar, max_squared);
-    const int least = MinPairs(spec().needs);
-    if (!estimate || !CheckConsensus(pairs, max_squared, estimate->inliers, least)) {
-      return std::nullopt;
-    }
-    SetIterations(annealed->iterations, *estimate);
-    return estimate;
-  }
-
-  void SetIterations(int iterations, Estimate& estimate) const {
-    estimate.iterations = iterations;
-    estimate.termination = iterations < options_.max_iterations ? Termination::kConverged
-                                                                : Termination::kMaxIterations;
-  }
-
-  Expected<Estimate> SolveInTerms(const CalibrationProblem& problem) const {
-    const PairTerms terms = MakeTerms(problem, kind_, options_.Assumed());
-    const PoseScorer scorer(terms, options_.MaxSquared(kind_));
+    const std::unique_ptr<PairScorer> scorer = MakePairScorer(problem, kind_, options_.Assumed());
     int iterations = 0;
-    SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, Anneal(problem, terms, scorer, iterations));
-    Expected<Estimate> estimate = BetterOnInliers(*inner_, problem, terms, scorer, pose);
+    SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, Anneal(problem, *scorer, max_squared, iterations));
+    Expected<Estimate> estimate = BetterOnInliers(*inner_, problem, *scorer, pose, max_squared);
     if (!estimate) return estimate;
-    const int least = MinPairs(spec().needs);
-    SEXTANT_RETURN_IF_ERROR(CheckConsensus(terms, scorer, estimate->inliers, least));
-    SetIterations(iterations, *estimate);
+    SEXTANT_RETURN_IF_ERROR(
+        CheckConsensus(*scorer, max_squared, estimate->inliers, MinPairs(spec().needs)));
+    estimate->iterations = iterations;
+    estimate->termination = iterations < options_.max_iterations ? Termination::kConverged
+                                                                 : Termination::kMaxIterations;
     return estimate;
   }
 
-  Expected<Rigid3d> Anneal(const CalibrationProblem& problem, const PairTerms& terms,
-                           const PoseScorer& scorer, int& iterations) const {
-    std::vector<double> weights(terms.size(), 1.0);
-    std::vector<double> squared(terms.size());
-    Expected<Rigid3d> pose = SolveWeighted(problem, weights, std::nullopt);
-    double mu = 0.0;
-    for (iterations = 1; pose && iterations < options_.max_iterations; ++iterations) {
-      scorer.SquaredResiduals(*pose, squared);
-      if (iterations == 1) {
-        mu = FirstGncMu(LargestFinite(squared), scorer.max_squared());
-        if (mu <= 0.0) break;
+  Expected<Rigid3d> Anneal(const CalibrationProblem& problem, PairScorer& scorer,
+                           double max_squared, int& iterations) const {
+    // Weights that are no further than this from 0 or 1, and from what they were, are settled.
+    constexpr double kSettled = 1e-3;
+    SEXTANT_ASSIGN_OR_RETURN(Rigid3d pose, FitAll(problem, scorer, std::nullopt));
+    iterations = 1;
+    const double largest = scorer.LargestSquared(pose);
+    if (largest <= max_squared) return pose;
+    // The surrogate is convex at the largest residual.
+    double mu = max_squared / (2.0 * largest - max_squared);
+    for (; iterations < options_.max_iterations; ++iterations) {
+      const GncReweighting reweighting = scorer.Reweight(pose, GncWeight(max_squared, mu));
+      if (reweighting.unsettled < kSettled) break;
+      if (reweighting.fit && spec().estimates_rotation) {
+        pose = *reweighting.fit;
+      } else {
+        SEXTANT_ASSIGN_OR_RETURN(pose, FitWeighted(problem, scorer.Weights(), pose));
       }
-      if (!UpdateWeights(squared, GncWeight(scorer.max_squared(), mu), weights)) break;
-      pose = SolveWeighted(problem, weights, *pose);
       mu *= options_.mu_factor;
     }
     return pose;
   }
 
-  static double LargestFinite(const std::vector<double>& squared) {
-    double largest = 0.0;
-    for (const double s : squared) largest = std::isfinite(s) ? std::max(largest, s) : largest;
-    return largest;
+  // Least squares from the pose of the inner solver, or from `before` if that costs less.
+  Expected<Rigid3d> FitAll(const CalibrationProblem& problem, PairScorer& scorer,
+                           const std::optional<Rigid3d>& before) const {
+    std::vector<int> all(scorer.size());
+    std::iota(all.begin(), all.end(), 0);
+    Expected<Rigid3d> pose = PoseOfSubset(*inner_, problem, scorer, all);
+    if (!pose || !spec().estimates_rotation) return pose;
+    const bool is_better =
+        !before || scorer.Cost(*pose, kEveryPair) <= scorer.Cost(*before, kEveryPair);
+    const Rigid3d& start = is_better ? *pose : *before;
+    // Points behind the camera, which an outlier may cause, are left out.
+    return scorer.FitInliers(start, kEveryPair, {}).value_or(start);
   }
 
-  // False where every weight was, and is, 0 or 1.
-  static bool UpdateWeights(const std::vector<double>& squared, const GncWeight& by,
-                            std::vector<double>& weights) {
-    bool settled = true;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      const double weight = Weight(squared[i], by);
-      settled = settled && std::min(weight, 1.0 - weight) < kGncBinary &&
-                std::abs(weight - weights[i]) < kGncBinary;
-      weights[i] = weight;
-    }
-    return !settled;
-  }
-
-  // The least weighted squares: from the inner solver's pose, or the one before if that is better.
-  Expected<Rigid3d> SolveWeighted(const CalibrationProblem& problem,
-                                  const std::vector<double>& weights,
-                                  const std::optional<Rigid3d>& before) const {
+  Expected<Rigid3d> FitWeighted(const CalibrationProblem& problem,
+                                const std::vector<double>& weights, const Rigid3d& before) const {
     CalibrationProblem weighted;
     weighted.camera = problem.camera;
     weighted.initial_cam_from_lidar = problem.initial_cam_from_lidar;
@@ -176,27 +133,15 @@ class GncSolver final : public Solver {
     } else {
       weighted.pairs_2d3d = WeightedPairs(problem.pairs_2d3d, weights, options_.Assumed());
     }
-    const PairTerms terms = MakeTerms(weighted, kind_, options_.Assumed());
-    const int least = MinPairs(inner_->spec().needs);
-    if (terms.size() < static_cast<std::size_t>(least)) {
+    TermScorer scorer(MakeTerms(weighted, kind_, options_.Assumed()));
+    const int min_pairs = MinPairs(inner_->spec().needs);
+    if (scorer.size() < static_cast<std::size_t>(min_pairs)) {
       return MakeError(ErrorCode::kNoConsensus,
                        fmt::format("{} of {} pairs keep a weight, expected at least {}; check the "
                                    "pairing and the sigmas",
-                                   terms.size(), weights.size(), least));
+                                   scorer.size(), weights.size(), min_pairs));
     }
-    std::vector<int> all(terms.size());
-    std::iota(all.begin(), all.end(), 0);
-    Expected<Rigid3d> pose = PoseOfSubset(*inner_, weighted, terms, all);
-    if (!pose || !spec().estimates_rotation) return pose;
-    const PoseScorer squares(terms, kEveryPair);
-    const bool is_better = !before || squares.Cost(*pose) <= squares.Cost(*before);
-    const Rigid3d& start = is_better ? *pose : *before;
-    // An outlier may put points behind the camera, which least squares cannot begin with.
-    std::vector<int> projected;
-    squares.Inliers(start, projected);
-    PairTerms in_front;
-    in_front.AssignSubset(terms, projected);
-    return RefinePose(in_front.View(), start, {.wants_information = false}).cam_from_lidar;
+    return FitAll(weighted, scorer, before);
   }
 
   SolverPtr inner_;
@@ -208,9 +153,9 @@ OptionSet<GncOptions> GncOptionSet() {
   OptionSet<GncOptions> options;
   options
       .Real("mu_factor", &GncOptions::mu_factor, "1", 1.01, 10.0,
-            "how much less convex the cost becomes each iteration")
+            "factor by which the cost becomes less convex in each iteration")
       .Count("max_iterations", &GncOptions::max_iterations, 1, 100'000,
-             "most times the inner solver is called with weights");
+             "maximum number of weighted fits");
   return AddInlierOptions(options);
 }
 

@@ -1,58 +1,89 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "base/error.h"
-#include "solvers/core/solver.h"
+#include "geometry/calibration_problem.h"
+#include "geometry/rigid3d.h"
 #include "solvers/kernels/bit_graph.h"
-#include "solvers/kernels/pair_columns.h"
-#include "solvers/robust/consensus.h"
+#include "solvers/kernels/gnc_columns.h"
+#include "solvers/kernels/pair_terms.h"
+#include "solvers/least_squares/refine_pose.h"
 
 namespace sextant {
 
-/// What a search among 3D-3D pairs asks of them: which agree, what poses cost, least squares on the
-/// inliers of a pose, and the answer from it. The threshold of lengths is MaxSquared of the
-/// options, that of poses their FinalMaxSquared.
+/// Scores poses by the pairs of one kind of a problem: the scoring interface of the robust solvers.
+/// r_i is the whitened residual of pair i, in sigmas; a pair is an inlier of a pose where
+/// r_i^2 <= max_squared. A call scores a whole pose, so that no call is virtual per pair. Not
+/// thread-safe: the buffers are kept between calls.
 class PairScorer {
  public:
   virtual ~PairScorer() = default;
+  PairScorer(const PairScorer&) = delete;
+  PairScorer& operator=(const PairScorer&) = delete;
 
-  /// Pairs i and j are connected where their lengths from i to j in both frames differ by no more
-  /// than the threshold of its sigma.
-  virtual BitGraph Graph() const = 0;
-  /// sum_i min(r_i^2, threshold), r_i in sigmas.
-  virtual double Cost(const Rigid3d& pose) const = 0;
-  /// OptimiseOnInliers of consensus.h.
-  virtual Rigid3d Optimise(const Rigid3d& pose) const = 0;
-  /// CheckConsensus of consensus.h, by the options' MaxSquared.
-  virtual Expected<void> Check(std::span<const int> inliers, int least) const = 0;
-  /// BetterOnInliers of consensus.h.
-  virtual Expected<Estimate> Answer(const Rigid3d& pose) const = 0;
+  PairKind kind() const { return kind_; }
+  std::size_t size() const { return size_; }
+
+  /// MSAC cost sum_i min(r_i^2, max_squared) (Torr and Zisserman 2000).
+  double Cost(const Rigid3d& pose, double max_squared) const {
+    return CostUpTo(pose, max_squared, std::numeric_limits<double>::infinity());
+  }
+  /// The cost, or any number >= `give_up` as soon as the sum has reached it.
+  virtual double CostUpTo(const Rigid3d& pose, double max_squared, double give_up) const = 0;
+
+  /// Writes the indices of the inliers, ascending. Allocates nothing once `inliers` has held all
+  /// pairs.
+  virtual void Inliers(const Rigid3d& pose, double max_squared,
+                       std::vector<int>& inliers) const = 0;
+
+  /// Least squares on the inliers of `pose`; none where they do not determine a pose. `limits` are
+  /// for iterative methods, which start at `pose`.
+  virtual std::optional<Rigid3d> FitInliers(const Rigid3d& pose, double max_squared,
+                                            const RefineLimits& limits) = 0;
+
+  /// The probability that a random pair is an inlier of a given pose: the volume within the
+  /// threshold over that of the measurements' bounding box, grown by the threshold.
+  virtual double RandomAgreementProbability(double max_squared) const = 0;
+
+  /// The number of pairs at `indices` that differ from each other in their measurements.
+  virtual int CountDistinct(std::span<const int> indices) const = 0;
+
+  /// Residual terms of the pairs at `indices`.
+  virtual PairTerms Terms(std::span<const int> indices) const = 0;
+
+  /// Requires 3D-3D pairs. Pairs i and j are connected where the distances from i to j in both
+  /// frames differ by at most sqrt(max_squared) sigmas of that difference.
+  virtual BitGraph AgreementGraph(double max_squared) const = 0;
+
+  /// The largest finite r_i^2; 0 where there is none.
+  virtual double LargestSquared(const Rigid3d& pose) const = 0;
+
+  /// Sets the weights of graduated non-convexity from the residuals at `pose`; all are 1 at first.
+  /// The result has the closed-form fit of the weighted pairs where there is one.
+  virtual GncReweighting Reweight(const Rigid3d& pose, const GncWeight& weight_of) = 0;
+
+  /// The weights of the last Reweight, in the order of the pairs. Requires one call of it.
+  virtual std::vector<double> Weights() const = 0;
+
+ protected:
+  PairScorer(PairKind kind, std::size_t size) : kind_(kind), size_(size) {}
+
+ private:
+  PairKind kind_;
+  std::size_t size_;
 };
 
-/// Of isotropic pairs, which are judged in columns, or of any. Refers to its arguments.
-std::unique_ptr<PairScorer> MakePairScorer(const Solver& inner, const CalibrationProblem& problem,
-                                           const InlierOptions& options);
+/// A ColumnScorer for 3D-3D pairs with isotropic noise, else a TermScorer. Refers to `problem`.
+std::unique_ptr<PairScorer> MakePairScorer(const CalibrationProblem& problem, PairKind kind,
+                                           const AssumedNoise& assumed);
 
 /// Whether no pair states a covariance.
 bool AreIsotropic(std::span<const Pair3d3d> pairs);
-
-/// CheckConsensus of consensus.h on columns.
-Expected<void> CheckConsensus(const PairColumns& pairs, double max_squared,
-                              std::span<const int> inliers, int least);
-
-/// RefitOnInliers of consensus.h on columns.
-Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem& problem,
-                                  const PairColumns& pairs, const Rigid3d& pose,
-                                  double max_squared);
-
-/// The same; none where the inner solver fits worse than `pose` does, or not at all.
-std::optional<Estimate> RefitIfNoWorse(const Solver& inner, const CalibrationProblem& problem,
-                                       const PairColumns& pairs, const Rigid3d& pose,
-                                       double max_squared);
 
 }  // namespace sextant

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "eval/experiment/report/golden.h"
+#include "regression/golden_figures.h"
 #include "eval/experiment/run/run_trials.h"
 #include "io/text/text_file.h"
 #include "solvers/builtin_solvers.h"

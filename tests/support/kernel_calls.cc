@@ -20,7 +20,7 @@
 #include "solvers/pnp/reprojection_covariance.h"
 #include "solvers/pnp/sqpnp.h"
 #include "solvers/robust/consensus.h"
-#include "solvers/robust/pose_scorer.h"
+#include "solvers/robust/term_scorer.h"
 
 namespace sextant::test {
 namespace {
@@ -38,6 +38,8 @@ struct Forms {
   std::vector<double> weights;
   PairTerms pixels;
   PairTerms points;
+  std::unique_ptr<TermScorer> pixel_scorer;
+  std::unique_ptr<TermScorer> point_scorer;
   Rigid3d near_truth;
 };
 
@@ -61,6 +63,8 @@ std::vector<Forms> MakeForms(int pairs, double outliers, bool planar) {
     forms.weights.assign(problem.pairs_3d3d.size(), 1.0);
     forms.pixels = MakeTerms(problem, PairKind::k2d3d, {});
     forms.points = MakeTerms(problem, PairKind::k3d3d, {});
+    forms.pixel_scorer = std::make_unique<TermScorer>(forms.pixels);
+    forms.point_scorer = std::make_unique<TermScorer>(forms.points);
     forms.near_truth = Perturb(forms.scene.cam_from_lidar, Vector6d::Constant(0.02));
   }
   return all;
@@ -122,17 +126,16 @@ void AddRefinements(std::vector<KernelCall>& calls) {
 void AddConsensus(std::vector<KernelCall>& calls) {
   calls.push_back(CallOf(
       "score_pixels", 100,
-      [](Forms& f) { return PoseScorer(f.pixels, kMaxSquared).Cost(f.near_truth) > 0.0; }, 0.5));
+      [](Forms& f) { return f.pixel_scorer->Cost(f.near_truth, kMaxSquared) > 0.0; }, 0.5));
   calls.push_back(CallOf(
       "score_points", 100,
-      [](Forms& f) { return PoseScorer(f.points, kMaxSquared).Cost(f.near_truth) > 0.0; }, 0.5));
-  const auto workspace = std::make_shared<InlierWorkspace>();
+      [](Forms& f) { return f.point_scorer->Cost(f.near_truth, kMaxSquared) > 0.0; }, 0.5));
   calls.push_back(CallOf(
       "optimise_on_inliers", 100,
-      [workspace](Forms& f) {
-        const PoseScorer scorer(f.pixels, kMaxSquared);
-        const Rigid3d pose = OptimiseOnInliers(f.pixels, scorer, f.near_truth, 4, {}, *workspace);
-        return scorer.Cost(pose) <= scorer.Cost(f.near_truth);
+      [](Forms& f) {
+        TermScorer& scorer = *f.pixel_scorer;
+        const Rigid3d pose = OptimiseOnInliers(scorer, f.near_truth, kMaxSquared, 4, {});
+        return scorer.Cost(pose, kMaxSquared) <= scorer.Cost(f.near_truth, kMaxSquared);
       },
       0.5));
 }
