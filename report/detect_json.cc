@@ -117,7 +117,7 @@ std::string FormatDetections(const std::vector<std::string>& paths,
         image["boards"].push_back(BoardJson(report, seen, boards[seen.index]));
       }
       image["other_tags"] = ordered_json::array();
-      for (const TagDetection& tag : report.seen.strangers) {
+      for (const TagDetection& tag : report.seen.other_tags) {
         image["other_tags"].push_back(TagJson(tag));
       }
       image["other_checkers"] = ordered_json::array();

@@ -193,7 +193,7 @@ SeenBoards BoardFinder::Assemble(const cv::Mat& grey, Detections found) const {
     AddPoints(seen.boards.back());
     if (camera_) AddPose(seen.boards.back());
   }
-  seen.strangers = std::move(found.tags);
+  seen.other_tags = std::move(found.tags);
   return seen;
 }
 

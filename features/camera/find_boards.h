@@ -38,8 +38,8 @@ struct SeenBoard {
 };
 
 struct SeenBoards {
-  std::vector<SeenBoard> boards{};        ///< One for each that was looked for, in that order.
-  std::vector<TagDetection> strangers{};  ///< Of the boards' families, but on none of them.
+  std::vector<SeenBoard> boards{};         ///< One for each that was looked for, in that order.
+  std::vector<TagDetection> other_tags{};  ///< Of the boards' families, but on none of them.
 };
 
 /// Looks for boards in images. Immutable and thread-safe.

@@ -96,7 +96,7 @@ BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const
   return agreement;
 }
 
-std::optional<std::string> WhyNot(const BoardPatch& patch, const Board& board) {
+std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board& board) {
   const BoardAgreement& agreement = patch.agreement;
   if (agreement.rings < kMinRings) {
     return fmt::format(

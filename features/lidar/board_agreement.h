@@ -15,6 +15,6 @@ BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const
 double BeyondBoard(const BoardPatch& patch, const Board& board, const Eigen::Vector2d& in_plane);
 
 /// Why the patch is not this board; none where it is.
-std::optional<std::string> WhyNot(const BoardPatch& patch, const Board& board);
+std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board& board);
 
 }  // namespace sextant

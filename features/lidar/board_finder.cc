@@ -140,11 +140,11 @@ class Finder {
                           boards_[b].top_right_m, boards_[b].right_bottom_m);
         continue;
       }
-      std::optional<std::string> reason = WhyNot(*patch, boards_[b]);
+      std::optional<std::string> reason = RejectionReason(*patch, boards_[b]);
       if (reason && patch->agreement.contained < kNearlyAll) {
         if (std::optional<BoardPatch> bare = WithoutHands(*patch); bare) {
           patch = std::move(bare);
-          reason = WhyNot(*patch, boards_[b]);
+          reason = RejectionReason(*patch, boards_[b]);
         }
       }
       if (reason) {

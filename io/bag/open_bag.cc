@@ -50,7 +50,7 @@ Expected<std::unique_ptr<Bag>> OpenBag(const std::filesystem::path& path) {
     return OpenBag(inside);
   }
   SEXTANT_ASSIGN_OR_RETURN(const std::shared_ptr<const MappedFile> file, MappedFile::Open(path));
-  const std::string_view bytes = (file)->bytes();
+  const std::string_view bytes = file->bytes();
   if (bytes.starts_with("#ROSBAG"sv)) return OpenRosbag1(bytes, path.string(), file);
   if (bytes.starts_with("\x89MCAP"sv)) return OpenMcap(bytes, path.string(), file);
   if (bytes.starts_with("SQLite format 3\0"sv)) return OpenRosbag2Sqlite(path);

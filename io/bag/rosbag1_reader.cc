@@ -100,10 +100,10 @@ Expected<void> Rosbag1::Open() {
 
 Expected<void> Rosbag1::CheckBagHeader(BagRecords& records) {
   SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
-  if (!record || OpOf((record)->fields) != BagOp::kBagHeader) {
+  if (!record || OpOf(record->fields) != BagOp::kBagHeader) {
     return records.Fail("expected the bag's header");
   }
-  const BagFields& fields = (record)->fields;
+  const BagFields& fields = record->fields;
   if (!TextField(fields, "encryptor").empty()) {
     return records.Fail("this bag is encrypted; decrypt it with ROS first");
   }
@@ -160,14 +160,14 @@ Expected<void> Rosbag1::CountContents() {
     while (true) {
       SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
       if (!record) break;
-      const std::optional<BagOp> op = OpOf((record)->fields);
+      const std::optional<BagOp> op = OpOf(record->fields);
       if (op == BagOp::kConnection) {
         Expected<void> ok = AddConnection(records, *record, topics_, connections_);
         if (!ok) return ok;
       }
       if (op != BagOp::kMessage) continue;
-      const auto known = connections_.find(Uint32Field((record)->fields, "conn").value_or(~0U));
-      const std::optional<std::int64_t> time = TimeField((record)->fields, "time");
+      const auto known = connections_.find(Uint32Field(record->fields, "conn").value_or(~0U));
+      const std::optional<std::int64_t> time = TimeField(record->fields, "time");
       if (known != connections_.end() && time) CountMessage(topics_[known->second], *time);
     }
   }
@@ -202,7 +202,7 @@ Expected<void> Rosbag1::VisitChunk(const Chunk& chunk, const Visitor& visit) con
   while (true) {
     SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
     if (!record) return {};
-    const BagFields& fields = (record)->fields;
+    const BagFields& fields = record->fields;
     if (OpOf(fields) != BagOp::kMessage) continue;
     const std::optional<std::uint32_t> id = Uint32Field(fields, "conn");
     const std::optional<std::int64_t> time = TimeField(fields, "time");
@@ -210,7 +210,7 @@ Expected<void> Rosbag1::VisitChunk(const Chunk& chunk, const Visitor& visit) con
     if (!time || known == connections_.end()) {
       return records.Fail("expected a message with its time and a known connection");
     }
-    const BagMessage message{&topics_[known->second], known->second, *time, (record)->data};
+    const BagMessage message{&topics_[known->second], known->second, *time, record->data};
     if (Expected<void> ok = visit(message); !ok) return ok;
   }
 }

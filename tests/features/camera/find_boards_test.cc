@@ -86,7 +86,7 @@ TEST(FindBoards, CornersInTheCameraFrameAreWithinTheirCovariance) {
     const BoardFinder finder = *BoardFinder::Make(boards, photo.camera);
     const Expected<SeenBoards> seen = finder.Find(photo.image);
     ASSERT_TRUE(seen) << seen.error().message;
-    EXPECT_TRUE(seen->strangers.empty());
+    EXPECT_TRUE(seen->other_tags.empty());
     ASSERT_EQ(seen->boards[0].tags.size(), 4U);
     for (const SeenTag& tag : seen->boards[0].tags) EXPECT_TRUE(tag.refined);
     for (std::size_t b = 0; b < 2; ++b) {
@@ -142,7 +142,7 @@ TEST(FindBoards, AmbiguityIsReportedAndResolvedByOtherTags) {
   const SeenBoards alone = find(one);
   ASSERT_TRUE(alone.boards[0].pose && *alone.boards[0].pose);
   EXPECT_TRUE((*alone.boards[0].pose)->ambiguous_with);
-  EXPECT_EQ(alone.strangers.size(), 1U);
+  EXPECT_EQ(alone.other_tags.size(), 1U);
   const SeenBoards both = find(two);
   ASSERT_TRUE(both.boards[0].pose && *both.boards[0].pose);
   EXPECT_FALSE((*both.boards[0].pose)->ambiguous_with);
