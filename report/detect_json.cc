@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/version.h"
-#include "io/blocks/pose_json.h"
+#include "io/blocks/json_blocks.h"
 #include "report/detect_report.h"
 
 namespace sextant::cli {
