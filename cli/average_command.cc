@@ -9,7 +9,7 @@
 #include "cli/load.h"
 #include "eval/metrics/running_average.h"
 #include "eval/statistics/text_table.h"
-#include "io/blocks/pose_json.h"
+#include "io/blocks/json_blocks.h"
 #include "io/original/average_log.h"
 
 namespace sextant::cli {

@@ -79,9 +79,9 @@ Expected<ImageReport> Examine(const Search& search, const cv::Mat& image) {
   }
   SEXTANT_ASSIGN_OR_RETURN(Detections found, search.detector->Detect(grey));
   report.sought_checkers = search.detector->name().starts_with("checkerboard");
-  report.seen.strangers = std::move(found.tags);
+  report.seen.other_tags = std::move(found.tags);
   report.checkers = std::move(found.checkers);
-  const bool is_empty = report.seen.strangers.empty() && report.checkers.empty();
+  const bool is_empty = report.seen.other_tags.empty() && report.checkers.empty();
   if (is_empty && search.explain) report.other_families = FindOtherFamilies(grey, "", {});
   return report;
 }
@@ -111,7 +111,7 @@ ImageResult ExamineFile(const Search& search, const DetectOptions& options,
 }
 
 bool FoundSomething(const ImageReport& report) {
-  if (!report.seen.strangers.empty() || !report.checkers.empty()) return true;
+  if (!report.seen.other_tags.empty() || !report.checkers.empty()) return true;
   return std::ranges::any_of(report.seen.boards, [](const SeenBoard& board) {
     return !board.tags.empty() || board.checker;
   });

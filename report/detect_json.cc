@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/version.h"
-#include "io/blocks/pose_json.h"
+#include "io/blocks/json_blocks.h"
 #include "report/detect_report.h"
 
 namespace sextant::cli {
@@ -117,7 +117,7 @@ std::string FormatDetections(const std::vector<std::string>& paths,
         image["boards"].push_back(BoardJson(report, seen, boards[seen.index]));
       }
       image["other_tags"] = ordered_json::array();
-      for (const TagDetection& tag : report.seen.strangers) {
+      for (const TagDetection& tag : report.seen.other_tags) {
         image["other_tags"].push_back(TagJson(tag));
       }
       image["other_checkers"] = ordered_json::array();

@@ -67,7 +67,7 @@ cv::Mat DrawDetection(const cv::Mat& image, const ImageReport& report,
                       const std::vector<Board>& boards, const std::optional<Camera>& camera) {
   cv::Mat canvas;
   cv::cvtColor(*ToGrey(image), canvas, cv::COLOR_GRAY2BGR);
-  for (const TagDetection& tag : report.seen.strangers) {
+  for (const TagDetection& tag : report.seen.other_tags) {
     DrawTag(canvas, tag.corners_px, std::to_string(tag.id), boards.empty() ? kTag : kStranger);
   }
   for (const CheckerDetection& checker : report.checkers) DrawChecker(canvas, checker);

@@ -23,7 +23,7 @@ struct ExplainedTag {
 struct ImageReport {
   std::string path{};
   cv::Size size{};
-  SeenBoards seen{};  ///< Its strangers are all tags where no board is given.
+  SeenBoards seen{};  ///< Its other_tags are all tags where no board is given.
   std::vector<ExplainedTag> missing{};
   std::vector<CheckerDetection> checkers{};   ///< Where no board is given.
   std::vector<FamilyMatch> other_families{};  ///< Where no board is given and no tag was found.

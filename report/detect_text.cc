@@ -116,12 +116,12 @@ std::string DescribeDetection(const ImageReport& report, const std::vector<Board
   for (const SeenBoard& board : report.seen.boards) {
     text += DescribeBoard(report, board, boards[board.index]);
   }
-  if (!boards.empty() && !report.seen.strangers.empty()) text += "  on no board:\n";
-  for (const TagDetection& tag : report.seen.strangers) {
+  if (!boards.empty() && !report.seen.other_tags.empty()) text += "  on no board:\n";
+  for (const TagDetection& tag : report.seen.other_tags) {
     text += fmt::format("    {}\n", DescribeTag(tag, tag.corners_px));
   }
   for (const CheckerDetection& checker : report.checkers) text += DescribeChecker(checker);
-  if (boards.empty() && report.seen.strangers.empty() && report.checkers.empty()) {
+  if (boards.empty() && report.seen.other_tags.empty() && report.checkers.empty()) {
     text += report.sought_checkers ? "  no checkerboard\n" : "  no tag\n";
   }
   for (const FamilyMatch& match : report.other_families) {

@@ -34,20 +34,21 @@ OptionSet<AprilTagOptions> Options() {
       .Count("hamming", &AprilTagOptions::hamming, -1, 2,
              "wrong bits that are corrected; -1: as many up to 2 as take less than 32 MB")
       .Real("min_margin", &AprilTagOptions::min_margin, "grey levels", 0.0, 255.0,
-            "least decision margin of a tag");
+            "minimum decision margin of a tag");
   return options;
 }
 
-// The library makes a table of three slots of 16 bytes for each code with each set of wrong bits.
+// The largest number of corrected bits, up to 2, whose table takes less than 32 MB. The library
+// makes a table with three slots of 16 bytes for each code with each set of wrong bits.
 int AffordableHamming(const apriltag_family_t& family) {
   constexpr double kMaxBytes = 32e6;
   const double bits = family.nbits;
-  const double bytes_a_set = 48.0 * family.ncodes;
-  if (bytes_a_set * (1.0 + bits + 0.5 * bits * (bits - 1.0)) < kMaxBytes) return 2;
-  return bytes_a_set * (1.0 + bits) < kMaxBytes ? 1 : 0;
+  const double bytes_per_set = 48.0 * family.ncodes;
+  if (bytes_per_set * (1.0 + bits + 0.5 * bits * (bits - 1.0)) < kMaxBytes) return 2;
+  return bytes_per_set * (1.0 + bits) < kMaxBytes ? 1 : 0;
 }
 
-// The library's detector works on one image at a time.
+// The library's detector, which processes one image at a time.
 class Engine {
  public:
   explicit Engine(const AprilTagOptions& options)
@@ -64,8 +65,8 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  zarray_t* Detect(const cv::Mat& grey, int least_range) {
-    detector_->qtp.min_white_black_diff = least_range;
+  zarray_t* Detect(const cv::Mat& grey, int min_range) {
+    detector_->qtp.min_white_black_diff = min_range;
     image_u8_t image = {grey.cols, grey.rows, static_cast<std::int32_t>(grey.step), grey.data};
     return apriltag_detector_detect(detector_.get(), &image);
   }
@@ -75,16 +76,16 @@ class Engine {
   std::unique_ptr<apriltag_detector_t, void (*)(apriltag_detector_t*)> detector_;
 };
 
-// The library thresholds where the grey levels of 12 x 12 pixels range over this. 144 pixels of
-// white noise range over 5.2 of its sigmas, those on a tag's edge over the tag's contrast besides:
-// from 6.5 sigmas on, noise is no longer traced, and every tag is still found that the library
-// finds in it at all (3 sigmas of contrast). Of what would ask for more, texture is the likelier
-// cause.
-int LeastRange(double noise_grey) {
+// The minimum range of grey levels in 12 x 12 pixels for which the library thresholds them. White
+// noise in 144 pixels ranges over 5.2 sigma; on a tag's edge the tag's contrast is added. From 6.5
+// sigma on, noise is no longer traced, while every tag that the library finds in that noise at all
+// (contrast of 3 sigma) is still found. The maximum limits the effect of texture, which is the
+// likelier cause of higher noise estimates.
+int MinRange(double noise_grey) {
   constexpr double kSigmas = 6.5;
-  constexpr int kUsual = 5;
+  constexpr int kDefault = 5;
   constexpr int kMax = 32;
-  return std::clamp(static_cast<int>(kSigmas * noise_grey), kUsual, kMax);
+  return std::clamp(static_cast<int>(kSigmas * noise_grey), kDefault, kMax);
 }
 
 class AprilTagDetector final : public TagDetector {
@@ -104,24 +105,24 @@ class AprilTagDetector final : public TagDetector {
     return found;
   }
 
-  // The library reduces by leaving pixels out, which keeps their noise, and its tiles of the
-  // reduced image are where they would be in the whole one.
-  bool SeesPixels() const {
+  // Whether the library works on unfiltered pixels: it decimates by skipping pixels, which keeps
+  // their noise, and the tiles of the decimated image are those of the whole image.
+  bool UsesRawPixels() const {
     const double decimate = options_.decimate;
     return (decimate == 1.0 || decimate == 2.0 || decimate == 4.0) && options_.blur_px == 0.0;
   }
 
   std::vector<cv::Rect> RegionsOf(const cv::Mat& grey) const {
-    if (SeesPixels()) return ContrastRegions(grey);
+    if (UsesRawPixels()) return ContrastRegions(grey);
     return {cv::Rect(0, 0, grey.cols, grey.rows)};
   }
 
   void DetectIn(Engine& engine, const cv::Mat& grey, const cv::Rect& region,
                 Detections& found) const {
     const cv::Mat part = grey(region);
-    const double noise_grey = SeesPixels() ? EstimateNoiseGrey(part) : 0.0;
+    const double noise_grey = UsesRawPixels() ? EstimateNoiseGrey(part) : 0.0;
     const std::unique_ptr<zarray_t, void (*)(zarray_t*)> quads(
-        engine.Detect(part, LeastRange(noise_grey)), apriltag_detections_destroy);
+        engine.Detect(part, MinRange(noise_grey)), apriltag_detections_destroy);
     for (int i = 0; i < zarray_size(quads.get()); ++i) {
       apriltag_detection_t* tag = nullptr;
       zarray_get(quads.get(), i, &tag);
@@ -145,7 +146,7 @@ class AprilTagDetector final : public TagDetector {
     return std::make_unique<Engine>(options_);
   }
 
-  // The library goes counter-clockwise as seen, from the tag's own bottom-left.
+  // The library's corners go counter-clockwise as seen, from the tag's own bottom-left.
   TagDetection FromLibrary(const apriltag_detection_t& tag) const {
     // Measured against rendered tags, see docs/detectors.md.
     const double shift_px = options_.refine_edges ? 0.5 : 0.445 - 0.075 * (options_.decimate - 1.0);
@@ -163,7 +164,7 @@ class AprilTagDetector final : public TagDetector {
 
   AprilTagOptions options_;
   mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<Engine>> idle_;  ///< As many as ever worked at once.
+  mutable std::vector<std::unique_ptr<Engine>> idle_;  ///< One per thread that ever ran at once.
 };
 
 }  // namespace

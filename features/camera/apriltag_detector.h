@@ -8,8 +8,8 @@ namespace sextant {
 /// Tags by the AprilTag 3 library (Wang and Olson 2016, "AprilTag 2", IROS; Krogius et al. 2019,
 /// "Flexible layouts for fiducial tags", IROS), all families of apriltag_family.h.
 ///
-/// The library counts pixels from the corner of the first, so half a pixel is taken away; without
-/// refine_edges its quads are 0.055 px and a further 0.075 px a step of decimation short of that
+/// The library's pixel (0, 0) is the corner of the top-left pixel, so half a pixel is subtracted;
+/// without refine_edges, 0.055 px less and another 0.075 px less per step of decimation
 /// (docs/detectors.md has the measurement).
 TagDetectorEntry AprilTagDetectorEntry();
 

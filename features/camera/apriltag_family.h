@@ -14,10 +14,10 @@ namespace sextant {
 
 using AprilTagFamily = std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)>;
 
-/// "tag36h11", "tag25h9" and so on, as the AprilTag library names them.
+/// "tag36h11", "tag25h9" and so on, the names of the AprilTag library.
 const std::vector<std::string>& AprilTagFamilyNames();
 
-/// The library's family; null where it has none of that name.
+/// The library's family; null if it has none of that name.
 AprilTagFamily MakeAprilTagFamily(std::string_view name);
 
 }  // namespace sextant

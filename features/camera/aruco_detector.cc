@@ -19,7 +19,7 @@ enum class Refinement { kNone, kSubpix, kContour, kAprilTag };
 constexpr std::string_view kFamilyPrefix = "aruco_";
 constexpr const char* kFileOption = "file";
 
-// "6x6_250" for "aruco_6x6_250".
+// The names without their prefix: "6x6_250" for "aruco_6x6_250".
 const std::vector<std::string>& DictionaryChoices() {
   static const std::vector<std::string> choices = [] {
     std::vector<std::string> names;
@@ -47,9 +47,9 @@ OptionSet<ArucoOptions> ArucoOptionSet() {
               "how OpenCV refines corners")
       .Count("window_px", &ArucoOptions::window_px, 1, 50, "half the window of subpix [px]")
       .Real("min_perimeter", &ArucoOptions::min_perimeter, "image sides", 0.001, 4.0,
-            "least perimeter of a tag, in longer sides of the image")
+            "minimum perimeter of a tag, in longer sides of the image")
       .Real("error_correction", &ArucoOptions::error_correction, "1", 0.0, 1.0,
-            "share of the correctable bits that is corrected")
+            "fraction of the correctable bits that is corrected")
       .Count("decimate", &ArucoOptions::decimate, 1, 8,
              "the image is reduced by this before tags are looked for");
   return options;
@@ -102,8 +102,9 @@ class ArucoDetector final : public TagDetector {
     }
     Detections found;
     for (const cv::Rect& region : ContrastRegions(reduced)) {
-      for (const auto& [id, corners] : LookAt(reduced, region))
+      for (const auto& [id, corners] : DetectIn(reduced, region)) {
         found.tags.push_back(Read(grey, id, corners));
+      }
     }
     return found;
   }
@@ -111,8 +112,8 @@ class ArucoDetector final : public TagDetector {
   using Find = std::pair<int, Quad>;
 
   // Corners in pixels of `image`.
-  std::vector<Find> LookAt(const cv::Mat& image, const cv::Rect& region) const {
-    // Perimeters are told in sides of the image.
+  std::vector<Find> DetectIn(const cv::Mat& image, const cv::Rect& region) const {
+    // OpenCV's perimeters are relative to the sides of the image that it is given.
     const double sides = static_cast<double>(std::max(image.cols, image.rows)) /
                          std::max(region.width, region.height);
     const auto parameters = cv::makePtr<cv::aruco::DetectorParameters>(*parameters_);
@@ -134,7 +135,7 @@ class ArucoDetector final : public TagDetector {
   }
 
   TagDetection Read(const cv::Mat& grey, int id, Quad corners) const {
-    // The middle of a reduced pixel is that of the pixels that it is of.
+    // The centre of a reduced pixel is the centre of the pixels that it replaces.
     for (Eigen::Vector2d& corner : corners) {
       corner = corner * decimate_ + Eigen::Vector2d::Constant(0.5 * (decimate_ - 1));
     }
@@ -178,11 +179,11 @@ Expected<TagDetectorPtr> Make(const std::string& name, const OptionValues& value
 
 TagDetectorEntry ArucoDetectorEntry() {
   std::vector<OptionDoc> options = ArucoOptionSet().Describe();
-  options.front().default_value = "none: to be given";
+  options.front().default_value = "none: required";
   options.push_back({.name = kFileOption,
                      .default_value = "none",
                      .unit = "path",
-                     .meaning = "a dictionary in OpenCV's form, in place of `dictionary`"});
+                     .meaning = "a dictionary in OpenCV's format, instead of `dictionary`"});
   return {.name = "aruco",
           .summary = "OpenCV's aruco module",
           .example = "aruco(dictionary=6x6_250,refine=subpix)",

@@ -60,16 +60,16 @@ std::optional<cv::Ptr<cv::aruco::Dictionary>> FindArucoDictionary(std::string_vi
 
 Expected<cv::Ptr<cv::aruco::Dictionary>> ReadArucoDictionary(const std::string& path) {
   const auto dictionary = cv::makePtr<cv::aruco::Dictionary>();
-  // OpenCV prints a message of its own for a file that is not there.
+  // Checked first because OpenCV prints a message of its own for a missing file.
   if (std::error_code error; !std::filesystem::is_regular_file(path, error)) {
-    return MakeError(ErrorCode::kIo, fmt::format("{}: there is no dictionary of that name", path));
+    return MakeError(ErrorCode::kIo, fmt::format("{}: there is no dictionary file", path));
   }
   try {
     const cv::FileStorage file(path, cv::FileStorage::READ);
     if (!file.isOpened()) {
       return MakeError(ErrorCode::kIo, fmt::format("{}: the dictionary cannot be opened", path));
     }
-    // readDictionary trusts the file to have as many bits as it says.
+    // readDictionary does not check that the file has as many bits as it states.
     const int size = static_cast<int>(file["markersize"]);
     const int count = static_cast<int>(file["nmarkers"]);
     if (size < 3 || size > 16 || count < 1 || count > 65536) {

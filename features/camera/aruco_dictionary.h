@@ -15,15 +15,15 @@ namespace sextant {
 /// "aruco_original", "aruco_4x4_50" to "aruco_7x7_1000": OpenCV's predefined dictionaries.
 const std::vector<std::string>& ArucoDictionaryNames();
 
-/// None where OpenCV has none of that name. "aruco_tag36h11" and so on are AprilTag families that
+/// None if OpenCV has none of that name. "aruco_tag36h11" and so on are AprilTag families that
 /// OpenCV decodes itself.
 std::optional<cv::Ptr<cv::aruco::Dictionary>> FindArucoDictionary(std::string_view name);
 
-/// A dictionary of the user's own in OpenCV's form: nmarkers, markersize, marker_0: "0110..." and
-/// so on (and maxCorrectionBits). Errors: kIo; kParse.
+/// Reads a custom dictionary in OpenCV's format: nmarkers, markersize, marker_0: "0110..." and so
+/// on (and maxCorrectionBits). Errors: kIo; kParse.
 Expected<cv::Ptr<cv::aruco::Dictionary>> ReadArucoDictionary(const std::string& path);
 
-/// What is printed for an id that the dictionary has: a black border of one cell round its bits.
+/// The printed pattern of an id of the dictionary: its bits with a black border of one cell.
 TagPattern MakeArucoPattern(const cv::aruco::Dictionary& dictionary, int id);
 
 }  // namespace sextant

@@ -17,11 +17,11 @@
 namespace sextant {
 namespace {
 
-constexpr double kOtherWayRefused = 9.2;  ///< -2 ln of 1 %.
+constexpr double kMaxAmbiguity = 9.2;  ///< -2 ln(0.01).
 
 struct Whitened {
   const BoardPoints* points;
-  Eigen::LLT<Eigen::MatrixXd> factor;  ///< Of the covariance.
+  Eigen::LLT<Eigen::MatrixXd> factor;  ///< Cholesky factor of the covariance.
 };
 
 struct Equations {
@@ -34,7 +34,7 @@ using Minimum = PoseMinimum<Equations>;
 
 Eigen::Vector3d InBoard(const Eigen::Vector2d& point) { return {point.x(), point.y(), 0.0}; }
 
-// False where a point does not project.
+// The cost and the normal equations in Perturb's (dphi, dt); false if a point does not project.
 bool Evaluate(const Camera& camera, std::span<const Whitened> groups, const Rigid3d& pose,
               Equations& sum) {
   sum = {};
@@ -70,8 +70,7 @@ Expected<std::vector<Whitened>> Whiten(std::span<const BoardPoints> groups) {
                              group.covariance_px2.cols() == 2 * n;
     if (!sizes_agree) {
       return MakeError(ErrorCode::kInvalidInput,
-                       fmt::format("{} points, {} pixels and a covariance of {} x {} do not belong "
-                                   "together",
+                       fmt::format("{} points, {} pixels and a covariance of {} x {} do not match",
                                    group.in_board_m.size(), n, group.covariance_px2.rows(),
                                    group.covariance_px2.cols()));
     }
@@ -96,7 +95,8 @@ Expected<IppeFit> StartsOf(const Camera& camera, const BoardPoints& group) {
   return SolveIppe(image, points);
 }
 
-// Refinements of one start and of another that end at the same minimum differ by rounding.
+// Whether two refined poses are the same minimum: those from different initial poses differ by
+// rounding.
 bool IsSame(const Rigid3d& a, const Rigid3d& b) {
   const PoseDistance distance = DistanceBetween(a, b);
   return distance.rotation_rad < 1e-4 &&
@@ -148,7 +148,7 @@ Expected<BoardPose> EstimateBoardPose(const Camera& camera, std::span<const Boar
   for (const Minimum& other : minima) {
     if (IsSame(other.pose, best.pose)) continue;
     const double worse = (chi_square(other) - chi_square(best)) / misfit;
-    if (worse > kOtherWayRefused) break;
+    if (worse > kMaxAmbiguity) break;
     pose.ambiguous_with = other.pose;
     pose.ambiguity_chi_square = worse;
     break;

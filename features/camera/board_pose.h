@@ -16,36 +16,35 @@ namespace sextant {
 
 struct BoardPose {
   Rigid3d cam_from_board{};
-  /// Of (dphi [rad], dt [m]). Where the pixels fit worse than their covariances say (a lens model
-  /// or board that is not quite right), it is larger by that factor.
+  /// Covariance of (dphi [rad], dt [m]). If the residuals exceed the stated covariances of the
+  /// pixels (inaccurate lens model or board), it is scaled up by that factor.
   Matrix6d covariance = Matrix6d::Zero();
-  double rms_px = 0.0;      ///< Of the distances between pixels and projections.
-  double chi_square = 0.0;  ///< Sum of squared whitened residuals...
-  int residuals = 0;        ///< ...of so many numbers.
-  /// The other way the board may lean, where it fits nearly as well: a small or distant board seen
-  /// squarely. The first pose is the likelier one then, and no more. Other views or sensors decide.
+  double rms_px = 0.0;      ///< RMS of the distances between pixels and projections.
+  double chi_square = 0.0;  ///< Sum of squared whitened residuals.
+  int residuals = 0;        ///< Number of residuals in chi_square.
+  /// The other tilt of the board, if it fits nearly as well, as for a small or distant board seen
+  /// frontally. The first pose is then only the likelier one; other views or sensors must decide.
   std::optional<Rigid3d> ambiguous_with{};
-  double ambiguity_chi_square = 0.0;  ///< By how much the other way fits worse; 0 where none is.
+  double ambiguity_chi_square = 0.0;  ///< Excess chi-square of the other pose; 0 if there is none.
 };
 
-/// The pose that fits all points at once: least squares of whitened reprojection errors.
+/// Estimates the pose from all points by least squares of whitened reprojection errors.
 ///
-/// Each group alone gives two starts by IPPE (solvers/pnp/ippe.h; Collins and Bartoli 2014), each
-/// is refined over all points by Levenberg-Marquardt, and the best minimum is taken. Another
-/// minimum stays as `ambiguous_with` where a likelihood-ratio test at 1 % (chi-square 9.2 of two
-/// hypotheses, scaled as the covariance is) does not refuse it.
-/// Errors: kTooFewPairs (no group); kDegenerate, kMirrored from IPPE for every group;
-/// kNoConvergence; kInvalidInput for a covariance that is not positive definite or not of the
-/// points' size.
+/// Each group alone gives two initial poses by IPPE (solvers/pnp/ippe.h; Collins and Bartoli 2014);
+/// each is refined over all points by Levenberg-Marquardt, and the best minimum is used. Another
+/// minimum is kept as `ambiguous_with` unless a likelihood-ratio test at 1 % (chi-square 9.2
+/// between the two hypotheses, scaled as the covariance is) rejects it. Errors: kTooFewPairs (no
+/// group); kDegenerate, kMirrored from IPPE for every group; kNoConvergence; kInvalidInput for a
+/// covariance that is not positive definite or not of the points' size.
 Expected<BoardPose> EstimateBoardPose(const Camera& camera, std::span<const BoardPoints> groups);
 
 /// The corners of a board, in the order of Board: 4, or 8 where it has a hole. [m]
 std::vector<Eigen::Vector3d> BoardCorners(const Board& board);
 
-/// Points of a board in the camera frame, with the covariance that the pose gives them.
+/// Points of a board in the camera frame, with their covariance due to the pose.
 struct PointsInCam {
   std::vector<Eigen::Vector3d> points{};
-  /// 3n x 3n [m^2]: all share the pose's error, so they are far from independent.
+  /// 3n x 3n [m^2]: all points share the error of the pose, so they are strongly correlated.
   Eigen::MatrixXd covariance{};
   Eigen::Matrix3d CovarianceOf(std::size_t i) const {
     const auto at = 3 * static_cast<Eigen::Index>(i);

@@ -24,12 +24,12 @@ OptionSet<CheckerOptions> CheckerOptionSet() {
       .Choice("accurate", &CheckerOptions::accurate, {"false", "true"},
               "sample sectors on an enlarged image")
       .Choice("subpix", &CheckerOptions::subpix, {"false", "true"},
-              "move each corner to where the grey levels' gradients say it is");
+              "refine each corner by the gradients of the grey levels");
   return options;
 }
 
-// Mean grey level of the squares that meet at the first corner and lie outside, diagonally, of the
-// board's inner corners: one square. Found by going on from the second diagonal corner over it.
+// Mean grey level of the outer square at a corner, found by continuing the line from the next inner
+// corner on the diagonal through this corner.
 double OuterSquareGrey(const cv::Mat& grey, const Eigen::Vector2d& corner,
                        const Eigen::Vector2d& next_diagonal) {
   const Eigen::Vector2d middle = corner - 0.5 * (next_diagonal - corner);
@@ -38,7 +38,7 @@ double OuterSquareGrey(const cv::Mat& grey, const Eigen::Vector2d& corner,
   return cv::mean(grey(cv::Rect(x - 1, y - 1, 3, 3)))[0];
 }
 
-// The corners in the order of the class comment, whatever order the library chose.
+// Brings the corners into the order of CheckerDetection.
 void Orient(const cv::Mat& grey, CheckerDetection& found) {
   std::vector<Eigen::Vector2d>& corners = found.corners_px;
   const auto columns = static_cast<std::ptrdiff_t>(found.inner_columns);
@@ -59,7 +59,7 @@ void Orient(const cv::Mat& grey, CheckerDetection& found) {
   if (turn) std::reverse(corners.begin(), corners.end());
 }
 
-// In a window that no other corner is in.
+// Refines the corners in windows that contain no other corner.
 void RefineBySubpix(const cv::Mat& grey, int columns, std::vector<cv::Point2f>& corners) {
   constexpr int kLargestHalf_px = 11;
   constexpr double kHalfOfSpacing = 0.4;
@@ -84,7 +84,8 @@ class CheckerboardDetector final : public TagDetector {
     const int accuracy = options_.accurate ? cv::CALIB_CB_ACCURACY : 0;
     std::vector<cv::Point2f> corners;
     const cv::Size size(options_.columns, options_.rows);
-    // Equalising the image loses boards of low contrast and finds others in uneven light.
+    // Normalising the image loses boards of low contrast but finds others in uneven light, so it
+    // is the second attempt.
     const int thorough = accuracy | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE;
     if (!cv::findChessboardCornersSB(grey, size, corners, accuracy) &&
         !cv::findChessboardCornersSB(grey, size, corners, thorough)) {

@@ -12,9 +12,9 @@ constexpr int kReduction = 4;
 constexpr int kTile = 4;  ///< Reduced pixels.
 constexpr int kTile_px = kReduction * kTile;
 constexpr int kMinSide_px = 160;
-constexpr double kMaxShare = 0.7;  ///< Of the image: a detector's call for each region costs too.
+constexpr double kMaxShare = 0.7;  ///< Of the image; beyond it one call for all is cheaper.
 
-// Least and largest of the reduced image within each tile and the tiles round it.
+// The range of the reduced image within each tile and its neighbours.
 cv::Mat RangesOfTiles(const cv::Mat& grey) {
   cv::Mat reduced;
   cv::resize(grey(cv::Rect(0, 0, grey.cols / kReduction * kReduction,
@@ -38,9 +38,10 @@ cv::Mat RangesOfTiles(const cv::Mat& grey) {
   return most - least;
 }
 
-// In tiles: what differs, and round it what a tag as large as that has for a margin.
+// Bounds, in tiles, of the connected parts with contrast, enlarged by the margin of a tag of that
+// size.
 std::vector<cv::Rect> BoundsOfParts(const cv::Mat& ranges) {
-  constexpr int kSidesAMargin = 8;
+  constexpr int kMarginsPerSide = 8;
   cv::Mat labels;
   cv::Mat stats;
   cv::Mat middles;
@@ -50,13 +51,13 @@ std::vector<cv::Rect> BoundsOfParts(const cv::Mat& ranges) {
   for (int i = 1; i < count; ++i) {
     const cv::Rect part(stats.at<int>(i, cv::CC_STAT_LEFT), stats.at<int>(i, cv::CC_STAT_TOP),
                         stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT));
-    const int margin = 1 + std::max(part.width, part.height) / kSidesAMargin;
+    const int margin = 1 + std::max(part.width, part.height) / kMarginsPerSide;
     bounds.push_back(part + cv::Size(2 * margin, 2 * margin) - cv::Point(margin, margin));
   }
   return bounds;
 }
 
-// Rectangles that overlap become one that holds both, until none do.
+// Replaces overlapping rectangles by their common bounds until none overlap.
 void Merge(std::vector<cv::Rect>& rectangles) {
   for (std::size_t i = 0; i < rectangles.size();) {
     const auto overlaps = [&](const cv::Rect& other) { return (rectangles[i] & other).area() > 0; };
@@ -83,7 +84,7 @@ std::vector<cv::Rect> ContrastRegions(const cv::Mat& grey) {
   for (cv::Rect& region : regions) {
     region = cv::Rect(region.x * kTile_px, region.y * kTile_px, region.width * kTile_px,
                       region.height * kTile_px);
-    // The last tiles may be cut off by the reduction.
+    // The reduction may have cut off the last tiles.
     if (region.br().x + kTile_px > grey.cols) region.width = grey.cols - region.x;
     if (region.br().y + kTile_px > grey.rows) region.height = grey.rows - region.y;
     region &= whole;

@@ -6,17 +6,17 @@
 
 namespace sextant {
 
-/// Rectangles that hold everything in an 8-bit grey image that a tag could be: where means of 4 x 4
-/// pixels differ within 48 px by kTagContrast grey levels or more. They do not touch each other,
-/// and reach 32 px and an eighth of their side beyond what differs, which is further than detectors
-/// look for a tag's margin. Their corners are at multiples of 16 px (the image's right and lower
-/// ends aside), where detectors that reduce the image or cut it into tiles would put theirs. One
-/// pass over the image.
+/// Rectangles that contain every part of an 8-bit grey image that may be a tag: parts in which
+/// means of 4 x 4 pixels differ within 48 px by at least kTagContrast grey levels. The rectangles
+/// are disjoint and extend 32 px and an eighth of their side beyond such parts, more than the
+/// margin that detectors need around a tag. Their corners are at multiples of 16 px (except at the
+/// right and lower ends of the image), aligned with the tiles of detectors that decimate the image
+/// or divide it into tiles. Takes one pass over the image.
 ///
-/// Where that leaves hardly anything out, or the image is small, the whole of it.
+/// If the rectangles would cover most of the image, or the image is small, returns the whole image.
 std::vector<cv::Rect> ContrastRegions(const cv::Mat& grey);
 
-/// A tag with less between its black and white is not read: docs/detectors.md.
+/// Tags with less contrast between black and white are not detected: docs/detectors.md.
 inline constexpr int kTagContrast = 8;
 
 }  // namespace sextant

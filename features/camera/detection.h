@@ -10,25 +10,25 @@ namespace sextant {
 
 /// A square tag in an image. Pixel (0, 0) is the centre of the top-left pixel.
 struct TagDetection {
-  std::string family{};  ///< As BoardTag names it; a dictionary's file, where it came from one.
+  std::string family{};  ///< As in BoardTag; the path of the dictionary if it was read from a file.
   int id = 0;
-  /// Of the square that TagPattern::edge_first begins: the tag's own top-left, top-right,
-  /// bottom-right, bottom-left, which is clockwise as the camera sees it.
+  /// Corners of the square that TagPattern::edge_first defines: the tag's own top-left, top-right,
+  /// bottom-right, bottom-left, clockwise in the image.
   std::array<Eigen::Vector2d, 4> corners_px{};
-  /// Mean distance [grey levels] of the data cells from the threshold between black and white: low
+  /// Mean distance [grey levels] of the data cells from the threshold between black and white; low
   /// for false, small or blurred tags.
   double decision_margin = 0.0;
   int hamming = 0;  ///< Data cells that were read wrongly and corrected.
 };
 
-/// The inner corners of a checkerboard, row by row. Rows follow each other clockwise from columns:
-/// (along a row) x (to the next row) points away from the camera.
+/// The inner corners of a checkerboard, row by row. The direction to the next row is clockwise from
+/// the direction along a row: their cross product points away from the camera.
 struct CheckerDetection {
   int inner_columns = 0;
   int inner_rows = 0;
   std::vector<Eigen::Vector2d> corners_px{};
-  /// Whether the first corner's outer square is black, as BoardChecker has it, and no turn of the
-  /// board looks the same. Otherwise the same board turned by 180 degrees explains the image too.
+  /// Whether the first corner's outer square is black, as BoardChecker defines it, and no rotation
+  /// of the board looks the same. Otherwise the board rotated by 180 degrees also fits the image.
   bool is_turn_known = false;
 };
 

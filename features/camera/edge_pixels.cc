@@ -13,14 +13,14 @@
 namespace sextant {
 namespace {
 
-// How far beyond an edge the tag's surroundings are known.
+// An edge and the distance beyond it up to which the tag's surroundings are known.
 struct Band {
-  Line2 line;  ///< Normal outward.
+  Line2 line;  ///< Its normal points outward.
   double outward_px = 0.0;
 };
 
 constexpr double kMinOutward_px = 0.75;
-constexpr double kBlurOfMargin_px = 1.5;  ///< What lies behind the margin shines in this far.
+constexpr double kBlurOfMargin_px = 1.5;  ///< Reach of the blur from beyond the margin.
 
 std::array<Band, 4> BandsOf(const Quad& corners, const TagPattern& pattern,
                             const EdgeRefineOptions& options) {
@@ -49,14 +49,14 @@ class Collector {
         undistortion_(undistortion),
         options_(options) {}
 
-  // Steps along the axis that the edge follows more, and looks across it.
+  // Steps along the image axis that is closer to the edge's direction and scans across it.
   void CollectEdge(std::size_t edge) {
     const Eigen::Vector2d a = corners_[edge];
     const Eigen::Vector2d b = corners_[(edge + 1) % 4];
     const int along = std::abs(b.x() - a.x()) > std::abs(b.y() - a.y()) ? 0 : 1;
     const int across = 1 - along;
     const double slope = (b[across] - a[across]) / (b[along] - a[along]);
-    // One more than the band: a bent edge stands off its chord.
+    // One pixel more than the band, because a distorted edge deviates from its chord.
     const double reach = (options_.band_px + 1.0) * std::sqrt(1.0 + slope * slope);
     const auto first = static_cast<int>(std::ceil(std::min(a[along], b[along])));
     const auto last = static_cast<int>(std::floor(std::max(a[along], b[along])));
@@ -88,7 +88,7 @@ class Collector {
       if (other == edge) continue;
       const double there = Outward(at, other);
       if (there > bands_[other].outward_px) return;
-      // Each pixel belongs to the edge that is nearest, the first of equals.
+      // Each pixel belongs to the nearest edge; of equally near ones, to the first.
       const bool is_nearer = std::abs(there) < std::abs(outward) ||
                              (std::abs(there) == std::abs(outward) && other < edge);
       if (is_nearer) return;
@@ -128,7 +128,7 @@ class Collector {
   const Undistortion& undistortion_;
   const EdgeRefineOptions& options_;
   EdgePixels pixels_;
-  std::optional<Undistortion::Point> last_;  // Its neighbour's straight place is near to it.
+  std::optional<Undistortion::Point> last_;  // Initial value for the next pixel's undistortion.
   Eigen::Vector2d last_px_ = Eigen::Vector2d::Zero();
 };
 

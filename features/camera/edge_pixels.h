@@ -10,18 +10,18 @@
 
 namespace sextant {
 
-/// Pixels near the edges of a tag, structure of arrays, filled up with copies of the last to a
+/// Pixels near the edges of a tag as a structure of arrays, padded with copies of the last to a
 /// multiple of kSimdWidth.
 struct EdgePixels {
-  std::vector<double> x, y;            ///< Where they are in the undistorted image [px].
-  std::vector<double> x_by_u, x_by_v;  ///< Derivatives by the pixel: they map the blur there.
+  std::vector<double> x, y;            ///< Positions in the undistorted image [px].
+  std::vector<double> x_by_u, x_by_v;  ///< Derivatives of the position by the pixel (u, v).
   std::vector<double> y_by_u, y_by_v;
   std::vector<double> grey;
-  Eigen::Index count = 0;        ///< Without the copies.
-  std::array<int, 4> on_edge{};  ///< How many are nearest to the edge from corner i to the next.
+  Eigen::Index count = 0;        ///< Number of pixels without the padding.
+  std::array<int, 4> on_edge{};  ///< Number of pixels nearest to the edge from corner i to i + 1.
 };
 
-/// The pixels that RefineTag looks at, each once, for a tag with these corners.
+/// Collects the pixels that RefineTag uses, each once, for a tag with these corners.
 EdgePixels CollectEdgePixels(const cv::Mat& grey, const Quad& corners_px, const TagPattern& pattern,
                              const Undistortion& undistortion, const EdgeRefineOptions& options);
 

@@ -20,21 +20,20 @@ namespace sextant {
 namespace {
 
 constexpr double kHuber = 2.5;
-constexpr double kFirstBlur_px = 1.0;  ///< Wide, so that a start far off still feels the edges.
+constexpr double kFirstBlur_px = 1.0;  ///< Wide, so that a distant start still reaches the edges.
 constexpr double kMinBlur_px = 0.25;   ///< A pixel alone blurs by 0.29.
 constexpr double kMaxBlur_px = 6.0;
 constexpr double kMinContrast = 5.0;
-constexpr double kLastStep = 5e-5;  ///< Of the homography, in half sides of the tag.
-constexpr double kStalledStep =
-    1e-4;  ///< Of a minimum that only rounding and the blur's derivative hide.
-constexpr double kFirstLook = 2e-3;  ///< A step that tells whether the pixels fit.
+constexpr double kLastStep = 5e-5;     ///< Step of the homography, in half sides of the tag.
+constexpr double kStalledStep = 1e-4;  ///< Converged if only rounding prevents a lower cost.
+constexpr double kCoarseStep = 2e-3;   ///< Enough to decide whether the chosen pixels fit.
 constexpr double kPixelsStillFit_px = 0.7;
 constexpr int kMinPixelsAnEdge = 6;
 
 constexpr double kSquareX[] = {-1.0, 1.0, 1.0, -1.0};
 constexpr double kSquareY[] = {-1.0, -1.0, 1.0, 1.0};
 
-// Derivative of the point that (I + D) moves, D = [a b c; d e f; g h 0].
+// Derivative of the point moved by (I + D), D = [a b c; d e f; g h 0].
 Eigen::Matrix<double, 2, 8> ByHomography(const Eigen::Vector2d& point) {
   const double x = point.x();
   const double y = point.y();
@@ -56,7 +55,7 @@ class Fit {
   Fit(const TagPattern& pattern, const EdgePixels& pixels, TagState start)
       : model_(pattern, pixels), next_(model_), state_(std::move(start)) {}
 
-  // Gain and offset alone, by linear least squares.
+  // Estimates gain and offset alone, by linear least squares.
   void FitLight() {
     state_.gain.setZero();
     state_.offset.setZero();
@@ -69,7 +68,7 @@ class Fit {
     state_.offset = light.tail<3>();
   }
 
-  // True once no step as large as last_step is left to take.
+  // Returns whether it converged: the step became smaller than last_step.
   bool Minimise(int max_iterations, double last_step) {
     last_step_ = last_step;
     size_ = HUGE_VAL;
@@ -103,7 +102,7 @@ class Fit {
     return Trial::kTaken;
   }
 
-  // Of the homography's 8, all else estimated too; to be called at the minimum.
+  // Marginal covariance of the homography's 8 parameters; to be called at the minimum.
   Matrix8d Covariance(double* noise) {
     Linearise();
     const Eigen::VectorXd& residuals = model_.residuals();
@@ -151,7 +150,7 @@ class Fit {
   }
 
   TagModel model_;
-  TagModel next_;  // Where a step leads.
+  TagModel next_;  // At the trial step.
   TagState state_;
   Eigen::VectorXd sizes_;
   TagNormal normal_ = TagNormal::Zero();
@@ -178,17 +177,19 @@ std::optional<Eigen::Matrix3d> TagFromStraight(const Quad& corners_px,
   return (*straight_from_unit * unit_from_tag).inverse();
 }
 
-// The corners of the tag's square in the image, and their derivative by the homography's 8.
+// The corners of the tag's square in the image and their derivatives by the homography's 8
+// parameters; false outside the lens model's domain.
 bool CornersOf(const TagState& state, const Undistortion& undistortion, Quad& corners_px,
                Matrix8d& by_homography) {
   const Eigen::Matrix3d straight_from_tag = state.tag_from_straight.inverse();
   for (std::size_t k = 0; k < 4; ++k) {
     const Eigen::Vector2d tag(kSquareX[k], kSquareY[k]);
-    const auto bent = undistortion.Distort((straight_from_tag * tag.homogeneous()).hnormalized());
-    if (!bent) return false;
-    corners_px[k] = bent->pixel;
+    const auto distorted =
+        undistortion.Distort((straight_from_tag * tag.homogeneous()).hnormalized());
+    if (!distorted) return false;
+    corners_px[k] = distorted->pixel;
     by_homography.middleRows<2>(2 * static_cast<Eigen::Index>(k)) =
-        -bent->pixel_by_straight * ByPoint(straight_from_tag, tag) * ByHomography(tag);
+        -distorted->pixel_by_straight * ByPoint(straight_from_tag, tag) * ByHomography(tag);
   }
   return true;
 }
@@ -197,8 +198,8 @@ Expected<void> CheckPixels(const EdgePixels& pixels) {
   for (std::size_t edge = 0; edge < 4; ++edge) {
     if (pixels.on_edge[edge] < kMinPixelsAnEdge) {
       return MakeError(ErrorCode::kDegenerate,
-                       fmt::format("edge {} of the tag has {} pixels to look at, expected {} or "
-                                   "more: it is too small, or cut by the image's border",
+                       fmt::format("edge {} of the tag has {} usable pixels, expected {} or more: "
+                                   "the tag is too small, or cut by the image's border",
                                    edge, pixels.on_edge[edge], kMinPixelsAnEdge));
     }
   }
@@ -218,12 +219,13 @@ Expected<RefinedTag> RefineTag(const cv::Mat& grey, const Quad& start, const Tag
   RefinedTag refined{.corners_px = start};
   Matrix8d by_homography;
   TagState state{.blur_px = kFirstBlur_px};
-  // A start that was off chose pixels that are off too: these are chosen again, once.
+  // Pixels chosen by an inaccurate start are inaccurate too, so they are chosen once more.
   for (const bool is_last : {false, true}) {
     const auto homography = TagFromStraight(refined.corners_px, undistortion);
     if (!homography) {
       return MakeError(ErrorCode::kDegenerate,
-                       "the tag's corners are no convex quadrilateral within the lens model");
+                       "the tag's corners do not form a convex quadrilateral within the domain of "
+                       "the lens model");
     }
     const EdgePixels pixels =
         CollectEdgePixels(grey, refined.corners_px, pattern, undistortion, options);
@@ -232,7 +234,7 @@ Expected<RefinedTag> RefineTag(const cv::Mat& grey, const Quad& start, const Tag
     const Quad before = refined.corners_px;
     Fit fit(pattern, pixels, state);
     fit.FitLight();
-    bool converged = fit.Minimise(options.max_iterations, is_last ? kLastStep : kFirstLook);
+    bool converged = fit.Minimise(options.max_iterations, is_last ? kLastStep : kCoarseStep);
     bool is_in_domain = CornersOf(fit.state(), undistortion, refined.corners_px, by_homography);
     if (!is_last && LargestMove(refined.corners_px, before) < kPixelsStillFit_px) {
       converged = fit.Minimise(options.max_iterations, kLastStep);

@@ -42,42 +42,50 @@ MissingTag FromPose(const cv::Mat& grey, const BoardTag& tag, const Camera& came
     const Eigen::Vector3d point(in_board[k].x(), in_board[k].y(), 0.0);
     const std::optional<Eigen::Vector2d> pixel = Project(camera, pose.cam_from_board * point);
     if (!pixel || !IsIn(grey, *pixel)) {
-      return {MissingCause::kOutsideImage, "the image's border cuts it off"};
+      return {MissingCause::kOutsideImage, "it is cut off by the image's border"};
     }
     corners[k] = *pixel;
   }
   if (const double side_px = MeanSide(corners); side_px < kSmallest_px) {
     return {MissingCause::kTooSmall,
-            fmt::format("too small: {:.0f} px a side; go nearer, or take a larger tag", side_px)};
+            fmt::format("too small: {:.0f} px per side; move closer or use a larger tag", side_px)};
   }
   const TagPattern pattern = *MakeTagPattern(tag.family, tag.id);
   const TagReading reading = ReadTag(grey, corners, pattern);
   const int cells = (pattern.edge_cells - 2) * (pattern.edge_cells - 2);
   if (reading.margin > kMinVisible_grey && reading.wrong_cells <= kMaxWrongShare * cells) {
     return {MissingCause::kOverlooked,
-            fmt::format("it is where the board's other tags put it, {} of its {} cells are read "
-                        "rightly, by {:.0f} grey levels, but the detector passed it over: its "
+            fmt::format("it is where the board's other tags predict it, and {} of its {} cells are "
+                        "read correctly, by {:.0f} grey levels, but the detector missed it: its "
                         "border or margin may be hidden, or the contrast too low; try another "
-                        "--detector, or other options of it",
+                        "--detector or other options of it",
                         cells - reading.wrong_cells, cells, reading.margin)};
   }
   return {MissingCause::kCovered,
-          fmt::format("where the board's other tags put it, {} of its {} cells are read wrongly: "
-                      "covered, too dark, or another tag was printed",
+          fmt::format("where the board's other tags predict it, {} of its {} cells are read "
+                      "wrongly: it is covered, too dark, or another tag was printed",
                       reading.wrong_cells, cells)};
 }
 
-// The tag in a changed image, by its family's usual detector.
+// Reliable tags of a family in an image, by its default detector.
+std::vector<TagDetection> ReliableTags(const std::string& family, const cv::Mat& grey) {
+  const Expected<Detections> found =
+      DetectorSpecFor(family)
+          .and_then([](const std::string& spec) { return MakeTagDetector(spec); })
+          .and_then([&grey](const TagDetectorPtr& detector) { return detector->Detect(grey); });
+  if (!found) return {};
+  std::vector<TagDetection> reliable = found->tags;
+  std::erase_if(reliable,
+                [](const TagDetection& tag) { return tag.decision_margin <= kMinMargin; });
+  return reliable;
+}
+
+// The tag in a modified image.
 std::optional<TagDetection> FindIn(const cv::Mat& grey, const BoardTag& tag) {
-  const Expected<TagDetectorPtr> detector =
-      DetectorSpecFor(tag.family).and_then([](const std::string& s) { return MakeTagDetector(s); });
-  if (!detector) return std::nullopt;
-  const Expected<Detections> found = (*detector)->Detect(grey);
-  if (!found) return std::nullopt;
-  for (const TagDetection& detection : found->tags) {
-    if (detection.id == tag.id && detection.decision_margin > kMinMargin) return detection;
-  }
-  return std::nullopt;
+  const std::vector<TagDetection> tags = ReliableTags(tag.family, grey);
+  const auto found = std::ranges::find(tags, tag.id, &TagDetection::id);
+  if (found == tags.end()) return std::nullopt;
+  return *found;
 }
 
 cv::Mat Sharpened(const cv::Mat& grey) {
@@ -95,38 +103,34 @@ MissingTag ByTrial(const cv::Mat& grey, const BoardTag& tag) {
   cv::flip(grey, changed, 1);
   if (FindIn(changed, tag)) {
     return {MissingCause::kMirrored,
-            "it is there as its mirror image: printed, or the image flipped, the wrong way round"};
+            "its mirror image is there: the tag was printed mirrored, or the image is flipped"};
   }
   if (static_cast<double>(grey.total()) < kMaxPixelsToEnlarge) {
     cv::resize(grey, changed, {}, 2.0, 2.0, cv::INTER_CUBIC);
     if (const auto found = FindIn(changed, tag)) {
       return {MissingCause::kTooSmall,
-              fmt::format("too small: {:.0f} px a side; it is found in the image enlarged twice",
+              fmt::format("too small: {:.0f} px per side; it is found in the image enlarged twice",
                           0.5 * MeanSide(found->corners_px))};
     }
   }
   if (FindIn(Sharpened(grey), tag)) {
-    return {MissingCause::kBlurred, "blurred: it is found in the image sharpened"};
+    return {MissingCause::kBlurred, "blurred: it is found in the sharpened image"};
   }
   const std::array wanted = {tag.id};
   const std::vector<FamilyMatch> others = FindOtherFamilies(grey, tag.family, wanted);
   if (!others.empty()) {
     return {MissingCause::kOtherFamily,
-            fmt::format("no tag of {}, but of {}: {}", tag.family, others[0].family,
-                        fmt::join(others[0].ids, ", "))};
+            fmt::format("there is no tag of {}, but there are tags of {}: {}", tag.family,
+                        others[0].family, fmt::join(others[0].ids, ", "))};
   }
-  return {MissingCause::kNotThere, "not seen, also not enlarged, sharpened or mirrored"};
+  return {MissingCause::kNotThere,
+          "not seen, and not in the enlarged, sharpened or mirrored image either"};
 }
 
 std::vector<int> ReliableIds(const std::string& family, const cv::Mat& grey) {
-  const Expected<TagDetectorPtr> detector =
-      DetectorSpecFor(family).and_then([](const std::string& s) { return MakeTagDetector(s); });
-  if (!detector) return {};
-  const Expected<Detections> found = (*detector)->Detect(grey);
-  if (!found) return {};
   std::vector<int> ids;
-  for (const TagDetection& tag : found->tags) {
-    if (tag.hamming == 0 && tag.decision_margin > kMinMargin) ids.push_back(tag.id);
+  for (const TagDetection& tag : ReliableTags(family, grey)) {
+    if (tag.hamming == 0) ids.push_back(tag.id);
   }
   std::ranges::sort(ids);
   return ids;

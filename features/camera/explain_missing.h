@@ -13,13 +13,13 @@
 namespace sextant {
 
 enum class MissingCause {
-  kOutsideImage,  ///< The board's pose puts a corner of it outside.
-  kTooSmall,      ///< It is found in the image enlarged twice, or is under 16 px by the pose.
-  kBlurred,       ///< It is found in the image sharpened.
-  kMirrored,      ///< It is found in the image's mirror image.
-  kOtherFamily,   ///< Tags of another family are there instead.
-  kCovered,       ///< Where the pose puts it, its cells are not to be read.
-  kOverlooked,    ///< Where the pose puts it, it is to be read, yet the detector did not.
+  kOutsideImage,  ///< According to the board's pose, a corner of the tag is outside the image.
+  kTooSmall,      ///< Found in the image enlarged twice, or under 16 px according to the pose.
+  kBlurred,       ///< Found in the sharpened image.
+  kMirrored,      ///< Found in the mirror image.
+  kOtherFamily,   ///< Tags of another family were found instead.
+  kCovered,       ///< Its cells cannot be read at its position according to the pose.
+  kOverlooked,    ///< Its cells can be read at that position, but the detector missed the tag.
   kNotThere,      ///< None of these.
 };
 std::string_view ToString(MissingCause cause);
@@ -29,21 +29,21 @@ struct MissingTag {
   std::string text{};  ///< One line for people, with figures.
 };
 
-/// Why a tag of a board was not found: from the board's pose, where its other tags gave one, else
-/// by trying what would make it visible. Slow (up to a second a megapixel), for when it is needed.
+/// Explains why a tag of a board was not found: from the board's pose if its other tags gave one,
+/// else by searching modified images. Slow (up to a second per megapixel).
 MissingTag ExplainMissing(const cv::Mat& grey, const BoardTag& tag, const Camera* camera,
                           const BoardPose* pose);
 
-/// Tags of one family that an image shows.
+/// The tags of one family in an image.
 struct FamilyMatch {
   std::string family{};
   std::vector<int> ids{};  ///< Ascending.
-  int wanted = 0;          ///< How many of them were looked for.
+  int wanted = 0;          ///< How many of the wanted ids are among them.
 };
 
-/// Every family but `except` with tags in the image that are read without a wrong cell; those with
-/// most of the wanted ids first, then with most tags, then with most cells (small ones are read
-/// into anything). Of dictionaries that begin alike (4x4_50 and 4x4_1000) each is listed.
+/// Every family except `except` with tags in the image that are read without a wrong cell, ordered
+/// by the number of wanted ids, then of tags, then of cells (tags with few cells are often false
+/// detections). Dictionaries that share their first tags (4x4_50 and 4x4_1000) are all listed.
 std::vector<FamilyMatch> FindOtherFamilies(const cv::Mat& grey, const std::string& except,
                                            std::span<const int> wanted_ids);
 

@@ -19,26 +19,26 @@ std::string CheckerKey(const BoardChecker& checker) {
   return fmt::format("{}x{}", checker.inner_columns, checker.inner_rows);
 }
 
-// "aruco(refine=subpix)" and "aruco_original" make "aruco(dictionary=original,refine=subpix)".
+// The spec of a detector for a family: "aruco(dictionary=original,refine=subpix)" for
+// "aruco_original" and "aruco(refine=subpix)".
 Expected<std::string> SpecFor(const std::string& family, const std::string& detector) {
   Expected<std::string> usual = DetectorSpecFor(family);
   if (!usual || detector.empty()) return usual;
   SEXTANT_ASSIGN_OR_RETURN(SpecNode wanted, ParseSpec(detector));
   const SpecNode node = *ParseSpec(*usual);
   std::pair<std::string, std::string> option = node.options.front();
-  // OpenCV reads AprilTag's families too.
+  // OpenCV detects AprilTag's families too.
   if (wanted.name == "aruco" && node.name == "apriltag") option.first = "dictionary";
   if (wanted.name != "aruco" && wanted.name != node.name) {
     return MakeError(ErrorCode::kInvalidOption,
-                     fmt::format("detector '{}' does not read tags of {}; {} does", wanted.name,
+                     fmt::format("detector '{}' does not detect tags of {}; {} does", wanted.name,
                                  family, node.name));
   }
   wanted.options.insert(wanted.options.begin(), option);
   return FormatSpec(wanted);
 }
 
-// The tag as the boards' family numbers its corners, where the other library's detector of that
-// family found it.
+// Renumbers the corners of a tag as in the boards' family if the other library detected it.
 TagDetection AsFamily(TagDetection tag, const std::string& family) {
   if (tag.family == family) return tag;
   const Expected<TagPattern> own = MakeTagPattern(tag.family, tag.id);
@@ -55,7 +55,7 @@ Expected<void> CheckBoards(const std::vector<Board>& boards) {
     if (board.tags.empty() && !board.checker) {
       return MakeError(
           ErrorCode::kInvalidInput,
-          fmt::format("board {} has neither tags nor a checkerboard to look for", board.id));
+          fmt::format("board {} has neither tags nor a checkerboard to detect", board.id));
     }
     for (const BoardTag& tag : board.tags) {
       if (Expected<TagPattern> pattern = MakeTagPattern(tag.family, tag.id); !pattern) {
@@ -108,7 +108,7 @@ Expected<void> Add(const std::string& key, const std::string& spec, Detectors& d
   return MakeTagDetector(spec).map([&](TagDetectorPtr made) { detectors[key] = std::move(made); });
 }
 
-// The same detector on an image reduced by two; none where the user said by how much.
+// The same detector on an image decimated by two; none if the user set the decimation.
 std::optional<std::string> QuickSpec(const std::string& spec) {
   SpecNode node = *ParseSpec(spec);
   for (const auto& [option, value] : node.options) {
@@ -118,7 +118,8 @@ std::optional<std::string> QuickSpec(const std::string& spec) {
   return FormatSpec(node);
 }
 
-Expected<void> Look(const cv::Mat& grey, const Detectors& detectors, Detections& found) {
+// Appends the detections of all detectors to `found`.
+Expected<void> DetectAll(const cv::Mat& grey, const Detectors& detectors, Detections& found) {
   for (const auto& [family, detector] : detectors) {
     SEXTANT_ASSIGN_OR_RETURN(Detections some, detector->Detect(grey));
     for (TagDetection& tag : some.tags) {
@@ -147,19 +148,17 @@ Expected<BoardFinder> BoardFinder::Make(std::vector<Board> boards, std::optional
     for (const BoardTag& tag : board.tags) {
       if (finder.detectors_.contains(tag.family)) continue;
       SEXTANT_ASSIGN_OR_RETURN(const std::string spec, SpecFor(tag.family, detector));
-      const Expected<void> ok = Add(tag.family, spec, finder.detectors_).and_then([&] {
-        const std::optional<std::string> quick = QuickSpec(spec);
-        return quick ? Add(tag.family, *quick, finder.quick_) : Expected<void>();
-      });
-      if (!ok) return tl::unexpected<Error>(ok.error());
+      SEXTANT_RETURN_IF_ERROR(Add(tag.family, spec, finder.detectors_));
+      if (const std::optional<std::string> quick = QuickSpec(spec)) {
+        SEXTANT_RETURN_IF_ERROR(Add(tag.family, *quick, finder.quick_));
+      }
     }
     if (!board.checker) continue;
-    const Expected<void> ok =
+    SEXTANT_RETURN_IF_ERROR(
         Add(CheckerKey(*board.checker),
             fmt::format("checkerboard(columns={},rows={})", board.checker->inner_columns,
                         board.checker->inner_rows),
-            finder.checkers_);
-    if (!ok) return tl::unexpected<Error>(ok.error());
+            finder.checkers_));
   }
   finder.boards_ = std::move(boards);
   finder.camera_ = camera;
@@ -171,18 +170,18 @@ Expected<SeenBoards> BoardFinder::Find(const cv::Mat& image) const {
   if (camera_ && camera_->width_px > 0 &&
       (grey.cols != camera_->width_px || grey.rows != camera_->height_px)) {
     return MakeError(ErrorCode::kInvalidInput,
-                     fmt::format("the image has {} x {} pixels, expected the camera's {} x {}",
+                     fmt::format("the image has {} x {} pixels, expected {} x {} as in the camera",
                                  grey.cols, grey.rows, camera_->width_px, camera_->height_px));
   }
   Detections checkers;
-  SEXTANT_RETURN_IF_ERROR(Look(grey, checkers_, checkers));
+  SEXTANT_RETURN_IF_ERROR(DetectAll(grey, checkers_, checkers));
   if (!quick_.empty() && quick_.size() == detectors_.size()) {
     Detections found = checkers;
-    SEXTANT_RETURN_IF_ERROR(Look(grey, quick_, found));
+    SEXTANT_RETURN_IF_ERROR(DetectAll(grey, quick_, found));
     SeenBoards seen = Assemble(grey, std::move(found));
     if (HasAllTags(seen)) return seen;
   }
-  SEXTANT_RETURN_IF_ERROR(Look(grey, detectors_, checkers));
+  SEXTANT_RETURN_IF_ERROR(DetectAll(grey, detectors_, checkers));
   return Assemble(grey, std::move(checkers));
 }
 
@@ -193,11 +192,11 @@ SeenBoards BoardFinder::Assemble(const cv::Mat& grey, Detections found) const {
     AddPoints(seen.boards.back());
     if (camera_) AddPose(seen.boards.back());
   }
-  seen.strangers = std::move(found.tags);
+  seen.other_tags = std::move(found.tags);
   return seen;
 }
 
-// Takes what belongs to the board out of `found`.
+// Moves the detections that belong to the board out of `found`.
 SeenBoard BoardFinder::Assign(std::size_t index, const cv::Mat& grey, Detections& found) const {
   const Board& board = boards_[index];
   const Undistortion undistortion = camera_ ? Undistortion(*camera_) : Undistortion();

@@ -16,38 +16,38 @@
 
 namespace sextant {
 
-/// A tag of a board, where the image shows it.
+/// A tag of a board that was detected in the image.
 struct SeenTag {
-  std::size_t index = 0;  ///< Into Board::tags.
+  std::size_t index = 0;  ///< Index into Board::tags.
   TagDetection detection{};
-  /// By RefineTag; the reason where it could not, and the detector's own corners are used.
+  /// The result of RefineTag; if it failed, the error, and the detector's corners are used.
   Expected<RefinedTag> refined;
 };
 
-/// A board with what the image shows of it.
+/// What was detected of a board.
 struct SeenBoard {
-  std::size_t index = 0;  ///< Into the boards that were looked for.
+  std::size_t index = 0;  ///< Index into BoardFinder::boards().
   std::vector<SeenTag> tags{};
   std::optional<CheckerDetection> checker{};
-  std::vector<std::size_t> missing_tags{};  ///< Into Board::tags.
+  std::vector<std::size_t> missing_tags{};  ///< Indices into Board::tags.
   bool is_checker_missing = false;
-  std::vector<std::size_t> duplicate_tags{};  ///< Seen more than once, and so not used.
-  std::vector<BoardPoints> printed{};  ///< What the pose rests on: a group a tag or checkerboard.
-  std::optional<Expected<BoardPose>> pose{};  ///< None where no camera was given or nothing seen.
-  PointsInCam corners{};                      ///< Of BoardCorners, where there is a pose.
+  std::vector<std::size_t> duplicate_tags{};  ///< Tags seen more than once, which are not used.
+  std::vector<BoardPoints> printed{};  ///< Input of the pose: a group for each tag or checkerboard.
+  std::optional<Expected<BoardPose>> pose{};  ///< None without a camera or without any detection.
+  PointsInCam corners{};                      ///< Of BoardCorners; empty without a pose.
 };
 
 struct SeenBoards {
-  std::vector<SeenBoard> boards{};        ///< One for each that was looked for, in that order.
-  std::vector<TagDetection> strangers{};  ///< Of the boards' families, but on none of them.
+  std::vector<SeenBoard> boards{};         ///< One for each of BoardFinder::boards(), in order.
+  std::vector<TagDetection> other_tags{};  ///< Of the boards' families, but on none of them.
 };
 
-/// Looks for boards in images. Immutable and thread-safe.
+/// Finds boards in images. Immutable and thread-safe.
 class BoardFinder {
  public:
-  /// Makes a detector for each family and each size of checkerboard on the boards. `detector`
-  /// names the library that is to find tags, "aruco" or "apriltag", with options but without the
-  /// family, which comes from the boards; empty: AprilTag's for its families, else OpenCV's.
+  /// Makes a detector for each family and each size of checkerboard on the boards. `detector` is
+  /// the library that detects tags, "aruco" or "apriltag", with options but without the family,
+  /// which comes from the boards; empty: AprilTag's library for its families, else OpenCV's.
   /// Errors: kUnknownName for a family, kInvalidOption for a library that does not read it;
   /// kInvalidInput for boards without tags and checkerboard and for a tag on two boards.
   static Expected<BoardFinder> Make(std::vector<Board> boards, std::optional<Camera> camera,
@@ -56,9 +56,9 @@ class BoardFinder {
   const std::vector<Board>& boards() const { return boards_; }
   const std::optional<Camera>& camera() const { return camera_; }
 
-  /// Tags are looked for in the image reduced by two, unless `detector` says otherwise, and in the
-  /// whole image only where that left a tag out, or one that could not be refined.
-  /// Errors: those of TagDetector::Detect; kInvalidInput for an image of another size than the
+  /// Searches the image decimated by two first, unless `detector` sets another decimation, and the
+  /// full image only if a tag was missed or could not be refined.
+  /// Errors: those of TagDetector::Detect; kInvalidInput if the image's size differs from the
   /// camera's.
   Expected<SeenBoards> Find(const cv::Mat& image) const;
 
@@ -73,13 +73,12 @@ class BoardFinder {
 
   std::vector<Board> boards_;
   std::optional<Camera> camera_;
-  Detectors detectors_;  ///< By the boards' family.
-  Detectors quick_;      ///< Those that look at the image reduced by two first.
-  Detectors checkers_;   ///< By "7x5".
+  Detectors detectors_;  ///< By family.
+  Detectors quick_;      ///< The same detectors on the image decimated by two, tried first.
+  Detectors checkers_;   ///< By size: "7x5".
 };
 
-/// Standard deviation of a corner that has only the detector's own accuracy, per axis [px]:
-/// docs/detectors.md.
+/// Standard deviation, per axis [px], of a corner that was not refined: docs/detectors.md.
 inline constexpr double kDetectorSigma_px = 0.5;
 inline constexpr double kCheckerSigma_px = 0.1;
 

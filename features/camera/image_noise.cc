@@ -13,7 +13,7 @@ namespace {
 constexpr int kBlock_px = 16;
 constexpr int kRowStep = 2;
 
-// Sum of |a - 2 b + c| over every other row of a block whose left neighbour and right neighbour are
+// Sum of |a - 2 b + c| over every other row of a block; the columns to its left and right must be
 // in the image.
 int SumOfDifferences(const cv::Mat& grey, int left, int top) {
   std::array<std::int16_t, kBlock_px> sums{};
@@ -43,8 +43,9 @@ double EstimateNoiseGrey(const cv::Mat& grey) {
   if (sums.empty()) return 0.0;
   const auto quartile = sums.begin() + static_cast<std::ptrdiff_t>(sums.size() / 4);
   std::nth_element(sums.begin(), quartile, sums.end());
-  // White noise of sigma 1: mean |difference| is sqrt(6) sqrt(2 / pi), and blocks of 128, whose
-  // neighbours go together, scatter by 9 percent: their lower quartile is 0.94 of that.
+  // For white noise of sigma 1 the mean |difference| is sqrt(6) sqrt(2 / pi). The means of blocks
+  // of 128 differences, which are correlated between neighbours, scatter by 9 percent, so their
+  // lower quartile is 0.94 of that.
   const double of_unit_noise = 0.94 * std::sqrt(12.0 / std::acos(-1.0));
   constexpr int kDifferences = kBlock_px * kBlock_px / kRowStep;
   return *quartile / (kDifferences * of_unit_noise);

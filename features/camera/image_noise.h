@@ -5,12 +5,12 @@
 
 namespace sextant {
 
-/// Standard deviation of the noise of single pixels [grey levels] in an 8-bit grey image: from the
-/// second differences along rows, which see neither light nor slopes, of blocks of 16 x 16 pixels.
-/// The lower quartile of the blocks counts, so that print and edges in three quarters of them do no
-/// harm; blocks without any difference (black, or overexposed) do not count. Noise that goes
-/// together over neighbouring pixels is told too small; texture finer than some pixels that fills
-/// the image is told as noise. 0 where there is no block or no difference.
+/// Estimates the standard deviation of the noise of single pixels [grey levels] in an 8-bit grey
+/// image, from second differences along rows, which cancel brightness and gradients, in blocks of
+/// 16 x 16 pixels. The lower quartile over the blocks is used, so print and edges in up to three
+/// quarters of them have no effect; blocks without any difference (black or overexposed) are
+/// skipped. Noise that is correlated between neighbouring pixels is underestimated; fine texture
+/// that fills the image is mistaken for noise. 0 if there is no block or no difference.
 double EstimateNoiseGrey(const cv::Mat& grey);
 
 }  // namespace sextant

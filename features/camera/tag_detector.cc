@@ -86,7 +86,7 @@ Expected<TagDetectorPtr> MakeTagDetector(std::string_view spec) {
 }
 
 Expected<std::string> DetectorSpecFor(std::string_view family) {
-  if (Expected<int> count = TagCount(family); !count) return tl::unexpected<Error>(count.error());
+  SEXTANT_RETURN_IF_ERROR(TagCount(family));
   constexpr std::string_view kAruco = "aruco_";
   if (family.starts_with(kAruco)) {
     return fmt::format("aruco(dictionary={})", family.substr(kAruco.size()));

@@ -14,20 +14,21 @@
 
 namespace sextant {
 
-/// A way to find tags or checkerboards in an image. Immutable and thread-safe.
+/// A detector of tags or checkerboards in images. Immutable and thread-safe.
 ///
-/// Whatever a library's own origin and habit, corners are in our pixels: each detector's header has
-/// the measured difference that it takes away.
+/// Corners are in our pixel convention, whatever that of the library is: each detector's header
+/// states the measured offset that it corrects.
 class TagDetector {
  public:
   virtual ~TagDetector() = default;
   TagDetector(const TagDetector&) = delete;
   TagDetector& operator=(const TagDetector&) = delete;
 
-  const std::string& name() const { return name_; }  ///< Canonical: makes the same one again.
+  /// Canonical name, from which MakeTagDetector makes the same detector.
+  const std::string& name() const { return name_; }
 
-  /// All that is found, which may be nothing. Errors: those of ToGrey; kInvalidInput with the
-  /// library's own words where it refuses the image.
+  /// All detections, possibly none. Errors: those of ToGrey; kInvalidInput with the library's own
+  /// message if it refuses the image.
   Expected<Detections> Detect(const cv::Mat& image) const;
 
  protected:
@@ -41,7 +42,7 @@ class TagDetector {
 
 using TagDetectorPtr = std::shared_ptr<const TagDetector>;
 
-/// One line of the catalogue of detectors.
+/// An entry of the catalogue of detectors.
 struct TagDetectorEntry {
   std::string name;
   std::string summary;
@@ -54,12 +55,12 @@ struct TagDetectorEntry {
 /// aruco, apriltag and checkerboard.
 const std::vector<TagDetectorEntry>& TagDetectorEntries();
 
-/// A detector by name and options: "aruco(dictionary=6x6_250,refine=subpix)".
-/// Errors: kParse, kUnknownName (names the nearest known one), kInvalidOption.
+/// Makes a detector from its name and options: "aruco(dictionary=6x6_250,refine=subpix)".
+/// Errors: kParse, kUnknownName (with a suggestion), kInvalidOption.
 Expected<TagDetectorPtr> MakeTagDetector(std::string_view spec);
 
-/// The spec of the detector that finds a family with its own defaults: "aruco(dictionary=6x6_250)"
-/// for "aruco_6x6_250", "apriltag(family=tag36h11)" for "tag36h11". Error: kUnknownName.
+/// The spec of the default detector of a family: "aruco(dictionary=6x6_250)" for "aruco_6x6_250",
+/// "apriltag(family=tag36h11)" for "tag36h11". Error: kUnknownName.
 Expected<std::string> DetectorSpecFor(std::string_view family);
 
 }  // namespace sextant

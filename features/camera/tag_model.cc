@@ -10,10 +10,10 @@
 namespace sextant {
 namespace {
 
-constexpr double kReach = 4.0;         ///< Standard deviations beyond which a step is over.
+constexpr double kReach = 4.0;         ///< Width of a blurred step, in standard deviations.
 constexpr std::size_t kMaxCells = 24;  ///< Along one axis within reach.
 
-// e^x for -700 < x <= 0: 2^k times a polynomial on half an octave to both sides, to 3e-10.
+// e^x for -700 < x <= 0 to 3e-10: 2^k times a polynomial over half an octave to each side.
 SEXTANT_INLINE Vec8d Exp(const Vec8d& x) {
   const Vec8d shift =
       BroadcastVec(6755399441055744.0);  // 1.5 * 2^52: the integer is in the low bits.
@@ -31,8 +31,8 @@ SEXTANT_INLINE Vec8d Exp(const Vec8d& x) {
   return (sum * r + 1.0) * power;
 }
 
-// Phi(h), and phi(h) He_n(h) for n = 0 to 3 (Hermite's polynomials, each the derivative of the one
-// before but for its sign).
+// Phi(h), and phi(h) He_n(h) for n = 0 to 3 with Hermite's polynomials: up to the sign, each is the
+// derivative of the one before.
 struct Step {
   Vec8d value{};
   std::array<Vec8d, 4> hermite{};
@@ -48,15 +48,15 @@ SEXTANT_INLINE Step StepAt(const Vec8d& h) {
       density * t *
       (0.319381530 + t * (-0.356563782 + t * (1.781477937 + t * (-1.821255978 + t * 1.330274429))));
   const Vec8d outside = h > 0.0 ? BroadcastVec(1.0) : BroadcastVec(0.0);
-  const Vec8d lanes_density = is_in ? density : BroadcastVec(0.0);
+  const Vec8d phi = is_in ? density : BroadcastVec(0.0);
   Step step;
   step.value = is_in ? (inside > 0.0 ? 1.0 - tail : tail) : outside;
-  step.hermite = {lanes_density, inside * lanes_density, (inside * inside - 1.0) * lanes_density,
-                  (inside * inside - 3.0) * inside * lanes_density};
+  step.hermite = {phi, inside * phi, (inside * inside - 1.0) * phi,
+                  (inside * inside - 3.0) * inside * phi};
   return step;
 }
 
-// How much of each cell from `first` the blur sees: differences over its two sides.
+// The weight of each cell from `first` on in the blur: the difference of Step over its two sides.
 struct Weights {
   std::array<std::int32_t, kSimdWidth> first;
   std::size_t count = 0;
@@ -92,7 +92,7 @@ SEXTANT_INLINE void WeightsAt(const Vec8d& point, const Vec8d& blur, Weights& we
   }
 }
 
-// 1 for the lanes whose cell is black.
+// 1 for the vector elements whose cell is black.
 SEXTANT_INLINE Vec8d BlackAt(const TagModel::Cells& cells, const Weights& us, const Weights& vs,
                              std::size_t column, std::size_t row) {
   Vec8d black;
@@ -108,11 +108,11 @@ SEXTANT_INLINE Vec8d BlackAt(const TagModel::Cells& cells, const Weights& us, co
 
 struct Blurred {
   Vec8d white;
-  std::array<Vec8d, 2> by_step;  // Derivatives by the point in blurs.
+  std::array<Vec8d, 2> by_step;  // Derivatives by the position in units of the blur.
   Vec8d by_blur;
 };
 
-// Black cells are taken from white: most of the surroundings need no term then.
+// Subtracts black cells from white, so that the white surroundings need no terms.
 SEXTANT_INLINE Blurred BlurAt(const TagModel::Cells& cells, const Weights& us, const Weights& vs,
                               const Vec8d& correlation) {
   const std::array<Vec8d, 3> series = {correlation, 0.5 * correlation * correlation,
@@ -175,7 +175,7 @@ void ModelPixels(const TagModel::Cells& cells, const EdgePixels& pixels, const T
     StoreVec(x, out.x.data() + i);
     StoreVec(y, out.y.data() + i);
     StoreVec(blurred.white, out.white.data() + i);
-    // A blur's width in cells is blur times the spread; the cells by the square cancel.
+    // The width of the blur in cells is blur times the spread; the cells per unit cancel.
     StoreVec(gain * blurred.by_step[0] / (state.blur_px * x_spread), out.by_x.data() + i);
     StoreVec(gain * blurred.by_step[1] / (state.blur_px * y_spread), out.by_y.data() + i);
     StoreVec(gain * blurred.by_blur, out.by_blur.data() + i);
@@ -192,9 +192,10 @@ struct Sums {
   std::array<double, kRows> right;
 };
 
-// Weights of the pixels that only fill up the last lanes are 0.
+// The padding of the last vector has weight 0.
 SEXTANT_MULTIVERSION
-void Accumulate(const TagModel::Modelled& modelled, std::size_t count, double most, Sums& sums) {
+void Accumulate(const TagModel::Modelled& modelled, std::size_t count, double threshold,
+                Sums& sums) {
   std::array<Vec8d, kUpper> normal{};
   std::array<Vec8d, kRows> right{};
   for (std::size_t i = 0; i < count; i += kSimdWidth) {
@@ -220,7 +221,7 @@ void Accumulate(const TagModel::Modelled& modelled, std::size_t count, double mo
                                           BroadcastVec(1.0),
                                           x,
                                           y};
-    Vec8d weight = Min(BroadcastVec(1.0), most / Max(Abs(residual), BroadcastVec(1e-12)));
+    Vec8d weight = Min(BroadcastVec(1.0), threshold / Max(Abs(residual), BroadcastVec(1e-12)));
     for (std::size_t k = count - i; k < kSimdWidth; ++k) weight[k] = 0.0;
     std::size_t next = 0;
     for (std::size_t a = 0; a < kRows; ++a) {
@@ -259,9 +260,9 @@ void TagModel::Evaluate(const TagState& state) {
   residuals_ = Eigen::Map<const Eigen::VectorXd>(modelled_.residual.data(), pixels_->count);
 }
 
-void TagModel::Linearise(double most, TagNormal& normal, TagRow& right) const {
+void TagModel::Linearise(double threshold, TagNormal& normal, TagRow& right) const {
   Sums sums;
-  Accumulate(modelled_, static_cast<std::size_t>(pixels_->count), most, sums);
+  Accumulate(modelled_, static_cast<std::size_t>(pixels_->count), threshold, sums);
   std::size_t next = 0;
   for (int a = 0; a < kTagUnknowns; ++a) {
     right[a] = sums.right[static_cast<std::size_t>(a)];

@@ -10,12 +10,12 @@
 
 namespace sextant {
 
-/// What a picture of a tag depends on. The tag's square is [-1, 1]^2 here, which keeps the normal
+/// The parameters of the image of a tag. The tag's square is [-1, 1]^2 here, which keeps the normal
 /// matrix well scaled.
 struct TagState {
   Eigen::Matrix3d tag_from_straight = Eigen::Matrix3d::Identity();
   double blur_px = 1.0;
-  Eigen::Vector3d gain = Eigen::Vector3d::Zero();    ///< Constant, by x and by y.
+  Eigen::Vector3d gain = Eigen::Vector3d::Zero();    ///< Constant and derivatives by x and y.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< Likewise.
 };
 
@@ -28,38 +28,38 @@ inline constexpr int kTagUnknowns = 15;
 using TagRow = Eigen::Matrix<double, kTagUnknowns, 1>;
 using TagNormal = Eigen::Matrix<double, kTagUnknowns, kTagUnknowns>;
 
-/// Grey levels that a state predicts for pixels near a tag's edges, eight pixels side by side.
+/// Predicts the grey levels of pixels near a tag's edges, vectorised over eight pixels.
 ///
-/// I = g w + o: w the pattern, white all round, through a Gaussian blur that is round in the image
-/// and skewed in the cells of a tag seen from the side; g and o planes. w is the sum over cells of
-/// the normal distribution's mass in the cell, the bivariate one by the tetrachoric series (Pearson
-/// 1900) Phi(h) Phi(k) + phi(h) phi(k) sum rho^(n+1) / (n+1)! He_n(h) He_n(k) up to rho^3. Exact
-/// along edges; the derivative by the blur leaves the series out. Phi to 7.5e-8 by Zelen and Severo
-/// (1964).
+/// I = g w + o: w is the pattern with a white surrounding through a Gaussian blur that is isotropic
+/// in the image and thus skewed in the cells of a tag seen obliquely; g and o are planes. w is the
+/// sum over cells of the normal distribution's mass in the cell, the bivariate one by the
+/// tetrachoric series (Pearson 1900) Phi(h) Phi(k) + phi(h) phi(k) sum rho^(n+1) / (n+1)! He_n(h)
+/// He_n(k) up to rho^3. Exact along edges; the derivative by the blur neglects the series. Phi is
+/// accurate to 7.5e-8 (Zelen and Severo 1964).
 class TagModel {
  public:
   /// The pixels must outlive this.
   TagModel(const TagPattern& pattern, const EdgePixels& pixels);
 
-  /// Residuals, grey - I, and derivatives at a state.
+  /// Computes the residuals, grey - I, and derivatives at a state.
   void Evaluate(const TagState& state);
   const Eigen::VectorXd& residuals() const { return residuals_; }
 
-  /// Normal equations of the last Evaluate with Huber's weights, min(1, most / |r|).
-  void Linearise(double most, TagNormal& normal, TagRow& right) const;
+  /// Normal equations of the last Evaluate with Huber's weights, min(1, threshold / |r|).
+  void Linearise(double threshold, TagNormal& normal, TagRow& right) const;
 
   struct Cells {
-    double first = 0.0;   ///< Of the pattern's cells, where the tag's square begins...
-    double a_unit = 0.0;  ///< ...and half the cells along its side.
+    double first = 0.0;   ///< First cell of the tag's square within the pattern.
+    double a_unit = 0.0;  ///< Cells per unit of the square: half the cells along its side.
     int side = 0;
-    std::vector<double> black;  ///< 1 or 0, with a border of a cell.
+    std::vector<double> black;  ///< 1 or 0, with a border of one cell.
   };
-  /// Of each pixel, structure of arrays.
+  /// Values of all pixels as a structure of arrays.
   struct Modelled {
-    std::vector<double> x, y;  ///< In the tag's square.
+    std::vector<double> x, y;  ///< Positions in the tag's square.
     std::vector<double> white;
-    std::vector<double> by_x, by_y;  ///< Grey level by the place in the square.
-    std::vector<double> by_blur;     ///< By the logarithm of the blur.
+    std::vector<double> by_x, by_y;  ///< Derivatives of the grey level by the position.
+    std::vector<double> by_blur;     ///< Derivatives by the logarithm of the blur.
     std::vector<double> residual;
   };
 

@@ -56,15 +56,15 @@ Expected<int> TagCount(std::string_view family) {
 }
 
 Expected<TagPattern> MakeTagPattern(std::string_view family, int id) {
-  const Expected<int> count = TagCount(family);
-  if (!count) return tl::unexpected(count.error());
-  if (id < 0 || id >= *count) {
+  SEXTANT_ASSIGN_OR_RETURN(const int count, TagCount(family));
+  if (id < 0 || id >= count) {
     return MakeError(
         ErrorCode::kInvalidInput,
-        fmt::format("tag family {} has the ids 0 to {}, not {}", family, *count - 1, id));
+        fmt::format("tag family {} has the ids 0 to {}, not {}", family, count - 1, id));
   }
-  if (const auto dictionary = FindArucoDictionary(family))
+  if (const auto dictionary = FindArucoDictionary(family)) {
     return MakeArucoPattern(**dictionary, id);
+  }
   return AprilTagPattern(*MakeAprilTagFamily(family), id);
 }
 

@@ -11,11 +11,11 @@
 
 namespace sextant {
 
-/// What is printed for a tag: a square of cells, from the detectors' own libraries.
+/// The printed pattern of a tag, a square of cells, from the detectors' own libraries.
 struct TagPattern {
-  int cells = 0;       ///< Along a side, all that the library prints.
-  int edge_first = 0;  ///< First cell of the square whose corners detectors report...
-  int edge_cells = 0;  ///< ...and its side in cells.
+  int cells = 0;                      ///< Cells along a side of the whole pattern.
+  int edge_first = 0;                 ///< First cell of the square whose corners detectors report.
+  int edge_cells = 0;                 ///< Cells along a side of that square.
   std::vector<std::uint8_t> white{};  ///< Row by row from the tag's top-left: 1 white, 0 black.
 
   bool IsWhite(int row, int column) const {
@@ -23,19 +23,19 @@ struct TagPattern {
   }
 };
 
-/// Every family there is a pattern for: "aruco_original", "aruco_4x4_50" to "aruco_7x7_1000",
-/// "tag36h11" and AprilTag's others.
+/// All families: "aruco_original", "aruco_4x4_50" to "aruco_7x7_1000", "tag36h11" and AprilTag's
+/// others.
 const std::vector<std::string>& TagFamilies();
 
-/// Number of ids of a family; they count from 0. Error: kUnknownName, with the nearest known.
+/// Number of ids of a family; they count from 0. Error: kUnknownName, with a suggestion.
 Expected<int> TagCount(std::string_view family);
 
 /// Errors: kUnknownName; kInvalidInput for an id that the family does not have.
 Expected<TagPattern> MakeTagPattern(std::string_view family, int id);
 
-/// By how many quarters clockwise `from` is turned against `to`, comparing the squares whose
-/// corners detectors report; none where no turn makes them equal. OpenCV's dictionaries of
-/// AprilTag's families call another corner the first than AprilTag does.
+/// The number of quarter turns clockwise of `from` relative to `to`, for the squares whose corners
+/// detectors report; none if no rotation makes them equal. OpenCV's dictionaries of AprilTag's
+/// families begin at another corner than AprilTag does.
 std::optional<int> QuarterTurns(const TagPattern& from, const TagPattern& to);
 
 }  // namespace sextant

@@ -47,7 +47,7 @@ std::vector<Cell> ReadCells(const cv::Mat& grey, const Eigen::Matrix3d& pixel_fr
   return cells;
 }
 
-double MeanOf(const std::vector<Cell>& cells, bool is_white, double otherwise) {
+double MeanOf(const std::vector<Cell>& cells, bool is_white, double default_value) {
   double sum = 0.0;
   int count = 0;
   for (const Cell& cell : cells) {
@@ -55,7 +55,7 @@ double MeanOf(const std::vector<Cell>& cells, bool is_white, double otherwise) {
     sum += cell.grey;
     ++count;
   }
-  return count > 0 ? sum / count : otherwise;
+  return count > 0 ? sum / count : default_value;
 }
 
 }  // namespace

@@ -28,16 +28,16 @@ std::optional<Undistortion::Point> Undistortion::UndistortNear(const Eigen::Vect
                                                                const Eigen::Vector2d& near_px,
                                                                const Point& near) const {
   if (!camera_ || camera_->model == CameraModel::kPinhole) return Undistort(pixel);
-  // A Newton step of s leaves s^2 times half the lens's curvature, at most 0.01 a px.
+  // A Newton step of s leaves an error of s^2 times half the lens's curvature, at most 0.01 per px.
   constexpr double kShortStep_px = 0.1;
   constexpr int kMaxSteps = 3;
   Point point{.straight_px = near.straight_px + near.straight_by_pixel * (pixel - near_px),
               .straight_by_pixel = near.straight_by_pixel};
   for (int i = 0; i < kMaxSteps; ++i) {
-    const std::optional<DistortedPoint> bent = Distort(point.straight_px);
-    if (!bent) break;
-    point.straight_by_pixel = bent->pixel_by_straight.inverse();
-    const Eigen::Vector2d step = point.straight_by_pixel * (pixel - bent->pixel);
+    const std::optional<DistortedPoint> distorted = Distort(point.straight_px);
+    if (!distorted) break;
+    point.straight_by_pixel = distorted->pixel_by_straight.inverse();
+    const Eigen::Vector2d step = point.straight_by_pixel * (pixel - distorted->pixel);
     point.straight_px += step;
     if (step.squaredNorm() < kShortStep_px * kShortStep_px) return point;
   }

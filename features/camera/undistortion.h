@@ -8,8 +8,8 @@
 
 namespace sextant {
 
-/// Pixels of a camera and of the same camera without distortion, where straight edges are straight.
-/// Without a camera both are the same.
+/// Maps between the pixels of a camera and those of the same camera without distortion ("straight"
+/// pixels), in which straight edges are straight. Without a camera both are the same.
 class Undistortion {
  public:
   Undistortion() = default;
@@ -23,8 +23,8 @@ class Undistortion {
   /// None outside the lens model's domain.
   std::optional<Point> Undistort(const Eigen::Vector2d& pixel) const;
 
-  /// As Undistort to 1e-4 px, in a fraction of its time, for a pixel some px from `near_px`, whose
-  /// straight place is `near`.
+  /// As Undistort to 1e-4 px, in a fraction of its time, for a pixel within a few px of `near_px`,
+  /// whose undistorted point is `near`.
   std::optional<Point> UndistortNear(const Eigen::Vector2d& pixel, const Eigen::Vector2d& near_px,
                                      const Point& near) const;
 

@@ -5,7 +5,7 @@
 
 namespace sextant {
 
-/// An angle that is off by at most two turns, brought to [-pi, pi]; far cheaper than a remainder.
+/// Wraps an angle within a few turns to [-pi, pi]; much faster than a remainder.
 inline double WrapAngle(double angle_rad) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   while (angle_rad > std::numbers::pi) angle_rad -= kTurn;

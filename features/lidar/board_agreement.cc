@@ -10,20 +10,20 @@
 namespace sextant {
 namespace {
 
-constexpr double kBand_m = 0.08;  // Around the board, where its plane must end.
+constexpr double kBand_m = 0.08;  // Width of the band around the board in which its plane must end.
 constexpr double kMinFilled = 0.9;
-constexpr double kMaxContinued = 0.12;  // Hands and stands: up to 0.08; furniture: 0.16 and more.
+constexpr double kMaxContinued = 0.12;  // Hands and stands: up to 0.08; furniture: at least 0.16.
 constexpr double kMinContained = 0.8;
 constexpr double kMinVisible = 0.5;
 constexpr double kMinShare = 0.6;
-constexpr double kMaxRms = 2.8;  // Sigmas; a board of the wrong size has more.
+constexpr double kMaxRms = 2.8;  // In sigmas; a board of another size has more.
 constexpr double kMinDensity = 0.3;
 constexpr int kMinSides = 3;
 constexpr int kMinEdgePoints = 8;
-constexpr int kMinEdgePointsOnMinRings = 12;  // Furniture there has up to 11 by chance.
+constexpr int kMinEdgePointsOnMinRings = 12;  // With kMinRings, furniture has up to 11 by chance.
 constexpr int kMinPointsOfBoard = 16;
 
-// How far a point is beyond the rectangle's nearest side; negative inside.
+// Distance of a point beyond the rectangle's nearest side; negative inside.
 double Beyond(const Eigen::Vector2d& point, double width, double height) {
   return std::max(std::abs(point.x()) - 0.5 * width, std::abs(point.y()) - 0.5 * height);
 }
@@ -96,29 +96,28 @@ BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const
   return agreement;
 }
 
-std::optional<std::string> WhyNot(const BoardPatch& patch, const Board& board) {
+std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board& board) {
   const BoardAgreement& agreement = patch.agreement;
   if (agreement.rings < kMinRings) {
     return fmt::format(
-        "only {} rings cross it, {} are needed: hold it nearer or use a sensor with "
-        "more rings",
+        "only {} rings cross it, {} are needed: move it closer or use a sensor with more rings",
         agreement.rings, kMinRings);
   }
-  const int fewest_edge_points =
+  const int min_edge_points =
       agreement.rings == kMinRings ? kMinEdgePointsOnMinRings : kMinEdgePoints;
-  if (static_cast<int>(patch.edges.size()) < fewest_edge_points) {
+  if (static_cast<int>(patch.edges.size()) < min_edge_points) {
     return fmt::format("only {} edge points on {} rings, {} are needed", patch.edges.size(),
-                       agreement.rings, fewest_edge_points);
+                       agreement.rings, min_edge_points);
   }
   if (agreement.points < kMinPointsOfBoard) {
     return fmt::format("only {} returns on it, {} are needed", agreement.points, kMinPointsOfBoard);
   }
   if (agreement.density < kMinDensity) {
-    return fmt::format("only {:.0f} % of the returns that a board there would give",
+    return fmt::format("only {:.0f} % of the returns expected from a board there",
                        100.0 * agreement.density);
   }
   if (patch.fit.sides_seen < kMinSides) {
-    return fmt::format("edges were seen on {} of its sides, {} are needed", patch.fit.sides_seen,
+    return fmt::format("edges were found on {} of its sides, {} are needed", patch.fit.sides_seen,
                        kMinSides);
   }
   if (patch.fit.share < kMinShare || patch.fit.rms > kMaxRms) {
@@ -135,11 +134,13 @@ std::optional<std::string> WhyNot(const BoardPatch& patch, const Board& board) {
     return fmt::format("{:.0f} % of the rays pass through it", 100.0 * (1.0 - agreement.filled));
   }
   if (agreement.visible < kMinVisible) {
-    return fmt::format("something nearer hides {:.0f} % of it", 100.0 * (1.0 - agreement.visible));
+    return fmt::format("a nearer object hides {:.0f} % of it", 100.0 * (1.0 - agreement.visible));
   }
   if (agreement.continued > kMaxContinued) {
-    return fmt::format("its plane goes on beyond it ({:.0f} % around it), as a wall's does",
-                       100.0 * agreement.continued);
+    return fmt::format(
+        "its plane continues beyond it ({:.0f} % of the rays around it), as a wall's "
+        "does",
+        100.0 * agreement.continued);
   }
   return std::nullopt;
 }

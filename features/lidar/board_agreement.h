@@ -8,13 +8,13 @@
 
 namespace sextant {
 
-/// Follows every ray onto the placed board and around it.
+/// Compares the placed board with every ray onto it and around it.
 BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const Board& board);
 
-/// How far a return is beyond the placed board's nearest side, in its plane; negative inside.
+/// Distance of a point in the plane beyond the placed board's nearest side; negative inside.
 double BeyondBoard(const BoardPatch& patch, const Board& board, const Eigen::Vector2d& in_plane);
 
-/// Why the patch is not this board; none where it is.
-std::optional<std::string> WhyNot(const BoardPatch& patch, const Board& board);
+/// Why the patch is not this board; none if it is.
+std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board& board);
 
 }  // namespace sextant

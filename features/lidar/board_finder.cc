@@ -15,24 +15,25 @@
 namespace sextant {
 namespace {
 
-constexpr double kHeldBy = 1.6;       // A hand or a stand may lengthen a run beyond the board.
-constexpr int kPlanesPerCluster = 3;  // A person who holds a board is flat in places too.
+constexpr double kMaxRunRatio = 1.6;  // A hand or a stand may extend a run beyond the board.
+constexpr int kPlanesPerCluster = 3;  // Parts of a person who holds the board may be flat, too.
 constexpr int kMinInCluster = 10;
 constexpr double kAround_m = 0.05;
-constexpr double kNearlyAll = 0.97;  // Of a patch; the rest may be what holds the board.
+constexpr double kNearlyAll = 0.97;  // Of a patch; the rest may be hands or a stand.
 constexpr double kMinJump_m = 0.06;
-constexpr double kJumpSigmas = 4.5;  // Two returns differ by sqrt 2 sigma; three of these.
-// Of the board's diagonal, that the box round a patch's points may span: half where the last rings
-// miss its corners, sqrt 2 where it hangs from a corner, more with a hand or a stand.
-constexpr double kSmallestShare = 0.4;
-constexpr double kLargestShare = 2.5;
-constexpr std::size_t kNobody = std::numeric_limits<std::size_t>::max();
-constexpr double kSameSize_m = 0.03;  // Boards closer in size are told apart by their order.
+constexpr double kJumpSigmas = 4.5;  // Three sigma of the difference of two returns.
+// Limits of the diagonal of the box around a patch's points, relative to the board's diagonal. The
+// ratio is half if the outermost rings miss the corners, sqrt 2 for a square held with one corner
+// up, and more with a hand or a stand.
+constexpr double kMinDiagonalRatio = 0.4;
+constexpr double kMaxDiagonalRatio = 2.5;
+constexpr std::size_t kNoProposal = std::numeric_limits<std::size_t>::max();
+constexpr double kSameSize_m = 0.03;  // Boards closer in size are distinguished by their order.
 
 double Diagonal(const Board& board) { return std::hypot(board.top_right_m, board.right_bottom_m); }
 
-// Small where the outline agrees, on all four sides, and on the word of many edge points rather
-// than of few; compares boards on one patch and patches for one board.
+// Small if the outline agrees on all four sides and has many edge points. Compares boards on one
+// patch and patches for one board.
 double Disagreement(const BoardPatch& patch) {
   const auto edges = static_cast<double>(patch.edges.size());
   return (patch.fit.rms + 4.0 * (1.0 - patch.fit.share) + 2.0 * (1.0 - patch.agreement.filled) +
@@ -49,7 +50,7 @@ class Finder {
     double longest = 0.0;
     for (const Board& board : boards_) longest = std::max(longest, Diagonal(board));
     const ClusterOptions options{
-        .longest_run_m = kHeldBy * longest,
+        .longest_run_m = kMaxRunRatio * longest,
         .jump_m = std::max(kMinJump_m, kJumpSigmas * scan_.range_sigma_m())};
     for (const RingCluster& cluster : ClusterRings(scan_, options)) {
       if (cluster.front().ring < cluster.back().ring) SearchCluster(cluster);
@@ -79,7 +80,8 @@ class Finder {
     }
   }
 
-  // Takes the points of the plane that holds most of them out of `places`.
+  // Removes the points of the dominant plane from `places` and proposes boards on it; false if
+  // there is no plane.
   bool SearchPlane(std::vector<std::size_t>& places) {
     std::vector<Eigen::Vector3d> points;
     points.reserve(places.size());
@@ -100,8 +102,8 @@ class Finder {
     return true;
   }
 
-  // Whether the patch is neither far smaller nor far larger than every board: what is cheap to tell
-  // spares the rest.
+  // Whether the patch is neither far smaller nor far larger than every board: a cheap test before
+  // the expensive ones.
   bool OfBoardSize(const LidarPlane& plane, const std::vector<std::size_t>& on_plane) const {
     Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::max());
     Eigen::Vector2d high = -low;
@@ -113,13 +115,13 @@ class Finder {
     }
     const double diagonal = (high - low).norm();
     return std::ranges::any_of(boards_, [&](const Board& board) {
-      return diagonal > kSmallestShare * Diagonal(board) &&
-             diagonal < kLargestShare * Diagonal(board);
+      return diagonal > kMinDiagonalRatio * Diagonal(board) &&
+             diagonal < kMaxDiagonalRatio * Diagonal(board);
     });
   }
 
-  // Takes out what else lies on or close before a board that was found: its noisiest returns would
-  // make a second one.
+  // Removes the remaining points on or close in front of a board that was found: its noisiest
+  // returns would make a second one.
   void Erase(const std::vector<BoardPatch>& proposal, std::vector<std::size_t>& places) const {
     const BoardPatch& patch = proposal.front();
     const Board& board = boards_[static_cast<std::size_t>(patch.board)];
@@ -129,22 +131,22 @@ class Finder {
     });
   }
 
-  // Whether it may be one of the boards.
+  // Adds the boards that the patch may be to the proposals; false if it is none.
   bool Propose(const LidarPlane& plane, const std::vector<std::size_t>& on_plane) {
     std::string why;
     std::vector<BoardPatch> accepted;
     for (std::size_t b = 0; b < boards_.size(); ++b) {
       std::optional<BoardPatch> patch = Place(b, plane, on_plane);
       if (!patch) {
-        why = fmt::format("its edges are not those of a board of {:.3f} x {:.3f} m",
+        why = fmt::format("its edges do not fit a board of {:.3f} x {:.3f} m",
                           boards_[b].top_right_m, boards_[b].right_bottom_m);
         continue;
       }
-      std::optional<std::string> reason = WhyNot(*patch, boards_[b]);
+      std::optional<std::string> reason = RejectionReason(*patch, boards_[b]);
       if (reason && patch->agreement.contained < kNearlyAll) {
         if (std::optional<BoardPatch> bare = WithoutHands(*patch); bare) {
           patch = std::move(bare);
-          reason = WhyNot(*patch, boards_[b]);
+          reason = RejectionReason(*patch, boards_[b]);
         }
       }
       if (reason) {
@@ -174,8 +176,8 @@ class Finder {
     return patch;
   }
 
-  // Hands, arms and a stand that come near the board's plane pass for parts of it: the patch anew
-  // from what lies on or close around the board where it was placed with them.
+  // Hands, arms or a stand near the board's plane are mistaken for parts of it. Places the board
+  // again, using only the points on or close around it as first placed.
   std::optional<BoardPatch> WithoutHands(const BoardPatch& patch) {
     const auto board = static_cast<std::size_t>(patch.board);
     std::vector<std::size_t> near;
@@ -217,8 +219,8 @@ class Finder {
     return rings;
   }
 
-  // As many patches as possible get a board of their own (augmenting paths), those that agree best
-  // first; then boards of nearly the same size are put into order from left to right.
+  // Assigns a different board to as many patches as possible (augmenting paths), the best-fitting
+  // first; then orders boards of nearly the same size from left to right.
   void Assign() {
     for (std::vector<BoardPatch>& proposal : proposals_) {
       std::ranges::sort(proposal, {}, Disagreement);
@@ -226,18 +228,18 @@ class Finder {
     std::ranges::stable_sort(proposals_, {}, [](const std::vector<BoardPatch>& proposal) {
       return Disagreement(proposal.front());
     });
-    DropDoubles();
-    owner_.assign(boards_.size(), kNobody);
+    DropDuplicates();
+    owner_.assign(boards_.size(), kNoProposal);
     for (std::size_t p = 0; p < proposals_.size(); ++p) {
-      std::vector<bool> asked(boards_.size(), false);
-      if (Give(p, asked)) continue;
+      std::vector<bool> visited(boards_.size(), false);
+      if (AssignBoard(p, visited)) continue;
       const BoardPatch& patch = proposals_[p].front();
       search_.rejected.push_back({patch.plane.At(patch.fit.center), patch.agreement.rings,
                                   patch.agreement.points,
-                                  "better ones were found for every board of its size"});
+                                  "better matches were found for every board of its size"});
     }
     for (std::size_t b = 0; b < boards_.size(); ++b) {
-      if (owner_[b] == kNobody) continue;
+      if (owner_[b] == kNoProposal) continue;
       for (const BoardPatch& patch : proposals_[owner_[b]]) {
         if (patch.board == static_cast<int>(b)) search_.found.push_back(patch);
       }
@@ -246,27 +248,28 @@ class Finder {
     std::ranges::sort(search_.found, {}, &BoardPatch::board);
   }
 
-  // One board that the clustering took apart: the part that agrees best stands for it.
-  void DropDoubles() {
+  // If the clustering split one board, only the best-fitting part is kept.
+  void DropDuplicates() {
     std::vector<std::vector<BoardPatch>> kept;
     for (std::vector<BoardPatch>& proposal : proposals_) {
       const BoardPatch& patch = proposal.front();
       const Eigen::Vector3d center = patch.plane.At(patch.fit.center);
       const double reach = 0.5 * Diagonal(boards_[static_cast<std::size_t>(patch.board)]);
-      const bool is_double = std::ranges::any_of(kept, [&](const std::vector<BoardPatch>& other) {
+      const bool is_known = std::ranges::any_of(kept, [&](const std::vector<BoardPatch>& other) {
         return (other.front().plane.At(other.front().fit.center) - center).norm() < reach;
       });
-      if (!is_double) kept.push_back(std::move(proposal));
+      if (!is_known) kept.push_back(std::move(proposal));
     }
     proposals_ = std::move(kept);
   }
 
-  bool Give(std::size_t proposal, std::vector<bool>& asked) {
+  // Assigns a board to the proposal, reassigning others if necessary.
+  bool AssignBoard(std::size_t proposal, std::vector<bool>& visited) {
     for (const BoardPatch& patch : proposals_[proposal]) {
       const auto board = static_cast<std::size_t>(patch.board);
-      if (asked[board]) continue;
-      asked[board] = true;
-      if (owner_[board] == kNobody || Give(owner_[board], asked)) {
+      if (visited[board]) continue;
+      visited[board] = true;
+      if (owner_[board] == kNoProposal || AssignBoard(owner_[board], visited)) {
         owner_[board] = proposal;
         return true;
       }
@@ -282,7 +285,7 @@ class Finder {
            first.hole.has_value() == second.hole.has_value();
   }
 
-  // Refits the patches that change their board.
+  // Orders boards of nearly the same size from left to right; refits patches whose board changes.
   void OrderFromLeft() {
     std::vector<BoardPatch>& found = search_.found;
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -290,7 +293,7 @@ class Finder {
         BoardPatch& a = found[i];
         BoardPatch& b = found[j];
         if (!SameSize(a.board, b.board)) continue;
-        // Left is the larger azimuth, seen between the two.
+        // The left one has the larger azimuth.
         const bool a_is_left = a.plane.origin.cross(b.plane.origin).z() < 0.0;
         if (a_is_left == (a.board < b.board)) continue;
         std::swap(a.board, b.board);
@@ -313,7 +316,7 @@ class Finder {
   const BoardSearchOptions& options_;
   Random random_;
   BoardSearch search_;
-  std::vector<std::size_t> owner_;                  // The proposal that has a board.
+  std::vector<std::size_t> owner_;                  // For each board, its proposal.
   std::vector<std::vector<BoardPatch>> proposals_;  // For each patch, every board that it may be.
 };
 
@@ -329,7 +332,7 @@ Expected<BoardSearch> FindBoards(const ScanRings& scan, std::span<const Board> b
     }
   }
   if (boards.empty()) {
-    return MakeError(ErrorCode::kInvalidInput, "no board to look for: its size must be known");
+    return MakeError(ErrorCode::kInvalidInput, "no board to search for: its size must be known");
   }
   return Finder(scan, boards, options).Find();
 }

@@ -25,33 +25,33 @@ struct LidarRegion {
 
 struct BoardSearchOptions {
   std::optional<LidarRegion> region{};
-  bool correct_edges = true;  ///< For the samples' distance and the beam's width; see EdgePoint.
+  bool correct_edges = true;  ///< Correct for the sampling step and the beam width; see EdgePoint.
   LidarBeam beam{};
   std::uint64_t seed = 1;
 };
 
-/// How well a patch of a scan agrees with a board placed on it.
+/// Agreement of a patch of a scan with a board placed on it.
 struct BoardAgreement {
   int rings = 0;
-  int points = 0;          ///< On the board.
-  double density = 0.0;    ///< Returns on it, of those that the sensor's steps make one expect.
-  double filled = 0.0;     ///< Share of the rays onto the board that end on it.
-  double visible = 0.0;    ///< Share of them that nothing nearer stops.
-  double contained = 0.0;  ///< Share of the patch's points that lie within the board.
-  double continued = 0.0;  ///< Share of those around it that end in its plane too.
+  int points = 0;          ///< Returns on the board.
+  double density = 0.0;    ///< Returns on it relative to those expected from the sensor's steps.
+  double filled = 0.0;     ///< Fraction of the rays onto the board that end on it, not behind it.
+  double visible = 0.0;    ///< Fraction of them not blocked by a nearer object.
+  double contained = 0.0;  ///< Fraction of the patch's points that lie within the board.
+  double continued = 0.0;  ///< Fraction of the rays just around the board that end in its plane.
 };
 
 /// One board in a scan.
 struct BoardPatch {
-  int board = 0;  ///< Place within the boards that were looked for.
+  int board = 0;  ///< Index into the boards of the search.
   LidarPlane plane{};
-  std::vector<std::size_t> on_plane{};  ///< Places within ScanRings::points(), ascending.
+  std::vector<std::size_t> on_plane{};  ///< Indices into ScanRings::points(), ascending.
   std::vector<EdgePoint> edges{};
   RectangleFit fit{};
   BoardAgreement agreement{};
 };
 
-/// Something flat of about a board's size that is none, and why.
+/// A flat patch of about a board's size that was rejected, and why.
 struct RejectedPatch {
   Eigen::Vector3d center_in_lidar = Eigen::Vector3d::Zero();
   int rings = 0;
@@ -60,16 +60,16 @@ struct RejectedPatch {
 };
 
 struct BoardSearch {
-  std::vector<BoardPatch> found{};        ///< At most one a board, in the order of the boards.
-  std::vector<RejectedPatch> rejected{};  ///< Those with most points first.
+  std::vector<BoardPatch> found{};        ///< At most one per board, in the order of the boards.
+  std::vector<RejectedPatch> rejected{};  ///< Those with the most points first.
 };
 
-inline constexpr int kMinRings = 4;  ///< A board seen by fewer has too few edge points.
+inline constexpr int kMinRings = 4;  ///< A board crossed by fewer rings has too few edge points.
 
-/// Boards of known size among everything else: clusters of the scan no wider than a board, the
-/// plane that most of each lies on, the rectangle that its edges fit. Boards of nearly the same
-/// size go from left to right by their order in `boards`, as the paper hangs them.
-/// Errors: kInvalidInput for boards without a size.
+/// Finds boards of known size in a scan: clusters no wider than a board, the dominant plane of
+/// each, and the rectangle that fits its edges. Boards of nearly the same size are assigned from
+/// left to right in the order of `boards`, as in the paper. Errors: kInvalidInput for boards
+/// without a size.
 Expected<BoardSearch> FindBoards(const ScanRings& scan, std::span<const Board> boards,
                                  const BoardSearchOptions& options);
 

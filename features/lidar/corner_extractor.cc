@@ -16,14 +16,14 @@ struct ExtractorEntry {
 
 const std::vector<ExtractorEntry>& ExtractorEntries() {
   static const std::vector<ExtractorEntry> entries = {
-      {{"rectangle", "the known size placed on the edge points within the board's plane"},
+      {{"rectangle", "the known size fitted to the edge points within the board's plane"},
        CornersByRectangle},
       {{"plane_lines", "edge lines within the board's plane, intersected"}, CornersByPlaneLines},
-      {{"lines3d", "four 3D lines by RANSAC, as Dhall et al. 2017; knows neither plane nor size"},
+      {{"lines3d", "four 3D lines by RANSAC, as Dhall et al. 2017; uses neither plane nor size"},
        [](const BoardPatch& patch, const Board& board) {
          return CornersByLines3d(patch, board, true);
        }},
-      {{"lines3d_raw", "the same without refitting, as the original package does it"},
+      {{"lines3d_raw", "the same without refitting, as in the original package"},
        [](const BoardPatch& patch, const Board& board) {
          return CornersByLines3d(patch, board, false);
        }},

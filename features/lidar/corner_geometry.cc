@@ -34,9 +34,9 @@ Expected<std::vector<std::vector<int>>> GroupBySide(const BoardPatch& patch, con
     if (groups[side].size() >= kNeeded) continue;
     return MakeError(
         ErrorCode::kTooFewPairs,
-        fmt::format("board {}: {} rings cross its {}edge from {}, {} are needed: turn the board so "
-                    "that no edge runs along the rings, hold it nearer, or use the extractor "
-                    "rectangle",
+        fmt::format("board {}: {} rings cross its {}edge from {}, {} are needed: rotate the board "
+                    "so that no edge is parallel to the rings, move it closer, or use the "
+                    "extractor rectangle",
                     board.id, groups[side].size(), side >= kCornersPerBoard ? "inner " : "",
                     kSideNames[side % kCornersPerBoard], kNeeded));
   }

@@ -13,8 +13,8 @@
 namespace sextant {
 namespace {
 
-constexpr double kThreshold_m = 0.01;  // The paper's.
-constexpr double kMinCosine = 0.2;  // Of a ring to a side's normal: along a side it tells little.
+constexpr double kThreshold_m = 0.01;  // As in the paper.
+constexpr double kMinCosine = 0.2;     // Of a ring to a side's normal, bounds the variance.
 
 struct Line3d {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -28,7 +28,7 @@ struct Junction {
   double gap_m;
 };
 
-// The shortest segment between two lines; none where they are parallel.
+// The shortest segment between two lines; none if they are parallel.
 std::optional<Junction> Join(const Line3d& a, const Line3d& b) {
   const Eigen::Vector3d across = a.direction.cross(b.direction);
   const double sine2 = across.squaredNorm();
@@ -53,8 +53,8 @@ Line3d LeastSquaresLine(const std::vector<Eigen::Vector3d>& points) {
   return line;
 }
 
-// The inliers of the best line through two of the points, all pairs tried: a side has few points,
-// so RANSAC need not draw. Without refitting only the two themselves are kept.
+// The inliers of the best line through two of the points. A side has few points, so all pairs are
+// tried instead of random ones. Without refitting, only the two points themselves are returned.
 std::vector<int> Consensus(const BoardPatch& patch, const std::vector<int>& members, bool refit) {
   const auto at = [&](int i) -> const Eigen::Vector3d& {
     return patch.edges[static_cast<std::size_t>(i)].last_return;
@@ -85,7 +85,7 @@ std::vector<int> Consensus(const BoardPatch& patch, const std::vector<int>& memb
   return refit ? best : pair;
 }
 
-// All corners from all points, so that their covariance can be had by differences.
+// Computes all corners from all points, and their derivatives by finite differences.
 class LineCorners {
  public:
   LineCorners(const BoardPatch& patch, std::vector<std::vector<int>> members)
@@ -139,7 +139,7 @@ class LineCorners {
   std::vector<Line3d> lines_;
 };
 
-// Normals of the sides in the plane, off the board's material.
+// Normals of the sides in the plane, pointing away from the board's material.
 std::vector<Eigen::Vector2d> NormalsOf(const BoardPatch& patch, std::size_t sides) {
   std::vector<Eigen::Vector2d> normals;
   for (std::size_t side = 0; side < sides; ++side) {
@@ -151,9 +151,9 @@ std::vector<Eigen::Vector2d> NormalsOf(const BoardPatch& patch, std::size_t side
   return normals;
 }
 
-// Each last return is off along its ray by the range noise and along its ring by its place within
-// a step. That it lies within the board by half a step, less what the beam makes the board grow, is
-// an error that all share: it is not taken off, for the paper does not, so it is stated.
+// Each last return has range noise along its ray and an error along its ring uniform over a step.
+// It also lies inside the board by half a step minus the growth by the beam, an error common to all
+// points. The paper does not correct this bias, so it is included in the covariance.
 Eigen::MatrixXd CovarianceOf(LineCorners& corners, const BoardPatch& patch) {
   const std::size_t sides = corners.members().size();
   const auto rows = static_cast<Eigen::Index>(3 * sides);
@@ -185,11 +185,10 @@ Eigen::MatrixXd CovarianceOf(LineCorners& corners, const BoardPatch& patch) {
 }  // namespace
 
 Expected<LidarCorners> CornersByLines3d(const BoardPatch& patch, const Board& board, bool refit) {
-  const Expected<std::vector<std::vector<int>>> groups = GroupBySide(patch, board);
-  if (!groups) return tl::unexpected(groups.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<std::vector<int>> groups, GroupBySide(patch, board));
   std::vector<std::vector<int>> inliers;
-  for (std::size_t side = 0; side < groups->size(); ++side) {
-    inliers.push_back(Consensus(patch, (*groups)[side], refit));
+  for (std::size_t side = 0; side < groups.size(); ++side) {
+    inliers.push_back(Consensus(patch, groups[side], refit));
     if (inliers.back().size() < 2) {
       return MakeError(ErrorCode::kTooFewPairs,
                        fmt::format("board {}: no two returns of side {} are {} m apart", board.id,
@@ -205,7 +204,7 @@ Expected<LidarCorners> CornersByLines3d(const BoardPatch& patch, const Board& bo
     if (!junction) {
       return MakeError(
           ErrorCode::kDegenerate,
-          fmt::format("board {}: the edges that meet in corner {} are parallel", board.id, i));
+          fmt::format("board {}: the edges that meet at corner {} are parallel", board.id, i));
     }
     corners.in_lidar.push_back(junction->middle);
     gaps.push_back(junction->gap_m);

@@ -19,9 +19,9 @@ struct PlaneLine {
   double offset = 0.0;
   Eigen::Vector2d center = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  double growth_sigma = 0.0;  // Of the offset, alike for all edges of the board.
+  double growth_sigma = 0.0;  // Of the offset, common to all edges of the board.
 
-  // By how much the line moves along its normal at a point, by (angle, offset at the centre).
+  // Derivative of the line's position along its normal at a point by (angle, offset at the centre).
   Eigen::RowVector2d MovedAt(const Eigen::Vector2d& point) const {
     const Eigen::Vector2d along(-normal.y(), normal.x());
     return {-along.dot(point - center), 1.0};
@@ -39,9 +39,9 @@ double SharedVariance(const std::vector<EdgePoint>& edges, const std::vector<int
   return shared.Variance();
 }
 
-// Brings the line from where the beam makes the board end to its edge.
-void TakeOffGrowth(const std::vector<EdgePoint>& edges, const std::vector<int>& members,
-                   const std::vector<double>& weights, PlaneLine& line) {
+// Moves the line by the growth due to the beam, to the true edge.
+void SubtractGrowth(const std::vector<EdgePoint>& edges, const std::vector<int>& members,
+                    const std::vector<double>& weights, PlaneLine& line) {
   double total = 0.0;
   double outward = 0.0;
   double growth = 0.0;
@@ -50,7 +50,7 @@ void TakeOffGrowth(const std::vector<EdgePoint>& edges, const std::vector<int>& 
     const EdgePoint& edge = edges[static_cast<std::size_t>(members[i])];
     total += weights[i];
     outward += weights[i] * line.normal.dot(edge.outward);
-    growth += weights[i] * edge.GrownBy(line.normal);
+    growth += weights[i] * edge.Growth(line.normal);
     sigma += weights[i] * edge.beam.growth_sigma * edge.SpotAcross(line.normal);
   }
   const double sign = outward < 0.0 ? -1.0 : 1.0;
@@ -58,8 +58,8 @@ void TakeOffGrowth(const std::vector<EdgePoint>& edges, const std::vector<int>& 
   line.growth_sigma = sign * sigma / total;
 }
 
-// Total least squares with Huber's weights. The noise of a point is along its ring; what the line
-// sees of it is the part along the normal.
+// Total least squares with Huber's weights. The noise of a point is along its ring; only its
+// component along the normal affects the line.
 PlaneLine FitLine(const std::vector<EdgePoint>& edges, const std::vector<int>& members) {
   std::vector<double> weights(members.size(), 1.0);
   PlaneLine line;
@@ -84,7 +84,7 @@ PlaneLine FitLine(const std::vector<EdgePoint>& edges, const std::vector<int>& m
       weights[i] = distance <= kHuber_m ? 1.0 : kHuber_m / distance;
     }
   }
-  // Sandwich of the weighted fit with the stated noise of each point.
+  // Sandwich covariance of the weighted fit with the stated noise of each point.
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d noise = Eigen::Matrix2d::Zero();
   for (std::size_t i = 0; i < members.size(); ++i) {
@@ -97,17 +97,16 @@ PlaneLine FitLine(const std::vector<EdgePoint>& edges, const std::vector<int>& m
   const Eigen::Matrix2d inverse = information.inverse();
   line.covariance = inverse * noise * inverse;
   line.covariance(1, 1) += SharedVariance(edges, members, line);
-  TakeOffGrowth(edges, members, weights, line);
+  SubtractGrowth(edges, members, weights, line);
   return line;
 }
 
 }  // namespace
 
 Expected<LidarCorners> CornersByPlaneLines(const BoardPatch& patch, const Board& board) {
-  const Expected<std::vector<std::vector<int>>> groups = GroupBySide(patch, board);
-  if (!groups) return tl::unexpected(groups.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<std::vector<int>> groups, GroupBySide(patch, board));
   std::vector<PlaneLine> lines;
-  for (const std::vector<int>& members : *groups) lines.push_back(FitLine(patch.edges, members));
+  for (const std::vector<int>& members : groups) lines.push_back(FitLine(patch.edges, members));
 
   LidarCorners corners;
   corners.board = patch.board;
@@ -128,7 +127,7 @@ Expected<LidarCorners> CornersByPlaneLines(const BoardPatch& patch, const Board&
     if (std::abs(normals.determinant()) < 0.1) {
       return MakeError(
           ErrorCode::kDegenerate,
-          fmt::format("board {}: the edges that meet in corner {} are parallel", board.id, i));
+          fmt::format("board {}: the edges that meet at corner {} are parallel", board.id, i));
     }
     const Eigen::Matrix2d inverse = normals.inverse();
     const Eigen::Vector2d corner = inverse * Eigen::Vector2d(before.offset, after.offset);

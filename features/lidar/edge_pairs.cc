@@ -9,17 +9,17 @@
 namespace sextant {
 namespace {
 
-constexpr double kReachSpacings = 3.0;  // Rays further apart than this tell little of an edge.
+constexpr double kReachSpacings = 3.0;  // Rays further apart hardly constrain an edge.
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-// A ray met with the plane.
+// A ray's intersection with the plane.
 struct Sample {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
-  std::size_t place = 0;  // Within ScanRings::points().
-  bool hides = false;     // Ends before the plane.
+  std::size_t place = 0;  // Index into ScanRings::points().
+  bool hides = false;     // The ray ends in front of the plane.
 };
 
-// Samples in square cells, for the nearest within a cell's width.
+// Samples sorted into square cells, to find the nearest within a cell's width.
 class SampleGrid {
  public:
   SampleGrid(const std::vector<Sample>& samples, double cell_m) : samples_(samples), cell_(cell_m) {
@@ -38,7 +38,7 @@ class SampleGrid {
     for (std::size_t i = 0; i < samples.size(); ++i) order_[next[CellOf(samples[i].at)]++] = i;
   }
 
-  // kNone where none is nearer than a cell's width.
+  // kNone if none is nearer than a cell's width.
   std::size_t Nearest(const Eigen::Vector2d& at) const {
     std::size_t nearest = kNone;
     double least = cell_ * cell_;
@@ -80,8 +80,8 @@ struct BothSides {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // Of those on the plane.
 };
 
-// Rays onto the plane and past it, no further out than `reach_m`. Returns just off the plane are
-// neither.
+// Divides rays into those that end on the plane and those that pass it, within `reach_m` of the
+// plane's points. Returns just off the plane belong to neither.
 BothSides Divide(const ScanRings& scan, const LidarPlane& plane,
                  std::span<const std::size_t> on_plane, double reach_m) {
   BothSides sides;

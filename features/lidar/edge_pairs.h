@@ -8,10 +8,10 @@
 
 namespace sextant {
 
-/// Edge points of a scan without rings: pairs of a return on the plane and a ray past it of which
-/// each is the other's nearest. The edge lies somewhere between the two, uniformly, since neither
-/// kind is favoured. Where nothing returned beyond the board, nothing is known of its edge.
-/// `on_plane`: places within scan.points(), ascending.
+/// Edge points of a scan without rings: pairs of a return on the plane and a ray past it that are
+/// mutual nearest neighbours. The position of the edge is uniform between the two, because neither
+/// kind is favoured. An edge without returns beyond it gives no edge points.
+/// `on_plane`: indices into scan.points(), ascending.
 std::vector<EdgePoint> FindEdgePairs(const ScanRings& scan, const LidarPlane& plane,
                                      std::span<const std::size_t> on_plane,
                                      const EdgeOptions& options);

@@ -21,7 +21,7 @@ class EdgeFinder {
         options_(options),
         middle_(std::atan2(plane.origin.y(), plane.origin.x())) {}
 
-  // The edges of one ring; `places` of its points on the plane.
+  // Adds the edges of one ring; `places`: its points on the plane.
   void AddRing(int ring, std::vector<std::size_t> places, std::vector<EdgePoint>& edges) const {
     std::ranges::sort(places, {}, [&](std::size_t i) { return Azimuth(i); });
     AddEdge(ring, places.front(), -1, false, edges);
@@ -34,8 +34,8 @@ class EdgeFinder {
     AddEdge(ring, places.back(), +1, false, edges);
   }
 
-  // Where the board ends between its outermost ring and the next one, `sign` +1 above or -1 below.
-  // Nothing is known where the sensor has no such ring or it meets the plane too.
+  // Adds the end of the board between its outermost ring and the next one, `sign` +1 above or -1
+  // below. There is none if the sensor has no such ring or that ring is on the plane too.
   void AddEnd(int ring, std::vector<std::size_t> places, int sign,
               std::vector<EdgePoint>& edges) const {
     const int next = ring + sign;
@@ -74,12 +74,12 @@ class EdgeFinder {
     return first ? a : b;
   }
 
-  // Relative to the board, so that the seam behind the sensor does not matter.
+  // Azimuth relative to the board, so that the seam behind the sensor has no effect.
   double Azimuth(std::size_t place) const {
     return WrapAngle(scan_.points()[place].azimuth_rad - middle_);
   }
 
-  // The next return of the ring beyond the edge, where the sensor saw anything there.
+  // The next return of the ring beyond the edge; none after a gap.
   std::optional<RingPoint> Beyond(int ring, std::size_t place, int sign) const {
     const std::size_t first = scan_.first(ring);
     const std::size_t count = scan_.first(ring + 1) - first;

@@ -9,8 +9,8 @@
 namespace sextant {
 namespace {
 
-// Of a receiver that gives the strongest echo, however little of the spot is on the board; the
-// VLP-16 loses the weakest.
+// For a receiver that reports the strongest echo, however little of the spot is on the board; the
+// VLP-16 loses the weakest echoes.
 constexpr double kGrowth = 0.31;
 constexpr double kEdgeSigma = 0.05;
 
@@ -59,8 +59,8 @@ Expected<LidarBeam> FindLidarBeam(std::string_view name) {
   for (const BeamEntry& entry : BeamEntries()) {
     if (name == entry.name) return entry.beam;
   }
-  return MakeError(ErrorCode::kUnknownName, fmt::format("no LiDAR '{}' whose beam is known; {}",
-                                                        name, SuggestName(name, LidarBeamNames())));
+  return MakeError(ErrorCode::kUnknownName, fmt::format("no known beam of a LiDAR '{}'; {}", name,
+                                                        SuggestName(name, LidarBeamNames())));
 }
 
 }  // namespace sextant

@@ -13,9 +13,9 @@ namespace sextant {
 namespace {
 
 constexpr int kMinPointsOfPlane = 6;
-constexpr std::size_t kMaxCounted = 300;  // Enough to tell which of two planes holds more.
-constexpr double kMinSigma_m = 1e-6;      // Noise-free scans.
-constexpr double kMinIncidence = 0.139;   // sin 8 deg: closer to edge-on the edges mean nothing.
+constexpr std::size_t kMaxCounted = 300;  // Enough to decide which of two planes has more points.
+constexpr double kMinSigma_m = 1e-6;      // For noise-free scans.
+constexpr double kMinIncidence = 0.139;   // sin 8 deg; closer to edge-on, edges are meaningless.
 
 struct HalfSpace {
   Eigen::Vector3d normal;
@@ -44,7 +44,7 @@ std::vector<int> Within(std::span<const Eigen::Vector3d> points, const HalfSpace
   return inliers;
 }
 
-// Least squares through the inliers; the other axes as a board's frame has them.
+// Least-squares plane of the inliers, with the axes of a board's frame.
 std::optional<LidarPlane> FitPlane(std::span<const Eigen::Vector3d> points,
                                    const std::vector<int>& inliers) {
   const auto count = static_cast<double>(inliers.size());
@@ -63,7 +63,7 @@ std::optional<LidarPlane> FitPlane(std::span<const Eigen::Vector3d> points,
   plane.normal = eigen.vectors.col(0);
   if (plane.normal.dot(mean) < 0.0) plane.normal = -plane.normal;
   if (plane.normal.dot(mean.normalized()) < kMinIncidence) return std::nullopt;
-  // Down as far as the plane allows; a level plane takes what is away from the sensor for up.
+  // y points down as far as the plane allows; in a level plane, towards the sensor.
   const Eigen::Vector3d down = std::abs(plane.normal.z()) < 0.95
                                    ? Eigen::Vector3d(-Eigen::Vector3d::UnitZ())
                                    : Eigen::Vector3d(-mean);

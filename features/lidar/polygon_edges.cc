@@ -20,15 +20,15 @@ namespace {
 
 constexpr std::array<const char*, 4> kEdgeNames = {"top-left", "top-right", "bottom-right",
                                                    "bottom-left"};
-constexpr int kMaxPlanes = 4;        // Board, what is behind it, and what is behind that.
-constexpr double kMinOutward = 0.1;  // Cosine; a ring along an edge does not leave the board.
+constexpr int kMaxPlanes = 4;        // The board and objects in front of and behind it.
+constexpr double kMinOutward = 0.1;  // Cosine; a ring parallel to an edge does not leave the board.
 constexpr double kSquare_m = 0.005;
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// Convex hull (Andrew 1979), going round so that what is inside has Cross > 0 at each side.
+// Convex hull (Andrew 1979), oriented so that Cross > 0 at each side for points inside.
 std::vector<Eigen::Vector2d> HullOf(const std::vector<Quadrilateral>& areas) {
   std::vector<Eigen::Vector2d> points;
   for (const Quadrilateral& area : areas) points.insert(points.end(), area.begin(), area.end());
@@ -59,7 +59,7 @@ bool IsInHull(const std::vector<Eigen::Vector2d>& hull, const Eigen::Vector2d& p
   return true;
 }
 
-// One marked board; `id` is in every message.
+// One marked board; every message names its id.
 class MarkedPatch {
  public:
   MarkedPatch(const ScanRings& scan, const ScanMarks& marks, const MarkedBoard& marked,
@@ -83,8 +83,8 @@ class MarkedPatch {
     if (!ChoosePlane(patch)) {
       return Fail(
           ErrorCode::kDegenerate,
-          fmt::format("the {} returns within its areas have no plane in common that each of "
-                      "the four areas has a part of; is this the scan that was marked?",
+          fmt::format("no plane of the {} returns within its areas has returns in each of the four "
+                      "areas; is this the scan that was marked?",
                       places_.size()));
     }
     std::vector<int> sides;
@@ -92,8 +92,8 @@ class MarkedPatch {
       const std::vector<EdgePoint> ends = EndsIn(edge, patch);
       if (ends.empty()) {
         return Fail(ErrorCode::kTooFewPairs,
-                    fmt::format("no ring ends on it within its {} area: draw the area to where the "
-                                "rings leave the board, and across the edge",
+                    fmt::format("no ring ends on it within its {} area: draw the area so that it "
+                                "reaches across the edge to where the rings leave the board",
                                 kEdgeNames[edge]));
       }
       patch.edges.insert(patch.edges.end(), ends.begin(), ends.end());
@@ -170,17 +170,18 @@ class MarkedPatch {
     return ends;
   }
 
-  // Whether the ring's next return outwards is on the plane too: the area ends there, not the
-  // board.
+  // Whether the ring's next return outward is on the plane too, so that the area ends there and not
+  // the board.
   bool GoesOn(const EdgePoint& end, const LidarPlane& plane) const {
-    if (!scan_.has_rings()) return false;  // Edge points are pairs there, with one ray off it.
+    if (!scan_.has_rings()) return false;  // Then each edge point has a ray past the plane.
     const std::span<const RingPoint> ring = scan_.ring(end.ring);
     const auto last = std::ranges::find(ring, end.last_return, &RingPoint::point);
     const auto at = static_cast<std::size_t>(last - ring.begin());
     const std::optional<Eigen::Vector2d> here = plane.Meet(last->point);
     for (const std::size_t next : {at + 1, at + ring.size() - 1}) {
       const RingPoint& other = ring[next % ring.size()];
-      // Rays met with the plane: ranges are too noisy to tell which of two neighbours is outside.
+      // Uses intersections with the plane: ranges are too noisy to decide which of two neighbours
+      // is outside.
       const std::optional<Eigen::Vector2d> there = plane.Meet(other.point);
       const bool outside = here && there && (*there - *here).dot(end.outward) > 0.0;
       const double angle = std::abs(WrapAngle(other.azimuth_rad - last->azimuth_rad));
@@ -192,7 +193,7 @@ class MarkedPatch {
     return false;
   }
 
-  // What no area is drawn for: ends between rings, and the opening.
+  // Adds edge points for which no area is drawn: ends between rings, and the opening.
   void AddOthers(BoardPatch& patch) const {
     for (const EdgePoint& edge : FindEdgePoints(scan_, patch.plane, patch.on_plane,
                                                 EdgeOptionsFor(board_.hole.has_value()))) {
@@ -200,13 +201,13 @@ class MarkedPatch {
     }
   }
 
-  // `sides`: of the first edge points, as they were marked.
+  // `sides`: the marked sides of the first edge points.
   Expected<BoardPatch> Place(BoardPatch patch, const std::vector<int>& sides) const {
     const std::optional<RectangleFit> fit = FitRectangle(patch.edges, board_);
     if (!fit) {
       return Fail(
           ErrorCode::kDegenerate,
-          fmt::format("the {} ends of rings in its areas leave its place open", sides.size()));
+          fmt::format("the {} ends of rings in its areas do not determine its pose", sides.size()));
     }
     patch.fit = *fit;
     const int turns = TurnsTo(sides, patch.fit.sides);
@@ -214,8 +215,8 @@ class MarkedPatch {
     if (turns % 2 != 0 && (!square || board_.hole)) {
       return Fail(
           ErrorCode::kInvalidInput,
-          fmt::format("its sides of {} and {} m fit the other way round: mark the edge from "
-                      "the left to the top corner first, then clockwise",
+          fmt::format("its sides of {} and {} m fit in exchanged order: mark the edge from corner "
+                      "3 (left) to corner 0 (top) first, then clockwise",
                       board_.top_right_m, board_.right_bottom_m));
     }
     patch.fit.angle_rad += turns * 0.5 * std::numbers::pi;
@@ -228,7 +229,7 @@ class MarkedPatch {
     return patch;
   }
 
-  // By how many corners the fit's numbers run ahead of the marked ones, most often.
+  // The most frequent offset of the fitted side numbers from the marked ones.
   static int TurnsTo(const std::vector<int>& marked, const std::vector<int>& fitted) {
     std::array<int, 4> votes{};
     for (std::size_t i = 0; i < marked.size(); ++i) {
@@ -242,9 +243,9 @@ class MarkedPatch {
   const MarkedBoard& marked_;
   const Board& board_;
   const BoardSearchOptions& options_;
-  std::vector<std::size_t> places_;  // Within the hull.
-  std::vector<unsigned> areas_;      // For each, a bit for every area that it is in.
-  std::vector<std::size_t> chosen_;  // Those on the board's plane, as indices of both.
+  std::vector<std::size_t> places_;  // The returns within the hull.
+  std::vector<unsigned> areas_;      // For each of them, a bit for every area that contains it.
+  std::vector<std::size_t> chosen_;  // Indices into both of those on the board's plane.
 };
 
 }  // namespace
@@ -259,7 +260,7 @@ Expected<std::vector<BoardPatch>> PatchesFromPolygons(const ScanRings& scan, con
   for (const MarkedBoard& marked : marks.boards) {
     if (marked.edges.size() != 4) {
       return MakeError(ErrorCode::kMissingData,
-                       fmt::format("board {}: {} of its 4 edges are marked: go on with it in "
+                       fmt::format("board {}: {} of its 4 edges are marked: mark the others in "
                                    "sextant mark",
                                    marked.id, marked.edges.size()));
     }

@@ -10,20 +10,21 @@
 
 namespace sextant {
 
-/// The boards that a person marked (Dhall et al. 2017, who draw the polygons by hand), ready for
-/// every corner extractor, in the order of `marks`.
+/// Makes patches for every corner extractor from boards that a person marked (Dhall et al. 2017
+/// draw such polygons by hand), in the order of `marks`.
 ///
-/// Of a board: the nearest plane within the convex hull of its four areas that returns of each area
-/// lie on; of these, per area and ring, the last one outwards, which is an EdgePoint of the area's
-/// edge whatever its outline says. Returns whose ring goes on beyond the area on the plane are no
-/// ends and left out. Ends between rings and a hollow board's opening are found as FindBoards does.
-/// The rectangle is fitted to all. Nothing else of FindBoards is asked: what was marked is a board.
+/// The plane of a board is the nearest one, among the returns within the convex hull of its four
+/// areas, that has returns in each area. Per area and ring, the outermost return on it becomes an
+/// EdgePoint of the area's edge, wherever the fitted outline is. Returns whose ring continues on
+/// the plane beyond the area are not ends and are omitted. Ends between rings and the opening of a
+/// hollow board are found as in FindBoards. The rectangle is fitted to all edge points. The other
+/// checks of FindBoards do not apply, since a person has confirmed the board.
 ///
-/// `boards`: found by the ids of the marks. `options`: region is not looked at.
-/// Errors: kMissingData for nothing marked and for a board without all four areas; kInvalidInput
-/// for a board of unknown id or without a size, and for sides that cannot be those that were
-/// marked; kTooFewPairs for an area without an end of a ring, and kDegenerate where there is no
-/// plane or the ends leave the rectangle open. Messages name the board and the edge.
+/// `boards`: looked up by the ids of the marks. `options`: the region is ignored.
+/// Errors: kMissingData if nothing is marked or a board lacks one of its four areas; kInvalidInput
+/// for a board of unknown id or without a size, and for sides that do not match the marked edges;
+/// kTooFewPairs for an area without an end of a ring; kDegenerate if there is no plane or the ends
+/// do not determine the rectangle. Messages name the board and the edge.
 Expected<std::vector<BoardPatch>> PatchesFromPolygons(const ScanRings& scan, const ScanMarks& marks,
                                                       std::span<const Board> boards,
                                                       const BoardSearchOptions& options = {});

@@ -14,18 +14,20 @@
 namespace sextant {
 namespace {
 
-constexpr double kHuber = 2.0;    // Sigmas; a uniform error stays within 1.73.
-constexpr double kOutlier = 4.0;  // Sigmas.
+constexpr double kHuber = 2.0;    // In sigmas; a uniform error stays within 1.73.
+constexpr double kOutlier = 4.0;  // In sigmas.
 constexpr int kIterations = 12;
 constexpr int kStarts = 10;
 constexpr int kFirstIterations = 3;
 constexpr int kFinalists = 3;
-constexpr double kFirstReach = 1e9;  // Sigmas beyond which an edge point has no say: at first none,
-constexpr double kReach = 8.0;       // in the end those of a hand or a stand.
-constexpr double kReachesFurther = 1.15;  // Than a board does.
+// Sigmas beyond which an edge point is ignored: at first no point, finally those of hands or
+// stands.
+constexpr double kFirstReach = 1e9;
+constexpr double kReach = 8.0;
+constexpr double kOversize = 1.15;  // Extent of the edge points relative to the board's.
 constexpr double kAngleSlack_rad = 0.02;
 constexpr int kMinEdges = 4;
-constexpr std::size_t kMaxSides = 8;  // Of a hollow board.
+constexpr std::size_t kMaxSides = 8;  // For a hollow board.
 
 // Outward normals of the sides 0 to 3 in the board's frame: y = -h/2 is the first.
 const std::array<Eigen::Vector2d, 4> kNormals = {Eigen::Vector2d(0, -1), Eigen::Vector2d(1, 0),
@@ -33,20 +35,20 @@ const std::array<Eigen::Vector2d, 4> kNormals = {Eigen::Vector2d(0, -1), Eigen::
 
 struct SidePlace {
   int side = -1;
-  double distance = 0.0;                            // Signed, beyond the side [m].
-  Eigen::Vector2d grown = Eigen::Vector2d::Zero();  // How far the beam moves the edge [m].
+  double distance = 0.0;                            // Signed, positive outside the side [m].
+  Eigen::Vector2d grown = Eigen::Vector2d::Zero();  // Displacement of the edge by the beam [m].
   double sigma = 1.0;                               // [m].
   double half_step = 0.0;                           // Across the side [m].
-  double growth_sigma = 0.0;  // Signed as the distance, alike for all edges [m].
+  double growth_sigma = 0.0;  // Signed as the distance, common to all edges [m].
   Eigen::Vector3d by_pose = Eigen::Vector3d::Zero();  // Derivative by (center, angle).
 };
 
-// What the edge points that belong to a side add up to.
+// Sums over the edge points that belong to a side.
 struct Sums {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d by_growth = Eigen::Vector3d::Zero();
   std::array<SharedStep, kMaxSides> shared{};
-  std::array<Eigen::Vector3d, kMaxSides> by_side{};  // Of an offset of all points of a side.
+  std::array<Eigen::Vector3d, kMaxSides> by_side{};  // For an offset of all points of a side.
   std::array<int, kMaxSides> of_side{};
   double by_size = 0.0;
   double size_weight = 0.0;
@@ -74,11 +76,11 @@ struct Sums {
     ++used;
   }
 
-  // A prior of four residuals of one sigma keeps few residuals from claiming none at all.
+  // A prior of four residuals of one sigma keeps the scale from vanishing for few residuals.
   Eigen::Matrix3d Covariance() const {
     constexpr double kPrior = 4.0;
     const Eigen::Matrix3d inverse = information.inverse();
-    const Eigen::Vector3d by_all = inverse * by_growth;  // Nothing where opposite sides cancel.
+    const Eigen::Vector3d by_all = inverse * by_growth;  // Zero if opposite sides cancel.
     Eigen::Matrix3d covariance =
         (chi2 + kPrior) / (used - 3 + kPrior) * inverse + by_all * by_all.transpose();
     for (std::size_t side = 0; side < kMaxSides; ++side) {
@@ -99,8 +101,8 @@ class Fitter {
   Fitter(std::span<const EdgePoint> edges, const Board& board)
       : edges_(edges), board_(board), half_(0.5 * board.top_right_m, 0.5 * board.right_bottom_m) {}
 
-  // Poses to start from: the middle of the edge points, and where they reach further than the
-  // board, what is not the board may be at either end of them.
+  // Initial poses: the middle of the edge points and, if they extend further than the board, the
+  // poses flush with either end.
   void AddStarts(double angle, std::vector<Eigen::Vector3d>& starts) const {
     const Eigen::Matrix2d turn = Eigen::Rotation2Dd(angle).toRotationMatrix();
     Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::max());
@@ -112,7 +114,7 @@ class Fitter {
     }
     const auto places = [&](Eigen::Index axis) {
       std::vector<double> middles = {0.5 * (low(axis) + high(axis))};
-      if (high(axis) - low(axis) > kReachesFurther * 2.0 * half_(axis)) {
+      if (high(axis) - low(axis) > kOversize * 2.0 * half_(axis)) {
         middles.insert(middles.end(), {low(axis) + half_(axis), high(axis) - half_(axis)});
       }
       return middles;
@@ -141,9 +143,9 @@ class Fitter {
     SidePlace place;
     place.side = inner ? side + kCornersPerBoard : side;
     const Eigen::Vector2d normal_in_plane = turn * normal;
-    const double outward = inner ? -1.0 : 1.0;  // A grown board has a smaller opening.
+    const double outward = inner ? -1.0 : 1.0;  // Growth makes the opening smaller.
     place.distance =
-        normal.dot(q) - normal.cwiseAbs().dot(half) - outward * edge.GrownBy(normal_in_plane);
+        normal.dot(q) - normal.cwiseAbs().dot(half) - outward * edge.Growth(normal_in_plane);
     place.sigma = std::sqrt(edge.VarianceAcross(normal_in_plane) + 1e-12);
     place.half_step = 0.5 * std::abs(normal.dot(out)) * edge.step_m;
     place.growth_sigma = outward * edge.beam.growth_sigma * edge.SpotAcross(normal_in_plane);
@@ -151,7 +153,7 @@ class Fitter {
     return place;
   }
 
-  // Sum of Huber's loss over the edges, cut off at `reach`, and the step that reduces it.
+  // The sum of Huber's loss over the edges, truncated at `reach`, and the step that reduces it.
   double Step(const Eigen::Vector3d& pose, double reach, Eigen::Vector3d& step) const {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
@@ -168,7 +170,8 @@ class Fitter {
       normal += weight * j * j.transpose();
       gradient += weight * j * r;
     }
-    // A little damping: a start may leave a direction open that the answer does not.
+    // Slight damping: an initial pose may leave a direction undetermined that the solution does
+    // not.
     normal.diagonal() *= 1.0 + 1e-6;
     normal.diagonal().array() += 1e-3;
     step = -SolveSymmetric(normal, gradient);
@@ -198,7 +201,7 @@ class Fitter {
       if (belongs) sums.Add(place, half_);
     }
     if (sums.used < kMinEdges) return std::nullopt;
-    // Angles in units of the board's half diagonal, so that both kinds of unknowns compare.
+    // Angles are scaled by the board's half diagonal, to make both kinds of unknowns comparable.
     Eigen::Vector3d scale(1.0, 1.0, 1.0 / half_.norm());
     const Eigen::Matrix3d scaled = scale.asDiagonal() * sums.information * scale.asDiagonal();
     const SymmetricEigen<3> eigen = EigenOf(scaled);
@@ -231,7 +234,7 @@ class Fitter {
     return side;
   }
 
-  // The side through which it enters one.
+  // The side through which such a line enters the rectangle.
   static int EnteredSide(const Eigen::Vector2d& q, const Eigen::Vector2d& out,
                          const Eigen::Vector2d& half) {
     int side = 0;
@@ -274,12 +277,12 @@ void Improve(const Fitter& fitter, int iterations, double reach, Candidate& cand
 std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const Board& board) {
   if (static_cast<int>(edges.size()) < kMinEdges) return std::nullopt;
   const Fitter fitter(edges, board);
-  const double hanging =
+  const double corner_up =
       std::numbers::pi / 2.0 - std::atan2(board.right_bottom_m, board.top_right_m);
   std::vector<Eigen::Vector3d> starts;
   for (int i = 0; i < kStarts; ++i) {
     const double share = (i + 0.5) / kStarts - 0.5;
-    fitter.AddStarts(hanging + share * std::numbers::pi / 2.0, starts);
+    fitter.AddStarts(corner_up + share * std::numbers::pi / 2.0, starts);
   }
   std::vector<Candidate> candidates;
   for (const Eigen::Vector3d& start : starts) {
@@ -295,7 +298,7 @@ std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const
   const Candidate* best = nullptr;
   for (Candidate& candidate : std::span(candidates).first(kFinalists)) {
     Improve(fitter, kIterations, kReach, candidate);
-    const double off = std::abs(candidate.pose.z() - hanging);
+    const double off = std::abs(candidate.pose.z() - corner_up);
     if (off > std::numbers::pi / 4.0 + kAngleSlack_rad) continue;
     if (best == nullptr || candidate.cost < best->cost) best = &candidate;
   }

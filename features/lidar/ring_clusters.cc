@@ -12,35 +12,35 @@ namespace {
 
 constexpr double kSlopeWithinRing = 3.73;    // tan 75 deg.
 constexpr double kSlopeBetweenRings = 1.73;  // tan 60 deg.
-constexpr double kJumpsBetweenRings = 2.0;  // Rings have biases of their own: 8 cm apart were seen.
+constexpr double kJumpsBetweenRings = 2.0;   // Range biases differ between rings, by up to 8 cm.
 constexpr int kPlaces = 5;
-constexpr double kMaxGapStepsInSurface = 3.5;  // A few drop-outs do not part a surface.
-constexpr double kMaxGapSpacings = 6.0;        // A rosette's loops leave gaps between them.
+constexpr double kMaxGapStepsInSurface = 3.5;  // A few drop-outs do not split a surface.
+constexpr double kMaxGapSpacings = 6.0;        // The loops of a rosette leave gaps between them.
 
-// Between returns of one ring that belong together.
-double MostGap(const ScanRings& scan) {
+// The maximum gap between returns of one ring that belong together.
+double MaxGap(const ScanRings& scan) {
   if (scan.has_rings()) return kMaxGapStepsInSurface * scan.azimuth_step_rad();
   return kMaxGapSpacings * std::sqrt(scan.azimuth_step_rad() * scan.elevation_step_rad());
 }
 
-bool Continues(const RingPoint& a, const RingPoint& b, double most_gap_rad,
+bool Continues(const RingPoint& a, const RingPoint& b, double max_gap_rad,
                const ClusterOptions& options) {
   const double gap = b.azimuth_rad - a.azimuth_rad;
   const double jump = std::abs(b.range_m - a.range_m);
-  return gap <= most_gap_rad &&
-         jump <= std::max(options.jump_m, kSlopeWithinRing * gap * a.range_m);
+  return gap <= max_gap_rad && jump <= std::max(options.jump_m, kSlopeWithinRing * gap * a.range_m);
 }
 
 std::vector<RingRun> RunsOf(const ScanRings& scan, int ring, const ClusterOptions& options) {
   std::vector<RingRun> runs;
   const std::span<const RingPoint> points = scan.ring(ring);
-  const double most_gap = MostGap(scan);
+  const double max_gap = MaxGap(scan);
   std::size_t first = 0;
   for (std::size_t i = 1; i <= points.size(); ++i) {
-    if (i < points.size() && Continues(points[i - 1], points[i], most_gap, options)) continue;
+    if (i < points.size() && Continues(points[i - 1], points[i], max_gap, options)) continue;
     const double length = (points[i - 1].point - points[first].point).norm();
-    if (length <= options.longest_run_m)
+    if (length <= options.longest_run_m) {
       runs.push_back({ring, scan.first(ring) + first, i - first});
+    }
     first = i;
   }
   return runs;
@@ -64,9 +64,9 @@ bool Touch(const ScanRings& scan, const RingRun& a, const RingRun& b,
   const RingPoint& a1 = scan.points()[a.first + a.count - 1];
   const RingPoint& b0 = scan.points()[b.first];
   const RingPoint& b1 = scan.points()[b.first + b.count - 1];
-  // Azimuths relative to the middle of a, so that the seam does not matter.
+  // Azimuths are relative to the middle of a, so that the seam has no effect.
   const double middle = 0.5 * (a0.azimuth_rad + a1.azimuth_rad);
-  const double beside = scan.has_rings() ? 1.5 * scan.azimuth_step_rad() : 0.5 * MostGap(scan);
+  const double beside = scan.has_rings() ? 1.5 * scan.azimuth_step_rad() : 0.5 * MaxGap(scan);
   const double half = 0.5 * (a1.azimuth_rad - a0.azimuth_rad) + beside;
   const double from = WrapAngle(b0.azimuth_rad - middle);
   const double to = from + (b1.azimuth_rad - b0.azimuth_rad);
@@ -74,7 +74,7 @@ bool Touch(const ScanRings& scan, const RingRun& a, const RingRun& b,
   const double offset = b0.azimuth_rad - (middle + from);  // 0 or a whole turn.
   const double begin = middle + std::max(from, -half);
   const double width = std::min(to, half) - std::max(from, -half);
-  // Most of several places must agree: one return alone may be noise or a mixed one.
+  // Most of several places must agree: a single return may be noise or a mixed pixel.
   int agreeing = 0;
   for (int i = 0; i < kPlaces; ++i) {
     const double azimuth = begin + width * (i + 0.5) / kPlaces;
@@ -82,9 +82,9 @@ bool Touch(const ScanRings& scan, const RingRun& a, const RingRun& b,
     const RingPoint& q = NearestInAzimuth(scan, b, azimuth + offset);
     const double gap = std::abs(ElevationOf(p) - ElevationOf(q)) +
                        std::abs(WrapAngle(p.azimuth_rad - q.azimuth_rad));
-    const double most = std::max(kJumpsBetweenRings * options.jump_m,
-                                 kSlopeBetweenRings * gap * std::min(p.range_m, q.range_m));
-    agreeing += std::abs(p.range_m - q.range_m) <= most ? 1 : 0;
+    const double max_jump = std::max(kJumpsBetweenRings * options.jump_m,
+                                     kSlopeBetweenRings * gap * std::min(p.range_m, q.range_m));
+    agreeing += std::abs(p.range_m - q.range_m) <= max_jump ? 1 : 0;
   }
   return 2 * agreeing > kPlaces;
 }
@@ -124,7 +124,7 @@ std::vector<RingCluster> ClusterRings(const ScanRings& scan, const ClusterOption
   DisjointSets sets(runs.size());
   for (std::size_t ring = 0; ring + 1 < starts.size(); ++ring) {
     for (std::size_t a = starts[ring]; a < starts[ring + 1]; ++a) {
-      // Of the same ring only the two ends at the seam can touch.
+      // Within a ring, only the first and the last run can touch, at the seam.
       if (a + 1 == starts[ring + 1] && a > starts[ring] &&
           Touch(scan, runs[a], runs[starts[ring]], options)) {
         sets.Join(a, starts[ring]);

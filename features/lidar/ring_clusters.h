@@ -8,25 +8,25 @@
 
 namespace sextant {
 
-/// Neighbouring returns of one ring without a jump of range between them. A run that crosses the
-/// seam behind the sensor is cut there in two, which clustering joins again.
+/// Neighbouring returns of one ring without a jump in range between them. A run that crosses the
+/// seam behind the sensor is split there; the clustering joins the parts.
 struct RingRun {
   int ring = 0;
-  std::size_t first = 0;  ///< Place within ScanRings::points().
+  std::size_t first = 0;  ///< Index into ScanRings::points().
   std::size_t count = 0;
 };
 
-/// Runs that touch each other: one object as far as ranges tell.
+/// Runs that touch each other: one object, judging by ranges.
 using RingCluster = std::vector<RingRun>;
 
 struct ClusterOptions {
-  double longest_run_m = 1.0;  ///< Longer runs are walls and floors and left out.
-  double jump_m = 0.06;  ///< A larger step of range parts two objects: 3 sigma of two returns.
+  double longest_run_m = 1.0;  ///< Longer runs are walls and floors and are omitted.
+  double jump_m = 0.06;  ///< A larger step in range separates objects: 3 sigma of two returns.
 };
 
-/// Objects no wider than asked for. Two returns belong together where the surface between them is
-/// inclined by at most 60 degrees (between rings) or 75 (within a ring) against the ray's normal.
-/// Degenerate: a board that touches a wall is part of the wall.
+/// Finds objects no wider than the limit. Two returns belong together if the surface between them
+/// is inclined by at most 60 degrees (between rings) or 75 (within a ring) against the ray's
+/// normal. Degenerate: a board that touches a wall becomes part of the wall.
 std::vector<RingCluster> ClusterRings(const ScanRings& scan, const ClusterOptions& options);
 
 }  // namespace sextant

@@ -13,16 +13,16 @@
 namespace sextant {
 namespace {
 
-constexpr double kNearest_m = 0.01;  // Sensors write zeros for what did not return.
+constexpr double kNearest_m = 0.01;  // Sensors write zeros for rays without a return.
 constexpr int kMaxRings = 256;
-constexpr int kMinRepeating = 4;  // Fewer rings are told by being narrow.
+constexpr int kMinRepeating = 4;  // Fewer rings are recognised by being narrow.
 constexpr double kNarrow_rad = 0.0035;
 constexpr double kNeighbour_cos = 0.99985;  // 1 degree.
 
-// Rings by elevations that repeat: sorted, they fall into steps with empty gaps between them. Beams
-// that leave beside the origin smear a ring's elevations, so that small gaps may part one ring: the
-// smallest gap counts for which no two rings are far closer than is usual. Empty where elevations
-// do not repeat, as with a rosette.
+// Rings from elevations that repeat: sorted elevations form steps separated by gaps. Beams that do
+// not start at the origin spread the elevations of a ring, so a small gap may split one ring; the
+// smallest gap is used for which no two rings are much closer than the median. Empty if elevations
+// do not repeat, as in a rosette.
 std::vector<int> RingsOfElevations(const std::vector<double>& elevations) {
   std::vector<std::size_t> order(elevations.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -42,19 +42,19 @@ std::vector<int> RingsOfElevations(const std::vector<double>& elevations) {
     if (lows.size() < kMinRepeating || lows.size() > kMaxRings) continue;
     std::vector<double> steps;
     for (std::size_t i = 1; i < lows.size(); ++i) steps.push_back(lows[i] - lows[i - 1]);
-    const double least = *std::ranges::min_element(steps);
-    const double usual = UpperMedian(steps);
-    if (least > 0.25 * usual && widest < 0.5 * usual) return rings;
+    const double min_step = *std::ranges::min_element(steps);
+    const double median_step = UpperMedian(steps);
+    if (min_step > 0.25 * median_step && widest < 0.5 * median_step) return rings;
   }
   return {};
 }
 
-// Bands of elevation, three times as high as the points are apart on average: the loops of a
+// Bands of elevation, three times as high as the mean spacing of the points, because the loops of a
 // rosette leave gaps.
 struct Bands {
   std::vector<int> of_point;
   double height_rad = 0.0;
-  double step_rad = 0.0;  // The solid angle of a point by the height.
+  double step_rad = 0.0;  // Solid angle per point divided by the height.
 };
 
 Bands BandsOf(const std::vector<RingPoint>& points, const std::vector<double>& elevations) {
@@ -72,9 +72,9 @@ Bands BandsOf(const std::vector<RingPoint>& points, const std::vector<double>& e
   return bands;
 }
 
-// Whether each number stands for an elevation of its own: half of a ring's returns lie within a
-// step to the next ring (in the sine, which is as good). Numbers of lines of a rosette do not, nor
-// those of a turned cloud.
+// Whether each ring number corresponds to one elevation: half of a ring's returns lie within the
+// step to the next ring (in the sine of the elevation, which suffices). The line numbers of a
+// rosette do not, nor do the rings of a rotated cloud.
 bool AreRings(const std::vector<int>& ring_of, const std::vector<double>& sines) {
   const int highest = *std::ranges::max_element(ring_of);
   std::vector<std::vector<double>> of_ring(static_cast<std::size_t>(highest) + 1);
@@ -98,7 +98,7 @@ bool AreRings(const std::vector<int>& ring_of, const std::vector<double>& sines)
   return UpperMedian(spreads) < std::max(kNarrow_rad, UpperMedian(steps));
 }
 
-double Bend(const RingPoint& a, const RingPoint& b, const RingPoint& c) {
+double SecondDifference(const RingPoint& a, const RingPoint& b, const RingPoint& c) {
   return std::abs(a.range_m - 2.0 * b.range_m + c.range_m);
 }
 
@@ -106,30 +106,31 @@ bool AreNeighbours(const RingPoint& a, const RingPoint& b) {
   return a.point.dot(b.point) > kNeighbour_cos * a.range_m * b.range_m;
 }
 
-// A flat surface's second difference of range is noise alone, of sqrt 6 sigma; the median leaves
-// out where objects begin. `swept`: the returns as the cloud has them, which of a rosette are
-// neighbours where those of a band are not.
+// On a flat surface the second difference of the range is noise alone, of sqrt 6 sigma; the median
+// ignores the borders of objects. `swept`: the returns in the order of the cloud, in which those of
+// a rosette are neighbours, unlike those of a band.
 double RangeSigma(const ScanRings& scan, std::span<const RingPoint> swept) {
   constexpr double kSigmaOfMedian = 1.0 / 0.6745;
-  std::vector<double> bends;
+  std::vector<double> differences;
   if (!scan.has_rings()) {
     for (std::size_t i = 2; i < swept.size(); ++i) {
       if (AreNeighbours(swept[i - 2], swept[i - 1]) && AreNeighbours(swept[i - 1], swept[i])) {
-        bends.push_back(Bend(swept[i - 2], swept[i - 1], swept[i]));
+        differences.push_back(SecondDifference(swept[i - 2], swept[i - 1], swept[i]));
       }
     }
-    if (2 * bends.size() > swept.size())
-      return kSigmaOfMedian * UpperMedian(bends) / std::sqrt(6.0);
-    bends.clear();
+    if (2 * differences.size() > swept.size()) {
+      return kSigmaOfMedian * Median(differences) / std::sqrt(6.0);
+    }
+    differences.clear();
   }
-  bends.reserve(scan.points().size());
+  differences.reserve(scan.points().size());
   for (int ring = 0; ring < scan.rings(); ++ring) {
     const std::span<const RingPoint> points = scan.ring(ring);
     for (std::size_t i = 2; i < points.size(); ++i) {
-      bends.push_back(Bend(points[i - 2], points[i - 1], points[i]));
+      differences.push_back(SecondDifference(points[i - 2], points[i - 1], points[i]));
     }
   }
-  return kSigmaOfMedian * UpperMedian(bends) / std::sqrt(6.0);
+  return kSigmaOfMedian * Median(differences) / std::sqrt(6.0);
 }
 
 }  // namespace
@@ -171,8 +172,8 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
     ring_of = scan.has_rings_ ? std::move(repeating) : std::move(bands.of_point);
   }
 
-  // Ring numbers may be sparse or count downwards: order them by their median elevation, found
-  // among sines, which sort alike.
+  // Ring numbers may be sparse or descend with elevation, so rings are sorted by median elevation.
+  // The median is taken of the sines, which have the same order.
   const int highest = *std::ranges::max_element(ring_of);
   std::vector<std::vector<double>> of_ring(static_cast<std::size_t>(highest) + 1);
   for (std::size_t i = 0; i < kept.size(); ++i) {
@@ -180,8 +181,9 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
   }
   std::vector<std::pair<double, int>> by_elevation;
   for (std::size_t ring = 0; ring < of_ring.size(); ++ring) {
-    if (!of_ring[ring].empty())
-      by_elevation.emplace_back(std::asin(UpperMedian(of_ring[ring])), static_cast<int>(ring));
+    if (!of_ring[ring].empty()) {
+      by_elevation.emplace_back(std::asin(Median(of_ring[ring])), static_cast<int>(ring));
+    }
   }
   std::ranges::sort(by_elevation);
 

@@ -10,22 +10,22 @@
 
 namespace sextant {
 
-/// A return, in the LiDAR's spherical coordinates too.
+/// A return in Cartesian and spherical coordinates.
 struct RingPoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< In the LiDAR frame [m].
   double range_m = 0.0;
   double azimuth_rad = 0.0;  ///< About z from x, in (-pi, pi].
-  int index = 0;             ///< Within the cloud.
+  int index = 0;             ///< Index into the cloud.
 };
 
-/// A scan sorted as the sensor swept it: rings from the lowest up, each by ascending azimuth.
+/// A scan sorted by rings from the lowest up, each by ascending azimuth.
 class ScanRings {
  public:
-  /// Returns that are not finite or nearer than 1 cm are left out. Rings are taken from the cloud;
-  /// where it does not tell them, from elevations that repeat. Where none do (a rosette, whatever
-  /// its ring field says), they are bands of elevation, a few times as high as points are apart.
-  /// Errors: kMissingData where no return is left; kInvalidInput where a field's length differs
-  /// from that of the points.
+  /// Returns that are not finite or nearer than 1 cm are omitted. Rings come from the cloud's ring
+  /// field or, without one, from elevations that repeat. If neither gives rings (a rosette,
+  /// whatever its ring field contains), bands of elevation take their place, a few times as high as
+  /// the spacing of the points. Errors: kMissingData if no return remains; kInvalidInput if the
+  /// numbers of points and rings differ.
   static Expected<ScanRings> Build(const PointCloud& cloud);
 
   int rings() const { return static_cast<int>(starts_.size()) - 1; }
@@ -34,22 +34,22 @@ class ScanRings {
     return std::span(points_).subspan(starts_[k], starts_[k + 1] - starts_[k]);
   }
   std::span<const RingPoint> points() const { return points_; }
-  /// Place of a ring's first point within points().
+  /// Index of a ring's first point in points().
   std::size_t first(int ring) const { return starts_[static_cast<std::size_t>(ring)]; }
 
-  /// The ring of a place within points().
+  /// The ring of an index into points().
   int RingOf(std::size_t place) const;
 
-  /// Whether the sensor sweeps rings; without, rings() are bands, whose points scatter in
+  /// Whether the sensor sweeps rings; if not, the rings are bands, whose points scatter in
   /// elevation.
   bool has_rings() const { return has_rings_; }
 
-  /// Median angle between neighbours of a ring, and between neighbouring rings. Of bands: their
-  /// height, and what along them makes a return's share of the solid angle.
+  /// Median angle between neighbours of a ring, and between neighbouring rings. For bands, the
+  /// elevation step is their height, and the product of both steps is the solid angle per return.
   double azimuth_step_rad() const { return azimuth_step_rad_; }
   double elevation_step_rad() const { return elevation_step_rad_; }
 
-  /// Range noise [m], from how far returns are off the middle of their two neighbours.
+  /// Range noise [m], from the deviation of returns from the mean of their two neighbours.
   double range_sigma_m() const { return range_sigma_m_; }
 
  private:

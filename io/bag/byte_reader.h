@@ -11,8 +11,8 @@
 
 namespace sextant {
 
-/// Numbers and byte strings of a buffer one after the other, never past its end. Once something
-/// was asked for that is not there, ok() is false and everything is zero or empty.
+/// Reads numbers and byte strings from a buffer one after the other, never past its end. After an
+/// attempt to read past the end, ok() is false and every result is zero or empty.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes, bool big_endian = false)
@@ -42,7 +42,7 @@ class ByteReader {
     return std::bit_cast<Number>(raw);
   }
 
-  /// Bytes behind their own number, which is a Length.
+  /// A byte string preceded by its length, which has the type Length.
   template <std::unsigned_integral Length>
   std::string_view Counted() {
     return Bytes(Take<Length>());

@@ -15,10 +15,10 @@ namespace sextant {
 namespace {
 
 constexpr std::size_t kStep = std::size_t{1} << 20;
-constexpr std::size_t kFree = std::size_t{64} << 20;
+constexpr std::size_t kUncheckedSize = std::size_t{64} << 20;
 constexpr std::size_t kMaxRatio = 256;
 
-/// What one call of a decoder did.
+/// The result of one call of a decoder.
 struct DecoderStep {
   bool failed = false;
   bool ended = false;
@@ -26,18 +26,19 @@ struct DecoderStep {
   std::size_t produced = 0;
 };
 
-// Feeds `decode(input, room)` until its stream ends. The output grows by what was produced.
+// Calls `decode(input, output, room)` until its stream ends. The output grows as it is produced.
 template <class Decode>
 Expected<std::string> Run(std::string_view input, std::size_t size, Decode decode) {
-  if (size > kFree && size / kMaxRatio > input.size()) {
+  if (size > kUncheckedSize && size / kMaxRatio > input.size()) {
     return MakeError(ErrorCode::kParse,
-                     fmt::format("{} bytes claim to hold {}, more than {} times as many",
+                     fmt::format("{} compressed bytes are stated to hold {} bytes, more than {} "
+                                 "times as many",
                                  input.size(), size, kMaxRatio));
   }
   std::string output;
   std::size_t filled = 0;
   while (true) {
-    // One byte more than promised, so that a longer stream is noticed.
+    // One byte more than stated, so that a longer stream is detected.
     if (filled == output.size()) {
       output.resize(std::min(size + 1, filled + std::max(kStep, filled)));
     }
@@ -69,7 +70,7 @@ Expected<std::string> DecompressBz2(std::string_view bytes, std::size_t size) {
   return Run(bytes, size, [&stream](std::string_view input, char* output, std::size_t room) {
     const auto in = static_cast<unsigned>(std::min(input.size(), kStep));
     const auto out = static_cast<unsigned>(std::min(room, kStep));
-    std::string block(input.substr(0, in));  // bz2 wants its input writable.
+    std::string block(input.substr(0, in));  // bz2 requires writable input.
     stream.next_in = block.data();
     stream.avail_in = in;
     stream.next_out = output;

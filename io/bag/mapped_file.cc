@@ -23,7 +23,7 @@ tl::unexpected<Error> ReadError(const std::filesystem::path& path, const std::st
 }  // namespace
 
 Expected<std::shared_ptr<const MappedFile>> MappedFile::Open(const std::filesystem::path& path) {
-  // Without O_NONBLOCK a pipe that nobody writes would hang here.
+  // Without O_NONBLOCK, opening a pipe without a writer would block.
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) return ReadError(path, std::generic_category().message(errno));
   struct stat status {};

@@ -10,8 +10,8 @@
 
 namespace sextant {
 
-/// The bytes of a regular file, brought to memory by the system as they are looked at: recordings
-/// are larger than memory. The file must not be cut while it is mapped.
+/// The bytes of a regular file, mapped so that the system loads them on access: recordings may be
+/// larger than memory. The file must not be truncated while it is mapped.
 class MappedFile {
  public:
   /// Error: kIo, with the path and the system's reason.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MCAP, mcap.dev/spec: records of an operation, a length and as many bytes.
+// MCAP, mcap.dev/spec: records of an operation code, a length and the content.
 #include <fmt/core.h>
 
 #include <limits>
@@ -33,10 +33,10 @@ MessageEncoding EncodingNamed(std::string_view name) {
   return MessageEncoding::kUnknown;
 }
 
-// What the records so far have said of channels.
+// The schemas and channels of the records read so far.
 struct Channels {
-  std::map<std::uint16_t, std::string> types;   // Of schemas.
-  std::map<std::uint16_t, std::size_t> topics;  // Of channels: index of the topic.
+  std::map<std::uint16_t, std::string> types;   // Type of each schema.
+  std::map<std::uint16_t, std::size_t> topics;  // Index of the topic of each channel.
 };
 
 class Mcap final : public Bag {
@@ -59,8 +59,7 @@ class Mcap final : public Bag {
 
   Expected<void> Read(const std::vector<std::size_t>& topic_indices,
                       const Visitor& visit) const override {
-    std::vector<bool> wanted(topics_.size(), false);
-    for (const std::size_t index : topic_indices) wanted.at(index) = true;
+    const std::vector<bool> wanted = WantedTopics(topics_, topic_indices);
     std::vector<BagTopic> topics = topics_;
     return Walk(topics, [&](const BagMessage& message) -> Expected<void> {
       return wanted[message.topic_index] ? visit(message) : Expected<void>();
@@ -68,7 +67,7 @@ class Mcap final : public Bag {
   }
 
  private:
-  // The records of a stretch, each shown to `take(op, content, position)`.
+  // Calls `take(op, content, position)` for each record in `bytes`.
   template <class Take>
   Expected<void> ForEachRecord(std::string_view bytes, const std::string& where, Take take) const {
     ByteReader in(bytes);
@@ -76,15 +75,13 @@ class Mcap final : public Bag {
       const std::size_t begin = in.position();
       const auto op = static_cast<McapOp>(in.Take<std::uint8_t>());
       const std::string_view content = in.Counted<std::uint64_t>();
-      const std::optional<std::string> wrong =
-          in.ok() ? std::nullopt
-                  : std::optional<std::string>(
-                        "a record goes beyond the end: the recording is cut "
-                        "short (`mcap recover` may save it)");
-      if (wrong) return Fail(where, begin, *wrong);
+      if (!in.ok()) {
+        return Fail(where, begin,
+                    "a record extends beyond the end: the recording is cut short (`mcap recover` "
+                    "may repair it)");
+      }
       if (op == McapOp::kDataEnd) return {};
-      Expected<void> ok = take(op, content, begin);
-      if (!ok) return ok;
+      SEXTANT_RETURN_IF_ERROR(take(op, content, begin));
     }
     return {};
   }
@@ -94,7 +91,7 @@ class Mcap final : public Bag {
     return MakeError(ErrorCode::kParse, fmt::format("{}: byte {}: {}", where, byte, what));
   }
 
-  // All messages in the order of the file. Topics that are new are added.
+  // Visits all messages in the order of the file; new topics are added to `topics`.
   Expected<void> Walk(std::vector<BagTopic>& topics, const Visitor& visit) const {
     Channels channels;
     const auto take = [&](const std::string& where, McapOp op, std::string_view content,
@@ -125,10 +122,10 @@ class Mcap final : public Bag {
     in.Take<std::uint64_t>();  // First and last time.
     in.Take<std::uint64_t>();
     const auto size = in.Take<std::uint64_t>();
-    in.Take<std::uint32_t>();  // Checksum, 0 where the recorder computed none.
+    in.Take<std::uint32_t>();  // Checksum; 0 if the recorder computed none.
     const std::string_view name = in.Counted<std::uint32_t>();
     const std::string_view data = in.Counted<std::uint64_t>();
-    if (!in.ok()) return Fail(where, 0, "the chunk contradicts its own length");
+    if (!in.ok()) return Fail(where, 0, "the chunk's parts extend beyond its length");
     const Expected<Compression> compression = CompressionNamed(name);
     if (!compression) return Fail(where, 0, compression.error().message);
     Expected<std::string> inside = Decompress(*compression, data, size);
@@ -168,7 +165,7 @@ class Mcap final : public Bag {
     const auto channel = channels.topics.find(in.Take<std::uint16_t>());
     in.Take<std::uint32_t>();  // Sequence number.
     const auto time = in.Take<std::uint64_t>();
-    in.Take<std::uint64_t>();  // When it was published.
+    in.Take<std::uint64_t>();  // Time of publication.
     if (!in.ok() || channel == channels.topics.end() ||
         time > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
       return Fail(where, begin, "expected a message of a known channel, with its time");

@@ -30,7 +30,7 @@ MessageReader::MessageReader(const BagMessage& message)
   }
 }
 
-// CDR aligns a number by its size, counted from behind the encapsulation.
+// CDR aligns a number to its size, counted from the end of the encapsulation.
 void MessageReader::Align(std::size_t size) {
   if (is_ros1_ || error_) return;
   const std::size_t at = bytes_.position() - kEncapsulation;
@@ -40,12 +40,12 @@ void MessageReader::Align(std::size_t size) {
 void MessageReader::CheckEnd(std::string_view field) {
   if (bytes_.ok()) return;
   Fail(ErrorCode::kParse, field,
-       fmt::format("goes beyond the message, which has {} bytes", message_.data.size()));
+       fmt::format("extends beyond the message, which has {} bytes", message_.data.size()));
 }
 
 std::string MessageReader::String(std::string_view field) {
   std::string_view text = ByteSequence(field);
-  // CDR counts the zero byte at the end; some writers of ROS 1 leave one too.
+  // CDR counts a terminating zero byte, and some writers of ROS 1 add one too.
   if (text.ends_with('\0')) text.remove_suffix(1);
   return std::string(text);
 }
@@ -56,12 +56,11 @@ std::string_view MessageReader::ByteSequence(std::string_view field) {
   return error_ ? std::string_view() : bytes;
 }
 
-std::size_t MessageReader::Length(std::size_t least_size, std::string_view field) {
+std::size_t MessageReader::Length(std::size_t min_size, std::string_view field) {
   const std::size_t length = Take<std::uint32_t>(field);
-  if (ok() && length > bytes_.bytes_left() / least_size) {
-    Fail(
-        ErrorCode::kParse, field,
-        fmt::format("states {} entries, more than fit into {} bytes", length, bytes_.bytes_left()));
+  if (ok() && length > bytes_.bytes_left() / min_size) {
+    Fail(ErrorCode::kParse, field,
+         fmt::format("has {} entries, more than fit into {} bytes", length, bytes_.bytes_left()));
   }
   return ok() ? length : 0;
 }
@@ -69,7 +68,7 @@ std::size_t MessageReader::Length(std::size_t least_size, std::string_view field
 MessageHeader MessageReader::Header() {
   constexpr std::int64_t kSecond = 1'000'000'000;
   if (is_ros1_) Take<std::uint32_t>("header.seq");
-  // Signed in ROS 2 only.
+  // Seconds are signed in ROS 2 only.
   std::int64_t seconds = Take<std::uint32_t>("header.stamp");
   if (!is_ros1_) seconds = static_cast<std::int32_t>(seconds);
   const std::int64_t nanoseconds = Take<std::uint32_t>("header.stamp");

@@ -11,9 +11,9 @@
 
 namespace sextant {
 
-/// The fields of one message, of ROS 1 or of ROS 2 (CDR, OMG formal/2002-06-51 chapter 15.3, with
-/// the four bytes of encapsulation before it), with the first error kept. After it all is zero or
-/// empty.
+/// Reads the fields of a message of ROS 1 or ROS 2 (CDR, OMG formal/2002-06-51 chapter 15.3,
+/// preceded by four bytes of encapsulation) and keeps the first error. After an error every result
+/// is zero or empty.
 class MessageReader {
  public:
   explicit MessageReader(const BagMessage& message);
@@ -33,8 +33,8 @@ class MessageReader {
   std::string String(std::string_view field);
   /// A sequence of bytes: its length, then the bytes.
   std::string_view ByteSequence(std::string_view field);
-  /// The length of a sequence whose entries take `least_size` bytes or more each.
-  std::size_t Length(std::size_t least_size, std::string_view field);
+  /// The length of a sequence whose entries take at least `min_size` bytes each.
+  std::size_t Length(std::size_t min_size, std::string_view field);
   /// std_msgs/Header.
   MessageHeader Header();
 

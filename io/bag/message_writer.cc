@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "io/cameras/camera_parts.h"
 #include "io/clouds/scalar_type.h"
 
 namespace sextant {
@@ -20,7 +21,7 @@ void AppendHeader(std::string& out, const MessageHeader& header) {
   AppendCounted(out, header.frame);
 }
 
-// Adds the description of a field, sensor_msgs/PointField, and the bytes that it takes.
+// Appends the description of a field, sensor_msgs/PointField, and adds its size to `step`.
 void AppendField(std::string& out, std::string_view name, ScalarType type, std::uint32_t& step) {
   AppendCounted(out, name);
   AppendNumber(out, step);
@@ -51,22 +52,9 @@ void AppendPoints(std::string& out, const PointCloud& cloud) {
   }
 }
 
-// As ROS names the model, and the coefficients that it wants.
-struct RosDistortion {
-  std::string_view model;
-  std::size_t count = 0;
-};
-
-RosDistortion DistortionOf(const Camera& camera) {
-  if (camera.model == CameraModel::kEquidistant) return {"equidistant", 4};
-  const bool is_rational = std::any_of(camera.distortion.begin() + 5, camera.distortion.end(),
-                                       [](double k) { return k != 0.0; });
-  return is_rational ? RosDistortion{"rational_polynomial", 8} : RosDistortion{"plumb_bob", 5};
-}
-
 }  // namespace
 
-// The MD5 is that of the definition without comments, so that these are the same types.
+// ROS computes the MD5 from the definition without comments, so these are the types of ROS.
 const Ros1Type kPointCloud2Type = {
     "sensor_msgs/PointCloud2", "1158d486dd51d683ce2f1be655c3c181",
     "Header header\nuint32 height\nuint32 width\nPointField[] fields\nbool is_bigendian\n"
@@ -141,7 +129,7 @@ std::string Ros1Message(const EncodedImageMessage& message) {
 
 std::string Ros1Message(const CameraInfoMessage& message) {
   const Camera& camera = message.camera;
-  const auto [model, count] = DistortionOf(camera);
+  const auto [model, count] = RosDistortionOf(camera);
   const double fx = camera.fx_px;
   const double fy = camera.fy_px;
   const double cx = camera.cx_px;

@@ -11,10 +11,10 @@
 
 namespace sextant {
 
-/// What ROS 1 wants to know of a message's type: name, MD5 of its definition, the definition.
+/// The description of a message's type in a ROS 1 bag.
 struct Ros1Type {
   std::string_view name;
-  std::string_view md5;
+  std::string_view md5;  ///< Of the definition without comments.
   std::string_view definition;
 };
 
@@ -23,7 +23,7 @@ extern const Ros1Type kImageType;
 extern const Ros1Type kCompressedImageType;
 extern const Ros1Type kCameraInfoType;
 
-/// Adds the bytes of a number, little endian.
+/// Appends the bytes of a number, little endian.
 template <class Number>
 void AppendNumber(std::string& out, Number value) {
   static_assert(std::endian::native == std::endian::little);
@@ -31,10 +31,10 @@ void AppendNumber(std::string& out, Number value) {
   out.append(raw.data(), raw.size());
 }
 
-/// Adds the length (4 bytes) and the bytes.
+/// Appends the length (4 bytes) and the bytes.
 void AppendCounted(std::string& out, std::string_view bytes);
 
-/// A message as ROS 1 packs it. Requires a stamp from 0 to 2^32 s.
+/// Serialises a message as ROS 1 does. Requires a stamp from 0 to 2^32 s.
 std::string Ros1Message(const CloudMessage& message);
 std::string Ros1Message(const ImageMessage& message);
 std::string Ros1Message(const EncodedImageMessage& message);

@@ -23,7 +23,7 @@ struct PointField {
   ScalarType type = ScalarType::kFloat32;
 };
 
-// sensor_msgs/PointCloud2 as it lies in the message.
+// sensor_msgs/PointCloud2 without its header; `data` refers to the message.
 struct CloudLayout {
   std::size_t height = 0;
   std::size_t width = 0;
@@ -63,7 +63,7 @@ CloudLayout ReadLayout(MessageReader& in) {
   return layout;
 }
 
-// All products are of numbers below 2^32.
+// No product overflows: all factors are below 2^32.
 void CheckLayout(const CloudLayout& layout, MessageReader& in) {
   for (const PointField& field : layout.fields) {
     if (field.offset + SizeOf(field.type) <= layout.point_step) continue;
@@ -187,7 +187,7 @@ Expected<CameraInfoMessage> DecodeCameraInfo(const BagMessage& message) {
   for (double& value : parts.matrix) value = in.Take<double>("K");
   if (in.ok() && (width > kMaxSide || height > kMaxSide)) {
     in.Fail(ErrorCode::kParse, "width",
-            fmt::format("expected a size of an image, got {} x {}", width, height));
+            fmt::format("expected the size of an image, got {} x {}", width, height));
   }
   if (in.ok() && std::all_of(parts.matrix.begin(), parts.matrix.end(),
                              [](double value) { return value == 0.0; })) {

@@ -12,7 +12,7 @@
 
 namespace sextant {
 
-/// When and where something was measured.
+/// Time and frame of a measurement.
 struct MessageHeader {
   std::int64_t stamp_ns = 0;  ///< Since 1970.
   std::string frame;
@@ -30,8 +30,8 @@ struct ImageMessage {
   int width_px = 0;
   int height_px = 0;
   std::string encoding{};     ///< "mono8", "bgr8", "rgb8", "mono16", "bayer_rggb8" and so on.
-  bool big_endian = false;    ///< Of samples of more than one byte.
-  std::size_t row_bytes = 0;  ///< From row to row.
+  bool big_endian = false;    ///< Byte order of samples of more than one byte.
+  std::size_t row_bytes = 0;  ///< Bytes from one row to the next.
   std::string data{};         ///< height_px * row_bytes bytes.
 };
 
@@ -49,19 +49,19 @@ struct CameraInfoMessage {
 };
 
 /// Each decodes a message of its kind, of ROS 1 or ROS 2.
-/// Errors, which name the topic, the time and the field: kParse for a message that is not what its
-/// type says (lengths beyond its end, fields beyond a point, sizes that contradict each other);
-/// kInvalidInput for a camera that is none (never calibrated: K is zero). Memory: no more than a
-/// small multiple of the message.
+/// Errors, which name the topic, the time and the field: kParse for a message that does not match
+/// its type (lengths beyond its end, fields beyond a point, inconsistent sizes); kInvalidInput for
+/// an invalid camera (never calibrated: K is zero). Memory is bounded by a small multiple of the
+/// message.
 Expected<CloudMessage> DecodePointCloud(const BagMessage& message);
 Expected<ImageMessage> DecodeImage(const BagMessage& message);
 Expected<EncodedImageMessage> DecodeEncodedImage(const BagMessage& message);
 Expected<CameraInfoMessage> DecodeCameraInfo(const BagMessage& message);
 
-/// The header alone, of a message of any of the four kinds.
+/// Decodes only the header, of a message of any of the four kinds.
 Expected<MessageHeader> DecodeHeader(const BagMessage& message);
 
-/// "jpg" or "png", by the first bytes; "bin" for anything else.
+/// "jpg" or "png" according to the first bytes; "bin" for anything else.
 std::string ExtensionOf(const EncodedImageMessage& image);
 
 }  // namespace sextant

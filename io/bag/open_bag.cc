@@ -16,7 +16,7 @@ bool IsRecording(const std::filesystem::path& path) {
   return extension == ".db3" || extension == ".mcap" || extension == ".bag";
 }
 
-// The one recording in a folder, as ROS 2 writes it beside its metadata.yaml.
+// The only recording in a folder, as ROS 2 writes it next to its metadata.yaml.
 Expected<std::filesystem::path> RecordingIn(const std::filesystem::path& folder) {
   std::filesystem::path found;
   int count = 0;
@@ -28,8 +28,9 @@ Expected<std::filesystem::path> RecordingIn(const std::filesystem::path& folder)
     if (count == 1 || it->path() < found) found = it->path();
   }
   const std::string name = Printable(folder.string(), 200);
-  if (error)
+  if (error) {
     return MakeError(ErrorCode::kIo, fmt::format("cannot read '{}': {}", name, error.message()));
+  }
   if (count == 1) return found;
   if (count == 0) {
     return MakeError(ErrorCode::kIo,
@@ -50,7 +51,7 @@ Expected<std::unique_ptr<Bag>> OpenBag(const std::filesystem::path& path) {
     return OpenBag(inside);
   }
   SEXTANT_ASSIGN_OR_RETURN(const std::shared_ptr<const MappedFile> file, MappedFile::Open(path));
-  const std::string_view bytes = (file)->bytes();
+  const std::string_view bytes = file->bytes();
   if (bytes.starts_with("#ROSBAG"sv)) return OpenRosbag1(bytes, path.string(), file);
   if (bytes.starts_with("\x89MCAP"sv)) return OpenMcap(bytes, path.string(), file);
   if (bytes.starts_with("SQLite format 3\0"sv)) return OpenRosbag2Sqlite(path);

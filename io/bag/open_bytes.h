@@ -11,7 +11,7 @@
 
 namespace sextant {
 
-/// The formats behind OpenBag. `owner` keeps the bytes alive; `file` names them in messages.
+/// The readers of OpenBag. `owner` keeps the bytes alive; `file` names them in error messages.
 Expected<std::unique_ptr<Bag>> OpenRosbag1(std::string_view bytes, const std::string& file,
                                            std::shared_ptr<const void> owner);
 Expected<std::unique_ptr<Bag>> OpenMcap(std::string_view bytes, const std::string& file,

@@ -9,7 +9,7 @@
 namespace sextant {
 namespace {
 
-// A stamp in the merged order of both sets, with its neighbours that are still unpaired.
+// A stamp in the merged order of both sets, with its nearest unpaired neighbours.
 struct Stamp {
   std::int64_t time_ns = 0;
   bool is_second = false;
@@ -30,7 +30,7 @@ struct Candidate {
 
 using Candidates = std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>>;
 
-// Between two guards, so that every stamp has neighbours.
+// The merged order between two sentinels, so that every stamp has neighbours.
 std::vector<Stamp> Merged(std::span<const std::int64_t> first,
                           std::span<const std::int64_t> second) {
   std::vector<Stamp> stamps(1);
@@ -49,8 +49,8 @@ std::vector<Stamp> Merged(std::span<const std::int64_t> first,
 
 }  // namespace
 
-// The closest two of those left are neighbours in the merged order: what lay between would be
-// closer to one of them. Taking them out makes new neighbours.
+// The closest two unpaired stamps of different sets are neighbours in the merged order, because a
+// stamp between them would be closer to one of them. Removing them makes new neighbours.
 StampPairs PairByStamp(std::span<const std::int64_t> first, std::span<const std::int64_t> second,
                        std::int64_t tolerance_ns) {
   std::vector<Stamp> stamps = Merged(first, second);

@@ -11,7 +11,7 @@ namespace sextant {
 struct StampPair {
   std::size_t first = 0;
   std::size_t second = 0;
-  std::int64_t difference_ns = 0;  ///< Second less first.
+  std::int64_t difference_ns = 0;  ///< Second minus first.
 };
 
 struct StampPairs {
@@ -20,9 +20,9 @@ struct StampPairs {
   std::vector<std::size_t> unpaired_second{};
 };
 
-/// Pairs two sets of stamps [ns], in any order: again and again the two that are closest of all
-/// that are left, until none are within the tolerance. Each is used at most once; of two equally
-/// close pairs the earlier is taken. O(n log n).
+/// Pairs two sets of stamps [ns], in any order, greedily: repeatedly takes the closest pair of
+/// those that remain, until none is within the tolerance. Each stamp is used at most once; of two
+/// equally close pairs the earlier is taken. O(n log n).
 StampPairs PairByStamp(std::span<const std::int64_t> first, std::span<const std::int64_t> second,
                        std::int64_t tolerance_ns);
 

@@ -13,15 +13,15 @@
 namespace sextant {
 namespace {
 
-// A chunk as it lies in the file.
+// A chunk of the file.
 struct Chunk {
   std::size_t begin = 0;
   Compression compression = Compression::kNone;
-  std::size_t size = 0;  // Once decompressed.
+  std::size_t size = 0;  // Decompressed.
   std::string_view data;
 };
 
-// Index of a topic by the number of its connection.
+// The index of the topic of each connection, by its number.
 using Connections = std::map<std::uint32_t, std::size_t>;
 
 class Rosbag1 final : public Bag {
@@ -52,7 +52,7 @@ class Rosbag1 final : public Bag {
   std::map<std::uint32_t, BagTopic> indexed_;  // Counts and times by connection.
 };
 
-// Adds the topic of a connection record. Its data is a header too, which states the type.
+// Adds the topic of a connection record, whose data is a header with the type.
 Expected<void> AddConnection(const BagRecords& records, const BagRecord& record,
                              std::vector<BagTopic>& topics, Connections& connections) {
   const std::optional<std::uint32_t> id = Uint32Field(record.fields, "conn");
@@ -64,7 +64,7 @@ Expected<void> AddConnection(const BagRecords& records, const BagRecord& record,
                                        TextField(*description, "type"), MessageEncoding::kRos1);
   const auto [place, is_new] = connections.emplace(*id, topic);
   if (!is_new && place->second != topic) {
-    return records.Fail(fmt::format("the connection {} stands for two topics", *id));
+    return records.Fail(fmt::format("the connection {} has two topics", *id));
   }
   return {};
 }
@@ -73,21 +73,22 @@ Expected<void> Rosbag1::Open() {
   if (!bytes_.starts_with(kRosbag1Magic)) {
     return MakeError(ErrorCode::kParse,
                      fmt::format("{}: byte 0: expected a ROS 1 bag of version 2.0, got {}; `rosbag "
-                                 "fix` brings old ones to it",
+                                 "fix` converts older versions",
                                  file_, Quoted(bytes_.substr(0, kRosbag1Magic.size()))));
   }
   BagRecords records(bytes_.substr(kRosbag1Magic.size()), kRosbag1Magic.size(), file_);
-  if (Expected<void> ok = CheckBagHeader(records); !ok) return ok;
+  SEXTANT_RETURN_IF_ERROR(CheckBagHeader(records));
   while (true) {
     SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
     if (!record) break;
-    if (Expected<void> ok = TakeRecord(records, *record); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(TakeRecord(records, *record));
   }
   if (!has_index_) return CountContents();
   for (const auto& [id, counted] : indexed_) {
     const auto connection = connections_.find(id);
     if (connection == connections_.end()) {
-      return records.Fail(fmt::format("the index names the connection {}, which is not there", id));
+      return records.Fail(
+          fmt::format("the index refers to the connection {}, which is missing", id));
     }
     BagTopic& topic = topics_[connection->second];
     const bool first = topic.count == 0;
@@ -100,21 +101,21 @@ Expected<void> Rosbag1::Open() {
 
 Expected<void> Rosbag1::CheckBagHeader(BagRecords& records) {
   SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
-  if (!record || OpOf((record)->fields) != BagOp::kBagHeader) {
+  if (!record || OpOf(record->fields) != BagOp::kBagHeader) {
     return records.Fail("expected the bag's header");
   }
-  const BagFields& fields = (record)->fields;
+  const BagFields& fields = record->fields;
   if (!TextField(fields, "encryptor").empty()) {
     return records.Fail("this bag is encrypted; decrypt it with ROS first");
   }
-  // A recorder fills it in when it closes the bag.
+  // The recorder sets index_pos when it closes the bag.
   has_index_ = Uint64Field(fields, "index_pos").value_or(0) != 0;
   return {};
 }
 
 Expected<void> Rosbag1::TakeRecord(const BagRecords& records, const BagRecord& record) {
   const std::optional<BagOp> op = OpOf(record.fields);
-  if (!op) return records.Fail("a record states no operation");
+  if (!op) return records.Fail("a record has no operation");
   if (*op == BagOp::kChunk) return TakeChunk(records, record);
   if (*op == BagOp::kIndexData) return TakeIndex(records, record);
   if (*op == BagOp::kConnection) return AddConnection(records, record, topics_, connections_);
@@ -143,31 +144,30 @@ Expected<void> Rosbag1::TakeIndex(const BagRecords& records, const BagRecord& re
   for (std::uint32_t i = 0; i < *count; ++i) {
     const std::int64_t seconds = in.Take<std::uint32_t>();
     const std::int64_t nanoseconds = in.Take<std::uint32_t>();
-    in.Take<std::uint32_t>();  // Where in its chunk; messages are found without it.
+    in.Take<std::uint32_t>();  // Position in the chunk; not needed to find the messages.
     CountMessage(counted, seconds * 1'000'000'000 + nanoseconds);
   }
   return {};
 }
 
-// A recorder that was stopped hard leaves no index: the chunks tell all.
+// A recorder that was killed leaves no index; topics and counts then come from the chunks.
 Expected<void> Rosbag1::CountContents() {
   topics_.clear();
   connections_.clear();
   for (const Chunk& chunk : chunks_) {
     const Expected<std::string> contents = Decompress(chunk.compression, chunk.data, chunk.size);
-    if (!contents) break;  // Read() says what is wrong with it.
+    if (!contents) break;  // Read() reports the error.
     BagRecords records(*contents, 0, fmt::format("{}: chunk at byte {}", file_, chunk.begin));
     while (true) {
       SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
       if (!record) break;
-      const std::optional<BagOp> op = OpOf((record)->fields);
+      const std::optional<BagOp> op = OpOf(record->fields);
       if (op == BagOp::kConnection) {
-        Expected<void> ok = AddConnection(records, *record, topics_, connections_);
-        if (!ok) return ok;
+        SEXTANT_RETURN_IF_ERROR(AddConnection(records, *record, topics_, connections_));
       }
       if (op != BagOp::kMessage) continue;
-      const auto known = connections_.find(Uint32Field((record)->fields, "conn").value_or(~0U));
-      const std::optional<std::int64_t> time = TimeField((record)->fields, "time");
+      const auto known = connections_.find(Uint32Field(record->fields, "conn").value_or(~0U));
+      const std::optional<std::int64_t> time = TimeField(record->fields, "time");
       if (known != connections_.end() && time) CountMessage(topics_[known->second], *time);
     }
   }
@@ -176,13 +176,12 @@ Expected<void> Rosbag1::CountContents() {
 
 Expected<void> Rosbag1::Read(const std::vector<std::size_t>& topic_indices,
                              const Visitor& visit) const {
-  std::vector<bool> wanted(topics_.size(), false);
-  for (const std::size_t index : topic_indices) wanted.at(index) = true;
+  const std::vector<bool> wanted = WantedTopics(topics_, topic_indices);
   const Visitor filtered = [&](const BagMessage& message) -> Expected<void> {
     return wanted[message.topic_index] ? visit(message) : Expected<void>();
   };
   for (const Chunk& chunk : chunks_) {
-    if (Expected<void> ok = VisitChunk(chunk, filtered); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(VisitChunk(chunk, filtered));
   }
   return {};
 }
@@ -202,7 +201,7 @@ Expected<void> Rosbag1::VisitChunk(const Chunk& chunk, const Visitor& visit) con
   while (true) {
     SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
     if (!record) return {};
-    const BagFields& fields = (record)->fields;
+    const BagFields& fields = record->fields;
     if (OpOf(fields) != BagOp::kMessage) continue;
     const std::optional<std::uint32_t> id = Uint32Field(fields, "conn");
     const std::optional<std::int64_t> time = TimeField(fields, "time");
@@ -210,8 +209,8 @@ Expected<void> Rosbag1::VisitChunk(const Chunk& chunk, const Visitor& visit) con
     if (!time || known == connections_.end()) {
       return records.Fail("expected a message with its time and a known connection");
     }
-    const BagMessage message{&topics_[known->second], known->second, *time, (record)->data};
-    if (Expected<void> ok = visit(message); !ok) return ok;
+    const BagMessage message{&topics_[known->second], known->second, *time, record->data};
+    SEXTANT_RETURN_IF_ERROR(visit(message));
   }
 }
 

@@ -25,8 +25,8 @@ Expected<std::optional<BagRecord>> BagRecords::Next() {
   const std::string_view data = in.Counted<std::uint32_t>();
   if (!in.ok()) {
     return Fail(
-        fmt::format("a record goes beyond the {} bytes that follow: the recording is cut "
-                    "short or damaged (`rosbag reindex` may save it)",
+        fmt::format("a record extends beyond the {} bytes that follow: the recording is cut "
+                    "short or damaged (`rosbag reindex` may repair it)",
                     bytes_.size() - position_));
   }
   std::optional<BagFields> fields = ParseBagFields(header);

@@ -12,7 +12,7 @@
 
 namespace sextant {
 
-/// The records that a ROS 1 bag of version 2.0 consists of (wiki.ros.org/Bags/Format/2.0).
+/// The first line of a ROS 1 bag of version 2.0 (wiki.ros.org/Bags/Format/2.0).
 inline constexpr std::string_view kRosbag1Magic = "#ROSBAG V2.0\n";
 
 enum class BagOp : std::uint8_t {
@@ -32,19 +32,19 @@ struct BagRecord {
   std::string_view data;
 };
 
-/// Takes the records of a stretch of a bag one after the other.
+/// Reads the records in a part of a bag one after the other.
 class BagRecords {
  public:
-  /// `origin` is where `bytes` begins, and `where` what it is, for messages.
+  /// For error messages, `origin` is the position of `bytes` and `where` its name.
   BagRecords(std::string_view bytes, std::size_t origin, std::string where)
       : bytes_(bytes), origin_(origin), where_(std::move(where)) {}
 
   /// The next record; none at the end. Error: kParse, with the byte.
   Expected<std::optional<BagRecord>> Next();
-  /// Where the record that Next() gave last begins.
+  /// The position of the record that Next() returned last.
   std::size_t record_begin() const { return record_begin_; }
 
-  /// "<where>: byte N: <what>", of the last record.
+  /// The error "<where>: byte N: <what>" for the last record.
   tl::unexpected<Error> Fail(std::string_view what) const;
 
  private:
@@ -55,18 +55,18 @@ class BagRecords {
   std::size_t record_begin_ = 0;
 };
 
-/// The fields of a header: <length><name>=<value> each. None where they are not.
+/// The fields of a header, each <length><name>=<value>; none if it has another form.
 std::optional<BagFields> ParseBagFields(std::string_view header);
 
-/// The operation of a record; none where it states none.
+/// The operation of a record; none if the field is missing.
 std::optional<BagOp> OpOf(const BagFields& fields);
 
-/// A field that is a number of this type; none where there is none of its size.
+/// The value of a field that is a number of this type; none if there is no field of its size.
 std::optional<std::uint32_t> Uint32Field(const BagFields& fields, std::string_view name);
 std::optional<std::uint64_t> Uint64Field(const BagFields& fields, std::string_view name);
-/// A field that is a time: seconds and nanoseconds [ns].
+/// The value of a field that is a time in seconds and nanoseconds [ns].
 std::optional<std::int64_t> TimeField(const BagFields& fields, std::string_view name);
-/// A field that is text; empty where there is none.
+/// The value of a field that is text; empty if there is none.
 std::string TextField(const BagFields& fields, std::string_view name);
 
 }  // namespace sextant

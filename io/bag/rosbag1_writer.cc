@@ -20,7 +20,7 @@
 namespace sextant {
 namespace {
 
-constexpr std::size_t kChunkSize = 768 * 1024;  // As ROS records.
+constexpr std::size_t kChunkSize = 768 * 1024;  // The default of ROS.
 constexpr std::size_t kBagHeaderSize = 4096;
 constexpr std::int64_t kLastTime = std::int64_t{0xffffffff} * 1'000'000'000;
 
@@ -62,7 +62,7 @@ std::string Record(std::string_view header, std::string_view data) {
   return record;
 }
 
-// Padded, so that it can be written again once its numbers are known.
+// Padded to a fixed size, so that it can be overwritten once its numbers are known.
 std::string BagHeader(std::uint64_t index_pos, std::size_t connections, std::size_t chunks) {
   std::string header = HeaderOf(BagOp::kBagHeader);
   AppendNumberField(header, "index_pos", index_pos);
@@ -164,7 +164,7 @@ class Rosbag1Writer::Impl {
         topic, Connection{static_cast<std::uint32_t>(connections_.size()), &type});
     const Connection& connection = place->second;
     if (connection.type != &type) {
-      return Refuse(topic, fmt::format("it carries {}, and cannot carry {} too",
+      return Refuse(topic, fmt::format("its type is {}; it cannot carry {} too",
                                        connection.type->name, type.name));
     }
     if (is_new) chunk_ += ConnectionRecord(connection.id, topic, type);
@@ -173,21 +173,18 @@ class Rosbag1Writer::Impl {
   }
 
   Expected<void> Close() {
-    if (!chunk_.empty()) {
-      if (Expected<void> ok = FinishChunk(); !ok) return ok;
-    }
+    if (!chunk_.empty()) SEXTANT_RETURN_IF_ERROR(FinishChunk());
     const std::uint64_t index_position = position_;
     std::string index;
     for (const auto& [topic, connection] : connections_) {
       index += ConnectionRecord(connection.id, topic, *connection.type);
     }
     for (const ChunkSummary& chunk : chunks_) index += ChunkInfo(chunk);
-    if (Expected<void> ok = Put(index); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(Put(index));
     if (std::fseek(file_, static_cast<long>(kRosbag1Magic.size()), SEEK_SET) != 0) {
       return SystemError();
     }
-    Expected<void> ok = Put(BagHeader(index_position, connections_.size(), chunks_.size()));
-    if (!ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(Put(BagHeader(index_position, connections_.size(), chunks_.size())));
     if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) return SystemError();
     std::fclose(std::exchange(file_, nullptr));
     if (std::rename(temporary_.c_str(), path_.c_str()) == 0) return {};
@@ -255,7 +252,7 @@ class Rosbag1Writer::Impl {
   std::FILE* file_ = nullptr;
   std::uint64_t position_ = 0;
   std::map<std::string, Connection, std::less<>> connections_;
-  std::string chunk_;  // Messages that are not yet in the file.
+  std::string chunk_;  // Messages that are not written yet.
   ChunkIndex index_;
   ChunkSummary summary_;
   std::vector<ChunkSummary> chunks_;

@@ -15,22 +15,23 @@ namespace sextant {
 enum class BagCompression { kNone, kBz2, kLz4 };
 
 /// Writes a recording that every tool of ROS 1 reads: a .bag of version 2.0, with its index. The
-/// file appears whole in Close() or not at all: it is written beside its place and renamed.
+/// file is written under a temporary name and renamed by Close(), so it appears whole or not at
+/// all.
 ///
-/// A topic has one type. `time_ns` is when a message was recorded, since 1970, from 0 to 2^32 s.
-/// Errors: kIo; kInvalidInput for a time or stamp outside this range, an image whose data is not
-/// rows of its size, and a topic that is given a second type. After an error only the destructor
-/// is left to call.
+/// A topic has one type. `time_ns` is the recording time since 1970, from 0 to 2^32 s.
+/// Errors: kIo; kInvalidInput for a time or stamp outside this range, an image whose data does not
+/// match its size, and a topic with messages of two types. After an error, only the destructor may
+/// be called.
 class Rosbag1Writer {
  public:
   static Expected<Rosbag1Writer> Create(const std::filesystem::path& path,
                                         BagCompression compression = BagCompression::kLz4);
   Rosbag1Writer(Rosbag1Writer&&) noexcept;
   Rosbag1Writer& operator=(Rosbag1Writer&&) noexcept;
-  ~Rosbag1Writer();  ///< Without Close() nothing is left behind.
+  ~Rosbag1Writer();  ///< Without Close(), no file remains.
 
   /// sensor_msgs/PointCloud2: x, y, z as float32; intensity (float32), ring (uint16) and time
-  /// (float32, s) where the cloud has them.
+  /// (float32, s) if the cloud has them.
   Expected<void> Write(std::string_view topic, std::int64_t time_ns, const CloudMessage& message);
   Expected<void> Write(std::string_view topic, std::int64_t time_ns, const ImageMessage& message);
   Expected<void> Write(std::string_view topic, std::int64_t time_ns,
@@ -38,7 +39,7 @@ class Rosbag1Writer {
   Expected<void> Write(std::string_view topic, std::int64_t time_ns,
                        const CameraInfoMessage& message);
 
-  /// Writes the index and puts the file in its place.
+  /// Writes the index and renames the file to its final name.
   Expected<void> Close();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ROS 2's recordings as SQLite databases: tables topics and messages (rosbag2_storage_sqlite3).
+// Recordings of ROS 2 in SQLite: the tables topics and messages (rosbag2_storage_sqlite3).
 #include <fmt/core.h>
 #include <sqlite3.h>
 
@@ -19,7 +19,7 @@ using std::string_view_literals::operator""sv;
 using Database = std::unique_ptr<sqlite3, int (*)(sqlite3*)>;
 using Statement = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
 
-// As a URI, in which these characters have a meaning.
+// The path as a URI, with the special characters of URIs escaped.
 std::string UriOf(const std::filesystem::path& path) {
   std::string uri = "file:";
   for (const char c : path.string()) {
@@ -47,7 +47,7 @@ class Rosbag2Sqlite final : public Bag {
                       const Visitor& visit) const override;
 
  private:
-  // Shows each row of the answer to `take`.
+  // Calls `take` for each row of the result.
   Expected<void> Query(const char* sql,
                        const std::function<Expected<void>(sqlite3_stmt*)>& take) const;
   tl::unexpected<Error> DatabaseError() const;
@@ -67,8 +67,8 @@ tl::unexpected<Error> Rosbag2Sqlite::DatabaseError() const {
 }
 
 Expected<void> Rosbag2Sqlite::Open() {
-  // "immutable" reads what lies in a folder without the right to write; a write-ahead log beside
-  // the file means that it was not closed, and then the log counts too.
+  // "immutable" allows reading from a folder without write permission. A write-ahead log next to
+  // the file means that the file was not closed; then the log must be read too.
   std::error_code ignored;
   const bool has_log = std::filesystem::file_size(path_.string() + "-wal", ignored) > 0 && !ignored;
   const std::string uri = UriOf(path_) + (has_log ? "" : "?immutable=1");
@@ -77,14 +77,14 @@ Expected<void> Rosbag2Sqlite::Open() {
       sqlite3_open_v2(uri.c_str(), &raw, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
   database_.reset(raw);
   if (result != SQLITE_OK) return DatabaseError();
-  // Of a database from anywhere only tables are read, and no value is larger than the file.
+  // The database may be hostile: only tables are read, and no value is larger than the file.
   sqlite3_db_config(raw, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
   sqlite3_db_config(raw, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
   sqlite3_db_config(raw, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   const std::uintmax_t size = std::filesystem::file_size(path_, ignored);
   sqlite3_limit(raw, SQLITE_LIMIT_LENGTH,
                 static_cast<int>(std::clamp<std::uintmax_t>(size, 1 << 16, 1'000'000'000)));
-  Expected<void> ok =
+  SEXTANT_RETURN_IF_ERROR(
       Query("SELECT id, name, type, serialization_format FROM topics ORDER BY id",
             [this](sqlite3_stmt* row) -> Expected<void> {
               const MessageEncoding encoding =
@@ -92,8 +92,7 @@ Expected<void> Rosbag2Sqlite::Open() {
               topic_of_id_[sqlite3_column_int64(row, 0)] =
                   TopicIndex(topics_, Text(row, 1), Ros1TypeName(Text(row, 2)), encoding);
               return {};
-            });
-  if (!ok) return ok;
+            }));
   return Query(
       "SELECT topic_id, COUNT(*), MIN(timestamp), MAX(timestamp) FROM messages GROUP BY topic_id",
       [this](sqlite3_stmt* row) -> Expected<void> {
@@ -118,21 +117,20 @@ Expected<void> Rosbag2Sqlite::Query(
     const int result = sqlite3_step(raw);
     if (result == SQLITE_DONE) return {};
     if (result != SQLITE_ROW) return DatabaseError();
-    if (Expected<void> ok = take(raw); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(take(raw));
   }
 }
 
 Expected<void> Rosbag2Sqlite::Read(const std::vector<std::size_t>& topic_indices,
                                    const Visitor& visit) const {
-  std::vector<bool> wanted(topics_.size(), false);
-  for (const std::size_t index : topic_indices) wanted.at(index) = true;
+  const std::vector<bool> wanted = WantedTopics(topics_, topic_indices);
   return Query("SELECT id, topic_id, timestamp, data FROM messages ORDER BY id",
                [&](sqlite3_stmt* row) -> Expected<void> {
                  const auto known = topic_of_id_.find(sqlite3_column_int64(row, 1));
                  if (known == topic_of_id_.end()) {
                    return MakeError(
                        ErrorCode::kParse,
-                       fmt::format("{}: message {}: its topic {} is not there", file_,
+                       fmt::format("{}: message {}: its topic {} is missing", file_,
                                    sqlite3_column_int64(row, 0), sqlite3_column_int64(row, 1)));
                  }
                  return wanted[known->second] ? VisitRow(row, visit) : Expected<void>();

@@ -10,7 +10,7 @@
 
 namespace sextant {
 
-/// The index of the topic of this name and type, which is added where it is new.
+/// The index of the topic of this name and type; the topic is added if it is new.
 inline std::size_t TopicIndex(std::vector<BagTopic>& topics, const std::string& name,
                               const std::string& type, MessageEncoding encoding) {
   const auto found = std::find_if(topics.begin(), topics.end(), [&](const BagTopic& topic) {
@@ -21,14 +21,22 @@ inline std::size_t TopicIndex(std::vector<BagTopic>& topics, const std::string& 
   return topics.size() - 1;
 }
 
-/// One more message of the topic.
+/// For each topic, whether its index is among `indices`.
+inline std::vector<bool> WantedTopics(const std::vector<BagTopic>& topics,
+                                      const std::vector<std::size_t>& indices) {
+  std::vector<bool> wanted(topics.size(), false);
+  for (const std::size_t index : indices) wanted.at(index) = true;
+  return wanted;
+}
+
+/// Counts one more message of the topic.
 inline void CountMessage(BagTopic& topic, std::int64_t time_ns) {
   topic.first_ns = topic.count == 0 ? time_ns : std::min(topic.first_ns, time_ns);
   topic.last_ns = topic.count == 0 ? time_ns : std::max(topic.last_ns, time_ns);
   ++topic.count;
 }
 
-/// "sensor_msgs/msg/Image" as ROS 1 writes it: "sensor_msgs/Image".
+/// ROS 1's name of a type of ROS 2: "sensor_msgs/Image" for "sensor_msgs/msg/Image".
 inline std::string Ros1TypeName(std::string type) {
   const std::size_t at = type.find("/msg/");
   if (at != std::string::npos) type.erase(at, 4);

@@ -9,7 +9,7 @@
 #include "base/units.h"
 #include "geometry/board_check.h"
 #include "io/text/degrees.h"
-#include "io/text/most_id.h"
+#include "io/text/max_id.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
@@ -51,7 +51,7 @@ void ReadTags(YamlFields& in, const YamlNode& node, Board& board) {
   for (const YamlNode& item : node.items) board.tags.push_back(ReadTag(in, item));
 }
 
-// The node of the part that a fault is in, and the name of the part.
+// The node of the part that has the fault, and the name of the part.
 std::pair<const YamlNode*, std::string> PartOf(const YamlNode& board, const BoardFault& fault) {
   switch (fault.part) {
     case BoardFault::Part::kHole:
@@ -119,16 +119,17 @@ void RequireDistinctBoards(YamlFields& in, const std::vector<const YamlNode*>& n
     const auto [place, is_new] = line_of_board.emplace(board.id, node.line);
     if (!is_new) {
       in.Fail(node.Find("id")->line, "id",
-              fmt::format("the board of line {} has the id {} already", place->second, board.id));
+              fmt::format("the board on line {} already has the id {}", place->second, board.id));
     }
     for (std::size_t k = 0; k < board.tags.size(); ++k) {
       const BoardTag& tag = board.tags[k];
       const auto [holder, first] = board_of_tag.emplace(std::pair(tag.family, tag.id), board.id);
       if (first) continue;
-      in.Fail(node.Find("tags")->items[k].line, fmt::format("tag {}: id", k),
-              fmt::format("the id {} of {} is on board {} already; a detector could not tell them "
-                          "apart",
-                          tag.id, Quoted(tag.family), holder->second));
+      in.Fail(
+          node.Find("tags")->items[k].line, fmt::format("tag {}: id", k),
+          fmt::format("the id {} of {} is already on board {}; a detector could not distinguish "
+                      "the two tags",
+                      tag.id, Quoted(tag.family), holder->second));
     }
   }
 }

@@ -10,21 +10,21 @@
 
 namespace sextant {
 
-/// A board in the files of this project (docs/formats.md), checked by FindBoardFault. Errors go to
-/// `in`, at the line of the field.
+/// Reads a board as every file of this project states it (docs/formats.md) and checks it by
+/// FindBoardFault. Errors go to `in`, at the line of the field.
 Board ReadBoardBlock(YamlFields& in, const YamlNode& node);
 
-/// The hole of a board alone, not checked.
+/// Reads the hole of a board; does not check it.
 BoardHole ReadHoleBlock(YamlFields& in, const YamlNode& node);
 /// "{width_m: .., height_m: .., center_in_board_m: [..]}".
 std::string YamlHole(const BoardHole& hole);
 
-/// An error where two boards have one id, or a tag of one family is on two boards.
+/// Reports an error if two boards have the same id, or a tag of the same family and id appears on
+/// two boards. `nodes`: those that the boards were read from.
 void RequireDistinctBoards(YamlFields& in, const std::vector<const YamlNode*>& nodes,
                            const std::vector<Board>& boards);
 
-/// The lines of a board as an item of a list whose dash stands after `indent`; no line for what is
-/// absent.
+/// Writes a board as an item of a list, its dash after `indent`; absent parts are omitted.
 void WriteBoardBlock(YamlText& out, const std::string& indent, const Board& board);
 
 }  // namespace sextant

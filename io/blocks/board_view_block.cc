@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "io/blocks/pose_block.h"
+#include "io/text/max_id.h"
 #include "solvers/core/board_view_check.h"
 
 namespace sextant {
@@ -11,7 +12,6 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-constexpr int kMaxId = 1'000'000'000;
 constexpr std::size_t kMaxPrinted = 1000;  ///< Points of one tag or checkerboard.
 
 // x0, y0, x1, y1, ...
@@ -22,7 +22,7 @@ std::vector<Eigen::Vector2d> ReadPoints2(YamlFields& in, const YamlNode& map,
   std::vector<Eigen::Vector2d> points;
   if (numbers.size() % 2 != 0) {
     in.Fail(node.line, key,
-            fmt::format("expected two numbers a point, got {} numbers", numbers.size()));
+            fmt::format("expected two numbers per point, got {} numbers", numbers.size()));
   }
   for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) {
     points.emplace_back(numbers[i], numbers[i + 1]);

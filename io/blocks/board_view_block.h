@@ -11,12 +11,12 @@
 
 namespace sextant {
 
-/// The list `board_views` of a problem file, checked by CheckBoardViews against the file's boards.
-/// Errors go to `in`, at the line of the field or the view.
+/// Reads the list `board_views` of a problem file and checks it by CheckBoardViews against the
+/// file's boards. Errors go to `in`, at the line of the field or the view.
 std::vector<BoardView> ReadBoardViews(YamlFields& in, const YamlNode& list,
                                       std::span<const Board> boards);
 
-/// A view as an item of that list; reading it again gives the same bits.
+/// Writes a view as an item of that list; reading it again gives the same bits.
 void WriteBoardView(YamlText& out, const BoardView& view);
 
 }  // namespace sextant

@@ -54,7 +54,7 @@ Camera ReadCameraBlock(YamlFields& in, const YamlNode& node) {
     std::copy(values.begin(), values.end(), camera.distortion.begin());
   }
   if (!in.ok()) return camera;
-  if (Expected<void> valid = ValidateCamera(camera); !valid) {
+  if (const Expected<void> valid = ValidateCamera(camera); !valid) {
     in.Fail(node.line, "camera", valid.error().message);
   }
   return camera;

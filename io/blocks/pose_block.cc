@@ -15,7 +15,8 @@
 namespace sextant {
 namespace {
 
-// Untouched where it is of unit length to rounding, so that a file round-trips to the bit.
+// A quaternion that has unit length up to rounding is not normalised, so that a file round-trips
+// to the same bits.
 Eigen::Quaterniond ReadQuaternion(YamlFields& in, const YamlNode& node) {
   std::array<double, 4> wxyz{};
   in.Reals(node, "quaternion_wxyz", wxyz);
@@ -42,7 +43,7 @@ Rigid3d ReadMatrix(YamlFields& in, const YamlNode& node) {
   }
   const std::optional<Rigid3d> pose = RigidFromMatrix(matrix);
   if (in.ok() && !pose) {
-    in.Fail(node.line, "matrix", "expected a rotation and a translation over the row 0 0 0 1");
+    in.Fail(node.line, "matrix", "expected a rotation and a translation above the row 0 0 0 1");
   }
   return pose.value_or(Rigid3d{});
 }

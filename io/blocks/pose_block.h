@@ -8,9 +8,9 @@
 
 namespace sextant {
 
-/// A pose in the files of this project: the map with translation_m and quaternion_wxyz (unit length
-/// to 1e-5), or with matrix, four rows of four. Errors go to `in`; `what` names it in them.
-/// WriteYamlPose writes it.
+/// Reads a pose as every file of this project states it: a map with translation_m and
+/// quaternion_wxyz (unit length to 1e-5), or with matrix (four rows of four). Errors go to `in` and
+/// name the pose `what`. WriteYamlPose writes the first form.
 Rigid3d ReadPoseBlock(YamlFields& in, const YamlNode& node, std::string_view what);
 
 }  // namespace sextant

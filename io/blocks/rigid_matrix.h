@@ -11,8 +11,8 @@ namespace sextant {
 /// Whether |R R^T - I| < tolerance (Frobenius) and det R > 0.
 bool IsRotation(const Eigen::Matrix3d& matrix, double tolerance);
 
-/// The transform of a 4x4 matrix as printed in a file; none where it is no rotation to 1e-5 over
-/// the row 0 0 0 1.
+/// The transform of a 4x4 matrix as printed in a file; none unless it is a rotation to 1e-5 and a
+/// translation above the row 0 0 0 1.
 std::optional<Rigid3d> RigidFromMatrix(const Eigen::Matrix4d& matrix);
 
 }  // namespace sextant

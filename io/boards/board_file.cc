@@ -13,7 +13,7 @@
 namespace sextant {
 namespace {
 
-// Only marker_coordinates.txt begins with a number alone.
+// Only marker_coordinates.txt begins with a line that holds a single number.
 bool IsMarkerCoordinates(std::string_view text, const std::string& file) {
   LineReader in(file, text);
   return in.Next() && in.field_count() == 1 && ParseFinite(in.Field(0), {}).has_value();
@@ -69,8 +69,8 @@ Expected<std::vector<Board>> BoardsWithTags(const std::vector<MarkerBoard>& mark
   std::vector<Board> boards = BoardsOf(markers);
   if (ids.size() != boards.size()) {
     return MakeError(ErrorCode::kInvalidInput,
-                     fmt::format("expected the id of one tag a board, {} in all, got {}; write a "
-                                 "board file (YAML) where they are others than 26 and 582",
+                     fmt::format("expected one tag id per board, {} in all, got {}; write a board "
+                                 "file (YAML) for tags other than 26 and 582",
                                  boards.size(), ids.size()));
   }
   for (std::size_t i = 0; i < boards.size(); ++i) {

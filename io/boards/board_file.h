@@ -13,24 +13,25 @@
 
 namespace sextant {
 
-/// Boards with what is printed on them: a YAML file with the list `boards`, or with one board as
-/// the document itself (docs/formats.md). A `marker_coordinates.txt` of the original package is
-/// taken too, as BoardsWithTags does with its usual tags.
+/// Reads boards with their tags and checkerboards: a YAML file with the list `boards`, or with one
+/// board as the document itself (docs/formats.md). A `marker_coordinates.txt` of the original
+/// package is accepted too, with the tags that BoardsWithTags adds by default.
 ///
 /// Errors: kIo; kParse and kNonFinite with file, line and field: unknown keys, sizes that are not
-/// positive, prints off the board, in its hole or over each other, a board's or a tag's id twice.
+/// positive, prints that reach off the board, into its hole or over each other, repeated ids of
+/// boards or tags.
 Expected<std::vector<Board>> ReadBoards(const std::filesystem::path& path);
 Expected<std::vector<Board>> ParseBoards(std::string_view text, const std::string& file);
 
 std::string FormatBoards(std::span<const Board> boards);
 
-/// The ids of the tags that the original package's boards carry, left to right.
+/// The ids of the tags on the original package's boards, left to right.
 inline constexpr int kOriginalTagIds[] = {26, 582};
 
-/// The boards 0, 1, ... of a `marker_coordinates.txt` with their tags of aruco_original, one id a
-/// board. The tag sits towards the left corner with its own top along the edge from the right to
-/// the bottom corner, as the package's session and its photos have it.
-/// Error: kInvalidInput, where there are not as many ids as boards, or the tag is not on its board.
+/// The boards 0, 1, ... of a `marker_coordinates.txt` with their tags of aruco_original, one id per
+/// board. The tag is near corner 3 (left), its top along the edge from corner 1 (right) to corner 2
+/// (bottom), as in the package's recorded session and its photos.
+/// Error: kInvalidInput if the numbers of ids and boards differ or a tag is not on its board.
 Expected<std::vector<Board>> BoardsWithTags(const std::vector<MarkerBoard>& markers,
                                             std::span<const int> ids = kOriginalTagIds);
 

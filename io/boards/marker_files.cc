@@ -6,14 +6,15 @@
 #include <algorithm>
 
 #include "io/text/line_reader.h"
-#include "io/text/most_id.h"
+#include "io/text/max_id.h"
 #include "io/text/text_file.h"
 
 namespace sextant {
 namespace {
 
 constexpr double kMetresPerCm = 1e-2;
-// (u,v)
+
+// Reads "(u,v)".
 Eigen::Vector2d ReadPixel(LineReader& in, std::string_view text, std::size_t field) {
   const std::size_t comma = text.find(',');
   if (!text.starts_with('(') || !text.ends_with(')') || comma == std::string_view::npos) {
@@ -25,7 +26,7 @@ Eigen::Vector2d ReadPixel(LineReader& in, std::string_view text, std::size_t fie
   return {u, v};
 }
 
-// Txyz=x y z
+// Reads "Txyz=x y z", where `name` is "Txyz=".
 Eigen::Vector3d ReadVector(LineReader& in, std::string_view name, std::size_t field) {
   const std::string_view text = in.Field(field);
   if (!text.starts_with(name)) {

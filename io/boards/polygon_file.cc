@@ -9,7 +9,7 @@
 #include "geometry/board.h"
 #include "io/blocks/camera_block.h"
 #include "io/blocks/pose_block.h"
-#include "io/text/most_id.h"
+#include "io/text/max_id.h"
 #include "io/text/text_file.h"
 #include "io/text/yaml_fields.h"
 #include "io/text/yaml_text.h"
@@ -19,7 +19,7 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-constexpr int kMaxCorner = 7;  // 4 to 7 are those of a hollow board's opening.
+constexpr int kMaxCorner = 7;  // Corners 4 to 7 are those of a hollow board's opening.
 constexpr std::size_t kEdges = 4;
 
 Eigen::Vector2d ReadPixel(YamlFields& in, const YamlNode& node, std::string_view what) {
@@ -28,11 +28,11 @@ Eigen::Vector2d ReadPixel(YamlFields& in, const YamlNode& node, std::string_view
   return pixel;
 }
 
-// Whether it is a list of no more than `most` items.
-bool IsList(YamlFields& in, const YamlNode& node, std::string_view what, std::size_t most) {
+// Whether it is a list of at most `max_size` items.
+bool IsList(YamlFields& in, const YamlNode& node, std::string_view what, std::size_t max_size) {
   if (!in.IsSequence(node, what)) return false;
-  if (node.items.size() <= most) return true;
-  in.Fail(node.line, what, fmt::format("expected at most {}, got {}", most, node.items.size()));
+  if (node.items.size() <= max_size) return true;
+  in.Fail(node.line, what, fmt::format("expected at most {}, got {}", max_size, node.items.size()));
   return false;
 }
 
@@ -50,7 +50,7 @@ Quadrilateral ReadQuadrilateral(YamlFields& in, const YamlNode& node) {
   }
   if (in.ok() && CrossesItself(corners)) {
     in.Fail(node.line, "edges",
-            "the quadrilateral crosses itself: list its corners going round it");
+            "the quadrilateral crosses itself: list its corners in order around it");
   }
   return corners;
 }
@@ -66,7 +66,7 @@ void ReadPolygonBoards(YamlFields& in, const YamlNode& list, std::vector<MarkedB
     if (!in.ok() || !IsList(in, edges, "edges", kEdges)) return;
     for (const YamlNode& edge : edges.items) board.edges.push_back(ReadQuadrilateral(in, edge));
     if (std::ranges::count(boards, board.id, &MarkedBoard::id) > 0) {
-      in.Fail(node.line, "id", fmt::format("board {} is there twice", board.id));
+      in.Fail(node.line, "id", fmt::format("board {} appears twice", board.id));
     }
     boards.push_back(std::move(board));
   }
@@ -86,7 +86,7 @@ void ReadCorners(YamlFields& in, const YamlNode& list, std::vector<ClickedCorner
     };
     if (in.ok() && std::ranges::any_of(corners, same)) {
       in.Fail(node.line, "corner",
-              fmt::format("corner {} of board {} is there twice", corner.corner, corner.board));
+              fmt::format("corner {} of board {} appears twice", corner.corner, corner.board));
     }
     corners.push_back(corner);
   }
@@ -97,7 +97,7 @@ void ReadPolygonHeader(YamlFields& in, const YamlNode& root) {
                              "boards",           "corners", "unfinished"};
   if (root.kind == YamlNode::Kind::kMap && root.Find("sextant_polygons") == nullptr) {
     in.Fail(root.line, {},
-            "expected polygons that sextant mark wrote, with the key sextant_polygons: 1; is this "
+            "expected a polygon file of sextant mark, with the key sextant_polygons: 1; is this "
             "another kind of YAML?");
   }
   if (in.IsMap(root, "sextant_polygons", kKeys)) in.IntegerAt(root, "sextant_polygons", 1, 1);

@@ -10,10 +10,10 @@
 
 namespace sextant {
 
-/// Marks of one scan and its photo, drawn by hand: YAML, see docs/formats.md. What is not finished
-/// is read too, so that drawing can go on; who uses the marks looks for what he needs.
+/// Marks in one scan and its photo, drawn by hand: YAML, see docs/formats.md. Unfinished marks are
+/// read too, so that drawing can be resumed; callers check that the marks they need are complete.
 /// Errors: kIo; kParse and kNonFinite with file, line and field: no camera, unknown keys, more than
-/// four edges, a quadrilateral that crosses itself, a board or corner twice.
+/// four edges, a quadrilateral that crosses itself, repeated boards or corners.
 Expected<ScanMarks> ReadPolygons(const std::filesystem::path& path);
 Expected<ScanMarks> ParsePolygons(std::string_view text, const std::string& file);
 

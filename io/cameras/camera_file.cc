@@ -11,7 +11,7 @@ Expected<Camera> ReadCamera(const std::filesystem::path& path) {
 }
 
 Expected<Camera> ParseCamera(std::string_view text, const std::string& file) {
-  // A section heading is no YAML that a camera file would begin with.
+  // No camera file in YAML begins with a line such as [image].
   LineReader in(file, text);
   if (in.Next() && in.field_count() == 1 && in.Field(0).starts_with('[') &&
       in.Field(0).ends_with(']')) {

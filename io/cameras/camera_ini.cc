@@ -11,7 +11,7 @@
 namespace sextant {
 namespace {
 
-constexpr int kMaxIniPixels = 1'000'000;
+constexpr int kMaxIniPixels = 1'000'000;  // Per side.
 
 int ReadSize(LineReader& in, const std::string& name) {
   if (!in.Require(name) || !in.HasFields(1, name)) return 0;
@@ -35,7 +35,7 @@ std::vector<double> ReadDistortion(LineReader& in) {
   return values;
 }
 
-// The words of the line, joined by single blanks.
+// The words of the line, joined by single spaces.
 std::string Heading(const LineReader& in) {
   std::string heading;
   for (std::size_t i = 0; i < in.field_count(); ++i) {

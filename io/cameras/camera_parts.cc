@@ -28,7 +28,7 @@ Expected<CameraModel> ModelOf(const CameraParts& parts) {
   const bool all_zero = std::all_of(parts.distortion.begin(), parts.distortion.end(),
                                     [](double k) { return k == 0.0; });
   if (all_zero) return CameraModel::kPinhole;
-  // Beyond eight come OpenCV's thin prism and tilt, which are almost always zero.
+  // The coefficients from the ninth on are OpenCV's thin prism and tilt, almost always zero.
   const auto beyond = parts.distortion.subspan(std::min<std::size_t>(8, count));
   if (count >= 4 && std::all_of(beyond.begin(), beyond.end(), [](double k) { return k == 0.0; })) {
     return CameraModel::kBrownConrady;
@@ -40,6 +40,14 @@ Expected<CameraModel> ModelOf(const CameraParts& parts) {
 }
 
 }  // namespace
+
+RosDistortion RosDistortionOf(const Camera& camera) {
+  if (camera.model == CameraModel::kEquidistant) return {"equidistant", 4};
+  const bool is_rational = std::any_of(camera.distortion.begin() + 5, camera.distortion.end(),
+                                       [](double k) { return k != 0.0; });
+  if (is_rational) return {"rational_polynomial", 8};
+  return {"plumb_bob", 5};
+}
 
 Expected<Camera> CameraFromParts(const CameraParts& parts) {
   const std::array<double, 9>& k = parts.matrix;

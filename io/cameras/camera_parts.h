@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,16 +11,23 @@
 
 namespace sextant {
 
-/// What camera files state, whatever their form.
+/// The content of a camera file, independent of its format.
 struct CameraParts {
   int width_px = 0;
   int height_px = 0;
   std::array<double, 9> matrix{};  ///< K, row by row.
   std::span<const double> distortion;
-  std::string_view model;  ///< As ROS names it; empty where the file does not say.
+  std::string_view model;  ///< The distortion model in ROS's terms; empty if the file has none.
 };
 
-/// The camera of these parts. Errors: kInvalidInput, with what was expected.
+/// ROS's name of a camera's distortion model, and the number of coefficients that it has.
+struct RosDistortion {
+  const char* model;
+  std::size_t coefficients;
+};
+RosDistortion RosDistortionOf(const Camera& camera);
+
+/// Makes the camera from these parts. Error: kInvalidInput, which states what was expected.
 Expected<Camera> CameraFromParts(const CameraParts& parts);
 
 }  // namespace sextant

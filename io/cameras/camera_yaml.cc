@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kMaxPixels = 1'000'000;
 
-// Tools do not agree on the names.
+// Tools use different names for the same key.
 const YamlNode* FindAny(const YamlNode& map, std::initializer_list<std::string_view> keys) {
   for (const std::string_view key : keys) {
     if (const YamlNode* found = map.Find(key)) return found;
@@ -35,7 +35,7 @@ int ReadSize(YamlFields& in, const YamlNode& root, std::string_view key, std::st
   return root.Find(present) != nullptr ? in.IntegerAt(root, present, 0, kMaxPixels) : 0;
 }
 
-// fx, fy, cx, cy, k1, k2, p1, p2, k3 as keys of their own.
+// fx, fy, cx, cy, k1, k2, p1, p2, k3 as separate keys.
 void ReadFlat(YamlFields& in, const YamlNode& root, CameraParts& parts,
               std::vector<double>& distortion) {
   parts.matrix = {in.RealAt(root, "fx"),
@@ -82,7 +82,7 @@ Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file)
     ReadFlat(in, root, parts, distortion);
   } else {
     in.Fail(root.line, {},
-            "expected a camera: camera_matrix, K, fx or camera; none of them is there");
+            "expected a camera: camera_matrix, K, fx or camera; none of these keys is present");
   }
   parts.width_px = ReadSize(in, root, "width", "image_width");
   parts.height_px = ReadSize(in, root, "height", "image_height");

@@ -9,11 +9,13 @@
 #include <map>
 #include <vector>
 
+#include "io/clouds/scalar_type.h"
+
 namespace sextant {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLongestScan = 1000.0;
+constexpr double kMaxScan_s = 1000.0;
 
 struct Ring {
   std::uint16_t id = 0;
@@ -39,8 +41,8 @@ std::vector<Ring> RingsWithReturns(const PointCloud& cloud) {
   return rings;
 }
 
-// Rays without a return may have no time either: they are NaN before and 0 after.
-void CountTimesFromStart(std::vector<double>& times) {
+// Rays without a return may lack a time, too: their times are NaN before and 0 after.
+void MakeTimesRelative(std::vector<double>& times) {
   double first = std::numeric_limits<double>::infinity();
   double last = -first;
   for (const double time : times) {
@@ -48,11 +50,18 @@ void CountTimesFromStart(std::vector<double>& times) {
     first = std::min(first, time);
     last = std::max(last, time);
   }
-  const double start = first < 0.0 || last > kLongestScan ? first : 0.0;
+  const double start = first < 0.0 || last > kMaxScan_s ? first : 0.0;
   for (double& time : times) time = std::isfinite(time) ? time - start : 0.0;
 }
 
 }  // namespace
+
+CloudBuilder::CloudBuilder(const CloudColumns& columns, std::size_t points) : columns_(columns) {
+  cloud_.points.reserve(points);
+  if (columns.intensity != CloudColumns::kNone) cloud_.intensity.reserve(points);
+  if (columns.ring != CloudColumns::kNone) cloud_.ring.reserve(points);
+  if (columns.time != CloudColumns::kNone) cloud_.time_s.reserve(points);
+}
 
 Expected<void> CloudBuilder::Add(const Value& value) {
   Eigen::Vector3d point;
@@ -82,15 +91,19 @@ Expected<void> CloudBuilder::Add(const Value& value) {
   if (columns_.ring != CloudColumns::kNone) cloud_.ring.push_back(static_cast<std::uint16_t>(ring));
   if (columns_.time != CloudColumns::kNone) cloud_.time_s.push_back(time);
   if (columns_.intensity != CloudColumns::kNone) {
-    cloud_.intensity.push_back(static_cast<float>(value(columns_.intensity)));
+    cloud_.intensity.push_back(ToFloat(value(columns_.intensity)));
   }
   return {};
 }
 
-PointCloud CloudBuilder::Finish() && {
-  CountTimesFromStart(cloud_.time_s);
-  if (!cloud_.ring.empty()) OrderRings(cloud_);
+PointCloud CloudBuilder::Take() && {
+  MakeTimesRelative(cloud_.time_s);
   return std::move(cloud_);
+}
+
+PointCloud CloudBuilder::Finish() && {
+  if (!cloud_.ring.empty()) OrderRings(cloud_);
+  return std::move(*this).Take();
 }
 
 void OrderRings(PointCloud& cloud) {
@@ -100,7 +113,8 @@ void OrderRings(PointCloud& cloud) {
   for (std::size_t i = 1; i < rings.size(); ++i) {
     rising += rings[i].elevation_rad > rings[i - 1].elevation_rad ? 1U : 0U;
   }
-  // On a small patch noise swaps neighbours of a dense sensor; an order of firing swaps half.
+  // On a small surface, noise swaps neighbouring rings of a dense sensor; an order of firing swaps
+  // half of all neighbours.
   const std::size_t steps = rings.size() - 1;
   if (4 * rising >= 3 * steps) return;
   const std::uint16_t highest = *std::max_element(cloud.ring.begin(), cloud.ring.end());
@@ -110,7 +124,7 @@ void OrderRings(PointCloud& cloud) {
   }
   std::sort(rings.begin(), rings.end(),
             [](const Ring& a, const Ring& b) { return a.elevation_rad < b.elevation_rad; });
-  // Rings without a return keep a place of their own above the others.
+  // Rings without a return get numbers above the others.
   std::map<std::uint16_t, std::uint16_t> place;
   for (const Ring& ring : rings) place.emplace(ring.id, static_cast<std::uint16_t>(place.size()));
   for (std::uint16_t& ring : cloud.ring) {

@@ -10,24 +10,27 @@
 
 namespace sextant {
 
-/// Gathers the rows of a table of points as a PointCloud.
+/// Builds a PointCloud from the rows of a table.
 class CloudBuilder {
  public:
-  explicit CloudBuilder(const CloudColumns& columns) : columns_(columns) {}
+  /// `points`: the expected number of rows, for which memory is reserved.
+  explicit CloudBuilder(const CloudColumns& columns, std::size_t points = 0);
 
-  /// Of the point's row, the number in a column that `columns` names.
+  /// Returns the number in a column of the current row; called only for columns in `columns`.
   using Value = std::function<double(std::size_t column)>;
 
-  /// Adds a point. One with a coordinate that is not finite is a ray without a return: all NaN, its
-  /// ring and time kept where they make sense.
-  /// Errors, which name neither file nor row: kParse for a ring that is no whole number of 16 bits,
-  /// kNonFinite for a time that is none.
+  /// Adds a point. A point with a coordinate that is not finite is a ray without a return: its
+  /// coordinates become NaN; its ring and time are kept if they are valid.
+  /// Errors, without file or row: kParse for a ring that is not a whole number from 0 to 65535,
+  /// kNonFinite for a time that is not finite.
   Expected<void> Add(const Value& value);
 
   std::size_t size() const { return cloud_.points.size(); }
 
-  /// The cloud. Times that are negative or longer ago than any scan lasts (1000 s; since 1970, say)
-  /// are counted from the first point; rings are ordered by OrderRings.
+  /// The cloud. If any time is negative or exceeds 1000 s, the longest possible scan (times since
+  /// 1970, for example), all times are counted from the earliest. Rings keep their numbers.
+  PointCloud Take() &&;
+  /// As Take, with the rings ordered by OrderRings.
   PointCloud Finish() &&;
 
  private:
@@ -35,9 +38,9 @@ class CloudBuilder {
   PointCloud cloud_;
 };
 
-/// Numbers the rings by elevation, 0 the lowest, where the sensor numbers them from above (Ouster)
-/// or in the order of firing (Velodyne's laser_id). Rings that already ascend stay as they are,
-/// gaps included; so do fewer than two.
+/// Numbers the rings by ascending elevation if the sensor numbers them from above (Ouster) or in
+/// the order of firing (Velodyne's laser_id). Numbers that already ascend with elevation are kept,
+/// gaps included, as is a single ring.
 void OrderRings(PointCloud& cloud);
 
 }  // namespace sextant

@@ -14,7 +14,8 @@ namespace {
 
 using ColumnMember = std::size_t CloudColumns::*;
 
-constexpr double kByType = 0.0;  // Seconds of a real column, nanoseconds of an integer one.
+constexpr double kByType =
+    0.0;  // Seconds in a floating-point column, nanoseconds in an integer one.
 
 struct KnownName {
   std::string_view name;
@@ -22,7 +23,7 @@ struct KnownName {
   double time_unit_s = kByType;
 };
 
-// Of two names for the same thing the upper one is taken.
+// If several names of one field are present, the first in this list is used.
 constexpr std::array kKnownNames = {
     KnownName{"x", &CloudColumns::x},
     KnownName{"y", &CloudColumns::y},
@@ -82,7 +83,7 @@ Expected<CloudColumns> FindCloudColumns(std::span<const NamedColumn> columns) {
       if (kKnownNames[k].name != name) continue;
       if (place[k] != CloudColumns::kNone) {
         return MakeError(ErrorCode::kParse,
-                         fmt::format("the column {} stands there twice", Quoted(columns[i].name)));
+                         fmt::format("the column {} appears twice", Quoted(columns[i].name)));
       }
       place[k] = i;
     }
@@ -99,7 +100,7 @@ Expected<CloudColumns> FindCloudColumns(std::span<const NamedColumn> columns) {
        {std::pair{&CloudColumns::x, "x"}, {&CloudColumns::y, "y"}, {&CloudColumns::z, "z"}}) {
     if (found.*column != CloudColumns::kNone) continue;
     return MakeError(ErrorCode::kParse, fmt::format("expected columns x, y and z; {} is missing, "
-                                                    "there are: {}",
+                                                    "the columns are: {}",
                                                     name, Listed(columns)));
   }
   return found;

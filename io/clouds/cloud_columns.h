@@ -10,13 +10,13 @@
 
 namespace sextant {
 
-/// A column of a table of points: a field of PCD or PointCloud2, a property of PLY, a CSV column.
+/// A column of a table of points: a field of PointCloud2, a property of PLY or a CSV column.
 struct NamedColumn {
   std::string name;
-  bool is_integer = false;  ///< Known of binary formats; integer times are in nanoseconds.
+  bool is_integer = false;  ///< Set for binary formats; integer times are in nanoseconds.
 };
 
-/// Which column of a table of points is taken for what; kNone where there is none.
+/// The columns of a table of points that hold the fields of a PointCloud; kNone if there is none.
 struct CloudColumns {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   std::size_t x = kNone;
@@ -28,12 +28,13 @@ struct CloudColumns {
   double time_unit_s = 1.0;
 };
 
-/// By the names that drivers and tools use, upper or lower case, with or without CloudCompare's
-/// `scalar_`: x y z (VeloView: Points_m_XYZ:0 to 2, Points:0 to 2), intensity (reflectivity,
-/// remission, i), ring (laser_id, channel, line), time (t, time_us, time_ns, offset_time [ns],
-/// adjustedtime [us], timestamp, time_stamp); of two names for one thing the first in this list.
-/// Other columns (azimuth, distance, normals, colours) are left alone. Error: kParse where x, y or
-/// z is missing or a name stands twice; it does not name the file.
+/// Finds the columns by the names that drivers and tools use, upper or lower case, with or without
+/// CloudCompare's prefix `scalar_`: x y z (VeloView: Points_m_XYZ:0 to 2, Points:0 to 2), intensity
+/// (reflectivity, remission, i), ring (laser_id, channel, line), time (t, time_us, time_ns,
+/// offset_time [ns], adjustedtime [us], timestamp, time_stamp). If several columns qualify, the
+/// first name in this list is used. Other columns (azimuth, distance, normals, colours) are
+/// ignored. Error: kParse if x, y or z is missing or a name appears twice; it does not name the
+/// file.
 Expected<CloudColumns> FindCloudColumns(std::span<const NamedColumn> columns);
 
 }  // namespace sextant

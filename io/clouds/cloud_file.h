@@ -10,12 +10,13 @@
 
 namespace sextant {
 
-/// One scan from a file of any of these formats: PCD and PLY by their first line; KITTI .bin and
-/// CSV (.csv, .txt) by their extension. Infinite and NaN coordinates mean no return and become NaN;
-/// rings are numbered from the lowest (OrderRings of io/clouds/cloud_builder.h). Errors: kIo;
-/// kParse; kNonFinite: with the file, the line or the byte, and the field.
+/// Reads one scan from a file of any of these formats: PCD and PLY, recognised by their first line;
+/// KITTI .bin and CSV (.csv, .txt), by their extension. Points with infinite or NaN coordinates are
+/// rays without a return and become NaN; rings are numbered from the lowest (OrderRings of
+/// io/clouds/cloud_builder.h). Errors: kIo; kParse; kNonFinite: with the file, the line or the
+/// byte, and the field.
 Expected<PointCloud> ReadCloud(const std::filesystem::path& path);
-/// The extension of `file` tells what its first bytes do not.
+/// The format is recognised by the first bytes, else by the extension of `file`.
 Expected<PointCloud> ParseCloud(std::string_view bytes, const std::string& file);
 
 }  // namespace sextant

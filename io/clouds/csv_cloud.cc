@@ -50,8 +50,9 @@ Expected<PointCloud> ParseCsvCloud(std::string_view text, const std::string& fil
     });
     if (!added) in.Fail(added.error().code, added.error().message);
   }
-  if (in.ok() && builder.size() == 0)
+  if (in.ok() && builder.size() == 0) {
     in.Fail(ErrorCode::kParse, "expected points after the header");
+  }
   if (!in.ok()) return in.TakeError();
   return std::move(builder).Finish();
 }

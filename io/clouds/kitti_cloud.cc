@@ -19,15 +19,14 @@ Expected<PointCloud> ParseKittiCloud(std::string_view bytes, const std::string& 
   if (bytes.empty() || bytes.size() % kPointSize != 0) {
     return MakeError(ErrorCode::kParse,
                      fmt::format("{}: byte {}: the file ends within a point; expected x, y, z, "
-                                 "intensity as float32, 16 bytes a point (KITTI)",
+                                 "intensity as float32, 16 bytes per point (KITTI)",
                                  Printable(file, 200), bytes.size()));
   }
   CloudBuilder builder({.x = 0, .y = 1, .z = 2, .intensity = 3});
   for (std::size_t at = 0; at < bytes.size(); at += kPointSize) {
-    const Expected<void> added = builder.Add([&](std::size_t column) {
+    SEXTANT_RETURN_IF_ERROR(builder.Add([&](std::size_t column) {
       return LoadScalar(bytes.data() + at + 4 * column, ScalarType::kFloat32, false);
-    });
-    if (!added) return tl::unexpected<Error>(added.error());
+    }));
   }
   return std::move(builder).Finish();
 }

@@ -10,9 +10,9 @@
 
 namespace sextant {
 
-/// A scan of the KITTI data sets (Geiger et al. 2012): x, y, z [m] and intensity as little endian
-/// float32, one point after the other, nothing else. There is nothing in it to recognise it by.
-/// Errors: kIo; kParse where the file is empty or its size is no multiple of 16 bytes.
+/// Reads a scan of the KITTI data sets (Geiger et al. 2012): x, y, z [m] and intensity as little
+/// endian float32, one point after the other. The format has no header by which to recognise it.
+/// Errors: kIo; kParse if the file is empty or its size is not a multiple of 16 bytes.
 Expected<PointCloud> ReadKittiCloud(const std::filesystem::path& path);
 Expected<PointCloud> ParseKittiCloud(std::string_view bytes, const std::string& file);
 

@@ -24,7 +24,7 @@ constexpr std::int64_t kMaxCount = 1'000'000;
 constexpr std::size_t kMaxPcdFields = 256;
 constexpr std::size_t kMaxHeaderBytes = std::size_t{1} << 16;
 
-// What the lines say; absent ones are empty.
+// The content of the header's lines; absent ones are empty.
 struct Lines {
   std::vector<PcdField> fields{};
   bool has_sizes = false;
@@ -35,7 +35,7 @@ struct Lines {
   std::optional<PcdEncoding> encoding{};
 };
 
-// Just behind the line DATA; npos where there is none.
+// The byte after the line DATA; npos if there is no such line.
 std::size_t FindBody(std::string_view text) {
   const std::string_view head = text.substr(0, kMaxHeaderBytes);
   std::size_t line = 0;
@@ -50,7 +50,7 @@ std::size_t FindBody(std::string_view text) {
 
 void ReadNames(LineReader& in, Lines& lines) {
   if (in.field_count() < 2 || in.field_count() > kMaxPcdFields + 1) {
-    in.Fail(ErrorCode::kParse, fmt::format("expected FIELDS and 1 to {} names", kMaxPcdFields));
+    in.Fail(ErrorCode::kParse, fmt::format("expected FIELDS with 1 to {} names", kMaxPcdFields));
     return;
   }
   for (std::size_t i = 1; i < in.field_count(); ++i) {
@@ -66,8 +66,8 @@ void ReadNames(LineReader& in, Lines& lines) {
   }
 }
 
-// One value a field of FIELDS.
-bool HasOneAField(LineReader& in, const Lines& lines) {
+// Whether the line has one value per field of FIELDS.
+bool HasOnePerField(LineReader& in, const Lines& lines) {
   const std::size_t expected = lines.fields.size();
   if (!in.ok() || (expected > 0 && in.field_count() == expected + 1)) return in.ok();
   in.Fail(ErrorCode::kParse, fmt::format("expected one value for each of the {} FIELDS, got {}",
@@ -76,7 +76,7 @@ bool HasOneAField(LineReader& in, const Lines& lines) {
 }
 
 void ReadSizes(LineReader& in, Lines& lines) {
-  if (!HasOneAField(in, lines)) return;
+  if (!HasOnePerField(in, lines)) return;
   lines.has_sizes = true;
   for (std::size_t i = 0; i < lines.fields.size(); ++i) {
     const std::int64_t size = in.Integer(i + 1, 1, 8, "SIZE");
@@ -89,7 +89,7 @@ void ReadSizes(LineReader& in, Lines& lines) {
 }
 
 void ReadTypes(LineReader& in, Lines& lines) {
-  if (!HasOneAField(in, lines)) return;
+  if (!HasOnePerField(in, lines)) return;
   lines.has_types = true;
   for (std::size_t i = 0; i < lines.fields.size(); ++i) {
     const std::string_view type = in.Field(i + 1);
@@ -102,7 +102,7 @@ void ReadTypes(LineReader& in, Lines& lines) {
 }
 
 void ReadCounts(LineReader& in, Lines& lines) {
-  if (!HasOneAField(in, lines)) return;
+  if (!HasOnePerField(in, lines)) return;
   for (std::size_t i = 0; i < lines.fields.size(); ++i) {
     lines.fields[i].count = static_cast<std::size_t>(in.Integer(i + 1, 1, kMaxCount, "COUNT"));
   }
@@ -164,11 +164,11 @@ std::size_t PointCount(LineReader& in, const Lines& lines) {
   if (!lines.width) return static_cast<std::size_t>(lines.points.value_or(0));
   const std::int64_t product = *lines.width * lines.height.value_or(1);
   if (product > kMaxPoints) {
-    in.Fail(ErrorCode::kParse,
-            fmt::format("expected at most {} points, WIDTH x HEIGHT is {}", kMaxPoints, product));
+    in.Fail(ErrorCode::kParse, fmt::format("expected at most {} points, but WIDTH x HEIGHT is {}",
+                                           kMaxPoints, product));
   }
   if (lines.points && *lines.points != product) {
-    in.Fail(ErrorCode::kParse, fmt::format("the header contradicts itself: POINTS is {}, WIDTH x "
+    in.Fail(ErrorCode::kParse, fmt::format("the header is inconsistent: POINTS is {}, but WIDTH x "
                                            "HEIGHT is {}",
                                            *lines.points, product));
   }
@@ -189,6 +189,15 @@ Expected<PcdEncoding> FindPcdEncoding(std::string_view name) {
 
 std::string_view ToString(PcdEncoding encoding) {
   return EncodingNames()[static_cast<std::size_t>(encoding)];
+}
+
+ScalarType PcdField::scalar_type() const {
+  if (type == 'F') return size == 4 ? ScalarType::kFloat32 : ScalarType::kFloat64;
+  const bool is_signed = type == 'I';
+  if (size == 1) return is_signed ? ScalarType::kInt8 : ScalarType::kUint8;
+  if (size == 2) return is_signed ? ScalarType::kInt16 : ScalarType::kUint16;
+  if (size == 4) return is_signed ? ScalarType::kInt32 : ScalarType::kUint32;
+  return is_signed ? ScalarType::kInt64 : ScalarType::kUint64;
 }
 
 const PcdField* PcdHeader::Find(std::string_view name) const {

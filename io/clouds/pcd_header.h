@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "base/error.h"
+#include "io/clouds/scalar_type.h"
 
 namespace sextant {
 
 enum class PcdEncoding { kAscii, kBinary, kBinaryCompressed };
 
-/// "ascii", "binary" or "binary_compressed". Error: kUnknownName, with the nearest known.
+/// "ascii", "binary" or "binary_compressed". Error: kUnknownName, with a suggestion.
 Expected<PcdEncoding> FindPcdEncoding(std::string_view name);
 std::string_view ToString(PcdEncoding encoding);
 
@@ -20,9 +21,11 @@ struct PcdField {
   std::string name{};
   char type = 'F';           ///< F floating point, U unsigned, I signed.
   std::size_t size = 4;      ///< Bytes of one value.
-  std::size_t count = 1;     ///< Values a point.
+  std::size_t count = 1;     ///< Values per point.
   std::size_t offset = 0;    ///< Bytes before it in a point.
   std::size_t position = 0;  ///< Values before it in a point.
+
+  ScalarType scalar_type() const;
 };
 
 /// The header of a PCD file, version 0.6 or 0.7.
@@ -32,15 +35,15 @@ struct PcdHeader {
   std::size_t point_values = 0;
   std::size_t points = 0;
   PcdEncoding encoding = PcdEncoding::kAscii;
-  std::size_t body = 0;  ///< Where the data begins in the file.
-  int body_line = 1;     ///< The line it begins on.
+  std::size_t body = 0;  ///< Byte in the file at which the data begins.
+  int body_line = 1;     ///< Line on which the data begins.
 
-  /// The field of that name with one value a point, or null.
+  /// The field of that name with one value per point, or null.
   const PcdField* Find(std::string_view name) const;
 };
 
 /// Errors: kParse with file and line: no header, lists of different lengths, types and sizes that
-/// PCD does not have, a name twice, POINTS that is not WIDTH x HEIGHT.
+/// PCD does not define, a repeated name, POINTS that is not WIDTH x HEIGHT.
 Expected<PcdHeader> ParsePcdHeader(std::string_view text, const std::string& file);
 
 }  // namespace sextant

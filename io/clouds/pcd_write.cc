@@ -14,7 +14,7 @@
 namespace sextant {
 namespace {
 
-// One field that is written, of a float or of two unsigned bytes.
+// A field to write: a float or two unsigned bytes.
 struct PcdColumn {
   const char* name;
   bool is_ring = false;
@@ -86,9 +86,9 @@ void AppendBytes(const PcdColumn& column, std::size_t point, std::string& data) 
   data.append(bytes, column.size());
 }
 
-// Two sizes and liblzf's stream.
+// Two sizes, then liblzf's stream.
 std::string Compressed(const std::string& data) {
-  // Data that does not shrink grows by one byte in 32.
+  // Incompressible data grows by one byte in 32.
   std::string packed(data.size() + data.size() / 16 + 64, '\0');
   const unsigned size = data.empty()
                             ? 0

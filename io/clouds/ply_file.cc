@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kPlyBlank = " \t\r\n\f\v";
 
-// The numbers of the body one after the other, with the first error kept.
+// Reads the numbers of the body one after the other and keeps the first error.
 class Body {
  public:
   Body(std::string_view bytes, const std::string& file, const PlyHeader& header)
@@ -31,7 +31,7 @@ class Body {
   tl::unexpected<Error> TakeError() { return tl::unexpected<Error>(*error_); }
   std::size_t bytes_left() const { return bytes_.size() - at_; }
 
-  // What the numbers from now on belong to.
+  // Sets the row of the numbers that are read next, for error messages.
   void SetRow(const PlyElement& element, std::size_t row) {
     element_ = &element;
     row_ = row;
@@ -53,11 +53,13 @@ class Body {
   }
 
  private:
+  double FailAtEnd(std::string_view property) {
+    Fail(ErrorCode::kParse, property, "the file ends here; it is cut short or its header is wrong");
+    return 0.0;
+  }
+
   double BinaryNumber(ScalarType type, std::string_view property) {
-    if (bytes_left() < SizeOf(type)) {
-      Fail(ErrorCode::kParse, property, "the file ends here; it is cut short or its header lies");
-      return 0.0;
-    }
+    if (bytes_left() < SizeOf(type)) return FailAtEnd(property);
     const double value =
         LoadScalar(bytes_.data() + at_, type, encoding_ == PlyEncoding::kBigEndian);
     at_ += SizeOf(type);
@@ -71,14 +73,11 @@ class Body {
     }
     const std::size_t end = std::min(bytes_.find_first_of(kPlyBlank, at_), bytes_.size());
     const std::string_view word = bytes_.substr(at_, end - at_);
-    if (word.empty()) {
-      Fail(ErrorCode::kParse, property, "the file ends here; it is cut short or its header lies");
-      return 0.0;
-    }
+    if (word.empty()) return FailAtEnd(property);
     const Expected<double> value = ParseFinite(word, {.file = file_});
     at_ = end;
     if (value) return *value;
-    // NaN is how many tools write a ray without a return.
+    // Many tools write a ray without a return as NaN.
     if (value.error().code == ErrorCode::kNonFinite)
       return std::numeric_limits<double>::quiet_NaN();
     Fail(ErrorCode::kParse, property, fmt::format("expected a number, got {}", Quoted(word)));
@@ -95,8 +94,8 @@ class Body {
   std::optional<Error> error_;
 };
 
-// The fewest bytes that a row of the element can have.
-std::size_t LeastRowSize(const PlyElement& element, PlyEncoding encoding) {
+// The minimum size of a row of the element in bytes.
+std::size_t MinRowSize(const PlyElement& element, PlyEncoding encoding) {
   std::size_t size = 0;
   for (const PlyProperty& property : element.properties) {
     const ScalarType first = property.is_list ? property.length_type : property.type;
@@ -105,21 +104,21 @@ std::size_t LeastRowSize(const PlyElement& element, PlyEncoding encoding) {
   return size;
 }
 
-// A count that the rest of the file has no room for is a lie, and is not begun with.
+// Refuses a count that exceeds what the rest of the file can hold, before any row is read.
 void CheckCount(const PlyElement& element, PlyEncoding encoding, Body& body) {
   body.SetRow(element, 0);
-  const std::size_t least = LeastRowSize(element, encoding);
+  const std::size_t min_size = MinRowSize(element, encoding);
   if (element.count == 0) return;
-  if (least == 0) return body.Fail(ErrorCode::kParse, "", "its element has no property");
-  // The last number of an ascii file may lack the blank after it.
-  const std::size_t room = (body.bytes_left() + 1) / least;
-  if (element.count <= room) return;
+  if (min_size == 0) return body.Fail(ErrorCode::kParse, "", "its element has no property");
+  // The last number of an ascii file need not be followed by white space.
+  const std::size_t max_rows = (body.bytes_left() + 1) / min_size;
+  if (element.count <= max_rows) return;
   body.Fail(ErrorCode::kParse, "",
-            fmt::format("the header states {} rows, the {} bytes that follow have room for {}",
-                        element.count, body.bytes_left(), room));
+            fmt::format("the header states {} rows, but the {} bytes that follow have room for {}",
+                        element.count, body.bytes_left(), max_rows));
 }
 
-// One row; `values` receives the numbers of its properties, 0 for a list.
+// Reads one row; `values` receives the numbers of its properties, 0 for a list.
 void ReadRow(const PlyElement& element, Body& body, std::vector<double>& values) {
   values.assign(element.properties.size(), 0.0);
   for (std::size_t i = 0; i < values.size() && body.ok(); ++i) {

@@ -142,7 +142,7 @@ class HeaderParser {
     property.is_list = words_.size() == 5 && words_[1] == "list";
     if (property.is_list) {
       property.length_type = TypeOf(words_[2]);
-      if (!IsInteger(property.length_type)) Fail("expected a length of a whole type");
+      if (!IsInteger(property.length_type)) Fail("expected a length of an integer type");
     } else if (words_.size() != 3) {
       return Fail(
           "expected 'property', a type and a name, or 'property list', two types and a name");

@@ -15,25 +15,26 @@ enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
 
 struct PlyProperty {
   std::string name;
-  ScalarType type = ScalarType::kFloat32;  ///< Of the entries, for a list.
+  ScalarType type = ScalarType::kFloat32;  ///< For a list, the type of its entries.
   bool is_list = false;
-  ScalarType length_type = ScalarType::kUint8;  ///< Of a list's length.
+  ScalarType length_type = ScalarType::kUint8;  ///< Type of a list's length.
 };
 
 struct PlyElement {
   std::string name;
-  std::size_t count = 0;  ///< As stated; nothing is yet known of the rows.
+  std::size_t count = 0;  ///< As stated in the header, not yet checked against the data.
   std::vector<PlyProperty> properties;
 };
 
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<PlyElement> elements;
-  std::size_t size = 0;  ///< Bytes, the line end_header included.
-  int lines = 0;         ///< As many.
+  std::size_t size = 0;  ///< Size of the header in bytes, including the line end_header.
+  int lines = 0;         ///< Lines of the header, including end_header.
 };
 
-/// Error: kParse, with the line. Lines over 1000 bytes and more than 1000 of them are refused.
+/// Error: kParse, with the line. Lines longer than 1000 bytes and headers of more than 1000 lines
+/// are refused.
 Expected<PlyHeader> ParsePlyHeader(std::string_view bytes, const std::string& file);
 
 }  // namespace sextant

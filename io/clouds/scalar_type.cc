@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace sextant {
 namespace {
@@ -32,6 +34,8 @@ std::size_t SizeOf(ScalarType type) {
     case ScalarType::kFloat32:
       return 4;
     case ScalarType::kFloat64:
+    case ScalarType::kInt64:
+    case ScalarType::kUint64:
       return 8;
   }
   return 0;
@@ -59,8 +63,18 @@ double LoadScalar(const char* bytes, ScalarType type, bool big_endian) {
       return Load<float>(bytes, big_endian);
     case ScalarType::kFloat64:
       return Load<double>(bytes, big_endian);
+    case ScalarType::kInt64:
+      return Load<std::int64_t>(bytes, big_endian);
+    case ScalarType::kUint64:
+      return Load<std::uint64_t>(bytes, big_endian);
   }
   return 0.0;
+}
+
+float ToFloat(double value) {
+  constexpr double kMax = std::numeric_limits<float>::max();
+  return std::abs(value) <= kMax ? static_cast<float>(value)
+                                 : std::numeric_limits<float>::quiet_NaN();
 }
 
 }  // namespace sextant

@@ -6,7 +6,8 @@
 
 namespace sextant {
 
-/// Types of numbers in binary point files. The values are those of sensor_msgs/PointField.
+/// Types of numbers in binary point files. The values up to 8 are those of sensor_msgs/PointField;
+/// PCD has 8-byte integers too.
 enum class ScalarType : std::uint8_t {
   kInt8 = 1,
   kUint8 = 2,
@@ -16,14 +17,19 @@ enum class ScalarType : std::uint8_t {
   kUint32 = 6,
   kFloat32 = 7,
   kFloat64 = 8,
+  kInt64 = 9,
+  kUint64 = 10,
 };
 
-/// Bytes that one number takes.
+/// Size of one number in bytes.
 std::size_t SizeOf(ScalarType type);
 
 bool IsInteger(ScalarType type);
 
 /// The number that begins at `bytes`, aligned or not. Requires SizeOf(type) bytes.
 double LoadScalar(const char* bytes, ScalarType type, bool big_endian);
+
+/// The nearest float; NaN for a number outside the range of float.
+float ToFloat(double value);
 
 }  // namespace sextant

@@ -50,7 +50,8 @@ std::string OpenCvCamera(const Camera& camera) {
 
 }  // namespace
 
-// The comment stands last, for some readers count lines; it has a colon, for others split at one.
+// The comment comes last because some readers count lines, and it contains a colon because others
+// split each line at one.
 std::string KittiText(const Rigid3d& cam_from_lidar, const Camera& camera) {
   Rows34 projection = Rows34::Zero();
   projection.leftCols<3>() = IntrinsicMatrix(camera);
@@ -65,8 +66,7 @@ std::string KittiText(const Rigid3d& cam_from_lidar, const Camera& camera) {
   const bool distorted = std::any_of(camera.distortion.begin(), camera.distortion.end(),
                                      [](double value) { return value != 0.0; });
   text += "# Tr_velo_to_cam is cam_from_lidar: point_in_cam = Tr_velo_to_cam * point_in_lidar\n";
-  if (distorted)
-    text += "# P0 to P3: for images from which the distortion was taken, with this K\n";
+  if (distorted) text += "# P0 to P3: for undistorted images with this K\n";
   return text;
 }
 

@@ -10,7 +10,7 @@
 namespace sextant {
 namespace {
 
-// Names of nodes and joints have letters, digits and _ only.
+// The name of a node or joint: letters, digits and _ only.
 std::string NameOf(const NamedTransform& transform) {
   std::string name = transform.parent + "_from_" + transform.child;
   std::replace_if(
@@ -19,7 +19,7 @@ std::string NameOf(const NamedTransform& transform) {
   return name;
 }
 
-// The lines of the comment, without the marks that make it one.
+// The lines of the comment, without comment characters.
 std::string Direction(const NamedTransform& t, const std::string& indent) {
   return fmt::format(
       "{0}{1}: the pose of {2} in {3}.\n"
@@ -33,7 +33,7 @@ std::string Xyz(const Rigid3d& pose) {
   return fmt::format("{} {} {}", t.x(), t.y(), t.z());
 }
 
-// "--x 1 --y 2 ... --qw 1", each followed by `between`, which stands between option and value too.
+// "--x 1 --y 2 ... --qw 1"; `between` separates all options and values.
 std::string Ros2Arguments(const NamedTransform& t, const char* quote, const char* between) {
   const Rigid3d& pose = t.parent_from_child;
   const std::pair<const char*, double> numbers[] = {
@@ -89,7 +89,7 @@ std::string TfYamlText(const NamedTransform& t) {
 std::string UrdfText(const NamedTransform& t) {
   const EulerZyx euler = ToEulerZyx(t.parent_from_child.rotation);
   return fmt::format(
-      "<!--\n{}  Put it into the robot's description; both links have to be there.\n"
+      "<!--\n{}  Insert this joint into the robot's description, which must have both links.\n"
       "  rpy: R = Rz(yaw) Ry(pitch) Rx(roll)\n-->\n"
       "<joint name=\"{}\" type=\"fixed\">\n  <parent link=\"{}\" />\n  <child link=\"{}\" />\n"
       "  <origin xyz=\"{}\" rpy=\"{} {} {}\" />\n</joint>\n",

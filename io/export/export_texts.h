@@ -8,15 +8,16 @@
 
 namespace sextant {
 
-/// A transform with the names of its frames: the pose of the child in the parent.
+/// A transform with the names of its frames: the pose of the child frame in the parent frame.
 struct NamedTransform {
   std::string parent;
   std::string child;
   Rigid3d parent_from_child;
-  std::string camera_frame;  ///< The one of the two that is the camera's.
+  std::string camera_frame;  ///< The camera's frame: parent or child.
 };
 
-/// The texts behind ExportTransform; what each promises is there. Frame names are checked before.
+/// The texts of ExportTransform, which checks the names of the frames; io/export/export_transform.h
+/// documents each format.
 std::string Ros1LaunchText(const NamedTransform& transform);
 std::string Ros2LaunchText(const NamedTransform& transform);
 std::string Ros2YamlText(const NamedTransform& transform);

@@ -26,8 +26,8 @@ Expected<void> CheckFrame(const std::string& name, const char* whose) {
 }
 
 Expected<void> CheckFrames(const ExportOptions& options) {
-  if (Expected<void> ok = CheckFrame(options.camera_frame, "camera"); !ok) return ok;
-  if (Expected<void> ok = CheckFrame(options.lidar_frame, "LiDAR"); !ok) return ok;
+  SEXTANT_RETURN_IF_ERROR(CheckFrame(options.camera_frame, "camera"));
+  SEXTANT_RETURN_IF_ERROR(CheckFrame(options.lidar_frame, "LiDAR"));
   if (options.camera_frame != options.lidar_frame) return {};
   return MakeError(
       ErrorCode::kInvalidOption,
@@ -79,8 +79,8 @@ Expected<std::string> ExportTransform(std::string_view format, const Calibration
   if (format == "kitti") {
     if (camera != nullptr) return KittiText(result.cam_from_lidar, *camera);
     return MakeError(ErrorCode::kMissingData,
-                     "kitti holds the camera's P, and the result has no camera; expected its key "
-                     "'camera'");
+                     "the format kitti contains the camera matrix P, but the result has no camera; "
+                     "expected its key 'camera'");
   }
   std::vector<std::string> known;
   for (const ExportFormat& one : ExportFormats()) known.emplace_back(one.name);

@@ -10,7 +10,7 @@
 namespace sextant {
 namespace {
 
-// Eight printed decimals leave less than this in R R^T - I.
+// Rounding to eight decimals leaves less than this in R R^T - I.
 constexpr double kRotationTolerance = 1e-4;
 
 bool ReadLine(LineReader& in, std::size_t fields, const std::string& what) {

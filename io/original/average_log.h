@@ -11,10 +11,10 @@
 
 namespace sextant {
 
-/// `avg_values.txt` of the original package: 8 lines an iteration, which are its number, the
-/// running mean translation (x, y, z, a line each; m), three rows of the running rotation, and the
-/// RMSE of that scan under them (m). Iterations count up from 1.
-/// Errors: kIo, kParse (also a matrix that is no rotation to its printed digits), kNonFinite.
+/// Reads `avg_values.txt` of the original package: 8 lines per iteration, which are its number, the
+/// running mean translation (x, y, z, one line each; m), three rows of the running rotation, and
+/// the RMSE of that scan under this pose (m). Iterations count from 1.
+/// Errors: kIo, kParse (also a matrix that is not a rotation to its printed digits), kNonFinite.
 Expected<std::vector<RunningAverageRow>> ReadAverageLog(const std::filesystem::path& path);
 Expected<std::vector<RunningAverageRow>> ParseAverageLog(std::string_view text,
                                                          const std::string& file);

@@ -15,7 +15,7 @@ constexpr std::size_t kRotationType = 28;
 constexpr std::size_t kRotationTranslation = 30;
 constexpr std::size_t kAll = 31;
 
-// The original reads numbers wherever the lines break.
+// A stream of numbers; as in the original package, line breaks do not matter.
 class NumberStream {
  public:
   NumberStream(const std::string& file, std::string_view text) : in_(file, text) {}
@@ -61,8 +61,8 @@ std::size_t CountNumbers(std::string_view text) {
 }  // namespace
 
 Rigid3d OriginalConfig::InitialPose() const {
-  const Eigen::Vector3d turn = initial_rotation_rad.value_or(Eigen::Vector3d::Zero());
-  return {FromEulerZyx({.yaw = turn.z(), .pitch = turn.y(), .roll = turn.x()}),
+  const Eigen::Vector3d angles = initial_rotation_rad.value_or(Eigen::Vector3d::Zero());
+  return {FromEulerZyx({.yaw = angles.z(), .pitch = angles.y(), .roll = angles.x()}),
           initial_translation_m.value_or(Eigen::Vector3d::Zero())};
 }
 

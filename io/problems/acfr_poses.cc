@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "io/text/line_reader.h"
+#include "io/text/max_id.h"
 #include "io/text/text_file.h"
 #include "solvers/matching/corner_order.h"
 
@@ -43,7 +44,6 @@ void ReadSizes(LineReader& in, AcfrPose& pose) {
   pose.distance_m = ReadRow(in, "distance (m),0,0").x();
   pose.m_per_px = ReadRow(in, "metres per pixel,0,0").x();
   if (in.Require("number of the pose,0,0") && in.HasFields(3, "number of the pose,0,0")) {
-    constexpr int kMaxId = 1'000'000'000;
     pose.id = static_cast<int>(in.Integer(0, 0, kMaxId));
   }
 }

@@ -13,11 +13,11 @@
 
 namespace sextant {
 
-/// The board as one sensor saw it, as stored; metres in the sensor's frame.
+/// The board as seen by one sensor, in the order of the file; metres in the sensor's frame.
 struct AcfrBoardView {
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  std::array<Eigen::Vector3d, 4> corners_m{};  ///< Round the board; see ProblemFromAcfrPoses.
+  std::array<Eigen::Vector3d, 4> corners_m{};  ///< Around the board; see ProblemFromAcfrPoses.
 };
 
 /// One placement of the board.
@@ -25,33 +25,33 @@ struct AcfrPose {
   int id = 0;
   AcfrBoardView in_cam;
   AcfrBoardView in_lidar;
-  std::array<double, 4> angles_deg{};  ///< Between the edges of the board in the LiDAR's view.
+  std::array<double, 4> angles_deg{};  ///< Between the edges of the board as measured by the LiDAR.
   std::array<double, 2> widths_m{};
   std::array<double, 2> heights_m{};
   double distance_m = 0.0;
   double m_per_px = 0.0;
 };
 
-/// `poses.csv` of acfr/cam_lidar_calibration: 19 lines of three numbers a pose, lengths in mm.
+/// Reads `poses.csv` of acfr/cam_lidar_calibration: 19 lines of three numbers per pose, lengths in
+/// mm.
 /// Errors: kIo, kParse, kNonFinite, with file, line and field.
 Expected<std::vector<AcfrPose>> ReadAcfrPoses(const std::filesystem::path& path);
 Expected<std::vector<AcfrPose>> ParseAcfrPoses(std::string_view text, const std::string& file);
 
 enum class AcfrPoints { kCorners, kCornersAndCentres };
 
-/// The numbers (AcfrPose::id) of poses whose corners the file lists in another order, camera
-/// against LiDAR, than it does in most poses: their labels were given otherwise, and whoever takes
-/// the file's order pairs wrong corners. In the order of the list. Errors: those of
-/// ResolveCornerOrders.
+/// The numbers (AcfrPose::id), in the order of `poses`, of those poses for which the order of the
+/// camera's corners relative to the LiDAR's differs from that of most poses: pairing them in the
+/// file's order would give wrong pairs. Errors: those of ResolveCornerOrders.
 Expected<std::vector<int>> RelabelledAcfrPoses(std::span<const AcfrPose> poses);
 
-/// Number of the board's centre among its "corners".
+/// The corner number that stands for the board's centre.
 inline constexpr int kAcfrCentre = 4;
 
-/// The corners as 3D-3D pairs: view is the pose's place in the list, board 0, corners numbered as
-/// Board says. The file orders the corners differently in each sensor and from pose to pose: the
-/// orders are solved (ResolveCornerOrders), not taken. Centres, where asked for, are corner
-/// kAcfrCentre; they are no independent measurements.
+/// The corners as 3D-3D pairs: the view is the index of the pose, the board 0, and the corners are
+/// numbered as in Board. The file's order of corners differs between the sensors and between poses;
+/// ResolveCornerOrders therefore estimates it. Centres, if requested, have the corner number
+/// kAcfrCentre; they are not independent measurements.
 /// Errors: those of ResolveCornerOrders.
 Expected<CalibrationProblem> ProblemFromAcfrPoses(std::span<const AcfrPose> poses,
                                                   AcfrPoints points = AcfrPoints::kCorners);

@@ -8,7 +8,7 @@
 
 #include "base/nearest_name.h"
 #include "io/text/line_reader.h"
-#include "io/text/most_id.h"
+#include "io/text/max_id.h"
 #include "io/text/text_file.h"
 
 namespace sextant {
@@ -23,7 +23,7 @@ const Names& KnownColumns() {
   return kNames;
 }
 
-// Where each named column stands in a row.
+// Access to the fields of a row by the names of the columns.
 class Columns {
  public:
   explicit Columns(LineReader& in) : in_(in) {
@@ -46,11 +46,11 @@ class Columns {
 
   std::string_view Text(std::string_view name) const { return in_.Field(Index(name)); }
   double Real(std::string_view name) { return in_.Real(Index(name), name); }
-  double RealOr(std::string_view name, double otherwise) {
-    return Has(name) ? Real(name) : otherwise;
+  double RealOr(std::string_view name, double default_value) {
+    return Has(name) ? Real(name) : default_value;
   }
-  int IntegerOr(std::string_view name, int otherwise) {
-    return Has(name) ? static_cast<int>(in_.Integer(Index(name), 0, kMaxId, name)) : otherwise;
+  int IntegerOr(std::string_view name, int default_value) {
+    return Has(name) ? static_cast<int>(in_.Integer(Index(name), 0, kMaxId, name)) : default_value;
   }
   int Part(std::string_view text, std::string_view name) {
     return static_cast<int>(in_.IntegerOf(text, Index(name), 0, kMaxId, name));
@@ -73,7 +73,7 @@ class Columns {
                                               SuggestName(name.substr(0, 60), known)));
     }
     if (Has(name)) {
-      in_.Fail(ErrorCode::kParse, fmt::format("the column {} stands here twice", Quoted(name)));
+      in_.Fail(ErrorCode::kParse, fmt::format("the column {} appears twice", Quoted(name)));
     }
     names_.push_back(std::move(name));
   }
@@ -122,12 +122,12 @@ void CheckHeader(LineReader& in, Columns& columns, bool is_2d3d) {
   for (const std::string& other : others) {
     if (columns.Has(other)) {
       in.Fail(ErrorCode::kParse, fmt::format("the column {} belongs to the other kind of pairs; "
-                                             "put each kind into a file of its own",
+                                             "put each kind into a separate file",
                                              other));
     }
   }
   if (columns.Has("id") && (columns.Has("view") || columns.Has("board") || columns.Has("corner"))) {
-    in.Fail(ErrorCode::kParse, "expected either id or view, board and corner");
+    in.Fail(ErrorCode::kParse, "expected either id, or view, board and corner");
   }
   if (columns.Has("board") != columns.Has("corner")) {
     in.Fail(ErrorCode::kParse, "expected both of the columns board and corner");

@@ -10,18 +10,18 @@
 
 namespace sextant {
 
-/// Pairs as comma-separated values; the first line names the columns, in any order.
-/// - 2D-3D: u, v (px), x, y, z (LiDAR, m), and as you like sigma_px;
-/// - 3D-3D: camx, camy, camz, lidarx, lidary, lidarz (m), and as you like sigma_m;
-/// - either: view, board and corner, or id: `board:corner`, `view:board:corner`, or a number n for
-///   a point of no board, which is corner 0 of board n. Without these row i is point i.
-/// One file holds one kind. 3D-3D pairs also fill point_sets. A 2D-3D file has no camera.
-/// Errors: kIo; kParse (an unknown column names the nearest known); kNonFinite; with line and
-/// field.
+/// Reads pairs as comma-separated values; the first line names the columns, in any order.
+/// - 2D-3D: u, v (px), x, y, z (LiDAR, m), and optionally sigma_px;
+/// - 3D-3D: camx, camy, camz, lidarx, lidary, lidarz (m), and optionally sigma_m;
+/// - either, optionally: view, board and corner, or id: `board:corner`, `view:board:corner`, or a
+///   number n for a point of no board, which is corner 0 of board n. Without these, row i is corner
+///   0 of board i.
+/// A file holds one kind. 3D-3D pairs also fill point_sets. A 2D-3D file has no camera.
+/// Errors: kIo; kParse (for an unknown column with a suggestion); kNonFinite; with line and field.
 Expected<CalibrationProblem> ReadPairsCsv(const std::filesystem::path& path);
 Expected<CalibrationProblem> ParsePairsCsv(std::string_view text, const std::string& file);
 
-/// The same with all columns, sigma 0 for unknown. A covariance has no column.
+/// Formats such a file with all columns; an unknown sigma is 0. Covariances are not written.
 std::string FormatPairsCsv(std::span<const Pair2d3d> pairs);
 std::string FormatPairsCsv(std::span<const Pair3d3d> pairs);
 

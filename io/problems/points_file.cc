@@ -13,7 +13,7 @@ namespace sextant {
 namespace {
 
 std::vector<Eigen::Vector3d> ReadRows(LineReader& in, std::int64_t count, const char* sensor) {
-  // The count is a claim: memory follows the rows that are there.
+  // The count may be wrong, so memory grows with the rows that are read.
   std::vector<Eigen::Vector3d> points;
   for (std::int64_t i = 0; i < count && in.ok(); ++i) {
     const auto what = [&] {

@@ -10,18 +10,18 @@
 
 namespace sextant {
 
-/// What a file says of one calibration: the problem, and beside it what no solver may see.
+/// The content of a problem file: the problem, and data that no solver may use.
 struct ProblemFile {
   CalibrationProblem problem;
-  std::optional<Rigid3d> true_cam_from_lidar;  ///< Where the data is simulated.
-  std::string comment;                         ///< Where the data comes from; free text.
+  std::optional<Rigid3d> true_cam_from_lidar;  ///< For simulated data.
+  std::string comment;                         ///< Source of the data; free text.
 };
 
-/// The YAML problem file `sextant_problem: 1`; every key stands in docs/formats.md.
+/// The YAML problem file `sextant_problem: 1`; docs/formats.md documents every key.
 ///
-/// Writing and reading again gives the same bits. Point sets that the file leaves out are those of
-/// its 3D-3D pairs, the pairing withheld.
-/// Errors: kIo; kParse (unknown keys name the nearest known one); kNonFinite; each with the line.
+/// Writing and reading again gives the same bits. If the file has no point sets, they are those of
+/// its 3D-3D pairs without the pairing.
+/// Errors: kIo; kParse (for unknown keys with a suggestion); kNonFinite; each with the line.
 Expected<ProblemFile> ReadProblemYaml(const std::filesystem::path& path);
 Expected<ProblemFile> ParseProblemYaml(std::string_view text, const std::string& file);
 std::string FormatProblemYaml(const ProblemFile& file);

@@ -6,7 +6,7 @@
 #include "io/blocks/camera_block.h"
 #include "io/blocks/pose_block.h"
 #include "io/problems/problem_yaml.h"
-#include "io/text/most_id.h"
+#include "io/text/max_id.h"
 #include "io/text/text_file.h"
 #include "io/text/yaml_fields.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-// Board i / 4, corner i mod 4 where the pair names none, as in points.txt.
+// The id of a pair; without one, pair i is corner i mod 4 of board i / 4, as in points.txt.
 PairId ReadId(YamlFields& in, const YamlNode& pair, std::size_t index) {
   const YamlNode* node = pair.Find("id");
   if (node == nullptr) {
@@ -93,7 +93,7 @@ void ReadProblemHeader(YamlFields& in, const YamlNode& root) {
       "pairs_2d3d",      "board_views", "point_sets", "truth",  "initial_cam_from_lidar"};
   if (root.kind == YamlNode::Kind::kMap && root.Find("sextant_problem") == nullptr) {
     in.Fail(root.line, {},
-            "expected a problem file with the key sextant_problem: 1; is this another kind of "
+            "expected a problem file, with the key sextant_problem: 1; is this another kind of "
             "YAML, such as a camera file?");
   }
   if (!in.IsMap(root, "sextant_problem", kKeys)) return;

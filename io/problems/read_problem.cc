@@ -17,8 +17,8 @@ namespace {
 
 bool IsNumber(std::string_view text) { return ParseFinite(text, {}).has_value(); }
 
-// avg_values.txt of the original package: a number, then three more, each alone on its line, where
-// points.txt has a count and points.
+// Whether this is avg_values.txt of the original package: its first four lines hold one number
+// each, whereas points.txt has a count and then points.
 bool IsAverageLog(std::string_view text, const std::string& file) {
   LineReader in(file, text);
   for (int line = 0; line < 4; ++line) {
@@ -46,20 +46,20 @@ std::optional<ProblemFormat> Detect(std::string_view text, const std::string& fi
 tl::unexpected<Error> UnknownFormat(const std::string& file) {
   return MakeError(
       ErrorCode::kParse,
-      fmt::format("{}:1: not a problem in a known format; expected points.txt (first line: the "
-                  "number of points alone), YAML (first line: sextant_problem: 1), a CSV of pairs "
+      fmt::format("{}:1: not a problem in a known format; expected points.txt (first line: only "
+                  "the number of points), YAML (first line: sextant_problem: 1), a CSV of pairs "
                   "(first line: u,v,x,y,z or camx,camy,camz,lidarx,lidary,lidarz) or poses.csv "
                   "(lines of three numbers)",
                   ToString(Place{.file = file})));
 }
 
-// Whoever takes the file's order of corners should know in which poses it is another.
+// Users who pair the corners in the file's order should know in which poses it differs.
 std::vector<std::string> RelabellingNotes(const std::vector<AcfrPose>& poses) {
   const Expected<std::vector<int>> relabelled = RelabelledAcfrPoses(poses);
   if (!relabelled || relabelled->empty()) return {};
   return {
-      fmt::format("order: poses {} are relabelled: the file lists their corners in another "
-                  "order than those of the other {}; the order that fits was taken for each",
+      fmt::format("order: poses {} are relabelled: the file lists their corners in another order "
+                  "than those of the other {}; the best-fitting order was used for each",
                   fmt::join(*relabelled, ", "), poses.size() - relabelled->size())};
 }
 
@@ -86,8 +86,9 @@ Expected<DetectedProblem> ReadProblem(const std::filesystem::path& path) {
 Expected<DetectedProblem> ParseProblem(std::string_view text, const std::string& file) {
   if (IsAverageLog(text, file)) {
     return MakeError(ErrorCode::kParse,
-                     fmt::format("{}:1: an avg_values.txt, the log of the original package, which "
-                                 "has poses and no correspondences; 'sextant average' reads it",
+                     fmt::format("{}:1: this is avg_values.txt, the log of the original package, "
+                                 "which has poses and no correspondences; 'sextant average' reads "
+                                 "it",
                                  ToString(Place{.file = file})));
   }
   const std::optional<ProblemFormat> format = Detect(text, file);

@@ -10,7 +10,7 @@
 
 namespace sextant {
 
-/// The formats that hold the pairs of one calibration.
+/// The formats of correspondences.
 enum class ProblemFormat { kYaml, kPoints, kPairsCsv, kAcfrPoses };
 
 /// "yaml", "points", "csv", "acfr_poses": for JSON and options.
@@ -18,13 +18,13 @@ std::string_view ToString(ProblemFormat format);
 
 struct DetectedProblem : ProblemFile {
   ProblemFormat format = ProblemFormat::kYaml;
-  std::vector<std::string> notes{};  ///< What was put right while reading, a line each.
+  std::vector<std::string> notes{};  ///< Corrections made while reading, one line each.
 };
 
-/// Reads a problem in whichever format the file is, told by its first line: a count alone is
-/// points.txt; three numbers between commas are poses.csv; names between commas are a CSV of
-/// pairs; "key: value" is YAML, as is every file named .yaml or .yml.
-/// Errors: kIo; kParse, which names the formats where none fits; kNonFinite.
+/// Reads a problem in any of these formats, recognised by the first line: a single number is
+/// points.txt; three numbers separated by commas are poses.csv; names separated by commas are a CSV
+/// of pairs; "key: value" is YAML, as is every file named .yaml or .yml.
+/// Errors: kIo; kParse, which lists the formats if none matches; kNonFinite.
 Expected<DetectedProblem> ReadProblem(const std::filesystem::path& path);
 Expected<DetectedProblem> ParseProblem(std::string_view text, const std::string& file);
 

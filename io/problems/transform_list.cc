@@ -26,7 +26,7 @@ Expected<std::vector<Rigid3d>> ParseTransformList(std::string_view text, const s
     const std::optional<Rigid3d> transform = RigidFromMatrix(matrix);
     if (!transform) {
       in.Fail(ErrorCode::kParse,
-              "expected a rotation and a translation over the row 0 0 0 1 up to here");
+              "expected a rotation and a translation above the row 0 0 0 1 up to here");
       break;
     }
     transforms.push_back(*transform);

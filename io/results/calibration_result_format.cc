@@ -4,9 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "io/blocks/board_json.h"
-#include "io/blocks/camera_json.h"
-#include "io/blocks/pose_json.h"
+#include "io/blocks/json_blocks.h"
 #include "io/results/calibration_result.h"
 #include "io/text/degrees.h"
 #include "io/text/json_as_yaml.h"
@@ -34,7 +32,7 @@ Json OrNull(const std::optional<Vector6d>& value) {
 Json OrNull(const std::optional<Matrix6d>& value) { return value ? Rows(*value) : Json(nullptr); }
 Json OrNull(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
-// Of a board: the numbers without the forms for people.
+// The pose of a board: only the translation and the quaternion.
 Json OrNull(const std::optional<Rigid3d>& pose) {
   if (!pose) return nullptr;
   Json json = PoseJson(*pose);

@@ -11,7 +11,7 @@
 #include "io/blocks/camera_block.h"
 #include "io/blocks/pose_block.h"
 #include "io/results/calibration_result.h"
-#include "io/text/most_id.h"
+#include "io/text/max_id.h"
 #include "io/text/number_text.h"
 #include "io/text/text_file.h"
 #include "io/text/yaml_fields.h"
@@ -23,7 +23,7 @@ using Keys = std::vector<std::string>;
 
 constexpr std::size_t kMaxNumbers = 100'000;
 
-// Null, as JSON has it, is absent.
+// The value of a key; null if it is absent or, as in JSON, null.
 const YamlNode* Present(const YamlNode& map, std::string_view key) {
   const YamlNode* node = map.Find(key);
   return node == nullptr || node->kind == YamlNode::Kind::kNull ? nullptr : node;
@@ -88,8 +88,8 @@ std::vector<std::string> ReadTexts(YamlFields& in, const YamlNode& map, std::str
   return texts;
 }
 
-// A matrix or angles beside the quaternion are for people and other tools; a matrix that says
-// another thing than the quaternion is a file that was edited in one place only.
+// The pose is that of translation and quaternion. A matrix and angles given as well are for people
+// and other tools; if the matrix differs, the file was edited in one place only, which is an error.
 Rigid3d ReadPose(YamlFields& in, const YamlNode& node, std::string_view key) {
   static const Keys kKeys = {"matrix", "translation_m", "quaternion_wxyz", "euler_zyx_deg"};
   if (!in.IsMap(node, key, kKeys)) return {};
@@ -293,7 +293,7 @@ void ReadResultHeader(YamlFields& in, const YamlNode& root) {
                              "boards",         "views"};
   if (root.kind == YamlNode::Kind::kMap && root.Find("sextant_result") == nullptr) {
     in.Fail(root.line, {},
-            "expected a result of sextant calibrate with the key sextant_result: 1; is this "
+            "expected a result of sextant calibrate, with the key sextant_result: 1; is this "
             "another kind of YAML or JSON?");
   }
   if (!in.IsMap(root, "sextant_result", kKeys)) return;
@@ -305,8 +305,9 @@ void ReadBody(YamlFields& in, const YamlNode& root, CalibrationResult& result) {
   result.solver = in.TextAt(root, "solver");
   result.seed = ReadSeed(in, root);
   result.configuration = ReadTexts(in, root, "configuration");
-  if (Present(root, "camera_frame") != nullptr)
+  if (Present(root, "camera_frame") != nullptr) {
     result.camera_frame = in.TextAt(root, "camera_frame");
+  }
   if (Present(root, "lidar_frame") != nullptr) result.lidar_frame = in.TextAt(root, "lidar_frame");
   result.cam_from_lidar = ReadPose(in, in.Require(root, "cam_from_lidar"), "cam_from_lidar");
   result.covariance = OptionalSymmetric(in, root, "covariance");
@@ -326,7 +327,7 @@ Expected<CalibrationResult> ReadCalibrationResult(const std::filesystem::path& p
 }
 
 Expected<CalibrationResult> ParseCalibrationResult(std::string_view text, const std::string& file) {
-  // JSON is YAML, too.
+  // JSON is a subset of YAML.
   SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
   YamlFields in(file);
   ReadResultHeader(in, root);

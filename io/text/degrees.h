@@ -7,7 +7,8 @@
 
 namespace sextant {
 
-/// Degrees from which kRadPerDeg leads back to the same radians; whole ones where they do.
+/// The angle in degrees such that kRadPerDeg times it gives the same bits again; a whole number
+/// where one does.
 inline double ExactDegrees(double angle_rad) {
   const double degrees = angle_rad / kRadPerDeg;
   for (const double candidate : {std::round(degrees), degrees, std::nextafter(degrees, -1e9),

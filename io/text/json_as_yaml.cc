@@ -33,7 +33,7 @@ std::string OneLine(const Json& value) {
 
 void Write(const Json& value, std::size_t indent, std::string& text);
 
-// The first line of an item stands behind its dash.
+// The first line of an item follows its dash.
 void WriteItem(const Json& item, std::size_t indent, std::string& text) {
   text += std::string(indent, ' ') + "- ";
   if (IsOneLine(item)) {

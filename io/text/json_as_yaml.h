@@ -6,9 +6,9 @@
 
 namespace sextant {
 
-/// A map as lines of YAML that a person can read: maps in blocks, lists of numbers on one line,
-/// text in double quotes, numbers in the fewest digits that read back to the same bits. A key whose
-/// value is null is left out.
+/// Formats a JSON object as human-readable YAML: maps in block style, lists of numbers on one line,
+/// text in double quotes, numbers in the shortest form that reads back to the same bits. Keys whose
+/// value is null are omitted.
 std::string JsonAsYaml(const nlohmann::ordered_json& map);
 
 }  // namespace sextant

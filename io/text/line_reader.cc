@@ -9,7 +9,7 @@ namespace sextant {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r\f\v";
-// A line of nothing but commas would take sixteen times its size.
+// Without a limit, a line of commas alone would take sixteen times its size in memory.
 constexpr std::size_t kMaxFields = 1000;
 
 std::string_view Trim(std::string_view text) {

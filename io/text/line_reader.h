@@ -12,10 +12,10 @@
 
 namespace sextant {
 
-/// The lines of a text, split into fields, with the first error kept.
+/// Reads a text line by line, splits each line into fields, and keeps the first error.
 ///
 /// Blank lines, lines that begin with '#', a byte order mark and carriage returns are skipped.
-/// After an error every call does nothing, so that a format reads straight down and asks once.
+/// After an error every call does nothing, so a parser needs to check ok() only once, at its end.
 class LineReader {
  public:
   enum class Separator { kBlanks, kCommas };
@@ -25,27 +25,27 @@ class LineReader {
 
   /// Goes to the next line; false at the end or after an error.
   bool Next();
-  /// Whether nothing but blank lines and comments follows.
+  /// Whether only blank lines and comments follow.
   bool AtEnd() const;
-  /// As Next, but the end is an error: "the file ends, expected <what>".
+  /// As Next, but the end of the text is an error: "the file ends here, expected <what>".
   bool Require(std::string_view what);
-  /// Whether the line has `count` fields; else an error that names what was expected.
+  /// Whether the line has `count` fields; if not, an error states that `what` was expected.
   bool HasFields(std::size_t count, std::string_view what);
 
   std::size_t field_count() const { return fields_.size(); }
   std::string_view Field(std::size_t index) const { return fields_[index]; }
   int line() const { return line_; }
 
-  /// A field of this line, from 0, which must exist; zero after an error.
+  /// The value of a field of this line; fields count from 0 and must exist. Zero after an error.
   double Real(std::size_t index, std::string_view name = {});
   std::int64_t Integer(std::size_t index, std::int64_t low, std::int64_t high,
                        std::string_view name = {});
-  /// The same of a text that is part of field `index`.
+  /// The same for a text that is part of field `index`.
   double RealOf(std::string_view text, std::size_t index, std::string_view name = {});
   std::int64_t IntegerOf(std::string_view text, std::size_t index, std::int64_t low,
                          std::int64_t high, std::string_view name = {});
 
-  /// Of this line, unless an error came before.
+  /// Records an error at the current line, unless there is one already.
   void Fail(ErrorCode code, std::string_view message);
   void Fail(Error error);
   bool ok() const { return !error_; }

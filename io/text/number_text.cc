@@ -17,7 +17,7 @@ std::errc ParseWhole(std::string_view text, Number& value) {
   return stop == text.data() + text.size() ? error : std::errc::invalid_argument;
 }
 
-// YAML writes .nan and .inf.
+// YAML spells these numbers .nan and .inf.
 bool NamesNonFinite(std::string_view text) {
   std::string lower;
   for (const char c : text.substr(0, 10)) {
@@ -51,14 +51,14 @@ std::string ToString(const Place& place) {
   return text;
 }
 
-std::string Printable(std::string_view text, std::size_t most) {
+std::string Printable(std::string_view text, std::size_t max_bytes) {
   std::string printable;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    // Bytes above 0x7f may be UTF-8 of a name; control bytes may drive a terminal.
+    // Bytes above 0x7f may belong to a name in UTF-8; control bytes could control a terminal.
     std::string piece =
         byte < 0x20 || byte == 0x7f ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
-    if (printable.size() + piece.size() > most) return printable + "...";
+    if (printable.size() + piece.size() > max_bytes) return printable + "...";
     printable += piece;
   }
   return printable;

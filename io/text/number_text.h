@@ -9,12 +9,12 @@
 
 namespace sextant {
 
-/// Where in a file something stands; every message of a reader begins with it.
+/// A place in a file; every error message of a reader begins with one.
 struct Place {
   std::string_view file;
-  int line = 0;                ///< From 1; 0 for the file as a whole.
-  std::size_t field = 0;       ///< From 1; 0 for the line as a whole.
-  std::string_view name = {};  ///< Of the field, where the format gives it one.
+  int line = 0;                ///< Counts from 1; 0 for the file as a whole.
+  std::size_t field = 0;       ///< Counts from 1; 0 for the line as a whole.
+  std::string_view name = {};  ///< Name of the field, if the format defines one.
 };
 
 /// "points.txt:5: field 2 (camx)".
@@ -23,10 +23,10 @@ std::string ToString(const Place& place);
 /// The text in single quotes on one line: cut to 40 bytes, unprintable bytes as \xNN.
 std::string Quoted(std::string_view text);
 
-/// The text without line breaks or unprintable bytes, cut to `most` bytes.
-std::string Printable(std::string_view text, std::size_t most);
+/// The text with control bytes as \xNN, cut to `max_bytes` bytes.
+std::string Printable(std::string_view text, std::size_t max_bytes);
 
-/// The whole text as a number, whatever the locale. Errors: kParse; kNonFinite.
+/// The whole text as a number, independent of the locale. Errors: kParse; kNonFinite.
 Expected<double> ParseFinite(std::string_view text, const Place& place);
 
 /// The whole text as an integer within [low, high]. Error: kParse.

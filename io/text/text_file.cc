@@ -15,7 +15,7 @@
 namespace sextant {
 namespace {
 
-// Closes on every way out.
+// Closes the file when it goes out of scope.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -54,7 +54,7 @@ bool WriteAll(int fd, std::string_view text) {
 }  // namespace
 
 Expected<std::string> ReadTextFile(const std::filesystem::path& path) {
-  // Without O_NONBLOCK a pipe that nobody writes would hang here.
+  // Without O_NONBLOCK, opening a pipe without a writer would block.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
   if (file.get() < 0 || fstat(file.get(), &status) != 0) return SystemError("read", path);
@@ -133,7 +133,7 @@ Expected<void> AtomicFileWriter::Commit() {
 
 Expected<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view text) {
   SEXTANT_ASSIGN_OR_RETURN(AtomicFileWriter writer, AtomicFileWriter::Open(path));
-  if (Expected<void> ok = writer.Append(text); !ok) return ok;
+  SEXTANT_RETURN_IF_ERROR(writer.Append(text));
   return writer.Commit();
 }
 

@@ -14,19 +14,20 @@
 
 namespace sextant {
 
-/// Larger files are refused: four million pairs fit, a scan given by mistake does not fill memory.
+/// Larger files are refused. The limit admits four million pairs and protects the memory when a
+/// large scan is given by mistake.
 inline constexpr std::size_t kMaxTextBytes = std::size_t{256} << 20;
 
 /// The bytes of a regular file. Error: kIo, with the path and the system's reason.
 Expected<std::string> ReadTextFile(const std::filesystem::path& path);
 
-/// Writes the file whole or not at all: a temporary in the same folder, flushed to the disk, then
-/// renamed over `path`. Keeps the permissions of a file that it replaces and follows links;
-/// devices and pipes are written directly. Error: kIo; nothing is left behind then.
+/// Writes the whole file or nothing: a temporary file in the same folder is flushed to the disk and
+/// renamed to `path`. Keeps the permissions of a file that it replaces and follows links; devices
+/// and pipes are written directly. Error: kIo; no partial file remains.
 Expected<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view text);
 
-/// As WriteFileAtomically, for what is too large to stand in memory: the file is there once
-/// Commit() has returned, and nothing of it is left where that is not reached. Errors: kIo.
+/// As WriteFileAtomically, for content that does not fit in memory: the file appears when Commit()
+/// returns; without Commit() nothing remains of it. Errors: kIo.
 class AtomicFileWriter {
  public:
   static Expected<AtomicFileWriter> Open(const std::filesystem::path& path);
@@ -41,13 +42,13 @@ class AtomicFileWriter {
   explicit AtomicFileWriter(std::filesystem::path path) : path_(std::move(path)) {}
 
   std::filesystem::path path_;
-  std::filesystem::path target_;     ///< Of links.
+  std::filesystem::path target_;     ///< `path_` with links resolved.
   std::filesystem::path temporary_;  ///< Empty for devices and pipes.
-  std::optional<mode_t> mode_;       ///< Of the file that is replaced.
+  std::optional<mode_t> mode_;       ///< Permissions of the file that is replaced.
   int fd_ = -1;
 };
 
-/// parse(text, name) of the file's content; the path as given names it in messages.
+/// Reads the file and returns parse(content, path); error messages name the path as given.
 template <class Parse>
 std::invoke_result_t<Parse, std::string_view, std::string> ReadWith(
     const std::filesystem::path& path, Parse parse) {

@@ -66,7 +66,7 @@ bool YamlFields::IsSequence(const YamlNode& node, std::string_view what) {
 const YamlNode& YamlFields::Require(const YamlNode& map, std::string_view key) {
   if (!ok()) return kNothing;
   if (const YamlNode* found = map.Find(key)) return *found;
-  Fail(map.line, key, "expected this key, it is not there");
+  Fail(map.line, key, "expected this key, but it is missing");
   return kNothing;
 }
 
@@ -82,13 +82,13 @@ double YamlFields::Real(const YamlNode& node, std::string_view name) {
   return 0.0;
 }
 
-double YamlFields::RealAt(const YamlNode& map, std::string_view key, double otherwise) {
+double YamlFields::RealAt(const YamlNode& map, std::string_view key, double default_value) {
   const YamlNode* found = ok() ? map.Find(key) : nullptr;
-  return found == nullptr ? otherwise : Real(*found, key);
+  return found == nullptr ? default_value : Real(*found, key);
 }
 
-double YamlFields::NonNegativeAt(const YamlNode& map, std::string_view key, double otherwise) {
-  const double value = RealAt(map, key, otherwise);
+double YamlFields::NonNegativeAt(const YamlNode& map, std::string_view key, double default_value) {
+  const double value = RealAt(map, key, default_value);
   if (value < 0.0) {
     Fail(map.Find(key)->line, key, fmt::format("expected zero or more, got {}", value));
   }
@@ -106,8 +106,8 @@ int YamlFields::IntegerAt(const YamlNode& map, std::string_view key, int low, in
 }
 
 int YamlFields::IntegerAt(const YamlNode& map, std::string_view key, int low, int high,
-                          int otherwise) {
-  return ok() && map.Find(key) != nullptr ? IntegerAt(map, key, low, high) : otherwise;
+                          int default_value) {
+  return ok() && map.Find(key) != nullptr ? IntegerAt(map, key, low, high) : default_value;
 }
 
 std::string YamlFields::TextAt(const YamlNode& map, std::string_view key) {
@@ -129,12 +129,12 @@ void YamlFields::Reals(const YamlNode& node, std::string_view name, std::span<do
 }
 
 std::vector<double> YamlFields::RealList(const YamlNode& node, std::string_view name,
-                                         std::size_t most) {
+                                         std::size_t max_size) {
   std::vector<double> values;
   if (!IsSequence(node, name)) return values;
-  if (node.items.size() > most) {
+  if (node.items.size() > max_size) {
     Fail(node.line, name,
-         fmt::format("expected at most {} numbers, got {}", most, node.items.size()));
+         fmt::format("expected at most {} numbers, got {}", max_size, node.items.size()));
     return values;
   }
   for (const YamlNode& item : node.items) values.push_back(Real(item, name));
@@ -142,9 +142,9 @@ std::vector<double> YamlFields::RealList(const YamlNode& node, std::string_view 
 }
 
 Eigen::Vector2d YamlFields::Point2At(const YamlNode& map, std::string_view key,
-                                     const Eigen::Vector2d& otherwise) {
+                                     const Eigen::Vector2d& default_value) {
   const YamlNode* found = ok() ? map.Find(key) : nullptr;
-  if (found == nullptr) return otherwise;
+  if (found == nullptr) return default_value;
   Eigen::Vector2d point = Eigen::Vector2d::Zero();
   Reals(*found, key, {point.data(), 2});
   return point;

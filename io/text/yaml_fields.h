@@ -14,35 +14,37 @@
 
 namespace sextant {
 
-/// Takes values out of a YamlNode and keeps the first error, as LineReader does for lines: after
-/// an error every call returns zeros or nothing.
+/// Reads values from a YamlNode and keeps the first error, as LineReader does for lines: after an
+/// error every call returns zeros or empty values.
 class YamlFields {
  public:
   explicit YamlFields(std::string file) : file_(std::move(file)) {}
 
-  /// Whether `node` is a map with no keys but `known`; an unknown key names the nearest known.
+  /// Whether `node` is a map with only the keys `known`; the error for an unknown key suggests the
+  /// most similar known one.
   bool IsMap(const YamlNode& node, std::string_view what, std::span<const std::string> known);
   bool IsSequence(const YamlNode& node, std::string_view what);
 
-  /// The value of a key of a map; an error where it is absent.
+  /// The value of a key of a map; an error if it is absent.
   const YamlNode& Require(const YamlNode& map, std::string_view key);
 
   double Real(const YamlNode& node, std::string_view name);
   double RealAt(const YamlNode& map, std::string_view key) { return Real(Require(map, key), key); }
-  double RealAt(const YamlNode& map, std::string_view key, double otherwise);
-  /// As RealAt; an error below zero.
-  double NonNegativeAt(const YamlNode& map, std::string_view key, double otherwise);
+  /// With a default value, the key may be absent.
+  double RealAt(const YamlNode& map, std::string_view key, double default_value);
+  /// As RealAt; a negative number is an error.
+  double NonNegativeAt(const YamlNode& map, std::string_view key, double default_value);
   int IntegerAt(const YamlNode& map, std::string_view key, int low, int high);
-  int IntegerAt(const YamlNode& map, std::string_view key, int low, int high, int otherwise);
+  int IntegerAt(const YamlNode& map, std::string_view key, int low, int high, int default_value);
   std::string TextAt(const YamlNode& map, std::string_view key);
 
   /// A sequence of exactly values.size() numbers.
   void Reals(const YamlNode& node, std::string_view name, std::span<double> values);
-  /// A sequence of at most `most` numbers.
-  std::vector<double> RealList(const YamlNode& node, std::string_view name, std::size_t most);
+  /// A sequence of at most `max_size` numbers.
+  std::vector<double> RealList(const YamlNode& node, std::string_view name, std::size_t max_size);
   Eigen::Vector3d Point(const YamlNode& node, std::string_view name);
   Eigen::Vector2d Point2At(const YamlNode& map, std::string_view key,
-                           const Eigen::Vector2d& otherwise);
+                           const Eigen::Vector2d& default_value);
   Eigen::Vector3d PointAt(const YamlNode& map, std::string_view key) {
     return Point(Require(map, key), key);
   }

@@ -2,6 +2,8 @@
 #include "io/text/yaml_node.h"
 
 #include <fmt/core.h>
+#include <yaml-cpp/emitter.h>
+#include <yaml-cpp/emittermanip.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
@@ -14,7 +16,7 @@
 namespace sextant {
 namespace {
 
-// Builds the tree from the parser's events; refuses by the exception that the parser itself uses.
+// Builds the tree from the parser's events; reports errors by the exception of the parser itself.
 class TreeBuilder final : public YAML::EventHandler {
  public:
   YamlNode TakeRoot() { return std::move(root_); }
@@ -53,7 +55,7 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void AddKey(const YAML::Mark& mark, YamlNode& map, const std::string& key) {
     if (std::find(map.keys.begin(), map.keys.end(), key) != map.keys.end()) {
-      Refuse(mark, "the key " + Quoted(key) + " stands here a second time");
+      Refuse(mark, "the key " + Quoted(key) + " appears twice");
     }
     constexpr std::size_t kMaxKeys = 256;
     if (map.keys.size() == kMaxKeys) Refuse(mark, "more than 256 keys in one map");
@@ -63,7 +65,7 @@ class TreeBuilder final : public YAML::EventHandler {
   YamlNode* Add(const YAML::Mark& mark, YamlNode::Kind kind, const std::string& text) {
     YamlNode* node = &root_;
     if (!open_.empty()) {
-      // Only the last item of a node is ever open, so its address holds until it is closed.
+      // Only the last item of a node is ever open, so its address stays valid until it is closed.
       YamlNode& parent = *open_.back();
       if (ExpectsKey(parent)) {
         if (kind != YamlNode::Kind::kText) Refuse(mark, "expected a plain key");
@@ -96,13 +98,19 @@ const YamlNode* YamlNode::Find(std::string_view key) const {
   return found == keys.end() ? nullptr : &items[static_cast<std::size_t>(found - keys.begin())];
 }
 
+std::string YamlQuoted(const std::string& text) {
+  YAML::Emitter emitter;
+  emitter << YAML::DoubleQuoted << text;
+  return emitter.c_str();
+}
+
 Expected<YamlNode> ParseYaml(const std::string& text, const std::string& file) {
   if (text.size() > kMaxYamlBytes) {
     return MakeError(ErrorCode::kParse,
                      fmt::format("{}: expected at most {} bytes of YAML, got {}",
                                  ToString(Place{.file = file}), kMaxYamlBytes, text.size()));
   }
-  // yaml-cpp takes a NUL for the end of the file.
+  // yaml-cpp treats a zero byte as the end of the file.
   if (text.find('\0') != std::string::npos) {
     const auto line =
         std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find('\0')), '\n');

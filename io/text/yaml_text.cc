@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/text/yaml_text.h"
 
-#include <yaml-cpp/emitter.h>
-#include <yaml-cpp/emittermanip.h>
-
 namespace sextant {
 namespace {
 
@@ -15,12 +12,6 @@ std::string Quaternion(const Eigen::Quaterniond& q) {
 
 std::string YamlList(std::span<const double> values) {
   return fmt::format("[{}]", fmt::join(values, ", "));
-}
-
-std::string YamlQuoted(const std::string& text) {
-  YAML::Emitter emitter;
-  emitter << YAML::DoubleQuoted << text;
-  return emitter.c_str();
 }
 
 void WriteYamlPose(YamlText& out, const std::string& indent, const Rigid3d& pose) {

@@ -10,10 +10,12 @@
 #include <utility>
 
 #include "geometry/rigid3d.h"
+#include "io/text/yaml_node.h"
 
 namespace sextant {
 
-/// Lines of YAML, numbers in the fewest digits that read back to the same bits (at most 17).
+/// Collects lines of YAML; numbers are written in the shortest form that reads back to the same
+/// bits (at most 17 digits).
 class YamlText {
  public:
   template <class... Values>
@@ -35,10 +37,7 @@ std::string YamlList(const Eigen::Matrix<double, kSize, 1>& values) {
   return YamlList(std::span<const double>(values.data(), static_cast<std::size_t>(values.size())));
 }
 
-/// In double quotes, with what needs it escaped.
-std::string YamlQuoted(const std::string& text);
-
-/// The lines translation_m and quaternion_wxyz, each after `indent`.
+/// Writes the lines translation_m and quaternion_wxyz, each after `indent`.
 void WriteYamlPose(YamlText& out, const std::string& indent, const Rigid3d& pose);
 
 /// "{translation_m: [..], quaternion_wxyz: [..]}".

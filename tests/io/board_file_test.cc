@@ -152,15 +152,15 @@ INSTANTIATE_TEST_SUITE_P(
                 BoardWith("    checker: {inner_columns: 1, inner_rows: 3, square_m: 0.1}\n"),
                 kParse, "b:5: checker: inner_columns: expected 2 to 1000"},
         BadText{"BoardTwice", BoardWith("  - {id: 0, top_right_m: 1, right_bottom_m: 1}\n"), kParse,
-                "b:5: id: the board of line 2 has the id 0 already"},
+                "b:5: id: the board on line 2 already has the id 0"},
         BadText{"TagOnTwoBoards",
                 BoardWith("    tags:\n" + Tag(1, "[0, 0]")) +
                     "  - id: 1\n    top_right_m: 1\n    right_bottom_m: 1\n    tags:\n" +
                     Tag(1, "[0, 0]"),
-                kParse, "b:11: tag 0: id: the id 1 of 'tag36h11' is on board 0 already"},
+                kParse, "b:11: tag 0: id: the id 1 of 'tag36h11' is already on board 0"},
         BadText{"MarkersOfThreeBoards",
                 "3\n" + std::string("48\n46\n4\n5\n20\n48\n46\n4\n5\n20\n") + "48\n46\n4\n5\n20\n",
-                ErrorCode::kInvalidInput, "expected the id of one tag a board, 3 in all, got 2"},
+                ErrorCode::kInvalidInput, "expected one tag id per board, 3 in all, got 2"},
         BadText{"MarkerLargerThanItsBoard", "2\n48\n46\n4\n5\n20\n48\n46\n4\n5\n43\n",
                 ErrorCode::kInvalidInput, "b: board 2: center_in_board_m: it reaches over"}),
     [](const auto& bad) { return bad.param.name; });

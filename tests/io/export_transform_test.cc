@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each export is parsed here by what its format says, not by our readers, and maps a point.
+// Parses each export according to its format, not by our readers, and maps a point with it.
 #include "io/export/export_transform.h"
 
 #include <gmock/gmock.h>
@@ -183,7 +183,7 @@ TEST(ExportTransform, KittiProjectsAsItsDevkitDoes) {
   EXPECT_NEAR(pixel.x(), camera.fx_px * InCam().x() / InCam().z() + camera.cx_px, 1e-9);
   EXPECT_NEAR(pixel.y(), camera.fy_px * InCam().y() / InCam().z() + camera.cy_px, 1e-9);
   EXPECT_THAT(text, HasSubstr("point_in_cam = Tr_velo_to_cam * point_in_lidar"));
-  EXPECT_THAT(text, HasSubstr("from which the distortion was taken"));
+  EXPECT_THAT(text, HasSubstr("for undistorted images"));
 }
 
 TEST(ExportTransform, PlainMatrix) {

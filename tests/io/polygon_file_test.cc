@@ -18,7 +18,7 @@ using ErrorCode::kParse;
 
 constexpr const char* kHeader = R"(sextant_polygons: 1
 camera: {model: pinhole, width_px: 640, height_px: 480, fx_px: 320, fy_px: 320, cx_px: 319.5, cy_px: 239.5}
-cam_from_lidar: {translation_m: [0, 0.1, -0.2], quaternion_wxyz: [0.5, -0.5, 0.5, -0.5]}
+cam_from_lidar: {translation_m: [0, 0.1, -0.2], quaternion_wxyz: [0.5, 0.5, -0.5, 0.5]}
 )";
 
 Eigen::Vector2d Pixel(Random& random) {
@@ -133,14 +133,14 @@ INSTANTIATE_TEST_SUITE_P(
                 kParse, "p:5: edges: the quadrilateral crosses itself"},
         BadText{"BoardTwice",
                 PolygonsWith("boards:\n  - {id: 7, edges: []}\n  - {id: 7, edges: []}\n"), kParse,
-                "p:6: id: board 7 is there twice"},
+                "p:6: id: board 7 appears twice"},
         BadText{"CornerOutOfRange",
                 PolygonsWith("corners:\n  - {board: 0, corner: 8, pixel: [1, 2]}\n"), kParse,
                 "p:5: corner"},
         BadText{"CornerTwice",
                 PolygonsWith("corners:\n  - {board: 0, corner: 1, pixel: [1, 2]}\n"
                              "  - {board: 0, corner: 1, pixel: [3, 4]}\n"),
-                kParse, "p:6: corner: corner 1 of board 0 is there twice"},
+                kParse, "p:6: corner: corner 1 of board 0 appears twice"},
         BadText{"FourUnfinished", PolygonsWith("unfinished: [[0, 0], [0, 1], [1, 1], [1, 0]]\n"),
                 kParse, "p:4: unfinished: expected at most 3, got 4"}),
     [](const auto& bad) { return bad.param.name; });

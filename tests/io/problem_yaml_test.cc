@@ -205,7 +205,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"MissingKey", Problem("pairs_3d3d:\n  - {point_in_cam: [1,2,3]}"), kParse,
                 "p.yaml:3: point_in_lidar: expected this key"},
         BadText{"RepeatedKey", Problem("comment: a\ncomment: b"), kParse,
-                "p.yaml:3: not valid YAML: the key 'comment' stands here a second time"},
+                "p.yaml:3: not valid YAML: the key 'comment' appears twice"},
         BadText{"TwoNumbers",
                 Problem("pairs_3d3d:\n  - {point_in_cam: [1,2], point_in_lidar: [1,2,3]}"), kParse,
                 "p.yaml:3: point_in_cam: expected 3 numbers, got 2"},

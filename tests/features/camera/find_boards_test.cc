@@ -86,7 +86,7 @@ TEST(FindBoards, CornersInTheCameraFrameAreWithinTheirCovariance) {
     const BoardFinder finder = *BoardFinder::Make(boards, photo.camera);
     const Expected<SeenBoards> seen = finder.Find(photo.image);
     ASSERT_TRUE(seen) << seen.error().message;
-    EXPECT_TRUE(seen->strangers.empty());
+    EXPECT_TRUE(seen->other_tags.empty());
     ASSERT_EQ(seen->boards[0].tags.size(), 4U);
     for (const SeenTag& tag : seen->boards[0].tags) EXPECT_TRUE(tag.refined);
     for (std::size_t b = 0; b < 2; ++b) {
@@ -142,7 +142,7 @@ TEST(FindBoards, AmbiguityIsReportedAndResolvedByOtherTags) {
   const SeenBoards alone = find(one);
   ASSERT_TRUE(alone.boards[0].pose && *alone.boards[0].pose);
   EXPECT_TRUE((*alone.boards[0].pose)->ambiguous_with);
-  EXPECT_EQ(alone.strangers.size(), 1U);
+  EXPECT_EQ(alone.other_tags.size(), 1U);
   const SeenBoards both = find(two);
   ASSERT_TRUE(both.boards[0].pose && *both.boards[0].pose);
   EXPECT_FALSE((*both.boards[0].pose)->ambiguous_with);
@@ -205,7 +205,7 @@ TEST(FindBoards, RefusesWhatCannotBeLookedFor) {
   EXPECT_THAT(message({HollowBoard(), other}), HasSubstr("on two boards"));
   Board aruco = bare;
   aruco.tags = {{.family = "aruco_original", .id = 26, .edge_m = 0.2}};
-  EXPECT_THAT(message({aruco}, "apriltag"), HasSubstr("does not read tags of aruco_original"));
+  EXPECT_THAT(message({aruco}, "apriltag"), HasSubstr("does not detect tags of aruco_original"));
   aruco.tags[0].family = "aruco_orignal";
   EXPECT_THAT(message({aruco}), HasSubstr("did you mean 'aruco_original'?"));
   Camera camera = *FindCameraModel("zed_left");
@@ -241,7 +241,7 @@ TEST(ExplainMissing, NamesTheCause) {
   EXPECT_EQ(ExplainMissing(changed, tag, &photo.camera, &known).cause, MissingCause::kCovered);
   const MissingTag seen = ExplainMissing(photo.image, tag, &photo.camera, &known);
   EXPECT_EQ(seen.cause, MissingCause::kOverlooked);
-  EXPECT_THAT(seen.text, HasSubstr("36 of its 36 cells are read rightly"));
+  EXPECT_THAT(seen.text, HasSubstr("36 of its 36 cells are read correctly"));
   BoardPose far = known;
   far.cam_from_board.translation.z() = 30.0;
   EXPECT_EQ(ExplainMissing(photo.image, tag, &photo.camera, &far).cause, MissingCause::kTooSmall);

@@ -130,7 +130,7 @@ TEST(PolygonEdges, AnOblongBoardDrawnFromTheWrongEdgeIsRefused) {
   const auto wrong = PatchesFromPolygons(rings, marks, BoardsIn(scene));
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error().code, ErrorCode::kInvalidInput);
-  EXPECT_THAT(wrong.error().message, HasSubstr("fit the other way round"));
+  EXPECT_THAT(wrong.error().message, HasSubstr("fit in exchanged order"));
 }
 
 // A strip in the board's own plane that goes on over its lower right edge, as a stand does: the

@@ -111,7 +111,7 @@ TEST(Ros2, MessagesThatLieAreRefusedWithTheField) {
   };
   EXPECT_THAT(refusal(""),
               HasSubstr("/points at 0.000000009 s: encapsulation: expected plain CDR"));
-  EXPECT_THAT(refusal(std::string(4, '\0')), HasSubstr("header.stamp: goes beyond the message"));
+  EXPECT_THAT(refusal(std::string(4, '\0')), HasSubstr("header.stamp: extends beyond the message"));
   // Little endian: stamp, frame "", height 1, width 1, then 2^31 fields.
   std::string lying(
       "\0\1\0\0"

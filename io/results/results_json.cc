@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "io/results/results_json.h"
+
 #include <fmt/core.h>
 
 #include <array>
@@ -8,21 +10,109 @@
 #include <optional>
 
 #include "io/blocks/camera_block.h"
-#include "io/results/results_json.h"
+#include "io/blocks/json_blocks.h"
 #include "io/text/number_text.h"
 #include "io/text/text_file.h"
 
 namespace sextant {
 namespace {
 
+// Keeps the keys in the order in which they are documented.
+using Json = nlohmann::ordered_json;
+
+Json MatrixRows(const Matrix6d& matrix) {
+  Json rows = Json::array();
+  for (int i = 0; i < 6; ++i) {
+    rows.push_back(std::vector<double>(matrix.row(i).begin(), matrix.row(i).end()));
+  }
+  return rows;
+}
+
+template <class T>
+Json OrNull(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json Poses(const std::vector<Rigid3d>& poses) {
+  Json list = Json::array();
+  for (const Rigid3d& pose : poses) list.push_back(PoseJson(pose));
+  return list;
+}
+
+Json Numbers(const std::vector<EstimatedNumber>& numbers) {
+  Json list = Json::array();
+  for (const EstimatedNumber& number : numbers) {
+    list.push_back(
+        {{"name", number.name}, {"value", number.value}, {"sigma", OrNull(number.sigma)}});
+  }
+  return list;
+}
+
+Json CameraEstimateJson(const CameraEstimate& estimate) {
+  Json json = CameraJson(estimate.camera);
+  json["estimated"] = Numbers(estimate.estimated);
+  return json;
+}
+
+Json BoardViews(const std::vector<BoardViewFit>& fits) {
+  const auto count = [](const ObservationCount& of) { return Json::array({of.used, of.of}); };
+  Json list = Json::array();
+  for (const BoardViewFit& fit : fits) {
+    list.push_back({{"view", fit.view},
+                    {"board", fit.board},
+                    {"used", fit.used},
+                    {"cam_from_board", PoseJson(fit.cam_from_board)},
+                    {"printed", count(fit.printed)},
+                    {"face", count(fit.face)},
+                    {"edges", count(fit.edges)},
+                    {"rms", fit.rms}});
+  }
+  return list;
+}
+
+// Every result has every key, so that tools need not check for their presence.
+Json Result(const SolverResult& result) {
+  const SolveReport* report = result.report ? &*result.report : nullptr;
+  Json json;
+  json["solver"] = result.solver;
+  json["ok"] = report != nullptr;
+  json["error"] = report ? Json(nullptr) : Json(result.report.error().message);
+  json["error_code"] = report ? Json(nullptr) : Json(ToString(result.report.error().code));
+  if (report == nullptr) {
+    for (const char* key :
+         {"cam_from_lidar", "covariance", "camera", "extras", "warnings", "board_views", "rmse_m",
+          "rmse_px", "per_pair_m", "per_pair_px", "inliers", "alternatives", "iterations",
+          "termination", "wall_time_us"}) {
+      json[key] = nullptr;
+    }
+    return json;
+  }
+  json["cam_from_lidar"] = PoseJson(report->cam_from_lidar);
+  json["covariance"] = report->covariance ? MatrixRows(*report->covariance) : Json(nullptr);
+  json["camera"] = report->camera ? CameraEstimateJson(*report->camera) : Json(nullptr);
+  json["extras"] = Numbers(report->extras);
+  json["warnings"] = report->warnings;
+  json["board_views"] = BoardViews(report->board_views);
+  json["rmse_m"] = OrNull(report->evaluation.rmse_m);
+  json["rmse_px"] = OrNull(report->evaluation.rmse_px);
+  json["per_pair_m"] = report->evaluation.per_pair_m;
+  json["per_pair_px"] = report->evaluation.per_pair_px;
+  json["inliers"] = report->inliers;
+  json["alternatives"] = Poses(report->alternatives);
+  json["iterations"] = report->iterations;
+  json["termination"] = ToString(report->termination);
+  json["wall_time_us"] = report->wall_time_us;
+  return json;
+}
+
 using ParsedJson = nlohmann::json;
 
-// A wrong value, reported as the JSON library reports a wrong type.
+// Reports a wrong value by the exception that the JSON library throws for a wrong type.
 [[noreturn]] void Refuse(const std::string& message) {
   throw nlohmann::detail::other_error::create(501, message, nullptr);
 }
 
-// The library's own message of a wrong type does not name the key.
+// Adds the name of the key to the library's message for a wrong type.
 template <class T>
 T Get(const ParsedJson& map, const char* key) {
   const ParsedJson& value = map.at(key);
@@ -139,7 +229,7 @@ SolveReport ParseReport(const ParsedJson& json) {
   report.solver = Get<std::string>(json, "solver");
   report.cam_from_lidar = ParsePose(json.at("cam_from_lidar"));
   report.covariance = GetCovariance(json);
-  // Files written before these keys were there have none.
+  // Older files lack these keys.
   if (json.contains("camera") && !json.at("camera").is_null()) {
     report.camera = ParseCameraEstimate(json.at("camera"));
   }
@@ -189,6 +279,22 @@ ResultFile ParseFile(const ParsedJson& json) {
 }
 
 }  // namespace
+
+std::string FormatResults(const ResultFile& results) {
+  const ResultInput& input = results.input;
+  Json json;
+  json["sextant"] = results.version;
+  json["input"] = {{"path", input.path},
+                   {"format", input.format},
+                   {"pairs_3d3d", input.pairs_3d3d},
+                   {"pairs_2d3d", input.pairs_2d3d},
+                   {"points_in_cam", input.points_in_cam},
+                   {"points_in_lidar", input.points_in_lidar}};
+  json["results"] = Json::array();
+  for (const SolverResult& result : results.results) json["results"].push_back(Result(result));
+  // A path may hold bytes that are not UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 Expected<ResultFile> ReadResults(const std::filesystem::path& path) {
   return ReadWith(path, ParseResults);

@@ -3,7 +3,7 @@
 
 namespace sextant {
 
-/// Of boards, tags and views: leaves room for sums of two in an int.
+/// The largest id of a board, tag or view that is read; the sum of two ids still fits an int.
 inline constexpr int kMaxId = 1'000'000'000;
 
 }  // namespace sextant

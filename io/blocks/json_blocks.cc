@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/blocks/board_json.h"
+#include "io/blocks/json_blocks.h"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "base/units.h"
+#include "io/blocks/camera_block.h"
 #include "io/text/degrees.h"
 
 namespace sextant {
@@ -21,6 +24,35 @@ Json TagJson(const BoardTag& tag) {
 }
 
 }  // namespace
+
+Json PoseJson(const Rigid3d& pose) {
+  const Eigen::Quaterniond& q = pose.rotation;
+  const Eigen::Vector3d& t = pose.translation;
+  const EulerZyx euler = ToEulerZyx(q);
+  const Eigen::Matrix4d matrix = pose.Matrix();
+  Json rows = Json::array();
+  for (int i = 0; i < 4; ++i) {
+    rows.push_back({matrix(i, 0), matrix(i, 1), matrix(i, 2), matrix(i, 3)});
+  }
+  return {
+      {"matrix", std::move(rows)},
+      {"translation_m", {t.x(), t.y(), t.z()}},
+      {"quaternion_wxyz", {q.w(), q.x(), q.y(), q.z()}},
+      {"euler_zyx_deg",
+       {euler.yaw * kDegPerRad, euler.pitch * kDegPerRad, euler.roll * kDegPerRad}},
+  };
+}
+
+Json CameraJson(const Camera& camera) {
+  return {{"model", CameraModelName(camera.model)},
+          {"width_px", camera.width_px},
+          {"height_px", camera.height_px},
+          {"fx_px", camera.fx_px},
+          {"fy_px", camera.fy_px},
+          {"cx_px", camera.cx_px},
+          {"cy_px", camera.cy_px},
+          {"distortion", camera.distortion}};
+}
 
 Json BoardJson(const Board& board) {
   Json json = {{"id", board.id}};
