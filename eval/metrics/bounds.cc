@@ -4,7 +4,6 @@
 #include <Eigen/Cholesky>
 #include <cassert>
 #include <cmath>
-#include <utility>
 
 #include "geometry/pair_noise.h"
 #include "geometry/symmetric.h"
@@ -55,48 +54,48 @@ Expected<Matrix6d> CramerRaoBound(const CalibrationProblem& problem,
   }
   for (const Pair2d3d& pair : problem.pairs_2d3d) {
     if (!HasKnownNoise(pair)) return no_noise();
-    SEXTANT_ASSIGN_OR_RETURN(const void ok,
-                             AddInformation(problem, true_cam_from_lidar, pair, information));
-    const std::optional<Matrix6d> bound = InvertSymmetric(information);
-    if (!bound) {
-      return MakeError(ErrorCode::kDegenerate,
-                       "the pairs leave a direction of the pose undetermined");
-    }
-    return *bound;
+    SEXTANT_RETURN_IF_ERROR(AddInformation(problem, true_cam_from_lidar, pair, information));
   }
+  const std::optional<Matrix6d> bound = InvertSymmetric(information);
+  if (!bound) {
+    return MakeError(ErrorCode::kDegenerate,
+                     "the pairs leave a direction of the pose undetermined");
+  }
+  return *bound;
+}
 
-  Expected<Matrix6d> CramerRaoBoundOfViews(const CalibrationProblem& problem,
-                                           const Rigid3d& true_cam_from_lidar,
-                                           std::span<const Rigid3d> true_cam_from_board) {
-    assert(true_cam_from_board.size() == problem.board_views.size());
-    if (problem.board_views.empty()) {
-      return MakeError(ErrorCode::kMissingData,
-                       "the bound of raw data needs views of boards, and the problem has none");
-    }
-    if (!problem.camera) {
-      return MakeError(ErrorCode::kInvalidInput, "the bound of raw data needs the camera");
-    }
-    SEXTANT_RETURN_IF_ERROR(CheckBoardViews(problem.board_views, problem.boards));
-    Matrix6d sum = Matrix6d::Zero();
-    for (std::size_t i = 0; i < problem.board_views.size(); ++i) {
-      const BoardView& view = problem.board_views[i];
-      Expected<Matrix6d> information =
-          InformationOfView(view, *FindBoard(problem.boards, view.board), *problem.camera,
-                            true_cam_from_lidar, true_cam_from_board[i]);
-      if (!information) return information;
-      sum += *information;
-    }
-    const std::optional<Matrix6d> bound = InvertSymmetric(sum);
-    if (!bound) {
-      return MakeError(ErrorCode::kDegenerate,
-                       "the views leave a direction of the pose undetermined");
-    }
-    return *bound;
+Expected<Matrix6d> CramerRaoBoundOfViews(const CalibrationProblem& problem,
+                                         const Rigid3d& true_cam_from_lidar,
+                                         std::span<const Rigid3d> true_cam_from_board) {
+  assert(true_cam_from_board.size() == problem.board_views.size());
+  if (problem.board_views.empty()) {
+    return MakeError(ErrorCode::kMissingData,
+                     "the bound of raw data needs views of boards, and the problem has none");
   }
+  if (!problem.camera) {
+    return MakeError(ErrorCode::kInvalidInput, "the bound of raw data needs the camera");
+  }
+  SEXTANT_RETURN_IF_ERROR(CheckBoardViews(problem.board_views, problem.boards));
+  Matrix6d sum = Matrix6d::Zero();
+  for (std::size_t i = 0; i < problem.board_views.size(); ++i) {
+    const BoardView& view = problem.board_views[i];
+    SEXTANT_ASSIGN_OR_RETURN(
+        const Matrix6d information,
+        InformationOfView(view, *FindBoard(problem.boards, view.board), *problem.camera,
+                          true_cam_from_lidar, true_cam_from_board[i]));
+    sum += information;
+  }
+  const std::optional<Matrix6d> bound = InvertSymmetric(sum);
+  if (!bound) {
+    return MakeError(ErrorCode::kDegenerate,
+                     "the views leave a direction of the pose undetermined");
+  }
+  return *bound;
+}
 
-  RmsError RmsOf(const Matrix6d& covariance) {
-    return {std::sqrt(covariance.topLeftCorner<3, 3>().trace()),
-            std::sqrt(covariance.bottomRightCorner<3, 3>().trace())};
-  }
+RmsError RmsOf(const Matrix6d& covariance) {
+  return {std::sqrt(covariance.topLeftCorner<3, 3>().trace()),
+          std::sqrt(covariance.bottomRightCorner<3, 3>().trace())};
+}
 
 }  // namespace sextant

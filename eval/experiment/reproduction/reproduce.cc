@@ -75,10 +75,9 @@ Expected<Reproduction> Reproduce(const ReproduceSettings& settings,
     reproduction.claims.push_back(std::move(judged));
   }
   const std::string command = fmt::format("sextant reproduce{}", settings.quick ? " --quick" : "");
-  SEXTANT_ASSIGN_OR_RETURN(const void written,
-                           WriteFileAtomically(settings.out / "REPRODUCTION.md",
-                                               FormatReproduction(file, reproduction.claims,
-                                                                  reproduction.skipped, command)));
+  SEXTANT_RETURN_IF_ERROR(WriteFileAtomically(
+      settings.out / "REPRODUCTION.md",
+      FormatReproduction(file, reproduction.claims, reproduction.skipped, command)));
   reproduction.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return reproduction;
