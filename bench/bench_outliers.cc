@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "eval/metrics/outlier_study.h"
+#include "bench/outlier_study.h"
 #include "solvers/core/registry.h"
 
 #ifdef SEXTANT_BENCH_OPENCV

@@ -48,15 +48,16 @@ void AddWalls(Scene& scene) {
 
 }  // namespace
 
-SceneBoard Hang(const Board& board, const Hanging& hanging) {
-  const double azimuth = hanging.azimuth_deg * kRadPerDeg;
+SceneBoard PlaceBoard(const Board& board, const BoardPlacement& placement) {
+  const double azimuth = placement.azimuth_deg * kRadPerDeg;
   SceneBoard placed;
   placed.board = board;
-  placed.world_from_board.translation = At(azimuth, hanging.distance_m, hanging.height_m);
+  placed.world_from_board.translation = At(azimuth, placement.distance_m, placement.height_m);
   placed.world_from_board.rotation =
-      Facing(azimuth) * Eigen::AngleAxisd(hanging.yaw_deg * kRadPerDeg, Eigen::Vector3d::UnitY()) *
-      Eigen::AngleAxisd(hanging.pitch_deg * kRadPerDeg, Eigen::Vector3d::UnitX()) *
-      Eigen::AngleAxisd(hanging.turn_deg * kRadPerDeg, Eigen::Vector3d::UnitZ());
+      Facing(azimuth) *
+      Eigen::AngleAxisd(placement.yaw_deg * kRadPerDeg, Eigen::Vector3d::UnitY()) *
+      Eigen::AngleAxisd(placement.pitch_deg * kRadPerDeg, Eigen::Vector3d::UnitX()) *
+      Eigen::AngleAxisd(placement.turn_deg * kRadPerDeg, Eigen::Vector3d::UnitZ());
   return placed;
 }
 
@@ -97,12 +98,12 @@ BoardField FieldOf(const LidarModel& model, double distance_m) {
     // Side by side, each no wider than half the view.
     field.distance_m =
         std::max(distance_m, 1.1 * kHalfDiagonal_m / std::tan(0.5 * half_view_deg * kRadPerDeg));
-    field.least_azimuth_deg = reach_deg(0.95 * field.distance_m);
-    field.most_azimuth_deg = half_view_deg - field.least_azimuth_deg;
+    field.min_azimuth_deg = reach_deg(0.95 * field.distance_m);
+    field.max_azimuth_deg = half_view_deg - field.min_azimuth_deg;
     return field;
   }
   // Side by side too: nearer boards would reach into each other.
-  field.least_azimuth_deg = std::max(field.least_azimuth_deg, reach_deg(0.95 * distance_m));
+  field.min_azimuth_deg = std::max(field.min_azimuth_deg, reach_deg(0.95 * distance_m));
   const double low_deg = model.rings.front().elevation_rad / kRadPerDeg;
   const double high_deg = model.rings.back().elevation_rad / kRadPerDeg;
   const double reach = reach_deg(0.95 * distance_m);
@@ -125,16 +126,16 @@ Scene TwoBoardsInRoom(const BoardField& field, Random& random) {
     board.id = i;
     board.top_right_m = i == 0 ? 0.484 : 0.490;
     board.right_bottom_m = 0.468;
-    Hanging hanging;
-    hanging.azimuth_deg =
-        (i == 0 ? 1.0 : -1.0) * random.Uniform(field.least_azimuth_deg, field.most_azimuth_deg);
-    hanging.distance_m = field.distance_m * random.Uniform(0.95, 1.05);
-    hanging.height_m =
+    BoardPlacement placement;
+    placement.azimuth_deg =
+        (i == 0 ? 1.0 : -1.0) * random.Uniform(field.min_azimuth_deg, field.max_azimuth_deg);
+    placement.distance_m = field.distance_m * random.Uniform(0.95, 1.05);
+    placement.height_m =
         field.height_m + random.Uniform(-field.height_spread_m, field.height_spread_m);
-    hanging.turn_deg = 45.0 + random.Uniform(-field.turned_deg, field.turned_deg);
-    hanging.yaw_deg = random.Uniform(-30.0, 30.0);
-    hanging.pitch_deg = random.Uniform(-15.0, 15.0);
-    scene.boards.push_back(Hang(board, hanging));
+    placement.turn_deg = 45.0 + random.Uniform(-field.turned_deg, field.turned_deg);
+    placement.yaw_deg = random.Uniform(-30.0, 30.0);
+    placement.pitch_deg = random.Uniform(-15.0, 15.0);
+    scene.boards.push_back(PlaceBoard(board, placement));
   }
   return scene;
 }

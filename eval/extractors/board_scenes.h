@@ -10,7 +10,7 @@
 namespace sextant {
 
 /// How a board hangs before a LiDAR at the world's origin; angles in degrees.
-struct Hanging {
+struct BoardPlacement {
   double azimuth_deg = 0.0;
   double distance_m = 1.8;
   double height_m = 0.0;
@@ -19,7 +19,7 @@ struct Hanging {
   double pitch_deg = 0.0;
 };
 
-SceneBoard Hang(const Board& board, const Hanging& hanging);
+SceneBoard PlaceBoard(const Board& board, const BoardPlacement& placement);
 
 /// A room of 10 m x 10 m without a board: floor, walls, a person, a cupboard, a pole, by chance.
 Scene FurnishedRoom(Random& random);
@@ -27,8 +27,8 @@ Scene FurnishedRoom(Random& random);
 /// Where two boards hang, one left and one right of the LiDAR's x axis; drawn uniformly.
 struct BoardField {
   double distance_m = 1.8;  ///< Within 5 %.
-  double least_azimuth_deg = 12.0;
-  double most_azimuth_deg = 25.0;
+  double min_azimuth_deg = 12.0;
+  double max_azimuth_deg = 25.0;
   double height_m = 0.0;
   double height_spread_m = 0.1;  ///< To both sides.
   double turned_deg = 8.0;       ///< At most, from hanging by a corner, in the board's plane.

@@ -99,9 +99,9 @@ TagPictureOptions Draw(const DetectorStudyOptions& options, int trial) {
   picture.family = options.family;
   picture.id = static_cast<int>(random.Below(30));
   const double log_side =
-      random.Uniform(std::log(options.least_side_px), std::log(options.most_side_px));
+      random.Uniform(std::log(options.min_side_px), std::log(options.max_side_px));
   picture.side_px = std::exp(log_side);
-  picture.tilt_rad = random.Uniform(0.0, options.most_tilt_rad);
+  picture.tilt_rad = random.Uniform(0.0, options.max_tilt_rad);
   picture.seed = DeriveSeed(options.seed, kExperiment, 1, static_cast<std::uint64_t>(trial));
   picture.field = 0.35;  // The largest board must be wholly in the image.
   picture.image.seed = DeriveSeed(options.seed, kExperiment, 2, static_cast<std::uint64_t>(trial));

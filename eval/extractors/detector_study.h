@@ -15,9 +15,9 @@ struct DetectorStudyOptions {
   int trials = 200;
   std::uint64_t seed = 1;
   std::string family = "tag36h11";  ///< That both libraries read.
-  double least_side_px = 30.0;      ///< Sides are drawn uniformly in their logarithm.
-  double most_side_px = 200.0;
-  double most_tilt_rad = 1.0472;  ///< Drawn uniformly from 0.
+  double min_side_px = 30.0;        ///< Sides are drawn uniformly in their logarithm.
+  double max_side_px = 200.0;
+  double max_tilt_rad = 1.0472;  ///< Drawn uniformly from 0.
   double blur_px = 0.7;
   double noise_grey = 3.0;
 };

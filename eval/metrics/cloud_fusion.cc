@@ -67,7 +67,7 @@ CloudAgreement CompareClouds(const PointCloud& a, const Rigid3d& b_from_a, const
   CloudAgreement agreement{.median_m = std::numeric_limits<double>::quiet_NaN(),
                            .rms_m = std::numeric_limits<double>::quiet_NaN()};
   const std::size_t step =
-      std::max<std::size_t>(1, queries.size() / static_cast<std::size_t>(options.most_points));
+      std::max<std::size_t>(1, queries.size() / static_cast<std::size_t>(options.max_points));
   const PointTree tree(points);
   const auto few = static_cast<std::size_t>(options.neighbours);
   std::vector<unsigned> indices(few);

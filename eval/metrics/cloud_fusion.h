@@ -32,7 +32,7 @@ struct AgreementOptions {
   /// of their extent across it.
   int neighbours = 12;
   double flatness = 0.2;
-  int most_points = 20'000;  ///< Of `a`, evenly chosen: more only take longer.
+  int max_points = 20'000;  ///< Of `a`, evenly chosen: more only take longer.
 };
 
 /// Each point of `a` against the plane of its nearest points in `b`. Doubled edges and ghosts

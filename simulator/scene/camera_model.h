@@ -30,7 +30,7 @@ Expected<Camera> FindCameraModel(std::string_view name);
 /// or of more than 100 million pixels. Messages name the camera.
 Expected<Camera> RenderingCamera(const SceneCamera& camera);
 
-/// What the pipeline is told that camera is: `told_intrinsics`, else as RenderingCamera.
+/// What the pipeline is told that camera is: `assumed_intrinsics`, else as RenderingCamera.
 Expected<Camera> PublishedCamera(const SceneCamera& camera);
 
 /// The right camera of a stereo pair: like `left`, `baseline_m` along the left one's x axis.

@@ -73,7 +73,7 @@ struct SceneCamera {
       model{};  ///< A name of simulator/scene/camera_model.h, or empty: `intrinsics` as given.
   Camera intrinsics{};  ///< What renders.
   std::optional<Camera>
-      told_intrinsics{};  ///< What the pipeline is told, where it is told wrongly.
+      assumed_intrinsics{};  ///< What the pipeline is told, where it is told wrongly.
   Rigid3d world_from_cam{};
 };
 

@@ -41,7 +41,7 @@ SceneLidar ReadLidar(YamlFields& in, const YamlNode& node) {
 // One camera, and its partner where it has a baseline.
 void ReadCamera(YamlFields& in, const YamlNode& node, std::vector<SceneCamera>& cameras) {
   static const Keys kKeys = {
-      "name", "model", "intrinsics", "told_intrinsics", "pose", "stereo_baseline_m"};
+      "name", "model", "intrinsics", "assumed_intrinsics", "pose", "stereo_baseline_m"};
   if (!in.IsMap(node, "camera", kKeys)) return;
   SceneCamera camera;
   camera.name = NameAt(in, node, camera.name);
@@ -55,8 +55,8 @@ void ReadCamera(YamlFields& in, const YamlNode& node, std::vector<SceneCamera>& 
   } else {
     camera.model = in.TextAt(node, "model");
   }
-  if (const YamlNode* told = node.Find("told_intrinsics")) {
-    camera.told_intrinsics = ReadCameraBlock(in, *told);
+  if (const YamlNode* told = node.Find("assumed_intrinsics")) {
+    camera.assumed_intrinsics = ReadCameraBlock(in, *told);
   }
   camera.world_from_cam = ReadScenePose(in, in.Require(node, "pose"), SceneAxes::kForwardIsZ);
   cameras.push_back(camera);

@@ -52,7 +52,7 @@ Expected<Scene> RectifiedPair(const Scene& scene, int camera_index, double basel
   left.intrinsics = camera;
   left.intrinsics.model = CameraModel::kPinhole;
   left.intrinsics.distortion.fill(0.0);
-  left.told_intrinsics.reset();
+  left.assumed_intrinsics.reset();
   Scene pair = scene;
   pair.cameras = {left, StereoPartner(left, baseline_m, left.name + "_right")};
   return pair;

@@ -111,7 +111,7 @@ class SceneCheck {
     if (!told) return Fail(told.error());
     Require(
         told->width_px == rendering->width_px && told->height_px == rendering->height_px, what,
-        fmt::format("its image has {} x {} px, told_intrinsics say {} x {}", rendering->width_px,
+        fmt::format("its image has {} x {} px, assumed_intrinsics say {} x {}", rendering->width_px,
                     rendering->height_px, told->width_px, told->height_px));
     cameras_.push_back(*rendering);
   }

@@ -79,8 +79,8 @@ TEST(RenderImage, MovesABoardThatSwings) {
 TEST(RenderImage, TakesTheIntrinsicsThatRenderNotThoseThatAreTold) {
   sextant::Scene scene = FullScene();
   const cv::Mat true_image = *RenderImage(scene, 0, {});
-  scene.cameras[0].told_intrinsics = kCamera;
-  scene.cameras[0].told_intrinsics->fx_px *= 1.02;
+  scene.cameras[0].assumed_intrinsics = kCamera;
+  scene.cameras[0].assumed_intrinsics->fx_px *= 1.02;
   EXPECT_TRUE(SameBytes(*RenderImage(scene, 0, {}), true_image));
   EXPECT_EQ(PublishedCamera(scene.cameras[0])->fx_px, 1.02 * kCamera.fx_px);
   EXPECT_EQ(RenderingCamera(scene.cameras[0])->fx_px, kCamera.fx_px);

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "eval/experiment/kinds/problem_trials.h"
-#include "eval/experiment/kinds/scene_sight.h"
+#include "eval/experiment/kinds/scene_observer.h"
 #include "solvers/kernels/kabsch.h"
 
 namespace sextant {
@@ -75,15 +75,15 @@ void MeasureDistances(const KnownProblem& known, const Expected<SolveReport>& re
   if (best) values.Set(kBelowKabsch, squares < (1.0 - kRounding) * best->sum_squares ? 1.0 : 0.0);
 }
 
-Expected<KnownProblem> MakeKnown(const SceneSight& sight, int views, const TrialId& id) {
+Expected<KnownProblem> MakeKnown(const SceneObserver& observer, int views, const TrialId& id) {
   constexpr double kBetweenViews_s = 60.0;
   KnownProblem known;
-  known.cam_from_lidar = sight.cam_from_lidar();
+  known.cam_from_lidar = observer.cam_from_lidar();
   for (int view = 0; view < views; ++view) {
     const std::uint64_t hang_seed =
         DeriveSeed(id.seed, "view", static_cast<std::uint64_t>(view), 0);
-    Expected<CalibrationProblem> seen =
-        sight.Look(sight.PlaceBoardsInRoom(hang_seed), id.seed, view, kBetweenViews_s * view);
+    Expected<CalibrationProblem> seen = observer.Observe(observer.PlaceBoardsInRoom(hang_seed),
+                                                         id.seed, view, kBetweenViews_s * view);
     if (!seen) return tl::unexpected<Error>(seen.error());
     if (view == 0) {
       known.problem = std::move(*seen);
@@ -94,18 +94,18 @@ Expected<KnownProblem> MakeKnown(const SceneSight& sight, int views, const Trial
     all.pairs_2d3d.insert(all.pairs_2d3d.end(), seen->pairs_2d3d.begin(), seen->pairs_2d3d.end());
   }
   known.problem.point_sets = WithholdPairing(known.problem.pairs_3d3d);
-  known.problem.initial_cam_from_lidar = sight.DrawStart(id.seed, known.problem.point_sets);
+  known.problem.initial_cam_from_lidar = observer.DrawStart(id.seed, known.problem.point_sets);
   return known;
 }
 
 Expected<TrialsPtr> MakeSceneViewsTrials(const KindArguments& arguments) {
   SEXTANT_ASSIGN_OR_RETURN(const SceneViewsSettings settings,
                            SceneViewsParameters().Parse(arguments.parameters));
-  SEXTANT_ASSIGN_OR_RETURN(SceneSight made, SceneSight::Make(settings, arguments.folder));
-  const auto sight = std::make_shared<const SceneSight>(std::move(made));
+  SEXTANT_ASSIGN_OR_RETURN(SceneObserver made, SceneObserver::Make(settings, arguments.folder));
+  const auto observer = std::make_shared<const SceneObserver>(std::move(made));
   const int views = settings.views;
   return MakeProblemTrials(
-      {.make = [sight, views](const TrialId& id) { return MakeKnown(*sight, views, id); },
+      {.make = [observer, views](const TrialId& id) { return MakeKnown(*observer, views, id); },
        .limits = settings,
        .measure_more =
            [](const KnownProblem& known, const Expected<SolveReport>& report, MetricValues values) {

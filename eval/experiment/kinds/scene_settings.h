@@ -7,8 +7,8 @@
 
 namespace sextant {
 
-enum class CameraSight { kMarked, kTags, kRendered };
-enum class LidarSight { kScanned, kNoise };
+enum class CameraObservation { kMarked, kTags, kRendered };
+enum class LidarObservation { kScanned, kNoise };
 enum class StartPose { kAxes, kTruth };
 
 /// What trials of a scene file have in common: the rig, how boards hang, how both sensors see them
@@ -20,22 +20,23 @@ struct SceneSettings {
   std::string lidar_model{};    ///< Empty: the scene's.
   std::string camera_model{};   ///< Empty: the scene's.
   double board_scale = 1.0;     ///< All boards and prints of other size.
-  double hang_m = 0.05;         ///< Boards hang anew for every trial, within so much an axis...
-  double hang_deg = 5.0;        ///< ...and turned by so much about each.
-  LidarSight lidar = LidarSight::kScanned;
+  double placement_m = 0.05;    ///< Boards hang anew for every trial, within so much an axis...
+  double placement_deg = 5.0;   ///< ...and turned by so much about each.
+  LidarObservation lidar = LidarObservation::kScanned;
   std::string extractor = "lines3d_raw";
   bool correct_edges = false;     ///< For sampling and the beam's width; the original does not.
   double lidar_sigma_m = 0.0068;  ///< Of kNoise, per axis.
   double lidar_bias_m = 0.0;      ///< LiDAR corners lie farther from the board's middle by this.
-  CameraSight camera = CameraSight::kTags;
-  double mark_sigma_px = 3.5;     ///< Of kMarked, per axis.
-  double tag_sigma_px = 0.1;      ///< Of kTags, per axis and corner.
-  int outliers = 0;               ///< Marked corners that are off by...
-  double outlier_px = 20.0;       ///< ...so much, in any direction.
-  std::string told_intrinsics{};  ///< "fx fy cx cy" that the solver is told; empty: the true ones.
-  double told_focal_error = 0.0;  ///< Share by which both focal lengths are told too long.
-  bool told_distortion = true;    ///< Off: the solver takes the camera for a pinhole.
-  bool state_noise = false;       ///< Pairs come with their covariance; the original has none.
+  CameraObservation camera = CameraObservation::kTags;
+  double mark_sigma_px = 3.5;  ///< Of kMarked, per axis.
+  double tag_sigma_px = 0.1;   ///< Of kTags, per axis and corner.
+  int outliers = 0;            ///< Marked corners that are off by...
+  double outlier_px = 20.0;    ///< ...so much, in any direction.
+  std::string
+      assumed_intrinsics{};  ///< "fx fy cx cy" that the solver is told; empty: the true ones.
+  double assumed_focal_error = 0.0;    ///< Share by which both focal lengths are told too long.
+  bool assumed_distortion = true;      ///< Off: the solver takes the camera for a pinhole.
+  bool state_noise = false;            ///< Pairs come with their covariance; the original has none.
   StartPose start = StartPose::kAxes;  ///< Where local searches begin, before...
   bool start_centroids = false;        ///< ...the centroids are brought together and before...
   double start_deg = 0.0;              ///< ...a turn by so much about any axis...
@@ -54,9 +55,10 @@ ParameterSet<Options>& AddSceneSettings(ParameterSet<Options>& set) {
       .Text("camera_model", &Options::camera_model, "name", "empty: the scene's")
       .Real("board_scale", &Options::board_scale, "1", 0.05, 20.0,
             "boards and prints are larger by this")
-      .Real("hang_m", &Options::hang_m, "m", 0.0, 1.0,
+      .Real("placement_m", &Options::placement_m, "m", 0.0, 1.0,
             "boards hang anew in every trial, within so much along each axis")
-      .Real("hang_deg", &Options::hang_deg, "deg", 0.0, 45.0, "and turned by so much about each")
+      .Real("placement_deg", &Options::placement_deg, "deg", 0.0, 45.0,
+            "and turned by so much about each")
       .Choice("lidar", &Options::lidar, {"scanned", "noise"},
               "corners extracted from a simulated scan, or true ones with noise")
       .Text("extractor", &Options::extractor, "name",
@@ -76,11 +78,11 @@ ParameterSet<Options>& AddSceneSettings(ParameterSet<Options>& set) {
             "of camera=tags, per axis and corner")
       .Count("outliers", &Options::outliers, 0, 1000, "marked corners that are far off")
       .Real("outlier_px", &Options::outlier_px, "px", 0.0, 1e4, "and by how much")
-      .Text("told_intrinsics", &Options::told_intrinsics, "px",
+      .Text("assumed_intrinsics", &Options::assumed_intrinsics, "px",
             "fx fy cx cy that the solver is told; empty: the true ones")
-      .Real("told_focal_error", &Options::told_focal_error, "1", -0.9, 10.0,
+      .Real("assumed_focal_error", &Options::assumed_focal_error, "1", -0.9, 10.0,
             "share by which focal lengths are told too long")
-      .Choice("told_distortion", &Options::told_distortion, {"false", "true"},
+      .Choice("assumed_distortion", &Options::assumed_distortion, {"false", "true"},
               "whether the solver knows the lens's distortion")
       .Choice("state_noise", &Options::state_noise, {"false", "true"},
               "whether pairs come with their covariance; the original has none")

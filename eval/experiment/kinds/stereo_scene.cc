@@ -59,7 +59,7 @@ Eigen::Vector3d CentreOf(const std::vector<Eigen::Vector3d>& points) {
 
 }  // namespace
 
-Expected<StereoPair> LookInStereo(const Scene& full_scene) {
+Expected<StereoPair> RenderStereoPair(const Scene& full_scene) {
   Scene scene = full_scene;
   std::erase_if(scene.boards, [](const SceneBoard& board) { return !board.board.checker; });
   StereoPair pair;

@@ -23,7 +23,7 @@ struct StereoPair {
 /// The scene's first two cameras, each with a second eye 12 cm to its right as a ZED has, and the
 /// scene's one board with a checkerboard. Without boards that have tags: they are taken away when
 /// the cameras are calibrated. Errors: those of RenderStereo and MatchStereo.
-Expected<StereoPair> LookInStereo(const Scene& scene);
+Expected<StereoPair> RenderStereoPair(const Scene& scene);
 
 /// RMS over the walls of the mean distance [m] of the first cloud's points, moved by the pose, from
 /// the plane through the second's; NaN where no wall is seen by both.

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/version.h"
-#include "eval/experiment/definition/description.h"
+#include "eval/experiment/report/description.h"
 #include "eval/experiment/report/report.h"
 #include "eval/experiment/run/run_trials.h"
 

@@ -60,7 +60,8 @@ TEST(PaperKinds, SceneWithoutNoiseGivesTheTruth) {
 TEST(PaperKinds, WrongFocalLengthsMoveTheCameraAlongItsAxis) {
   const std::string text =
       "kind: scene\ntrials: 1\nsolvers: [epnp]\nparameters: {scene: scenes/paper_rot_data.yaml, "
-      "lidar: noise, lidar_sigma_m: 0, camera: marked, mark_sigma_px: 0, told_focal_error: 0.13}\n";
+      "lidar: noise, lidar_sigma_m: 0, camera: marked, mark_sigma_px: 0, assumed_focal_error: "
+      "0.13}\n";
   for (const double z : TryOne(text, "z_mm", 3, "epnp")) {
     EXPECT_GT(z, 150.0);
     EXPECT_LT(z, 400.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/metrics/outlier_study.h"
+#include "bench/outlier_study.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -26,20 +26,20 @@ Eigen::Vector3d RandomDirection(Random& random);
 
 /// A scene with the settings of an experiment: what its boards look like to both sensors, again and
 /// again. Immutable, thread-safe.
-class SceneSight {
+class SceneObserver {
  public:
   /// Of the boards only those that the camera can find: in its view and, unless corners are marked
   /// by hand, with something printed on them.
   /// Errors: those of ReadScene and ValidateScene; kInvalidOption, kUnknownName for settings;
   /// kMissingData where no board is left.
-  static Expected<SceneSight> Make(const SceneSettings& settings,
-                                   const std::filesystem::path& folder, int camera = 0);
+  static Expected<SceneObserver> Make(const SceneSettings& settings,
+                                      const std::filesystem::path& folder, int camera = 0);
 
   const Scene& scene() const { return scene_; }  ///< With the boards that are looked at.
   const Scene& whole_scene() const { return whole_scene_; }  ///< With all of the file.
   const SceneSettings& settings() const { return settings_; }
   const Rigid3d& cam_from_lidar() const { return cam_from_lidar_; }
-  const Camera& told_camera() const { return told_; }
+  const Camera& assumed_camera() const { return assumed_camera_; }
   std::vector<Board> Boards() const;
 
   /// The scene with its boards hung anew.
@@ -49,8 +49,8 @@ class SceneSight {
   /// stays the same in a session (biases of the rings); `view` tells its moments apart.
   /// A board that one of the sensors does not find has no pairs. Errors: kTooFewPairs where none
   /// has any; those of the simulator.
-  Expected<CalibrationProblem> Look(const Scene& scene, std::uint64_t unit_seed, int view,
-                                    double time_s) const;
+  Expected<CalibrationProblem> Observe(const Scene& scene, std::uint64_t unit_seed, int view,
+                                       double time_s) const;
 
   /// Where local searches begin.
   Rigid3d DrawStart(std::uint64_t seed, const PointSets& sets) const;
@@ -62,11 +62,11 @@ class SceneSight {
     Eigen::MatrixXd covariance{};
   };
 
-  SceneSight() = default;
-  Expected<std::vector<SeenCorners>> LookWithLidar(const Scene& scene, std::uint64_t unit_seed,
-                                                   int view, double time_s) const;
-  Expected<std::vector<SeenCorners>> LookWithCamera(const Scene& scene, std::uint64_t unit_seed,
-                                                    int view, double time_s) const;
+  SceneObserver() = default;
+  Expected<std::vector<SeenCorners>> ObserveWithLidar(const Scene& scene, std::uint64_t unit_seed,
+                                                      int view, double time_s) const;
+  Expected<std::vector<SeenCorners>> ObserveWithCamera(const Scene& scene, std::uint64_t unit_seed,
+                                                       int view, double time_s) const;
   SeenCorners CornersOfTags(const SceneBoard& board, double time_s, Random& random) const;
   Expected<std::vector<SeenCorners>> CornersInImage(const Scene& scene, std::uint64_t seed,
                                                     double time_s) const;
@@ -85,8 +85,8 @@ class SceneSight {
   Scene whole_scene_;
   int camera_index_ = 0;
   Rigid3d cam_from_lidar_{};
-  Camera camera_{};  // That is.
-  Camera told_{};    // That the solver is told.
+  Camera camera_{};          // That is.
+  Camera assumed_camera_{};  // That the solver is told.
   LidarModel lidar_{};
   std::shared_ptr<const BoardFinder> finder_{};  // Of rendered images only.
 };

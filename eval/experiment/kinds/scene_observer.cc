@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/experiment/kinds/scene_sight.h"
+#include "eval/experiment/kinds/scene_observer.h"
 
 #include <fmt/core.h>
 
@@ -59,17 +59,17 @@ Expected<Rigid3d> ExtrinsicOf(const SceneSettings& settings, const Rigid3d& of_s
 
 Expected<Camera> PublishedCameraOf(const SceneSettings& settings, const Camera& true_camera) {
   Camera told = true_camera;
-  if (!settings.told_intrinsics.empty()) {
+  if (!settings.assumed_intrinsics.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(const auto numbers,
-                             ParseNumbers("told_intrinsics", settings.told_intrinsics, 4));
+                             ParseNumbers("assumed_intrinsics", settings.assumed_intrinsics, 4));
     told.fx_px = numbers[0];
     told.fy_px = numbers[1];
     told.cx_px = numbers[2];
     told.cy_px = numbers[3];
   }
-  told.fx_px *= 1.0 + settings.told_focal_error;
-  told.fy_px *= 1.0 + settings.told_focal_error;
-  if (!settings.told_distortion) {
+  told.fx_px *= 1.0 + settings.assumed_focal_error;
+  told.fy_px *= 1.0 + settings.assumed_focal_error;
+  if (!settings.assumed_distortion) {
     told.model = CameraModel::kPinhole;
     told.distortion.fill(0.0);
   }
@@ -104,66 +104,67 @@ Eigen::Vector3d RandomDirection(Random& random) {
   return direction.normalized();
 }
 
-Expected<SceneSight> SceneSight::Make(const SceneSettings& settings,
-                                      const std::filesystem::path& folder, int camera) {
-  SceneSight sight;
-  sight.settings_ = settings;
-  sight.camera_index_ = camera;
+Expected<SceneObserver> SceneObserver::Make(const SceneSettings& settings,
+                                            const std::filesystem::path& folder, int camera) {
+  SceneObserver observer;
+  observer.settings_ = settings;
+  observer.camera_index_ = camera;
   SEXTANT_ASSIGN_OR_RETURN(const Scene scene, ReadScene(folder / settings.scene));
-  sight.scene_ = scene;
-  for (SceneBoard& board : sight.scene_.boards) Enlarge(settings.board_scale, board.board);
-  if (!settings.lidar_model.empty()) sight.scene_.lidar.model = settings.lidar_model;
-  if (static_cast<int>(sight.scene_.cameras.size()) <= camera) {
+  observer.scene_ = scene;
+  for (SceneBoard& board : observer.scene_.boards) Enlarge(settings.board_scale, board.board);
+  if (!settings.lidar_model.empty()) observer.scene_.lidar.model = settings.lidar_model;
+  if (static_cast<int>(observer.scene_.cameras.size()) <= camera) {
     return MakeError(ErrorCode::kInvalidOption,
                      fmt::format("{}: expected {} or more cameras", settings.scene, camera + 1));
   }
-  SceneCamera& scene_camera = sight.scene_.cameras[static_cast<std::size_t>(camera)];
+  SceneCamera& scene_camera = observer.scene_.cameras[static_cast<std::size_t>(camera)];
   if (!settings.camera_model.empty()) scene_camera.model = settings.camera_model;
   const Expected<Rigid3d> extrinsic =
-      ExtrinsicOf(settings, CamFromLidar(sight.scene_, scene_camera));
+      ExtrinsicOf(settings, CamFromLidar(observer.scene_, scene_camera));
   if (!extrinsic) return tl::unexpected<Error>(extrinsic.error());
-  sight.cam_from_lidar_ = *extrinsic;
+  observer.cam_from_lidar_ = *extrinsic;
   scene_camera.world_from_cam =
-      sight.scene_.lidar.world_from_lidar * sight.cam_from_lidar_.Inverse();
-  if (const Expected<void> ok = ValidateScene(sight.scene_); !ok) {
+      observer.scene_.lidar.world_from_lidar * observer.cam_from_lidar_.Inverse();
+  if (const Expected<void> ok = ValidateScene(observer.scene_); !ok) {
     return MakeError(ok.error().code, settings.scene + ": " + ok.error().message);
   }
-  sight.camera_ = *RenderingCamera(scene_camera);
-  sight.whole_scene_ = sight.scene_;
-  std::erase_if(sight.scene_.boards,
-                [&sight](const SceneBoard& board) { return !sight.CanFind(board); });
-  if (sight.scene_.boards.empty()) {
+  observer.camera_ = *RenderingCamera(scene_camera);
+  observer.whole_scene_ = observer.scene_;
+  std::erase_if(observer.scene_.boards,
+                [&observer](const SceneBoard& board) { return !observer.CanFind(board); });
+  if (observer.scene_.boards.empty()) {
     return MakeError(ErrorCode::kMissingData,
                      fmt::format("{}: camera {} can find no board", settings.scene, camera));
   }
   SEXTANT_ASSIGN_OR_RETURN(const Camera told,
                            PublishedCameraOf(settings, *PublishedCamera(scene_camera)));
-  sight.told_ = told;
-  sight.lidar_ = *FindLidarModel(sight.scene_.lidar.model);
+  observer.assumed_camera_ = told;
+  observer.lidar_ = *FindLidarModel(observer.scene_.lidar.model);
   if (const auto known = ExtractCorners(settings.extractor, {}, {});
       !known && known.error().code == ErrorCode::kUnknownName) {
     return tl::unexpected<Error>(known.error());
   }
-  if (settings.camera == CameraSight::kRendered) {
-    SEXTANT_ASSIGN_OR_RETURN(BoardFinder finder, BoardFinder::Make(sight.Boards(), sight.told_));
-    sight.finder_ = std::make_shared<const BoardFinder>(std::move(finder));
+  if (settings.camera == CameraObservation::kRendered) {
+    SEXTANT_ASSIGN_OR_RETURN(BoardFinder finder,
+                             BoardFinder::Make(observer.Boards(), observer.assumed_camera_));
+    observer.finder_ = std::make_shared<const BoardFinder>(std::move(finder));
   }
-  return sight;
+  return observer;
 }
 
-std::vector<Board> SceneSight::Boards() const {
+std::vector<Board> SceneObserver::Boards() const {
   std::vector<Board> boards;
   for (const SceneBoard& board : scene_.boards) boards.push_back(board.board);
   return boards;
 }
 
-Scene SceneSight::PlaceBoardsInRoom(std::uint64_t seed) const {
+Scene SceneObserver::PlaceBoardsInRoom(std::uint64_t seed) const {
   Scene scene = scene_;
   Random random(DeriveSeed(seed, "hang", 0, 0));
   for (SceneBoard& board : scene.boards) {
     Vector6d delta;
     for (int i = 0; i < 6; ++i) {
-      const double most = i < 3 ? kRadPerDeg * settings_.hang_deg : settings_.hang_m;
+      const double most = i < 3 ? kRadPerDeg * settings_.placement_deg : settings_.placement_m;
       delta[i] = random.Uniform(-most, most);
     }
     board.world_from_board = Perturb(board.world_from_board, delta);
@@ -171,7 +172,7 @@ Scene SceneSight::PlaceBoardsInRoom(std::uint64_t seed) const {
   return scene;
 }
 
-Rigid3d SceneSight::DrawStart(std::uint64_t seed, const PointSets& sets) const {
+Rigid3d SceneObserver::DrawStart(std::uint64_t seed, const PointSets& sets) const {
   Random random(DeriveSeed(seed, "start", 0, 0));
   Rigid3d start = settings_.start == StartPose::kAxes ? AxesCamFromLidar() : cam_from_lidar_;
   const Eigen::Vector3d axis = RandomDirection(random);
@@ -184,16 +185,16 @@ Rigid3d SceneSight::DrawStart(std::uint64_t seed, const PointSets& sets) const {
   return start;
 }
 
-Expected<CalibrationProblem> SceneSight::Look(const Scene& scene, std::uint64_t unit_seed, int view,
-                                              double time_s) const {
+Expected<CalibrationProblem> SceneObserver::Observe(const Scene& scene, std::uint64_t unit_seed,
+                                                    int view, double time_s) const {
   CalibrationProblem problem;
-  problem.camera = told_;
+  problem.camera = assumed_camera_;
   problem.boards = Boards();
-  SEXTANT_ASSIGN_OR_RETURN(const auto in_lidar, LookWithLidar(scene, unit_seed, view, time_s));
-  if (settings_.camera == CameraSight::kMarked) {
+  SEXTANT_ASSIGN_OR_RETURN(const auto in_lidar, ObserveWithLidar(scene, unit_seed, view, time_s));
+  if (settings_.camera == CameraObservation::kMarked) {
     MarkCorners(scene, in_lidar, unit_seed, view, time_s, problem);
   } else {
-    SEXTANT_ASSIGN_OR_RETURN(const auto in_cam, LookWithCamera(scene, unit_seed, view, time_s));
+    SEXTANT_ASSIGN_OR_RETURN(const auto in_cam, ObserveWithCamera(scene, unit_seed, view, time_s));
     PairCorners(in_cam, in_lidar, view, problem);
   }
   if (!problem.pairs_2d3d.empty() || !problem.pairs_3d3d.empty()) return problem;
@@ -201,9 +202,9 @@ Expected<CalibrationProblem> SceneSight::Look(const Scene& scene, std::uint64_t 
                    settings_.scene + ": no board was found by both sensors");
 }
 
-void SceneSight::PairCorners(const std::vector<SeenCorners>& in_cam,
-                             const std::vector<SeenCorners>& in_lidar, int view,
-                             CalibrationProblem& problem) const {
+void SceneObserver::PairCorners(const std::vector<SeenCorners>& in_cam,
+                                const std::vector<SeenCorners>& in_lidar, int view,
+                                CalibrationProblem& problem) const {
   const Eigen::Matrix3d rotation = cam_from_lidar_.rotation.toRotationMatrix();
   for (std::size_t b = 0; b < in_cam.size(); ++b) {
     const std::size_t corners = std::min(in_cam[b].points.size(), in_lidar[b].points.size());
