@@ -36,8 +36,8 @@ double BetaFraction(double a, double b, double x) {
   return value;
 }
 
-// The least j in 1..n whose order statistic bounds the resampled k-th from above with at least
-// `probability`.
+// The smallest j in 1..n whose order statistic is an upper bound of the resampled k-th one with at
+// least `probability`.
 std::size_t RankReaching(std::size_t n, std::size_t k, double probability) {
   std::size_t low = 1;
   std::size_t high = n;
@@ -54,7 +54,7 @@ std::size_t RankReaching(std::size_t n, std::size_t k, double probability) {
   return low;
 }
 
-// Sums over `batches` runs of the values.
+// Sums over `batches` runs of consecutive values.
 std::vector<double> BatchSums(std::span<const double> values, std::size_t batches) {
   std::vector<double> sums(batches, 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) sums[i * batches / values.size()] += values[i];
@@ -67,7 +67,7 @@ double RegularizedBeta(double a, double b, double x) {
   if (x <= 0.0) return 0.0;
   if (x >= 1.0) return 1.0;
   if (x > (a + 1.0) / (a + b + 2.0)) return 1.0 - RegularizedBeta(b, a, 1.0 - x);
-  int sign = 0;  // lgamma alone writes a global.
+  int sign = 0;  // std::lgamma writes a global variable, so it is not thread-safe.
   const double log_front = lgamma_r(a + b, &sign) - lgamma_r(a, &sign) - lgamma_r(b, &sign) +
                            a * std::log(x) + b * std::log1p(-x);
   return std::exp(log_front) * BetaFraction(a, b, x) / a;
@@ -81,7 +81,7 @@ Interval WilsonInterval(std::uint64_t successes, std::uint64_t trials) {
   const double centre = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
   const double half =
       kNormalQuantile975 / (1.0 + z2 / n) * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n));
-  // None and all are the ends exactly, which the formula meets but for rounding.
+  // With no or only successes the bound is exactly 0 or 1; the formula gives it up to rounding.
   return {successes == 0 ? 0.0 : centre - half, successes == trials ? 1.0 : centre + half};
 }
 

@@ -72,10 +72,11 @@ Expected<BoardPoseFit> Fit(const NormalAt& normal_at, const Rigid3d& start) {
     damping *= better ? 0.1 : 10.0;
   }
   if (now && !InvertSymmetric(now->matrix)) {
-    return MakeError(ErrorCode::kDegenerate,
-                     "the observations of one sensor leave a direction of the board's pose open");
+    return MakeError(
+        ErrorCode::kDegenerate,
+        "the observations of one sensor leave a direction of the board's pose undetermined");
   }
-  return MakeError(ErrorCode::kNoConvergence, "the pose of the board did not settle");
+  return MakeError(ErrorCode::kNoConvergence, "the fit of the board's pose did not converge");
 }
 
 }  // namespace

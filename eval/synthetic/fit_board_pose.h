@@ -6,15 +6,15 @@
 
 namespace sextant {
 
-/// The pose of a board as one sensor alone tells it, and how sure: what a two-stage extractor makes
-/// of the raw observations at best.
+/// The pose of a board estimated from one sensor alone, with its covariance: the best that a
+/// two-stage extractor can make of the raw observations.
 struct BoardPoseFit {
   Rigid3d sensor_from_board;
-  Matrix6d covariance;  ///< Of (dphi, dt); the inverse of J^T J at the answer.
+  Matrix6d covariance;  ///< Covariance of (dphi [rad], dt [m]): inverse of J^T J at the solution.
 };
 
-/// Least squares near `start` by Levenberg and Marquardt. Errors: kDegenerate (the observations of
-/// that sensor leave a direction open), kNoConvergence.
+/// Least squares near `start` by Levenberg-Marquardt. Errors: kDegenerate (the observations of that
+/// sensor leave a direction undetermined), kNoConvergence.
 Expected<BoardPoseFit> FitBoardInCamera(const BoardViewTerms& terms, const Camera& camera,
                                         const Rigid3d& start);
 Expected<BoardPoseFit> FitBoardInLidar(const BoardViewTerms& terms, const Rigid3d& start);
