@@ -16,8 +16,8 @@ namespace sextant {
 namespace {
 
 constexpr double kFarBetter = 0.5;  // Relative to the RMSE of the given order.
-constexpr double kMinMisfit =
-    0.1;  // Relative to the mean edge: below it, noise explains the misfit.
+// Relative to the mean edge: below it, noise explains the misfit.
+constexpr double kMinMisfit = 0.1;
 constexpr double kMaxMisfit = 0.2;  // Relative to the mean edge: above it, no order is right.
 
 using Assignment =

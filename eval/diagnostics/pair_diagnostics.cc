@@ -20,8 +20,8 @@ constexpr double kMirroredRatio = 2.0;
 struct Edge {
   double in_cam_m = 0.0;
   double in_lidar_m = 0.0;
-  double sigma_m =
-      0.0;  // Standard deviation of the difference of the two; 0 if the noise is unknown.
+  // Standard deviation of the difference of the two; 0 if the noise is unknown.
+  double sigma_m = 0.0;
 };
 
 Edge MeasureEdge(const Pair3d3d& from, const Pair3d3d& to) {

@@ -35,8 +35,8 @@ struct WeakDirection {
   bool is_rotation = false;
   Eigen::Vector3d axis_in_cam = Eigen::Vector3d::Zero();  ///< Unit vector.
   double sigma = 0.0;                                     ///< One standard deviation, rad or m.
-  double best_sigma =
-      0.0;  ///< Standard deviation of the best determined direction of the same kind.
+  /// Standard deviation of the best determined direction of the same kind.
+  double best_sigma = 0.0;
 };
 
 /// Data diagnostics: properties of the pairs that make a pose from them unreliable.

@@ -160,8 +160,8 @@ void AddStand(const SceneBoard& placed, Scene& scene) {
 
 void AddHolder(const SceneBoard& placed, Random& random, Scene& scene) {
   constexpr double kBody_m = 0.2;
-  const double gap =
-      random.Uniform(0.22, 0.45);  // Board's middle to body: a board that leans clears it.
+  // Board's middle to body: a board that leans clears it.
+  const double gap = random.Uniform(0.22, 0.45);
   const double beside = random.Uniform(-0.1, 0.1);
   const Eigen::Vector3d center = placed.world_from_board.translation;
   const Eigen::Vector3d away = Eigen::Vector3d(center.x(), center.y(), 0.0).normalized();

@@ -33,8 +33,8 @@ struct AgreementOptions {
   /// along its normal is at most `flatness` times their second largest extent.
   int neighbours = 12;
   double flatness = 0.2;
-  int max_points =
-      20'000;  ///< At most this many points of `a`, evenly chosen; more only take longer.
+  /// At most this many points of `a`, evenly chosen; more only take longer.
+  int max_points = 20'000;
 };
 
 /// Compares each point of `a` with the plane through its nearest points in `b`. Doubled edges and

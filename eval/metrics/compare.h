@@ -15,8 +15,8 @@ namespace sextant {
 struct ComparisonRow {
   std::string solver;
   Expected<SolveReport> report;
-  std::optional<PoseDistance>
-      from_first;  ///< Distance to the result of the first solver that succeeded.
+  /// Distance to the result of the first solver that succeeded.
+  std::optional<PoseDistance> from_first;
   std::optional<PoseDistance> from_truth;  ///< Distance to the truth, if it is known.
 };
 

@@ -38,8 +38,8 @@ class MetricValues {
 struct KnownProblem {
   CalibrationProblem problem;  ///< What solvers see.
   Rigid3d cam_from_lidar;      ///< The truth.
-  CalibrationProblem
-      inliers;  ///< True correspondences with noise only; the bound is computed from these.
+  /// True correspondences with noise only; the bound is computed from these.
+  CalibrationProblem inliers;
   std::vector<Rigid3d> cam_from_board;  ///< True pose of the board in each board view.
   CalibrationProblem held_out;          ///< Further pairs to evaluate the result on; may be empty.
 };

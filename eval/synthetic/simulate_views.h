@@ -27,8 +27,8 @@ struct ViewSimulation {
   /// ring that is sampled in steps.
   double edge_sigma_m = 0.002;
   double pixel_sigma_px = 0.3;
-  bool exact =
-      false;  ///< If true, the observations have no errors, but the same sigmas are stated.
+  /// If true, the observations have no errors, but the same sigmas are stated.
+  bool exact = false;
 };
 
 struct SimulatedViews {

@@ -69,11 +69,11 @@ struct SceneLidar {
 
 struct SceneCamera {
   std::string name = "cam";
-  std::string
-      model{};  ///< A name of simulator/scene/camera_model.h, or empty: `intrinsics` as given.
+  /// A name of simulator/scene/camera_model.h, or empty: `intrinsics` as given.
+  std::string model{};
   Camera intrinsics{};  ///< What renders.
-  std::optional<Camera>
-      assumed_intrinsics{};  ///< What the pipeline is told, where it is told wrongly.
+  /// What the pipeline is told, where it is told wrongly.
+  std::optional<Camera> assumed_intrinsics{};
   Rigid3d world_from_cam{};
 };
 

@@ -32,8 +32,8 @@ struct SceneSettings {
   double tag_sigma_px = 0.1;   ///< Of kTags, per axis and corner.
   int outliers = 0;            ///< Marked corners that are off by...
   double outlier_px = 20.0;    ///< ...so much, in any direction.
-  std::string
-      assumed_intrinsics{};  ///< "fx fy cx cy" that the solver is told; empty: the true ones.
+  /// "fx fy cx cy" that the solver is told; empty: the true ones.
+  std::string assumed_intrinsics{};
   double assumed_focal_error = 0.0;    ///< Share by which both focal lengths are told too long.
   bool assumed_distortion = true;      ///< Off: the solver takes the camera for a pinhole.
   bool state_noise = false;            ///< Pairs come with their covariance; the original has none.

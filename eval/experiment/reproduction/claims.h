@@ -38,8 +38,8 @@ struct Claim {
   std::string text{};     ///< In a sentence.
   std::string printed{};  ///< As the paper prints it, with its unit.
   ClaimRule rule = ClaimRule::kUntested;
-  double value =
-      0.0;  ///< P: what is printed, in the statistic's unit; unused by those that have `than`.
+  /// P: what is printed, in the statistic's unit; unused by those that have `than`.
+  double value = 0.0;
   double factor = 2.0;
   double slack = 0.0;  ///< Of kDraw: what our truth, the paper's tape, may itself be off by.
   std::optional<ClaimFigure> ours{};
