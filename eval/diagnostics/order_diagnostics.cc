@@ -20,8 +20,8 @@ constexpr double kFarBetter = 0.5;  // Relative to the RMSE of the given order.
 constexpr double kMinMisfit = 0.1;
 constexpr double kMaxMisfit = 0.2;  // Relative to the mean edge: above it, no order is right.
 
-using Assignment =
-    std::vector<int>;  // For each camera point, the pair whose LiDAR point belongs to it.
+// For each camera point, the pair whose LiDAR point belongs to it.
+using Assignment = std::vector<int>;
 
 // Four rotations in the plane, each seen from the front or from behind.
 std::array<CornerOrder, 8> EveryOrder() {

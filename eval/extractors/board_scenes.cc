@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFloor_m = -1.0;
 
-// Seen squarely from the origin at an azimuth: z away, y down.
+// Rotation of a plane that faces the origin from this azimuth: z points away, y down.
 Eigen::Quaterniond Facing(double azimuth_rad) {
   const Eigen::Vector3d away(std::cos(azimuth_rad), std::sin(azimuth_rad), 0.0);
   const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
@@ -95,14 +95,14 @@ BoardField FieldOf(const LidarModel& model, double distance_m) {
   BoardField field{.distance_m = distance_m};
   if (model.rosette) {
     const double half_view_deg = 2.0 * model.rosette->deflection_rad / kRadPerDeg;
-    // Side by side, each no wider than half the view.
+    // Next to each other, each no wider than half the field of view.
     field.distance_m =
         std::max(distance_m, 1.1 * kHalfDiagonal_m / std::tan(0.5 * half_view_deg * kRadPerDeg));
     field.min_azimuth_deg = reach_deg(0.95 * field.distance_m);
     field.max_azimuth_deg = half_view_deg - field.min_azimuth_deg;
     return field;
   }
-  // Side by side too: nearer boards would reach into each other.
+  // Next to each other as well: nearer boards would overlap.
   field.min_azimuth_deg = std::max(field.min_azimuth_deg, reach_deg(0.95 * distance_m));
   const double low_deg = model.rings.front().elevation_rad / kRadPerDeg;
   const double high_deg = model.rings.back().elevation_rad / kRadPerDeg;
@@ -142,7 +142,7 @@ Scene TwoBoardsInRoom(const BoardField& field, Random& random) {
 
 void AddStand(const SceneBoard& placed, Scene& scene) {
   constexpr double kRadius_m = 0.015;
-  constexpr double kClamp_m = 0.1;  // How far it reaches above the lowest corner.
+  constexpr double kClamp_m = 0.1;  // Reach above the lowest corner.
   const Eigen::Vector3d away = placed.world_from_board.rotation * Eigen::Vector3d::UnitZ();
   const double behind = 0.005 + kRadius_m / std::hypot(away.x(), away.y());
   const Eigen::Vector3d top =
@@ -160,7 +160,7 @@ void AddStand(const SceneBoard& placed, Scene& scene) {
 
 void AddHolder(const SceneBoard& placed, Random& random, Scene& scene) {
   constexpr double kBody_m = 0.2;
-  // Board's middle to body: a board that leans clears it.
+  // From the board's centre to the body, so that a tilted board does not touch it.
   const double gap = random.Uniform(0.22, 0.45);
   const double beside = random.Uniform(-0.1, 0.1);
   const Eigen::Vector3d center = placed.world_from_board.translation;
@@ -171,7 +171,7 @@ void AddHolder(const SceneBoard& placed, Random& random, Scene& scene) {
                              .base_in_world = {body.x(), body.y(), kFloor_m},
                              .radius_m = kBody_m,
                              .height_m = 1.75});
-  // A hand grips the edge between the bottom corner and the one beside it, half over the board.
+  // Each hand grips an edge at the bottom corner, half of it in front of the board.
   for (const int side : {1, 3}) {
     const double along = random.Uniform(0.3, 0.7);
     const Eigen::Vector3d grip =

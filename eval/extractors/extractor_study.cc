@@ -43,11 +43,11 @@ struct Outcome {
   int due = 0;
   int found = 0;
   int misplaced = 0;
-  int boards = 0;  // Found in a room without one.
+  int boards = 0;  // Boards found in a room without one.
   std::vector<CornerError> errors{};
 };
 
-// Whether enough of the sensor falls onto each board that it must be found.
+// For each board, whether enough rings or returns hit it that it must be found.
 std::vector<bool> AreDue(const SimulatedScan& scan, std::size_t boards) {
   std::vector<int> returns(boards, 0);
   std::vector<std::map<int, int>> rings(boards);

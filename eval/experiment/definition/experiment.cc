@@ -27,7 +27,7 @@ Expected<Experiment> ReadExperiment(const std::filesystem::path& path,
 
 std::uint64_t SeedOf(const Experiment& experiment, const Condition& condition,
                      std::uint64_t trial) {
-  // By name, so that a condition keeps its trials whatever stands beside it.
+  // The seed depends on the names, so a condition keeps its trials when others are added.
   const std::string place =
       experiment.same_seeds ? experiment.name : experiment.name + "/" + condition.name;
   return DeriveSeed(experiment.seed, place, 0, trial);

@@ -15,8 +15,9 @@ namespace {
 
 Expected<int> FindMetric(const std::string& name, const std::vector<Metric>& metrics) {
   if (name == kTimeMetric) {
-    return MakeError(ErrorCode::kInvalidOption,
-                     "time differs from run to run and is no part of the rows: write timed_trials");
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        "time differs from run to run and is not part of the rows; use timed_trials instead");
   }
   const auto found = std::find_if(metrics.begin(), metrics.end(),
                                   [&name](const Metric& metric) { return metric.name == name; });
