@@ -28,11 +28,11 @@ enum FusionMeasured : int { kFusedTranslationMm, kFusedRotationDeg, kCloudMm, kW
 
 const std::vector<Metric>& FusionMetrics() {
   static const std::vector<Metric> metrics = {
-      {"translation_mm", "of cam2_from_cam1, against the truth"},
-      {"rotation_deg", "of cam2_from_cam1, against the truth"},
+      {"translation_mm", "translation error of cam2_from_cam1"},
+      {"rotation_deg", "rotation error of cam2_from_cam1"},
       {"cloud_mm", "median distance of the first stereo cloud from the surfaces of the second"},
-      {"wall_mm", "distance between both clouds' images of a wall: RMS over the walls"},
-      {"checker_mm", "distance between both stereo cameras' mean checkerboard corner"},
+      {"wall_mm", "distance between the two clouds on a wall, RMS over the walls"},
+      {"checker_mm", "distance between the mean checkerboard corners of the two stereo cameras"},
   };
   return metrics;
 }
@@ -42,18 +42,18 @@ const ParameterSet<FusionSettings>& FusionParameters() {
     ParameterSet<FusionSettings> options;
     AddSceneSettings(options)
         .Count("scans", &FusionSettings::scans, 1, 1000,
-               "of one placement, whose answers are averaged")
+               "number of scans of one placement whose estimates are averaged")
         .Real("tape_m", &FusionSettings::tape_m, "m", 0.0, 1.0,
-              "standard error of a distance by tape, per axis of each camera's pose")
+              "standard error of a tape measurement, per axis of each camera's position")
         .Real("tape_deg", &FusionSettings::tape_deg, "deg", 0.0, 45.0,
-              "standard error of an angle by tape and trigonometry");
+              "standard error of an angle computed from tape measurements");
     return options;
   }();
   return set;
 }
 
-// cam1 and cam2 never look at the same board: each is calibrated to the LiDAR, and the graph of
-// sensors joins them.
+// cam1 and cam2 never see the same board: each is calibrated to the LiDAR, and the pose graph joins
+// them.
 class FusionTrials final : public Trials {
  public:
   FusionTrials(SceneObserver first, SceneObserver second, const FusionSettings& settings)
@@ -102,7 +102,7 @@ class FusionTrials final : public Trials {
       if (fit) answers.push_back(fit->b_from_a);
     }
     SEXTANT_ASSIGN_OR_RETURN(const Rigid3d mean, AveragePoses(answers, RotationAverage::kChordal));
-    // A chain has no loop for the weights to matter in; any covariance gives the same answer.
+    // Without a loop the weights do not matter: any covariance gives the same result.
     return UncertainPose{mean, 1e-6 * Matrix6d::Identity()};
   }
 
@@ -133,16 +133,16 @@ class FusionTrials final : public Trials {
   std::array<SceneObserver, 2> observers_;
   FusionSettings settings_;
   mutable std::once_flag rendered_;
-  mutable Expected<StereoPair> pair_ = MakeError(ErrorCode::kMissingData, "not looked yet");
+  mutable Expected<StereoPair> pair_ = MakeError(ErrorCode::kMissingData, "not rendered yet");
 };
 
 Expected<TrialsPtr> MakeFusionTrials(const KindArguments& arguments) {
   SEXTANT_ASSIGN_OR_RETURN(const FusionSettings settings,
                            FusionParameters().Parse(arguments.parameters));
   if (!settings.translation_m.empty() || !settings.rotation_deg.empty()) {
-    return MakeError(ErrorCode::kInvalidOption,
-                     "both cameras stand where the scene says; leave out translation_m and "
-                     "rotation_deg");
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        "the scene gives the poses of both cameras; leave out translation_m and rotation_deg");
   }
   SEXTANT_ASSIGN_OR_RETURN(SceneObserver first, SceneObserver::Make(settings, arguments.folder, 0));
   SEXTANT_ASSIGN_OR_RETURN(SceneObserver second,
@@ -155,8 +155,8 @@ Expected<TrialsPtr> MakeFusionTrials(const KindArguments& arguments) {
 TrialKind FusionKind() {
   return {.name = "fusion",
           .summary =
-              "two stereo cameras joined through the LiDAR: their clouds fused by tape and by "
-              "the pipeline",
+              "two stereo cameras joined through the LiDAR: their clouds fused with poses measured "
+              "by tape and estimated by the pipeline",
           .takes_solvers = false,
           .parameters = FusionParameters().Describe(),
           .metrics = FusionMetrics(),

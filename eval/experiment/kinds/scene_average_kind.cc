@@ -27,10 +27,10 @@ enum SceneAverageMeasured : int {
 const std::vector<Metric>& SceneAverageMetrics() {
   static const std::vector<Metric> metrics = {
       {"translation_mm", "distance of the averaged translation from the truth"},
-      {"rotation_deg", "angle of the averaged rotation against the truth"},
-      {"x_m", "averaged translation"},
-      {"y_m", "averaged translation"},
-      {"z_m", "averaged translation"},
+      {"rotation_deg", "angle between the averaged and the true rotation"},
+      {"x_m", "x of the averaged translation"},
+      {"y_m", "y of the averaged translation"},
+      {"z_m", "z of the averaged translation"},
   };
   return metrics;
 }
@@ -40,9 +40,9 @@ const ParameterSet<SceneAverageSettings>& SceneAverageParameters() {
     ParameterSet<SceneAverageSettings> options;
     AddSceneSettings(options)
         .Count("scans", &SceneAverageSettings::scans, 1, 10'000,
-               "averaged; a row after 1, 2, 3, 5, 7, 10 ...")
+               "number of scans; rows are written after 1, 2, 3, 5, 7, 10 ... of them")
         .Real("interval_s", &SceneAverageSettings::interval_s, "s", 0.0, 1e6,
-              "from one scan to the next");
+              "time from one scan to the next");
     return options;
   }();
   return set;
@@ -69,7 +69,7 @@ class AverageTrials final : public Trials {
     return names;
   }
 
-  // The boards hang where they hang and the unit is the same one: what a trial averages is noise.
+  // Boards and sensors do not move within a trial, so only noise is averaged.
   void Run(const TrialId& id, TrialRows& rows) const override {
     const Scene scene = observer_.PlaceBoardsInRoom(id.seed);
     std::vector<Rigid3d> answers;
@@ -99,7 +99,7 @@ class AverageTrials final : public Trials {
   }
 
  private:
-  // What is left of the first scan's error where all of it is noise.
+  // The first scan's error divided by sqrt(N), as if all of it were noise.
   void MeasureIdeal(const Rigid3d& first, int scans, MetricValues values) const {
     const PoseDistance error = DistanceBetween(first, observer_.cam_from_lidar());
     values.Set(kAverageTranslationMm, 1e3 * error.translation_m / std::sqrt(scans));
@@ -134,7 +134,7 @@ Expected<TrialsPtr> MakeSceneAverageTrials(const KindArguments& arguments) {
 
 TrialKind SceneAverageKind() {
   return {.name = "scene_average",
-          .summary = "answers of many scans of one session, averaged in four ways",
+          .summary = "the estimates of many scans of one session, averaged in four ways",
           .takes_solvers = false,
           .parameters = SceneAverageParameters().Describe(),
           .metrics = SceneAverageMetrics(),

@@ -15,14 +15,15 @@ struct SceneViewsSettings : SceneSettings, PoseLimits {
   int views = 1;
 };
 
-// Beside PoseMetrics(), in this order.
+// Metrics after PoseMetrics(), in this order.
 enum Extra : int { kKeptPx = kPoseMetricCount, kPairsMm, kMeanMm, kWithoutWorstMm, kBelowKabsch };
 
 const ParameterSet<SceneViewsSettings>& SceneViewsParameters() {
   static const ParameterSet<SceneViewsSettings> set = [] {
     ParameterSet<SceneViewsSettings> options;
-    AddPoseLimits(AddSceneSettings(options).Count("views", &SceneViewsSettings::views, 1, 1000,
-                                                  "moments, with the boards hung anew for each"));
+    AddPoseLimits(
+        AddSceneSettings(options).Count("views", &SceneViewsSettings::views, 1, 1000,
+                                        "number of views, each with new poses of the boards"));
     return options;
   }();
   return set;
@@ -30,11 +31,11 @@ const ParameterSet<SceneViewsSettings>& SceneViewsParameters() {
 
 std::vector<Metric> SceneViewsMetrics() {
   std::vector<Metric> metrics = PoseMetrics();
-  metrics.push_back({"kept_px", "mean reprojection error of the pairs that the answer rests on"});
-  metrics.push_back({"pairs_mm", "RMSE of the 3D-3D pairs, also of solvers that did not get them"});
-  metrics.push_back({"mean_mm", "mean distance of the 3D-3D pairs (not its root mean square)"});
-  metrics.push_back({"without_worst_mm", "RMSE of the 3D-3D pairs but for the worst"});
-  metrics.push_back({"below_kabsch", "1 where rmse_mm is below that of Kabsch on the same pairs"});
+  metrics.push_back({"kept_px", "mean reprojection error of the pairs that the estimate uses"});
+  metrics.push_back({"pairs_mm", "RMSE of the 3D-3D pairs, also for solvers that do not use them"});
+  metrics.push_back({"mean_mm", "mean distance of the 3D-3D pairs (not the root mean square)"});
+  metrics.push_back({"without_worst_mm", "RMSE of the 3D-3D pairs without the worst one"});
+  metrics.push_back({"below_kabsch", "1 if pairs_mm is below that of Kabsch on the same pairs"});
   return metrics;
 }
 
@@ -50,7 +51,8 @@ void MeasureExtras(const Expected<SolveReport>& report, MetricValues values) {
   }
 }
 
-// Of the pairs, whatever the solver used: icp sees no pairs, but its pose has residuals on them.
+// Measured on the pairs, whatever the solver used: icp gets no pairs, but its pose has residuals on
+// them.
 void MeasureDistances(const KnownProblem& known, const Expected<SolveReport>& report,
                       MetricValues values) {
   const auto& pairs = known.problem.pairs_3d3d;
@@ -119,7 +121,7 @@ Expected<TrialsPtr> MakeSceneViewsTrials(const KindArguments& arguments) {
 
 TrialKind SceneKind() {
   return {.name = "scene",
-          .summary = "boards of a scene file, seen by a simulated LiDAR and camera",
+          .summary = "the boards of a scene file, seen by a simulated LiDAR and camera",
           .parameters = SceneViewsParameters().Describe(),
           .metrics = SceneViewsMetrics(),
           .trials_per_block = 10,

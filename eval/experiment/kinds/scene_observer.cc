@@ -38,7 +38,7 @@ void Enlarge(double scale, Board& board) {
   }
 }
 
-// cam_from_lidar of the scene, with what the settings say instead.
+// cam_from_lidar of the scene, overridden by the settings.
 Expected<Rigid3d> ExtrinsicOf(const SceneSettings& settings, const Rigid3d& of_scene) {
   Rigid3d cam_from_lidar = of_scene;
   if (!settings.translation_m.empty()) {
@@ -134,7 +134,7 @@ Expected<SceneObserver> SceneObserver::Make(const SceneSettings& settings,
                 [&observer](const SceneBoard& board) { return !observer.CanFind(board); });
   if (observer.scene_.boards.empty()) {
     return MakeError(ErrorCode::kMissingData,
-                     fmt::format("{}: camera {} can find no board", settings.scene, camera));
+                     fmt::format("{}: camera {} cannot find any board", settings.scene, camera));
   }
   SEXTANT_ASSIGN_OR_RETURN(const Camera told,
                            PublishedCameraOf(settings, *PublishedCamera(scene_camera)));

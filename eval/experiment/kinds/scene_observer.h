@@ -17,46 +17,47 @@
 
 namespace sextant {
 
-/// Numbers of a list parameter: "0.1 -2 3". Error: kInvalidOption, which names it.
+/// Parses a list parameter such as "0.1 -2 3" with `count` numbers. Error: kInvalidOption, which
+/// names the parameter.
 Expected<std::vector<double>> ParseNumbers(const std::string& name, const std::string& text,
                                            std::size_t count);
 
-/// A unit vector of any direction; three draws.
+/// A uniformly random unit vector; draws three normal numbers.
 Eigen::Vector3d RandomDirection(Random& random);
 
-/// A scene with the settings of an experiment: what its boards look like to both sensors, again and
-/// again. Immutable, thread-safe.
+/// Simulates what both sensors of a scene observe of its boards, with the settings of an
+/// experiment. Immutable and thread-safe.
 class SceneObserver {
  public:
-  /// Of the boards only those that the camera can find: in its view and, unless corners are marked
-  /// by hand, with something printed on them.
-  /// Errors: those of ReadScene and ValidateScene; kInvalidOption, kUnknownName for settings;
-  /// kMissingData where no board is left.
+  /// Keeps only boards that the camera can find: in its field of view and, unless corners are
+  /// marked by hand, with a print. Errors: those of ReadScene and ValidateScene; kInvalidOption,
+  /// kUnknownName for settings; kMissingData if no board is left.
   static Expected<SceneObserver> Make(const SceneSettings& settings,
                                       const std::filesystem::path& folder, int camera = 0);
 
-  const Scene& scene() const { return scene_; }  ///< With the boards that are looked at.
-  const Scene& whole_scene() const { return whole_scene_; }  ///< With all of the file.
+  const Scene& scene() const { return scene_; }  ///< The scene with only the observed boards.
+  /// The scene with all boards of the file.
+  const Scene& whole_scene() const { return whole_scene_; }
   const SceneSettings& settings() const { return settings_; }
   const Rigid3d& cam_from_lidar() const { return cam_from_lidar_; }
   const Camera& assumed_camera() const { return assumed_camera_; }
   std::vector<Board> Boards() const;
 
-  /// The scene with its boards hung anew.
+  /// The scene with new random poses of its boards.
   Scene PlaceBoardsInRoom(std::uint64_t seed) const;
 
-  /// Pairs of one moment: 3D-3D for tags and images, 2D-3D for marked corners. `unit_seed`: of what
-  /// stays the same in a session (biases of the rings); `view` tells its moments apart.
-  /// A board that one of the sensors does not find has no pairs. Errors: kTooFewPairs where none
+  /// Pairs observed at one time: 3D-3D for tags and images, 2D-3D for marked corners. `unit_seed`
+  /// determines what is constant in a session (ring biases); `view` distinguishes its observations.
+  /// A board that one of the sensors does not find has no pairs. Errors: kTooFewPairs if no board
   /// has any; those of the simulator.
   Expected<CalibrationProblem> Observe(const Scene& scene, std::uint64_t unit_seed, int view,
                                        double time_s) const;
 
-  /// Where local searches begin.
+  /// The start pose of local searches.
   Rigid3d DrawStart(std::uint64_t seed, const PointSets& sets) const;
 
  private:
-  /// Corners of one board; as many as the board has, or none where it was not found.
+  /// Corners of one board: all of them, or none if it was not found.
   struct SeenCorners {
     std::vector<Eigen::Vector3d> points{};
     Eigen::MatrixXd covariance{};
@@ -76,7 +77,7 @@ class SceneObserver {
   void PairCorners(const std::vector<SeenCorners>& in_cam, const std::vector<SeenCorners>& in_lidar,
                    int view, CalibrationProblem& problem) const;
   bool CanFind(const SceneBoard& board) const;
-  /// Where the image has a point of a board; none outside it.
+  /// Pixel of a point of a board; none outside the image.
   std::optional<Eigen::Vector2d> PixelOf(const SceneBoard& board, double time_s,
                                          const Eigen::Vector3d& in_board) const;
 
@@ -85,10 +86,10 @@ class SceneObserver {
   Scene whole_scene_;
   int camera_index_ = 0;
   Rigid3d cam_from_lidar_{};
-  Camera camera_{};          // That is.
-  Camera assumed_camera_{};  // That the solver is told.
+  Camera camera_{};          // The true camera.
+  Camera assumed_camera_{};  // The camera that the solver assumes.
   LidarModel lidar_{};
-  std::shared_ptr<const BoardFinder> finder_{};  // Of rendered images only.
+  std::shared_ptr<const BoardFinder> finder_{};  // Only for rendered images.
 };
 
 }  // namespace sextant

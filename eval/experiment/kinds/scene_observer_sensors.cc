@@ -10,7 +10,7 @@
 #include "simulator/camera/render.h"
 #include "simulator/lidar/scan.h"
 
-// What each sensor makes of a scene's boards.
+// The simulation of the two sensors of SceneObserver.
 namespace sextant {
 namespace {
 
@@ -43,7 +43,7 @@ Expected<std::vector<SceneObserver::SeenCorners>> SceneObserver::ObserveWithLida
   if (settings_.lidar == LidarObservation::kNoise) {
     const double sigma = settings_.lidar_sigma_m;
     for (std::size_t b = 0; b < seen.size(); ++b) {
-      // The camera looks in the middle of a turn.
+      // The image is taken in the middle of a LiDAR revolution.
       const Rigid3d pose = BoardPoseAt(scene.boards[b], time_s + 0.5 * lidar_.turn_period_s);
       for (const Eigen::Vector3d& corner : BoardCorners(scene.boards[b].board)) {
         seen[b].points.push_back(scene.lidar.world_from_lidar.Inverse() * (pose * corner) +

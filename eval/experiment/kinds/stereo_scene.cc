@@ -15,10 +15,11 @@ namespace sextant {
 namespace {
 
 constexpr double kBaseline_m = 0.12;
-constexpr std::size_t kEnoughPoints = 500;  // Of a wall, in each cloud.
+constexpr std::size_t kEnoughPoints = 500;  // Minimum per wall in each cloud.
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Corners of the checkerboard as both eyes of a camera see them; empty where one does not.
+// Corners of the checkerboard triangulated from both images of a stereo camera; empty if one image
+// does not show it.
 Expected<std::vector<Eigen::Vector3d>> CheckerCorners(const Scene& scene,
                                                       const StereoImages& images) {
   std::vector<Eigen::Vector3d> corners;
@@ -41,7 +42,7 @@ Expected<std::vector<Eigen::Vector3d>> CheckerCorners(const Scene& scene,
   return corners;
 }
 
-// Whether the stereo camera measured this point on the wall, for all that its depth is worth there.
+// Whether the point lies on the wall within the accuracy of the stereo depth at that distance.
 bool IsOn(const SceneWall& wall, const Rigid3d& wall_from_cam, const Eigen::Vector3d& point) {
   constexpr double kMargin_m = 0.05;
   const double depth_error_m = 0.01 + 0.01 * point.z() * point.z();
@@ -85,7 +86,8 @@ Expected<StereoPair> RenderStereoPair(const Scene& full_scene) {
   std::erase_if(pair.walls, [](const auto& wall) {
     return wall[0].size() < kEnoughPoints || wall[1].size() < kEnoughPoints;
   });
-  // Seen from the other side a checkerboard's corners count from the other end.
+  // Cameras on opposite sides count the corners from opposite ends, so only the means are compared;
+  // for these the number of corners must agree.
   if (pair.checker[0].size() != pair.checker[1].size()) pair.checker = {};
   return pair;
 }

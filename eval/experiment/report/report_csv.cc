@@ -28,7 +28,7 @@ std::string Header(const Experiment& experiment) {
   return line + "\n";
 }
 
-// What all rows of a subject begin with.
+// The fields that all rows of a subject begin with.
 std::vector<std::string> Beginnings(const Experiment& experiment, const Condition& condition) {
   std::string common = experiment.name + "," + CsvField(condition.name);
   for (const std::string& place : condition.place) common += "," + CsvField(place);

@@ -40,7 +40,7 @@ Json ToJson(const Description& values) {
   return json;
 }
 
-// Of the metric, by cell.
+// The metric's description in each cell.
 Expected<std::vector<Description>> Describe(const ConditionRows& rows, int metric) {
   std::vector<Description> cells(rows.cells().size());
   ColumnPasses passes(rows, {metric});
@@ -56,7 +56,7 @@ Expected<std::vector<Description>> Describe(const ConditionRows& rows, int metri
   return cells;
 }
 
-// Of all wanted metrics; empty for the others.
+// Descriptions of all wanted metrics by cell; empty for the others.
 Expected<std::vector<std::vector<Description>>> DescribeAll(const Experiment& experiment,
                                                             const ConditionRows& rows) {
   std::vector<Expected<std::vector<Description>>> described(experiment.metrics.size());

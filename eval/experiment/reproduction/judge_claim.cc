@@ -12,11 +12,11 @@
 namespace sextant {
 namespace {
 
-// Of so many trials, all lie within bounds that hold a further one in 95 of 100 cases: outside the
-// middle 95 percent of fewer says nothing.
+// The range of 39 trials contains a further one with a probability of 95 percent; with fewer
+// trials, a value outside of their central 95 percent proves nothing.
 constexpr std::uint64_t kMinDraws = 39;
 
-// A figure of ours, ready to be compared.
+// One of our figures.
 struct OurFigure {
   double value = 0.0;
   Interval interval{};
@@ -78,7 +78,7 @@ Expected<OurFigure> Compute(const ClaimFigure& figure, bool is_draw, const RowsO
                  .decimals = statistic.decimals,
                  .trials = middle.trials};
   if (!is_draw) return ours;
-  // Where single trials fall.
+  // The interval of single trials.
   statistic.kind = Statistic::Kind::kQuantile;
   for (const auto& [q, end] :
        {std::pair{0.025, &ours.interval.low}, {0.975, &ours.interval.high}}) {
@@ -107,7 +107,7 @@ std::string_view ToString(Verdict verdict) {
     case Verdict::kRefuted:
       return "refuted";
     case Verdict::kUndecided:
-      return "undecided at so many trials";
+      return "undecided with this number of trials";
     case Verdict::kNotTestable:
       return "not testable";
   }
@@ -150,7 +150,7 @@ Expected<JudgedClaim> JudgeClaim(const Claim& claim, const std::map<std::string,
   if (!claim.ours) return judged;
   const auto find = [&](const ClaimFigure& figure) { return rows.find(figure.experiment); };
   if (find(*claim.ours) == rows.end() || (claim.than && find(*claim.than) == rows.end())) {
-    judged.remark = "its data is not here; " + claim.why;
+    judged.remark = "the data of the experiment is missing; " + claim.why;
     return judged;
   }
   const Expected<OurFigure> ours =

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One experiment with its rows, which claims are then judged by.
+// A finished experiment with its rows.
 struct Done {
   Experiment experiment;
   RowFileReader reader;
@@ -32,9 +32,9 @@ Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const 
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
-    return MakeError(ErrorCode::kIo, fmt::format("cannot make the folder '{}': {}; name another "
-                                                 "with --out",
-                                                 folder.string(), error.message()));
+    return MakeError(ErrorCode::kIo,
+                     fmt::format("cannot create the folder '{}': {}; choose another one with --out",
+                                 folder.string(), error.message()));
   }
   const fs::path rows = folder / "rows.sxtrows";
   const Expected<RunOutcome> outcome =

@@ -15,7 +15,7 @@ struct Piece {
   RowBlockPlace place;
 };
 
-// How many blocks the experiment of this configuration has.
+// The number of blocks of the experiment with this configuration.
 std::uint64_t ExpectedBlocks(const std::string& configuration) {
   const auto json = nlohmann::json::parse(configuration, nullptr, /*allow_exceptions=*/false);
   const auto number = [&json](const char* key) {
@@ -43,7 +43,7 @@ Expected<std::vector<RowFileReader>> OpenAll(const std::vector<std::filesystem::
   return readers;
 }
 
-// By number, each block once. Errors: kInvalidInput where one is missing.
+// All distinct blocks by number. Errors: kInvalidInput if one is missing.
 Expected<std::vector<Piece>> SortPieces(const std::vector<RowFileReader>& readers) {
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i < readers.size(); ++i) {
@@ -59,7 +59,7 @@ Expected<std::vector<Piece>> SortPieces(const std::vector<RowFileReader>& reader
   while (missing < pieces.size() && pieces[missing].place.number == missing) ++missing;
   return MakeError(ErrorCode::kInvalidInput,
                    fmt::format("{} of {} blocks are in none of the files, the first is number {}; "
-                               "run the shards to their end, and name all of them",
+                               "finish all shards and name all of them",
                                expected - pieces.size(), expected, missing));
 }
 

@@ -27,8 +27,7 @@ tl::unexpected<Error> Unreadable(const std::filesystem::path& path) {
 tl::unexpected<Error> Damaged(const std::filesystem::path& path) {
   return MakeError(
       ErrorCode::kParse,
-      fmt::format("{}: expected the rows of an experiment, and its beginning is not theirs; "
-                  "was another file named?",
+      fmt::format("{}: not a row file of an experiment, or its header is damaged; check the path",
                   Printable(path.string(), 300)));
 }
 

@@ -47,7 +47,7 @@ FinishedBlock RunBlock(const Experiment& experiment, std::uint64_t block) {
   return {MakeRowBlock(block, range.first, rows).Encode(), range.end - range.first};
 }
 
-// The shard's blocks in order.
+// The blocks of the shard in ascending order.
 std::vector<std::uint64_t> BlocksOfShard(const Experiment& experiment, const Shard& shard) {
   std::vector<std::uint64_t> blocks;
   for (std::uint64_t b = shard.number; b < BlocksOf(experiment); b += shard.of) blocks.push_back(b);
@@ -64,12 +64,12 @@ Expected<void> CheckKept(const std::vector<std::uint64_t>& kept,
                                           : std::all_of(kept.begin(), kept.end(), is_of_shard);
   if (fits) return {};
   return MakeError(ErrorCode::kInvalidInput,
-                   fmt::format("'{}' holds blocks of another --shard; start anew with --fresh, or "
-                               "name another folder with --out",
+                   fmt::format("'{}' holds blocks of another --shard; start over with --fresh, or "
+                               "choose another folder with --out",
                                settings.rows_path.string()));
 }
 
-// The blocks that neither this file nor another holds.
+// The blocks that are neither in this file nor in another one.
 std::vector<std::uint64_t> Missing(std::vector<std::uint64_t> blocks,
                                    std::vector<std::uint64_t> kept,
                                    const std::vector<std::uint64_t>& held) {
@@ -81,7 +81,7 @@ std::vector<std::uint64_t> Missing(std::vector<std::uint64_t> blocks,
   return blocks;
 }
 
-// Runs blocks on all threads; they are written in order, and few wait to be.
+// Runs blocks on all threads and writes them in order; the number of blocks in flight is bounded.
 class BlockPipeline {
  public:
   BlockPipeline(const Experiment& experiment, std::vector<std::uint64_t> blocks,
