@@ -50,15 +50,16 @@ struct PairDiagnostics {
 };
 
 /// Checks the 3D-3D pairs for wrong orders, wrong edges, mirrored data and weak directions; empty
-/// for a problem with fewer than three pairs. Order: matching one board's camera corners with any
-/// board's LiDAR corners, in each of the eight orders of a rectangle, gives a start pose; all
-/// boards of each view are assigned under it and the pose is refitted until the assignment is
-/// stable. The best result over all starts is reported if its RMSE is less than half that of the
-/// given order, the latter is above a tenth and the former below a fifth of the mean edge. Boards
-/// need all four corners. Edges: compared in the better order, and reported if they differ by more
-/// than 5 percent of their length and by more than three standard deviations of their difference
-/// (if the noise is stated). Weak direction: its standard deviation is more than five times that of
-/// the best determined direction.
+/// for a problem with fewer than three pairs.
+///
+/// Order: matching one board's camera corners with any board's LiDAR corners, in each of the eight
+/// orders of a rectangle, gives a start pose; all boards of each view are assigned under it and the
+/// pose is refitted until the assignment is stable. The best result over all starts is reported if
+/// its RMSE is less than half that of the given order, the latter is above a tenth and the former
+/// below a fifth of the mean edge. Boards need all four corners. Edges: compared in the better
+/// order, and reported if they differ by more than 5 percent of their length and by more than three
+/// standard deviations of their difference (if the noise is stated). Weak direction: its standard
+/// deviation is more than five times that of the best determined direction.
 PairDiagnostics DiagnosePairs(const CalibrationProblem& problem);
 
 /// The problem with its LiDAR points reordered as the finding says.

@@ -9,9 +9,11 @@
 namespace sextant {
 
 /// The Cramer-Rao bound: a lower bound of the covariance of (dphi [rad], dt [m]) for every unbiased
-/// estimator. It is the inverse of the Fisher information sum_i J_i^T Sigma_i^-1 J_i of all pairs
-/// of the problem, with the residuals linearised at the true pose and the noise stated in the pairs
-/// (van Trees 1968). Errors: kMissingData (no pairs, or pairs that state no noise), kDegenerate
+/// estimator.
+///
+/// It is the inverse of the Fisher information sum_i J_i^T Sigma_i^-1 J_i of all pairs of the
+/// problem, with the residuals linearised at the true pose and the noise stated in the pairs (van
+/// Trees 1968). Errors: kMissingData (no pairs, or pairs that state no noise), kDegenerate
 /// (singular information), kInvalidInput (2D-3D pairs without a camera, or a point that does not
 /// project).
 Expected<Matrix6d> CramerRaoBound(const CalibrationProblem& problem,

@@ -46,11 +46,12 @@ struct RunningAverageAnalysis {
   double last_rmse_m = 0.0;
 };
 
-/// Recovers the single scans from the running averages and computes their true mean. Translation:
-/// t_k = k m_k - (k - 1) m_(k-1). Rotation: RecoverOriginalRotation; the first row is the first
-/// scan. Two scans are equal if they differ by no more than the rounding of the printed digits.
-/// Errors: kMissingData (no rows); kInvalidInput (iterations that do not count 1, 2, 3 ..., a
-/// matrix that is no rotation; names the row); kNonFinite; kDegenerate (no mean rotation).
+/// Recovers the single scans from the running averages and computes their true mean.
+///
+/// Translation: t_k = k m_k - (k - 1) m_(k-1). Rotation: RecoverOriginalRotation; the first row is
+/// the first scan. Two scans are equal if they differ by no more than the rounding of the printed
+/// digits. Errors: kMissingData (no rows); kInvalidInput (iterations that do not count 1, 2, 3 ...,
+/// a matrix that is no rotation; names the row); kNonFinite; kDegenerate (no mean rotation).
 Expected<RunningAverageAnalysis> AnalyseRunningAverage(std::span<const RunningAverageRow> rows);
 
 }  // namespace sextant

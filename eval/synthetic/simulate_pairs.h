@@ -9,6 +9,7 @@
 namespace sextant {
 
 /// A session simulated at the level of corners, as extractors would pass them to the solvers.
+///
 /// Defaults: the paper's two boards (48.4 x 46.8 and 49.0 x 46.8 cm), one corner up, about 2 m
 /// away, a VLP-16 and a ZED-like camera. Noise of the LiDAR corners: intersecting four independent
 /// 3D edge lines at a range sigma of 1 cm leaves 11.8 mm RMSE, that is 6.8 mm per axis. Noise of

@@ -10,6 +10,7 @@
 namespace sextant {
 
 /// A session simulated at the level of raw observations of a board, without images and scans.
+///
 /// Defaults: a 50 cm board with one tag of 20.5 cm at 1.8 to 2.5 m, one corner up, tilted about a
 /// random axis by up to 45 degrees, in view of both sensors; a LiDAR with 16 rings 2 degrees apart.
 struct ViewSimulation {

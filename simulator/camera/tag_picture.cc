@@ -33,7 +33,7 @@ Expected<void> CheckRanges(const TagPictureOptions& options) {
                   options.edge_m, options.side_px, options.tilt_rad, options.field));
 }
 
-// The tag with two cells of white around all that is printed.
+// A board with the tag and two white cells around its print.
 Expected<Board> BoardAround(const TagPictureOptions& options) {
   const Expected<TagPattern> pattern = MakeTagPattern(options.family, options.id);
   if (!pattern) return tl::unexpected(pattern.error());
@@ -43,7 +43,7 @@ Expected<Board> BoardAround(const TagPictureOptions& options) {
                .tags = {{.family = options.family, .id = options.id, .edge_m = options.edge_m}}};
 }
 
-// Facing the camera along the line of sight, turned in its plane, then tilted.
+// A random pose: facing the camera along the line of sight, rotated in its plane, then tilted.
 Expected<Rigid3d> DrawPose(const TagPictureOptions& options, const Camera& camera) {
   Random random(DeriveSeed(options.seed, "tag picture", 0, 0));
   const double u = random.Uniform(-0.5, 0.5);
@@ -54,10 +54,10 @@ Expected<Rigid3d> DrawPose(const TagPictureOptions& options, const Camera& camer
                                0.5 * (camera.height_px - 1) + v * options.field * camera.height_px);
   const std::optional<Eigen::Vector3d> sight = Unproject(camera, center);
   if (!sight) {
-    return MakeError(ErrorCode::kInvalidInput,
-                     fmt::format("camera {} has no image at pixel ({:.1f}, {:.1f}); draw from a "
-                                 "smaller field",
-                                 options.camera_model, center.x(), center.y()));
+    return MakeError(
+        ErrorCode::kInvalidInput,
+        fmt::format("camera {} has no image at pixel ({:.1f}, {:.1f}); use a smaller field",
+                    options.camera_model, center.x(), center.y()));
   }
   const double depth_m = camera.fx_px * options.edge_m / options.side_px;
   const Eigen::Quaterniond facing = RotationBetween(Eigen::Vector3d::UnitZ(), *sight);
@@ -67,7 +67,8 @@ Expected<Rigid3d> DrawPose(const TagPictureOptions& options, const Camera& camer
   return Rigid3d{(facing * tilt * turn).normalized(), *sight * (depth_m / sight->z())};
 }
 
-// The camera of the window that holds the board; none where the image does not hold it.
+// The camera of the image window that contains the board; none if the board is not completely in
+// the image.
 std::optional<Camera> WindowAround(const Camera& camera, const Board& board,
                                    const Rigid3d& cam_from_board) {
   Eigen::Array2d low(camera.width_px, camera.height_px);
@@ -108,8 +109,8 @@ Expected<TagPicture> RenderTagPicture(const TagPictureOptions& options) {
   const std::optional<Camera> camera = WindowAround(*whole, *board, *cam_from_board);
   if (!camera) {
     return MakeError(ErrorCode::kInvalidInput,
-                     fmt::format("a board with a tag of {} px reaches beyond the image of {}; draw "
-                                 "from a smaller field than {} or take a smaller tag",
+                     fmt::format("a board with a tag of {} px reaches beyond the image of {}; use "
+                                 "a field smaller than {} or a smaller tag",
                                  options.side_px, options.camera_model, options.field));
   }
   Scene scene;

@@ -8,7 +8,7 @@
 namespace sextant {
 namespace {
 
-// As many as a person would describe, and more; each beam looks at every one.
+// More than any hand-written scene needs; each beam is tested against every object.
 constexpr std::size_t kMaxObjects = 10000;
 
 Expected<void> CheckPoseAndSizes(const std::string& what, const Rigid3d& pose,

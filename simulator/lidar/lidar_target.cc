@@ -26,7 +26,8 @@ Expected<LidarTarget> FromBoard(const SceneBoard& board, const Rigid3d& lidar_fr
     target.print = *std::move(print);
   }
   target.target_from_lidar = (lidar_from_world * board.world_from_board).Inverse();
-  // A swinging board turns about its corner 0 and stays within its diagonal of it.
+  // A swinging board rotates about its corner 0 and stays within the length of its diagonal from
+  // it.
   const Eigen::Vector3d& low = target.block.low;
   const Eigen::Vector3d& high = target.block.high;
   const Eigen::Vector3d center = board.swing ? low : Eigen::Vector3d(0.5 * (low + high));
@@ -36,7 +37,7 @@ Expected<LidarTarget> FromBoard(const SceneBoard& board, const Rigid3d& lidar_fr
   return target;
 }
 
-// Of a size, centred on its own origin.
+// A block of the given size, centred on its own origin.
 LidarTarget FromBlock(SceneObject object, const Eigen::Vector3d& size_m,
                       const Rigid3d& lidar_from_block, const Surface& surface) {
   LidarTarget target;

@@ -38,7 +38,7 @@ SceneLidar ReadLidar(YamlFields& in, const YamlNode& node) {
   return lidar;
 }
 
-// One camera, and its partner where it has a baseline.
+// Reads one camera, and adds its stereo partner if it has a baseline.
 void ReadCamera(YamlFields& in, const YamlNode& node, std::vector<SceneCamera>& cameras) {
   static const Keys kKeys = {
       "name", "model", "intrinsics", "assumed_intrinsics", "pose", "stereo_baseline_m"};
@@ -134,7 +134,7 @@ SceneCylinder ReadCylinder(YamlFields& in, const YamlNode& node) {
   return cylinder;
 }
 
-// The items of an optional list, of a bounded number.
+// The items of an optional list of limited length.
 std::vector<const YamlNode*> ItemsAt(YamlFields& in, const YamlNode& root, std::string_view key,
                                      std::size_t most) {
   std::vector<const YamlNode*> items;

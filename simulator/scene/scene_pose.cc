@@ -8,7 +8,7 @@
 namespace sextant {
 namespace {
 
-// The attitude whose forward axis is along `direction`, upright.
+// The upright attitude whose forward axis points along `direction`.
 EulerZyx Along(const Eigen::Vector3d& direction) {
   const double level = std::hypot(direction.x(), direction.y());
   return {.yaw = level > 0.0 ? std::atan2(direction.y(), direction.x()) : 0.0,
@@ -23,7 +23,7 @@ Eigen::Quaterniond ReadQuaternion(YamlFields& in, const YamlNode& node) {
   if (in.ok() && std::abs(q.norm() - 1.0) > kTolerance) {
     in.Fail(node.line, "quaternion_wxyz", "expected a quaternion of length 1");
   }
-  // A pose that was written with all its digits is taken to the bit.
+  // A quaternion that was written with all digits is used bit by bit.
   constexpr double kRounding = 1e-14;
   return std::abs(q.norm() - 1.0) < kRounding ? q : q.normalized();
 }

@@ -6,14 +6,15 @@
 
 namespace sextant {
 
-/// Which way the axes of a thing in a scene point where it is not turned.
+/// Directions of an object's axes in the world if it is not rotated.
 enum class SceneAxes {
   kForwardIsX,  ///< x forward, y left, z up: LiDARs, boxes.
-  kForwardIsZ,  ///< x right, y down, z forward: cameras, boards, walls; seen squarely along z.
+  kForwardIsZ,  ///< x right, y down, z forward: cameras, boards, walls; z points into boards and
+                ///< walls.
 };
 
-/// Turned by yaw (to the left), then pitch (nose down), then roll (clockwise as seen along
-/// forward), from looking along the world's x with the world's z up.
+/// Rotation of an object: starting from forward along the world's x with z up, by yaw (to the
+/// left), then pitch (nose down), then roll (clockwise as seen along forward).
 Eigen::Quaterniond SceneRotation(SceneAxes axes, const EulerZyx& euler);
 
 /// world_from_object of a map with `position_m` and one of

@@ -56,7 +56,8 @@ Expected<void> CheckOptions(const SessionOptions& options) {
   return {};
 }
 
-// All that decides the bytes of the files besides the scene; not the number of scans.
+// Everything besides the scene that determines the bytes of the files, except for the number of
+// scans.
 std::string Configuration(const SessionOptions& options) {
   YamlText out;
   out.Line("sextant_simulation: 1");
@@ -181,7 +182,7 @@ class Session {
     return options_.encode_image(image);
   }
 
-  // More scans than an earlier run had change this file, so it is written anew.
+  // This file changes with the number of scans, so it is always rewritten.
   Expected<void> WriteProblem(std::size_t camera) {
     const SceneCamera& scene_camera = scene_.cameras[camera];
     ProblemFile file;

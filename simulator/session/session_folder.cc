@@ -28,10 +28,10 @@ Error FolderError(const fs::path& path, const std::error_code& reason) {
 Expected<void> RequireSame(const fs::path& path, std::string_view expected) {
   SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
   if (text == expected) return {};
-  return MakeError(ErrorCode::kInvalidInput,
-                   fmt::format("{}: the folder holds another simulation; remove it, or name "
-                               "another folder",
-                               path.string()));
+  return MakeError(
+      ErrorCode::kInvalidInput,
+      fmt::format("{}: the folder holds another simulation; remove it or choose another folder",
+                  path.string()));
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ Expected<SessionFolder> SessionFolder::Open(const fs::path& path, std::string_vi
   }
   const SessionFolder folder(path);
   if (is_ours) {
-    // In this order: the scene decides more often.
+    // The scene first, as it differs more often.
     if (auto same = RequireSame(path / kSceneFile, scene_text); !same) {
       return tl::unexpected<Error>(same.error());
     }
@@ -74,7 +74,7 @@ Expected<SessionFolder> SessionFolder::Open(const fs::path& path, std::string_vi
   }
   for (const fs::path& leftover : half_written) fs::remove(leftover, failed);
   if (is_ours) return folder;
-  // The configuration last: a folder with it is whole.
+  // The configuration is written last, so that its presence marks a complete folder.
   if (auto ok = folder.Write(kSceneFile, scene_text); !ok) {
     return tl::unexpected<Error>(ok.error());
   }

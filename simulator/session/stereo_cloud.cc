@@ -23,9 +23,9 @@ Expected<void> CheckOptions(const StereoOptions& options) {
                   options.nearest_m, options.farthest_m, options.block_px));
 }
 
-// Disparities in pixels, CV_32F; not positive where there is no match.
+// Disparities in pixels, CV_32F; zero or negative where there is no match.
 cv::Mat MatchImages(const cv::Mat& left, const cv::Mat& right, int most_px, int block_px) {
-  // The weights that OpenCV's own documentation gives for one channel.
+  // Smoothness penalties from OpenCV's documentation for one channel.
   const int small_step = 8 * block_px * block_px;
   const int large_step = 32 * block_px * block_px;
   const auto matcher =
@@ -39,7 +39,7 @@ cv::Mat MatchImages(const cv::Mat& left, const cv::Mat& right, int most_px, int 
   return disparities;
 }
 
-// Both eyes as pinholes of the camera's focal length.
+// Both cameras as pinholes with the camera's focal length.
 Expected<Scene> RectifiedPair(const Scene& scene, int camera_index, double baseline_m) {
   if (camera_index < 0 || camera_index >= static_cast<int>(scene.cameras.size())) {
     return MakeError(ErrorCode::kInvalidInput,

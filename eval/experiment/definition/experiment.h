@@ -67,9 +67,10 @@ struct Experiment {
 
 /// Reads an experiment file and checks everything that can be checked before the first trial: keys,
 /// kind, parameters, solvers, metrics, statistics. Format: docs/experiments.md. Errors name file,
-/// line and key (kParse, kUnknownName with the nearest known name, kInvalidOption); kIo. `solvers`
-/// (specs separated by commas) replaces all solvers that the file names; conditions without the
-/// data that they need are then left out.
+/// line and key (kParse, kUnknownName with the nearest known name, kInvalidOption); kIo.
+///
+/// `solvers` (specs separated by commas) replaces all solvers that the file names; conditions
+/// without the data that they need are then left out.
 Expected<Experiment> ReadExperiment(const std::filesystem::path& path,
                                     const std::vector<TrialKind>& kinds,
                                     const SolverRegistry& registry,

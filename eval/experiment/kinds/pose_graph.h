@@ -26,6 +26,7 @@ class SensorGraph {
   /// Gauss-Newton from the shortest chains of edges (Grisetti et al. 2010, "A tutorial on
   /// graph-based SLAM"). Any number of cameras and LiDARs; two sensors may be measured against each
   /// other more than once, and in either direction. Without a loop the result is the chain itself.
+  ///
   /// Assumes that the errors of different edges are independent. Errors: kMissingData (no edge);
   /// kInvalidInput (an edge from a frame to itself, a covariance that is not positive definite;
   /// names the edge); kNonFinite; kDegenerate (a sensor that no chain of edges joins to the first

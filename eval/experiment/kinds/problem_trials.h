@@ -9,8 +9,10 @@ namespace sextant {
 
 /// How a kind makes its problems. In each trial a problem with known truth is made from the trial's
 /// id and given to every solver, and the results are measured by PoseMetrics() (the kind's first
-/// metrics). A solver gets only the kinds of data that it needs, and the true pose as its initial
-/// pose if it needs one and the problem has none.
+/// metrics).
+///
+/// A solver gets only the kinds of data that it needs, and the true pose as its initial pose if it
+/// needs one and the problem has none.
 struct ProblemMaker {
   std::function<Expected<KnownProblem>(const TrialId&)> make;
   PoseLimits limits;

@@ -18,6 +18,7 @@ namespace sextant {
 ///   "sxtrows1", u64 bytes, the configuration (JSON, padded with blanks to 8 bytes), u64 checksum
 ///   then blocks: u64 "sxtblock", u64 number, u64 rows, rows x u64 key, columns x rows x f64,
 ///   u64 checksum of all of the block before it
+///
 /// A key is (trial within the block) << 48 | subject << 32 | index. The number of a block
 /// determines its trials, so files of several machines are merged by sorting their blocks (see
 /// MergeRowFiles).
