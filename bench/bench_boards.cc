@@ -16,16 +16,14 @@ constexpr double kMaxError_m = 0.02;
 Expected<std::vector<LidarCorners>> Extract(const PointCloud& cloud,
                                             const std::vector<Board>& boards,
                                             const BoardSearchOptions& options) {
-  const Expected<ScanRings> rings = ScanRings::Build(cloud);
-  if (!rings) return tl::unexpected<Error>(rings.error());
-  const Expected<BoardSearch> search = FindBoards(*rings, boards, options);
-  if (!search) return tl::unexpected<Error>(search.error());
+  SEXTANT_ASSIGN_OR_RETURN(const ScanRings rings, ScanRings::Build(cloud));
+  SEXTANT_ASSIGN_OR_RETURN(const BoardSearch search, FindBoards(rings, boards, options));
   std::vector<LidarCorners> corners;
-  for (const BoardPatch& patch : search->found) {
-    Expected<LidarCorners> of =
-        ExtractCorners("rectangle", patch, boards[static_cast<std::size_t>(patch.board)]);
-    if (!of) return tl::unexpected<Error>(of.error());
-    corners.push_back(std::move(*of));
+  for (const BoardPatch& patch : search.found) {
+    SEXTANT_ASSIGN_OR_RETURN(
+        LidarCorners of,
+        ExtractCorners("rectangle", patch, boards[static_cast<std::size_t>(patch.board)]));
+    corners.push_back(std::move(of));
   }
   return corners;
 }

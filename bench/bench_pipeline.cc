@@ -67,9 +67,9 @@ Expected<SolveReport> Answer(const Recording& recording, const Observer& observe
                              const Solver& solver) {
   std::vector<SessionView> views(1);
   views[0].seen = observer.Observe(recording.image, recording.cloud);
-  const Expected<Assembly> assembly = Assemble(views, recording.boards, recording.camera);
-  if (!assembly) return tl::unexpected<Error>(assembly.error());
-  return solver.Solve(assembly->problem);
+  SEXTANT_ASSIGN_OR_RETURN(const Assembly assembly,
+                           Assemble(views, recording.boards, recording.camera));
+  return solver.Solve(assembly.problem);
 }
 
 void CalibrateOnePair(benchmark::State& state) {

@@ -264,7 +264,7 @@ Expected<void> WritePage(const std::vector<Chart>& charts, const Settings& setti
   std::error_code error;
   fs::create_directories(settings.page / "scaling", error);
   for (const Chart& chart : charts) {
-    if (Expected<void> ok = DrawChart(chart, settings.page / "scaling"); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(DrawChart(chart, settings.page / "scaling"));
     page += ChapterOf(chart) + (&chart == &charts.back() ? "" : "\n");
   }
   return WriteFileAtomically(settings.page / "scaling.md", page);

@@ -93,7 +93,7 @@ Expected<void> DrawChart(const Chart& chart, const std::filesystem::path& folder
   commands += Panel(chart, "memory [MB]", 3, true);
   commands += "unset multiplot\n";
   for (const char* extension : {".svg", ".png"}) {
-    if (Expected<void> ok = DrawPlot(commands, folder / (chart.name + extension)); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(DrawPlot(commands, folder / (chart.name + extension)));
   }
   return {};
 }

@@ -190,17 +190,4 @@ void AddHolder(const SceneBoard& placed, Random& random, Scene& scene) {
   }
 }
 
-std::vector<Board> BoardsIn(const Scene& scene) {
-  std::vector<Board> boards;
-  for (const SceneBoard& placed : scene.boards) boards.push_back(placed.board);
-  return boards;
-}
-
-Eigen::Vector3d TrueCorner(const SceneBoard& placed, int corner) {
-  const double x = corner == 1 || corner == 2 ? 0.5 : -0.5;
-  const double y = corner >= 2 ? 0.5 : -0.5;
-  return placed.world_from_board *
-         Eigen::Vector3d(x * placed.board.top_right_m, y * placed.board.right_bottom_m, 0.0);
-}
-
 }  // namespace sextant

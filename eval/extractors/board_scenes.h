@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
 #include "base/random.h"
 #include "simulator/lidar/lidar_model.h"
 #include "simulator/scene/scene.h"
@@ -51,11 +49,5 @@ void AddStand(const SceneBoard& placed, Scene& scene);
 
 /// Adds a person within a forearm's length behind a board, with both hands over its lower edges.
 void AddHolder(const SceneBoard& placed, Random& random, Scene& scene);
-
-/// Boards of a scene, in the order of the scene.
-std::vector<Board> BoardsIn(const Scene& scene);
-
-/// A corner of a board in the world frame [m].
-Eigen::Vector3d TrueCorner(const SceneBoard& placed, int corner);
 
 }  // namespace sextant

@@ -35,9 +35,8 @@ Expected<void> CheckRanges(const TagPictureOptions& options) {
 
 // A board with the tag and two white cells around its print.
 Expected<Board> BoardAround(const TagPictureOptions& options) {
-  const Expected<TagPattern> pattern = MakeTagPattern(options.family, options.id);
-  if (!pattern) return tl::unexpected(pattern.error());
-  const double side_m = options.edge_m * (pattern->cells + 4) / pattern->edge_cells;
+  SEXTANT_ASSIGN_OR_RETURN(const TagPattern pattern, MakeTagPattern(options.family, options.id));
+  const double side_m = options.edge_m * (pattern.cells + 4) / pattern.edge_cells;
   return Board{.top_right_m = side_m,
                .right_bottom_m = side_m,
                .tags = {{.family = options.family, .id = options.id, .edge_m = options.edge_m}}};
@@ -99,14 +98,11 @@ std::optional<Camera> WindowAround(const Camera& camera, const Board& board,
 }  // namespace
 
 Expected<TagPicture> RenderTagPicture(const TagPictureOptions& options) {
-  if (const Expected<void> ok = CheckRanges(options); !ok) return tl::unexpected(ok.error());
-  const Expected<Camera> whole = FindCameraModel(options.camera_model);
-  if (!whole) return tl::unexpected(whole.error());
-  Expected<Board> board = BoardAround(options);
-  if (!board) return tl::unexpected(board.error());
-  const Expected<Rigid3d> cam_from_board = DrawPose(options, *whole);
-  if (!cam_from_board) return tl::unexpected(cam_from_board.error());
-  const std::optional<Camera> camera = WindowAround(*whole, *board, *cam_from_board);
+  SEXTANT_RETURN_IF_ERROR(CheckRanges(options));
+  SEXTANT_ASSIGN_OR_RETURN(const Camera whole, FindCameraModel(options.camera_model));
+  SEXTANT_ASSIGN_OR_RETURN(Board board, BoardAround(options));
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_board, DrawPose(options, whole));
+  const std::optional<Camera> camera = WindowAround(whole, board, cam_from_board);
   if (!camera) {
     return MakeError(ErrorCode::kInvalidInput,
                      fmt::format("a board with a tag of {} px reaches beyond the image of {}; use "
@@ -115,19 +111,18 @@ Expected<TagPicture> RenderTagPicture(const TagPictureOptions& options) {
   }
   Scene scene;
   scene.cameras = {{.intrinsics = *camera}};
-  scene.boards = {{.board = *board, .world_from_board = *cam_from_board}};
+  scene.boards = {{.board = board, .world_from_board = cam_from_board}};
   scene.background_albedo = 0.3;
-  Expected<cv::Mat> image = RenderImage(scene, 0, options.image);
-  if (!image) return tl::unexpected(image.error());
-  TagPicture picture{.image = *std::move(image),
+  SEXTANT_ASSIGN_OR_RETURN(cv::Mat image, RenderImage(scene, 0, options.image));
+  TagPicture picture{.image = std::move(image),
                      .camera = *camera,
-                     .board = *std::move(board),
-                     .cam_from_board = *cam_from_board,
+                     .board = std::move(board),
+                     .cam_from_board = cam_from_board,
                      .corners_px = {}};
   const std::array<Eigen::Vector2d, 4> corners = TagCorners(picture.board.tags.front());
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Vector3d in_board(corners[i].x(), corners[i].y(), 0.0);
-    picture.corners_px[i] = *Project(*camera, *cam_from_board * in_board);
+    picture.corners_px[i] = *Project(*camera, cam_from_board * in_board);
   }
   return picture;
 }

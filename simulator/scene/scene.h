@@ -96,4 +96,10 @@ struct Scene {
 /// world_from_board at `time_s` after the session's start.
 Rigid3d BoardPoseAt(const SceneBoard& board, double time_s);
 
+/// The boards of a scene, in the order of the scene.
+std::vector<Board> BoardsIn(const Scene& scene);
+
+/// Corner 0 to 3 of a board at rest, in the world frame [m].
+Eigen::Vector3d TrueCorner(const SceneBoard& board, int corner);
+
 }  // namespace sextant

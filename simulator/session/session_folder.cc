@@ -65,22 +65,14 @@ Expected<SessionFolder> SessionFolder::Open(const fs::path& path, std::string_vi
   const SessionFolder folder(path);
   if (is_ours) {
     // The scene first, as it differs more often.
-    if (auto same = RequireSame(path / kSceneFile, scene_text); !same) {
-      return tl::unexpected<Error>(same.error());
-    }
-    if (auto same = RequireSame(path / kConfigurationFile, configuration); !same) {
-      return tl::unexpected<Error>(same.error());
-    }
+    SEXTANT_RETURN_IF_ERROR(RequireSame(path / kSceneFile, scene_text));
+    SEXTANT_RETURN_IF_ERROR(RequireSame(path / kConfigurationFile, configuration));
   }
   for (const fs::path& leftover : half_written) fs::remove(leftover, failed);
   if (is_ours) return folder;
   // The configuration is written last, so that its presence marks a complete folder.
-  if (auto ok = folder.Write(kSceneFile, scene_text); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
-  if (auto ok = folder.Write(kConfigurationFile, configuration); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  SEXTANT_RETURN_IF_ERROR(folder.Write(kSceneFile, scene_text));
+  SEXTANT_RETURN_IF_ERROR(folder.Write(kConfigurationFile, configuration));
   return folder;
 }
 
@@ -89,7 +81,7 @@ Expected<bool> SessionFolder::Complete(const std::string& name,
   std::error_code ignored;
   if (fs::is_regular_file(path_ / name, ignored)) return false;
   SEXTANT_ASSIGN_OR_RETURN(const std::string text, make());
-  if (auto ok = Write(name, text); !ok) return tl::unexpected<Error>(ok.error());
+  SEXTANT_RETURN_IF_ERROR(Write(name, text));
   return true;
 }
 

@@ -85,7 +85,7 @@ std::optional<Eigen::Vector3d> Triangulate(const StereoImages& images, const Eig
 }
 
 Expected<PointCloud> MatchStereo(const StereoImages& images, const StereoOptions& options) {
-  if (const Expected<void> ok = CheckOptions(options); !ok) return tl::unexpected(ok.error());
+  SEXTANT_RETURN_IF_ERROR(CheckOptions(options));
   const double depth_times_px = images.camera.fx_px * images.baseline_m;
   const int most_px = 16 * static_cast<int>(std::ceil(depth_times_px / options.nearest_m / 16.0));
   const cv::Mat disparities = MatchImages(images.left, images.right, most_px, options.block_px);

@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "eval/experiment/report/golden.h"
 #include "eval/experiment/run/run_trials.h"
 #include "io/text/text_file.h"
+#include "regression/golden_figures.h"
 #include "solvers/builtin_solvers.h"
 #include "support/run_program.h"
 #include "support/source_tree.h"

@@ -10,11 +10,10 @@ namespace sextant {
 Expected<Experiment> ParseExperiment(std::string_view text, const std::string& file,
                                      const std::vector<TrialKind>& kinds,
                                      const SolverRegistry& registry, const std::string& solvers) {
-  const Expected<std::vector<SpecNode>> specs =
-      solvers.empty() ? std::vector<SpecNode>() : ParseSpecList(solvers);
-  if (!specs) return tl::unexpected<Error>(specs.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<SpecNode> specs,
+                           solvers.empty() ? std::vector<SpecNode>() : ParseSpecList(solvers));
   SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
-  return ExperimentParser(file, kinds, registry, *specs).Parse(root);
+  return ExperimentParser(file, kinds, registry, specs).Parse(root);
 }
 
 Expected<Experiment> ReadExperiment(const std::filesystem::path& path,

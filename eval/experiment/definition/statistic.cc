@@ -79,7 +79,7 @@ Expected<void> SetOption(const std::string& key, const std::string& value,
 
 Expected<void> Fill(const SpecNode& node, const std::vector<Metric>& metrics,
                     Statistic& statistic) {
-  if (Expected<void> ok = SetKind(node.name, statistic); !ok) return ok;
+  SEXTANT_RETURN_IF_ERROR(SetKind(node.name, statistic));
   const bool takes_two = statistic.kind == Statistic::Kind::kEfficiency;
   if (node.inner.size() != (takes_two ? 2U : 1U)) {
     return MakeError(ErrorCode::kParse,
@@ -93,7 +93,7 @@ Expected<void> Fill(const SpecNode& node, const std::vector<Metric>& metrics,
     statistic.reference = reference;
   }
   for (const auto& [key, value] : node.options) {
-    if (Expected<void> ok = SetOption(key, value, metrics, statistic); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(SetOption(key, value, metrics, statistic));
   }
   return {};
 }

@@ -154,7 +154,8 @@ class BoardScanTrials final : public Trials {
     for (std::size_t i = 0; i < 4; ++i) {
       gap += 0.25e3 * corners->checks.line_gaps_m[i];
       edge += 0.25e3 * std::abs(corners->checks.edge_lengths_m[i] - board.EdgeLengths()[i]);
-      const double error = 1e3 * (corners->in_lidar[i] - CornerInLidar(scene, i)).norm();
+      const double error =
+          1e3 * (corners->in_lidar[i] - TrueCorner(scene.boards[0], static_cast<int>(i))).norm();
       squares += 0.25 * error * error;
       worst = std::max(worst, error);
     }
@@ -163,14 +164,6 @@ class BoardScanTrials final : public Trials {
     values.Set(kEdgeMm, edge);
     values.Set(kCornerMm, std::sqrt(squares));
     values.Set(kWorstMm, worst);
-  }
-
-  static Eigen::Vector3d CornerInLidar(const Scene& scene, std::size_t corner) {
-    const Board& board = scene.boards[0].board;
-    const double x = corner == 1 || corner == 2 ? 0.5 : -0.5;
-    const double y = corner >= 2 ? 0.5 : -0.5;
-    return scene.boards[0].world_from_board *
-           Eigen::Vector3d(x * board.top_right_m, y * board.right_bottom_m, 0.0);
   }
 
   BoardScanSettings settings_;

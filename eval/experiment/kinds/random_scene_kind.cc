@@ -124,19 +124,18 @@ KnownProblem MakeRandomSceneTrialProblem(const RandomSceneTrialSettings& setting
 }
 
 Expected<TrialsPtr> MakeRandomSceneTrialTrials(const KindArguments& arguments) {
-  Expected<RandomSceneTrialSettings> settings =
-      RandomSceneTrialParameters().Parse(arguments.parameters);
-  if (!settings) return tl::unexpected<Error>(settings.error());
-  if (settings->depth_m < 1.8 * settings->extent_m) {
+  SEXTANT_ASSIGN_OR_RETURN(RandomSceneTrialSettings settings,
+                           RandomSceneTrialParameters().Parse(arguments.parameters));
+  if (settings.depth_m < 1.8 * settings.extent_m) {
     return MakeError(ErrorCode::kInvalidOption,
                      fmt::format("extent_m = {} puts points behind the camera at depth_m = {}; "
                                  "expected depth_m of at least 1.8 extent_m",
-                                 settings->extent_m, settings->depth_m));
+                                 settings.extent_m, settings.depth_m));
   }
-  return MakeProblemTrials({[s = *settings](const TrialId& id) -> Expected<KnownProblem> {
+  return MakeProblemTrials({[s = settings](const TrialId& id) -> Expected<KnownProblem> {
                               return MakeRandomSceneTrialProblem(s, id);
                             },
-                            *settings},
+                            settings},
                            arguments.solvers);
 }
 

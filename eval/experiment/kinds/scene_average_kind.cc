@@ -122,12 +122,10 @@ class AverageTrials final : public Trials {
 };
 
 Expected<TrialsPtr> MakeSceneAverageTrials(const KindArguments& arguments) {
-  const Expected<SceneAverageSettings> settings =
-      SceneAverageParameters().Parse(arguments.parameters);
-  if (!settings) return tl::unexpected<Error>(settings.error());
-  SEXTANT_ASSIGN_OR_RETURN(SceneObserver observer,
-                           SceneObserver::Make(*settings, arguments.folder));
-  return std::make_shared<AverageTrials>(std::move(observer), *settings);
+  SEXTANT_ASSIGN_OR_RETURN(const SceneAverageSettings settings,
+                           SceneAverageParameters().Parse(arguments.parameters));
+  SEXTANT_ASSIGN_OR_RETURN(SceneObserver observer, SceneObserver::Make(settings, arguments.folder));
+  return std::make_shared<AverageTrials>(std::move(observer), settings);
 }
 
 }  // namespace

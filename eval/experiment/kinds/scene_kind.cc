@@ -84,16 +84,16 @@ Expected<KnownProblem> MakeKnown(const SceneObserver& observer, int views, const
   for (int view = 0; view < views; ++view) {
     const std::uint64_t hang_seed =
         DeriveSeed(id.seed, "view", static_cast<std::uint64_t>(view), 0);
-    Expected<CalibrationProblem> seen = observer.Observe(observer.PlaceBoardsInRoom(hang_seed),
-                                                         id.seed, view, kBetweenViews_s * view);
-    if (!seen) return tl::unexpected<Error>(seen.error());
+    SEXTANT_ASSIGN_OR_RETURN(CalibrationProblem seen,
+                             observer.Observe(observer.PlaceBoardsInRoom(hang_seed), id.seed, view,
+                                              kBetweenViews_s * view));
     if (view == 0) {
-      known.problem = std::move(*seen);
+      known.problem = std::move(seen);
       continue;
     }
     CalibrationProblem& all = known.problem;
-    all.pairs_3d3d.insert(all.pairs_3d3d.end(), seen->pairs_3d3d.begin(), seen->pairs_3d3d.end());
-    all.pairs_2d3d.insert(all.pairs_2d3d.end(), seen->pairs_2d3d.begin(), seen->pairs_2d3d.end());
+    all.pairs_3d3d.insert(all.pairs_3d3d.end(), seen.pairs_3d3d.begin(), seen.pairs_3d3d.end());
+    all.pairs_2d3d.insert(all.pairs_2d3d.end(), seen.pairs_2d3d.begin(), seen.pairs_2d3d.end());
   }
   known.problem.point_sets = WithholdPairing(known.problem.pairs_3d3d);
   known.problem.initial_cam_from_lidar = observer.DrawStart(id.seed, known.problem.point_sets);

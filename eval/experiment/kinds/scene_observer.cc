@@ -10,15 +10,30 @@
 
 #include "base/units.h"
 #include "features/lidar/corner_extractor.h"
-#include "geometry/scan_marks.h"
+#include "geometry/random_vectors.h"
 #include "io/text/number_text.h"
 #include "simulator/scene/camera_model.h"
 #include "simulator/scene/scene_file.h"
 #include "simulator/scene/scene_truth.h"
 #include "simulator/session/validate_scene.h"
+#include "solvers/kernels/cloud_sums.h"
 
 namespace sextant {
 namespace {
+
+// Parses a list parameter such as "0.1 -2 3" with `count` numbers; errors name the parameter.
+Expected<std::vector<double>> ParseNumbers(const std::string& name, const std::string& text,
+                                           std::size_t count) {
+  std::istringstream words(text);
+  std::vector<double> numbers;
+  for (std::string word; words >> word;) {
+    SEXTANT_ASSIGN_OR_RETURN(const double number, ParseFinite(word, {.file = name}));
+    numbers.push_back(number);
+  }
+  if (numbers.size() == count) return numbers;
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("option {}={}: expected {} numbers", name, text, count));
+}
 
 void Enlarge(double scale, Board& board) {
   board.top_right_m *= scale;
@@ -57,60 +72,34 @@ Expected<Rigid3d> ExtrinsicOf(const SceneSettings& settings, const Rigid3d& of_s
   return cam_from_lidar;
 }
 
-Expected<Camera> PublishedCameraOf(const SceneSettings& settings, const Camera& true_camera) {
-  Camera told = true_camera;
+Expected<Camera> AssumedCamera(const SceneSettings& settings, const Camera& true_camera) {
+  Camera assumed = true_camera;
   if (!settings.assumed_intrinsics.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(const auto numbers,
                              ParseNumbers("assumed_intrinsics", settings.assumed_intrinsics, 4));
-    told.fx_px = numbers[0];
-    told.fy_px = numbers[1];
-    told.cx_px = numbers[2];
-    told.cy_px = numbers[3];
+    assumed.fx_px = numbers[0];
+    assumed.fy_px = numbers[1];
+    assumed.cx_px = numbers[2];
+    assumed.cy_px = numbers[3];
   }
-  told.fx_px *= 1.0 + settings.assumed_focal_error;
-  told.fy_px *= 1.0 + settings.assumed_focal_error;
+  assumed.fx_px *= 1.0 + settings.assumed_focal_error;
+  assumed.fy_px *= 1.0 + settings.assumed_focal_error;
   if (!settings.assumed_distortion) {
-    told.model = CameraModel::kPinhole;
-    told.distortion.fill(0.0);
+    assumed.model = CameraModel::kPinhole;
+    assumed.distortion.fill(0.0);
   }
-  SEXTANT_RETURN_IF_ERROR(ValidateCamera(told));
-  return told;
-}
-
-Eigen::Vector3d MeanOf(const std::vector<Eigen::Vector3d>& points) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points) mean += point;
-  return mean / static_cast<double>(points.size());
+  SEXTANT_RETURN_IF_ERROR(ValidateCamera(assumed));
+  return assumed;
 }
 
 }  // namespace
-
-Expected<std::vector<double>> ParseNumbers(const std::string& name, const std::string& text,
-                                           std::size_t count) {
-  std::istringstream words(text);
-  std::vector<double> numbers;
-  for (std::string word; words >> word;) {
-    SEXTANT_ASSIGN_OR_RETURN(const double number, ParseFinite(word, {.file = name}));
-    numbers.push_back(number);
-  }
-  if (numbers.size() == count) return numbers;
-  return MakeError(ErrorCode::kInvalidOption,
-                   fmt::format("option {}={}: expected {} numbers", name, text, count));
-}
-
-Eigen::Vector3d RandomDirection(Random& random) {
-  Eigen::Vector3d direction;
-  for (int i = 0; i < 3; ++i) direction[i] = random.Normal();
-  return direction.normalized();
-}
 
 Expected<SceneObserver> SceneObserver::Make(const SceneSettings& settings,
                                             const std::filesystem::path& folder, int camera) {
   SceneObserver observer;
   observer.settings_ = settings;
   observer.camera_index_ = camera;
-  SEXTANT_ASSIGN_OR_RETURN(const Scene scene, ReadScene(folder / settings.scene));
-  observer.scene_ = scene;
+  SEXTANT_ASSIGN_OR_RETURN(observer.scene_, ReadScene(folder / settings.scene));
   for (SceneBoard& board : observer.scene_.boards) Enlarge(settings.board_scale, board.board);
   if (!settings.lidar_model.empty()) observer.scene_.lidar.model = settings.lidar_model;
   if (static_cast<int>(observer.scene_.cameras.size()) <= camera) {
@@ -119,10 +108,8 @@ Expected<SceneObserver> SceneObserver::Make(const SceneSettings& settings,
   }
   SceneCamera& scene_camera = observer.scene_.cameras[static_cast<std::size_t>(camera)];
   if (!settings.camera_model.empty()) scene_camera.model = settings.camera_model;
-  const Expected<Rigid3d> extrinsic =
-      ExtrinsicOf(settings, CamFromLidar(observer.scene_, scene_camera));
-  if (!extrinsic) return tl::unexpected<Error>(extrinsic.error());
-  observer.cam_from_lidar_ = *extrinsic;
+  SEXTANT_ASSIGN_OR_RETURN(observer.cam_from_lidar_,
+                           ExtrinsicOf(settings, CamFromLidar(observer.scene_, scene_camera)));
   scene_camera.world_from_cam =
       observer.scene_.lidar.world_from_lidar * observer.cam_from_lidar_.Inverse();
   if (const Expected<void> ok = ValidateScene(observer.scene_); !ok) {
@@ -136,26 +123,19 @@ Expected<SceneObserver> SceneObserver::Make(const SceneSettings& settings,
     return MakeError(ErrorCode::kMissingData,
                      fmt::format("{}: camera {} cannot find any board", settings.scene, camera));
   }
-  SEXTANT_ASSIGN_OR_RETURN(const Camera told,
-                           PublishedCameraOf(settings, *PublishedCamera(scene_camera)));
-  observer.assumed_camera_ = told;
+  SEXTANT_ASSIGN_OR_RETURN(observer.assumed_camera_,
+                           AssumedCamera(settings, *PublishedCamera(scene_camera)));
   observer.lidar_ = *FindLidarModel(observer.scene_.lidar.model);
   if (const auto known = ExtractCorners(settings.extractor, {}, {});
       !known && known.error().code == ErrorCode::kUnknownName) {
     return tl::unexpected<Error>(known.error());
   }
   if (settings.camera == CameraObservation::kRendered) {
-    SEXTANT_ASSIGN_OR_RETURN(BoardFinder finder,
-                             BoardFinder::Make(observer.Boards(), observer.assumed_camera_));
+    SEXTANT_ASSIGN_OR_RETURN(
+        BoardFinder finder, BoardFinder::Make(BoardsIn(observer.scene_), observer.assumed_camera_));
     observer.finder_ = std::make_shared<const BoardFinder>(std::move(finder));
   }
   return observer;
-}
-
-std::vector<Board> SceneObserver::Boards() const {
-  std::vector<Board> boards;
-  for (const SceneBoard& board : scene_.boards) boards.push_back(board.board);
-  return boards;
 }
 
 Scene SceneObserver::PlaceBoardsInRoom(std::uint64_t seed) const {
@@ -175,8 +155,8 @@ Scene SceneObserver::PlaceBoardsInRoom(std::uint64_t seed) const {
 Rigid3d SceneObserver::DrawStart(std::uint64_t seed, const PointSets& sets) const {
   Random random(DeriveSeed(seed, "start", 0, 0));
   Rigid3d start = settings_.start == StartPose::kAxes ? AxesCamFromLidar() : cam_from_lidar_;
-  const Eigen::Vector3d axis = RandomDirection(random);
-  const Eigen::Vector3d shift = settings_.start_m * RandomDirection(random);
+  const Eigen::Vector3d axis = NormalVector(random).normalized();
+  const Eigen::Vector3d shift = settings_.start_m * NormalVector(random).normalized();
   start.rotation = (ExpSo3(kRadPerDeg * settings_.start_deg * axis) * start.rotation).normalized();
   if (settings_.start_centroids && !sets.in_cam.empty()) {
     start.translation = MeanOf(sets.in_cam) - start.rotation * MeanOf(sets.in_lidar);
@@ -189,7 +169,7 @@ Expected<CalibrationProblem> SceneObserver::Observe(const Scene& scene, std::uin
                                                     int view, double time_s) const {
   CalibrationProblem problem;
   problem.camera = assumed_camera_;
-  problem.boards = Boards();
+  problem.boards = BoardsIn(scene_);
   SEXTANT_ASSIGN_OR_RETURN(const auto in_lidar, ObserveWithLidar(scene, unit_seed, view, time_s));
   if (settings_.camera == CameraObservation::kMarked) {
     MarkCorners(scene, in_lidar, unit_seed, view, time_s, problem);

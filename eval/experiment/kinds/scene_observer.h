@@ -17,14 +17,6 @@
 
 namespace sextant {
 
-/// Parses a list parameter such as "0.1 -2 3" with `count` numbers. Error: kInvalidOption, which
-/// names the parameter.
-Expected<std::vector<double>> ParseNumbers(const std::string& name, const std::string& text,
-                                           std::size_t count);
-
-/// A uniformly random unit vector; draws three normal numbers.
-Eigen::Vector3d RandomDirection(Random& random);
-
 /// Simulates what both sensors of a scene observe of its boards, with the settings of an
 /// experiment. Immutable and thread-safe.
 class SceneObserver {
@@ -41,7 +33,6 @@ class SceneObserver {
   const SceneSettings& settings() const { return settings_; }
   const Rigid3d& cam_from_lidar() const { return cam_from_lidar_; }
   const Camera& assumed_camera() const { return assumed_camera_; }
-  std::vector<Board> Boards() const;
 
   /// The scene with new random poses of its boards.
   Scene PlaceBoardsInRoom(std::uint64_t seed) const;

@@ -58,11 +58,10 @@ Expected<std::vector<SceneObserver::SeenCorners>> SceneObserver::ObserveWithLida
         SimulateScan(scene, lidar_,
                      {.seed = unit_seed, .scan_index = view, .start_time_s = time_s}));
     SEXTANT_ASSIGN_OR_RETURN(const ScanRings rings, ScanRings::Build(scan.cloud));
-    const std::vector<Board> boards = Boards();
-    const Expected<BoardSearch> search =
-        FindBoards(rings, boards, {.correct_edges = settings_.correct_edges});
-    if (!search) return tl::unexpected<Error>(search.error());
-    for (const BoardPatch& patch : search->found) {
+    const std::vector<Board> boards = BoardsIn(scene_);
+    SEXTANT_ASSIGN_OR_RETURN(const BoardSearch search,
+                             FindBoards(rings, boards, {.correct_edges = settings_.correct_edges}));
+    for (const BoardPatch& patch : search.found) {
       const auto b = static_cast<std::size_t>(patch.board);
       const Expected<LidarCorners> corners = ExtractCorners(settings_.extractor, patch, boards[b]);
       if (corners) seen[b] = {corners->in_lidar, corners->covariance};
@@ -111,10 +110,9 @@ SceneObserver::SeenCorners SceneObserver::CornersOfTags(const SceneBoard& scene_
 
 Expected<std::vector<SceneObserver::SeenCorners>> SceneObserver::CornersInImage(
     const Scene& scene, std::uint64_t seed, double time_s) const {
-  const Expected<cv::Mat> image =
-      RenderImage(scene, camera_index_, UsualImageOptions(seed, time_s));
-  if (!image) return tl::unexpected<Error>(image.error());
-  SEXTANT_ASSIGN_OR_RETURN(const SeenBoards found, finder_->Find(*image));
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat image,
+                           RenderImage(scene, camera_index_, UsualImageOptions(seed, time_s)));
+  SEXTANT_ASSIGN_OR_RETURN(const SeenBoards found, finder_->Find(image));
   std::vector<SeenCorners> seen(scene.boards.size());
   for (const SeenBoard& board : found.boards) {
     if (!board.pose || !*board.pose) continue;

@@ -89,10 +89,9 @@ Expected<ColumnPasses::Rows> ColumnPasses::Read(const RowBlockPlace& block) cons
   for (const int column : columns_) {
     rows.columns.emplace_back();
     if (column < 0) continue;
-    Expected<std::vector<double>> values =
-        rows_->reader_->ReadColumn(block, static_cast<std::size_t>(column));
-    if (!values) return tl::unexpected<Error>(std::move(values.error()));
-    rows.columns.back() = std::move(*values);
+    SEXTANT_ASSIGN_OR_RETURN(std::vector<double> values,
+                             rows_->reader_->ReadColumn(block, static_cast<std::size_t>(column)));
+    rows.columns.back() = std::move(values);
   }
   return rows;
 }

@@ -116,13 +116,12 @@ Expected<std::string> FormatSummary(const Experiment& experiment, const RowFileR
            {"metrics", Json::object()},
            {"figures", ReportFigures(experiment, data, c, i)}});
     }
-    const Expected<std::vector<std::vector<Description>>> descriptions =
-        DescribeAll(experiment, rows);
-    if (!descriptions) return tl::unexpected<Error>(descriptions.error());
+    SEXTANT_ASSIGN_OR_RETURN(const std::vector<std::vector<Description>> descriptions,
+                             DescribeAll(experiment, rows));
     for (std::size_t m = 0; m < experiment.metrics.size(); ++m) {
       if (!experiment.wanted[m]) continue;
       for (std::size_t i = 0; i < cells.size(); ++i) {
-        cells[i]["metrics"][experiment.metrics[m].name] = ToJson((*descriptions)[m][i]);
+        cells[i]["metrics"][experiment.metrics[m].name] = ToJson(descriptions[m][i]);
       }
     }
     Json described = DescribeCondition(experiment, condition);

@@ -65,14 +65,12 @@ Expected<OurFigure> Compute(const ClaimFigure& figure, bool is_draw, const RowsO
                            FindCondition(experiment, figure.condition));
   SEXTANT_ASSIGN_OR_RETURN(Statistic statistic,
                            ParseStatistic(figure.statistic, experiment.metrics));
-  const Expected<ConditionRows> of_condition =
-      ConditionRows::Open(experiment, *rows.reader, condition);
-  if (!of_condition) return tl::unexpected<Error>(of_condition.error());
-  const Expected<std::size_t> cell =
-      FindCell(experiment.conditions[condition], *of_condition, figure);
-  if (!cell) return tl::unexpected<Error>(cell.error());
+  SEXTANT_ASSIGN_OR_RETURN(const ConditionRows of_condition,
+                           ConditionRows::Open(experiment, *rows.reader, condition));
+  SEXTANT_ASSIGN_OR_RETURN(const std::size_t cell,
+                           FindCell(experiment.conditions[condition], of_condition, figure));
   SEXTANT_ASSIGN_OR_RETURN(const Figure middle,
-                           FigureOf(statistic, *of_condition, *cell, experiment.seed));
+                           FigureOf(statistic, of_condition, cell, experiment.seed));
   OurFigure ours{.value = middle.value,
                  .interval = middle.interval.value_or(Interval{middle.value, middle.value}),
                  .decimals = statistic.decimals,
@@ -84,7 +82,7 @@ Expected<OurFigure> Compute(const ClaimFigure& figure, bool is_draw, const RowsO
        {std::pair{0.025, &ours.interval.low}, {0.975, &ours.interval.high}}) {
     statistic.quantile = q;
     SEXTANT_ASSIGN_OR_RETURN(const Figure quantile,
-                             FigureOf(statistic, *of_condition, *cell, experiment.seed));
+                             FigureOf(statistic, of_condition, cell, experiment.seed));
     *end = quantile.value;
   }
   return ours;

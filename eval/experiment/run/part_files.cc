@@ -96,7 +96,7 @@ Expected<void> JoinRowFiles(const std::filesystem::path& folder, const std::stri
   const std::filesystem::path whole = folder / kWholeFile;
   if (files != std::vector<std::filesystem::path>{whole}) {
     const std::filesystem::path joined = folder / "rows.sxtrows.part";
-    if (Expected<void> ok = MergeRowFiles(files, joined); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(MergeRowFiles(files, joined));
     std::error_code error;
     std::filesystem::rename(joined, whole, error);
     if (error) return Failed("write", whole, error);

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "eval/experiment/definition/experiment.h"
+#include "eval/experiment/run/configuration.h"
 
 namespace sextant {
 
@@ -44,9 +45,7 @@ struct RunOutcome {
 /// RowFileWriter.
 Expected<RunOutcome> RunTrials(const Experiment& experiment, const RunSettings& settings);
 
-/// Everything that the rows depend on, as the JSON in the header of the row file.
-std::string ConfigurationOf(const Experiment& experiment);
-
+/// Number of trials of a block.
 std::uint64_t TrialsOfBlock(const Experiment& experiment, std::uint64_t block);
 
 /// Number of blocks of one condition, and of the whole experiment.

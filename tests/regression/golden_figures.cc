@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/experiment/report/golden.h"
+#include "regression/golden_figures.h"
 
 #include <fmt/core.h>
 
