@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two boards in a full turn of a LiDAR, from the cloud as it was read to their corners by the known
-// size. One thread. The corners are checked against the truth before anything is timed.
+// Extraction of two boards from a full LiDAR revolution: from the point cloud to the corners with
+// the extractor for boards of known size. One thread. The corners are checked against the truth
+// before timing.
 #include <benchmark/benchmark.h>
 
 #include "base/random.h"

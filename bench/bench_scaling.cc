@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// bench_scaling <folder of the programs> <folder of the page> [--quick]: how time and memory grow
-// with points, outliers, views, trials, threads and ranks; writes scaling.md and its pictures.
+// bench_scaling <folder of the programs> <folder of the page> [--quick]: growth of time and memory
+// with points, outliers, views, trials, threads and ranks; writes scaling.md and its plots.
 #include <fmt/core.h>
 
 #include <cstdio>
@@ -31,14 +31,14 @@ struct Settings {
   bool quick = false;
 };
 
-// The next point would take ten times as long.
+// Stop here, as the next point would take ten times as long.
 constexpr double kMaxSeconds = 0.3;
 
-// Far more than the noise of the fewest points, so that only a wrong answer is not timed.
+// Far more than the noise with the fewest points, so that only wrong results are not timed.
 constexpr double kMaxRadians = 0.1;
 constexpr double kMaxMetres = 0.3;
 
-// Returns whether the answer is right.
+// Returns whether the result is right.
 bool MeasureSolve(const Solver& solver, const CalibrationProblem& problem, const Rigid3d& truth,
                   const Measure& measure) {
   std::optional<Rigid3d> answer;
@@ -57,7 +57,7 @@ void Tell(const std::string& curve, double x, const std::optional<Cost>& cost) {
                   : "wrong or failed, left out");
 }
 
-// A curve over numbers of pairs and shares of outliers: x is what differs.
+// A curve over numbers of pairs or fractions of outliers; x is the one that varies.
 struct SceneAt {
   double x = 0.0;
   int pairs = 0;
@@ -161,7 +161,7 @@ Chart ViewsChart(const Settings& settings) {
   return chart;
 }
 
-// An experiment of kabsch at eight pairs, with its whole report.
+// An experiment with kabsch at eight pairs, including its report.
 class Sweep {
  public:
   explicit Sweep(const Settings& settings)

@@ -6,7 +6,7 @@
 
 namespace sextant::test {
 
-/// The upper one of an even number. Requires values.
+/// The median; of an even number of values, the upper one. Requires at least one value.
 inline double Median(std::vector<double> values) {
   std::ranges::sort(values);
   return values[values.size() / 2];
