@@ -39,13 +39,13 @@ void TwoBoards(benchmark::State& state, const char* lidar) {
   BoardSearchOptions options;
   options.beam = *FindLidarBeam(lidar);
   const Expected<std::vector<LidarCorners>> checked = Extract(scan->cloud, boards, options);
-  if (!checked || checked->size() != 2) return state.SkipWithError("not both boards were found");
+  if (!checked || checked->size() != 2) return state.SkipWithError("a board was not found");
   for (const LidarCorners& corners : *checked) {
     const SceneBoard& board = scene.boards[static_cast<std::size_t>(corners.board)];
     for (int i = 0; i < kCornersPerBoard; ++i) {
       const Eigen::Vector3d& corner = corners.in_lidar[static_cast<std::size_t>(i)];
       if ((corner - TrueCorner(board, i)).norm() > kMaxError_m) {
-        return state.SkipWithError("a corner is off");
+        return state.SkipWithError("a corner is wrong");
       }
     }
   }

@@ -103,7 +103,7 @@ void Ours(benchmark::State& state, const Photo& (*the_photo)(), const char* dete
       const Eigen::Vector3d point(corners[k].x(), corners[k].y(), 0.0);
       const auto truth = Project(photo.camera, photo.cam_from_board * point);
       if (!tag.refined || (tag.refined->corners_px[k] - *truth).norm() > kMaxError_px) {
-        return state.SkipWithError("a corner is off");
+        return state.SkipWithError("a corner is wrong");
       }
     }
   }

@@ -58,7 +58,7 @@ bool Check(benchmark::State& state, const Scene& scene) {
       const int level = image->at<std::uint8_t>(static_cast<int>(std::lround(pixel->y())),
                                                 static_cast<int>(std::lround(pixel->x())));
       if (std::abs(level - 255.0 * albedo) <= 0.5) continue;
-      state.SkipWithError("a point of the board has another colour than it should");
+      state.SkipWithError("a point of the board has the wrong colour");
       return false;
     }
   }

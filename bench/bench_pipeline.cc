@@ -85,7 +85,7 @@ void CalibrateOnePair(benchmark::State& state) {
   }
   const PoseDistance error = DistanceBetween(report->cam_from_lidar, recording.cam_from_lidar);
   if (error.translation_m > kMaxError_m || error.rotation_rad > kMaxError_rad) {
-    state.SkipWithError("wrong answer");
+    state.SkipWithError("wrong result");
     return;
   }
   for (auto _ : state) benchmark::DoNotOptimize(Answer(recording, observer, *solver));

@@ -70,7 +70,7 @@ void Time(benchmark::State& state, const std::vector<View>& views, const Toleran
     if (!found) ++lost;
   }
   if (lost > 0) state.SetLabel(std::to_string(lost) + " wrong");
-  if (lost > views.size() / 32) return state.SkipWithError("too many wrong answers");
+  if (lost > views.size() / 32) return state.SkipWithError("too many wrong results");
   std::size_t next = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(calls[next]());

@@ -68,11 +68,11 @@ void Rooms(benchmark::State& state, const char* name, const LidarModel& model, d
   static std::map<std::string, Checked> known;
   if (!known.contains(name)) known[name] = CheckRooms(**solver, model);
   const Checked& checked = known[name];
-  if (checked.errors_deg.size() < kRooms) return state.SkipWithError("a room has no answer");
+  if (checked.errors_deg.size() < kRooms) return state.SkipWithError("a room has no result");
   state.counters["median_deg"] = checked.errors_deg[kRooms / 2];
   state.counters["worst_deg"] = checked.errors_deg.back();
   state.counters["points"] = static_cast<double>(checked.first.point_sets.in_cam.size());
-  if (checked.errors_deg.back() > most_deg) return state.SkipWithError("a room is off");
+  if (checked.errors_deg.back() > most_deg) return state.SkipWithError("a room's pose is wrong");
   for (auto _ : state) benchmark::DoNotOptimize((*solver)->Solve(checked.first));
 }
 

@@ -83,7 +83,7 @@ bool Check(benchmark::State& state, const Scene& scene, const LidarModel& model)
     ++on_boards;
   }
   if (std::abs(on_boards / expected - 1.0) > 0.15) {
-    state.SkipWithError("not as many points on the boards as their size says");
+    state.SkipWithError("the number of points on the boards does not agree with their size");
     return false;
   }
   return true;

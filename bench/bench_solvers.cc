@@ -31,7 +31,7 @@ bool CheckAnswer(benchmark::State& state, const Solver& solver, const SolveRepor
     if (bound) covariance = *bound;
   }
   if (!covariance) {
-    state.SkipWithError("neither a covariance nor a bound to judge the answer by");
+    state.SkipWithError("neither a covariance nor a bound to compare the error with");
     return false;
   }
   const Vector6d error = PoseDifference(report.cam_from_lidar, scene.cam_from_lidar);

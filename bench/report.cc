@@ -237,9 +237,9 @@ int Main(int argc, char** argv) {
   const std::map<Key, Row> rows = RowsOf(*timings);
   fmt::print(
       "# Performance\n\nWritten by `scripts/bench`; do not edit. One thread, CPU time, medians of "
-      "repetitions; the spread is their standard deviation over their mean. Every answer was "
-      "checked against the truth before it was timed. Ratios are to the fastest peer of the same "
-      "run. What profiles showed, and what each change gave: "
+      "repetitions; the spread is their standard deviation divided by their mean. Every result was "
+      "checked against the truth before timing. Ratios are relative to the fastest peer of the "
+      "same run. Profiles and the effect of each change: "
       "[performance_notes.md](performance_notes.md).\n\n");
   PrintMachine(folder);
   PrintGoals(rows);
