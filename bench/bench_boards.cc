@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two boards in a full turn of a LiDAR, from the cloud as it was read to their corners by the known
-// size. One thread. The corners are checked against the truth before anything is timed.
+// Extraction of two boards from a full LiDAR revolution: from the point cloud to the corners with
+// the extractor for boards of known size. One thread. The corners are checked against the truth
+// before timing.
 #include <benchmark/benchmark.h>
 
 #include "base/random.h"
@@ -16,16 +17,14 @@ constexpr double kMaxError_m = 0.02;
 Expected<std::vector<LidarCorners>> Extract(const PointCloud& cloud,
                                             const std::vector<Board>& boards,
                                             const BoardSearchOptions& options) {
-  const Expected<ScanRings> rings = ScanRings::Build(cloud);
-  if (!rings) return tl::unexpected<Error>(rings.error());
-  const Expected<BoardSearch> search = FindBoards(*rings, boards, options);
-  if (!search) return tl::unexpected<Error>(search.error());
+  SEXTANT_ASSIGN_OR_RETURN(const ScanRings rings, ScanRings::Build(cloud));
+  SEXTANT_ASSIGN_OR_RETURN(const BoardSearch search, FindBoards(rings, boards, options));
   std::vector<LidarCorners> corners;
-  for (const BoardPatch& patch : search->found) {
-    Expected<LidarCorners> of =
-        ExtractCorners("rectangle", patch, boards[static_cast<std::size_t>(patch.board)]);
-    if (!of) return tl::unexpected<Error>(of.error());
-    corners.push_back(std::move(*of));
+  for (const BoardPatch& patch : search.found) {
+    SEXTANT_ASSIGN_OR_RETURN(
+        LidarCorners of,
+        ExtractCorners("rectangle", patch, boards[static_cast<std::size_t>(patch.board)]));
+    corners.push_back(std::move(of));
   }
   return corners;
 }
@@ -40,13 +39,13 @@ void TwoBoards(benchmark::State& state, const char* lidar) {
   BoardSearchOptions options;
   options.beam = *FindLidarBeam(lidar);
   const Expected<std::vector<LidarCorners>> checked = Extract(scan->cloud, boards, options);
-  if (!checked || checked->size() != 2) return state.SkipWithError("not both boards were found");
+  if (!checked || checked->size() != 2) return state.SkipWithError("a board was not found");
   for (const LidarCorners& corners : *checked) {
     const SceneBoard& board = scene.boards[static_cast<std::size_t>(corners.board)];
     for (int i = 0; i < kCornersPerBoard; ++i) {
       const Eigen::Vector3d& corner = corners.in_lidar[static_cast<std::size_t>(i)];
       if ((corner - TrueCorner(board, i)).norm() > kMaxError_m) {
-        return state.SkipWithError("a corner is off");
+        return state.SkipWithError("a corner is wrong");
       }
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// bench_compare <old folder> <new folder>: what scripts/bench-compare tells. Ends with 1 where
-// something has become slower beyond the noise, or wrong.
+// bench_compare <old folder> <new folder>: the comparison printed by scripts/bench-compare. Returns
+// 1 if something has become significantly slower, or wrong.
 #include <fmt/core.h>
 
 #include <cstdio>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tags on an image of 1280 x 720: the libraries' own calls, and ours around them with refinement
-// and the board's pose. One thread. The corners are checked against the truth before anything is
-// timed. Before a wall, and before texture that leaves nothing of the image out.
+// Tag detection in an image of 1280 x 720: the libraries' own calls, and ours with refinement and
+// the board's pose. One thread. The corners are checked against the truth before timing.
+// Backgrounds: a plain wall, and texture over the whole image.
 #include <benchmark/benchmark.h>
 
 extern "C" {
@@ -31,7 +31,7 @@ struct Photo {
   Rigid3d cam_from_board;
 };
 
-// Four tags of about 60 px on a board that leans.
+// Four tags of about 60 px on a tilted board.
 const Photo& ThePhoto() {
   static const Photo photo = [] {
     Photo made;
@@ -55,7 +55,7 @@ const Photo& ThePhoto() {
   return photo;
 }
 
-// Grey levels as smooth over so many pixels, of this sigma.
+// Random grey levels with this sigma, smooth over this many pixels.
 cv::Mat Blotches(const cv::Size& size, int over_px, double sigma_grey, Random& random) {
   cv::Mat_<float> small(size / over_px + cv::Size(1, 1));
   for (float& grey : small) grey = static_cast<float>(sigma_grey * random.Normal());
@@ -64,7 +64,7 @@ cv::Mat Blotches(const cv::Size& size, int over_px, double sigma_grey, Random& r
   return large;
 }
 
-// The same, before blotches of all sizes.
+// The same with a background of blotches of all sizes.
 const Photo& TheTexturedPhoto() {
   static const Photo photo = [] {
     Photo made = ThePhoto();
@@ -103,7 +103,7 @@ void Ours(benchmark::State& state, const Photo& (*the_photo)(), const char* dete
       const Eigen::Vector3d point(corners[k].x(), corners[k].y(), 0.0);
       const auto truth = Project(photo.camera, photo.cam_from_board * point);
       if (!tag.refined || (tag.refined->corners_px[k] - *truth).norm() > kMaxError_px) {
-        return state.SkipWithError("a corner is off");
+        return state.SkipWithError("a corner is wrong");
       }
     }
   }

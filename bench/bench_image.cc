@@ -13,7 +13,7 @@
 namespace sextant::bench {
 namespace {
 
-// World: the camera's, with walls around it and a tiled floor below.
+// The world frame is the camera's; walls around it and a tiled floor.
 Scene Room(const std::string& camera_model) {
   Scene scene;
   scene.cameras = {{.model = camera_model}};
@@ -42,7 +42,7 @@ Scene Room(const std::string& camera_model) {
   return scene;
 }
 
-// Points of known colour are where the camera model puts them.
+// Checks that points of known colour are at their projections.
 bool Check(benchmark::State& state, const Scene& scene) {
   const Expected<cv::Mat> image = RenderImage(scene, 0, {.lighting = {.ambient = 1.0}});
   const Expected<Camera> camera = RenderingCamera(scene.cameras[0]);
@@ -51,14 +51,14 @@ bool Check(benchmark::State& state, const Scene& scene) {
     return false;
   }
   for (const SceneBoard& board : scene.boards) {
-    // The middle of the black frame's left side, and a centimetre out of it.
+    // The centre of the left side of the black frame, and a point one centimetre outside.
     for (const double x_m : {-0.095, -0.115}) {
       const auto pixel = Project(*camera, board.world_from_board * Eigen::Vector3d(x_m, 0.0, 0.0));
       const double albedo = x_m < -0.1 ? board.white.albedo : board.black.albedo;
       const int level = image->at<std::uint8_t>(static_cast<int>(std::lround(pixel->y())),
                                                 static_cast<int>(std::lround(pixel->x())));
       if (std::abs(level - 255.0 * albedo) <= 0.5) continue;
-      state.SkipWithError("a point of the board has another colour than it should");
+      state.SkipWithError("a point of the board has the wrong colour");
       return false;
     }
   }
@@ -76,7 +76,7 @@ void Image(benchmark::State& state, const std::string& camera_model) {
   }
 }
 
-// The count is that of the pixels.
+// Items are pixels.
 BENCHMARK_CAPTURE(Image, zed_left, "zed_left")
     ->Name("image/zed_left/921600")
     ->Unit(benchmark::kMillisecond);

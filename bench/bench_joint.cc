@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `joint` over the number of board views: linear, which the reported complexity shows.
+// Time of `joint` against the number of board views; the reported complexity is linear.
 #include <benchmark/benchmark.h>
 
 #include "bench/check.h"
@@ -10,7 +10,7 @@
 namespace sextant::bench {
 namespace {
 
-// One view alone determines the pose to some centimetres only.
+// A single view determines the pose only to some centimetres.
 constexpr Tolerance kTolerance{.rotation_rad = 0.1, .translation_m = 0.2};
 
 void SolveJoint(benchmark::State& state) {

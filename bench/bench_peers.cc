@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ours beside Eigen, opengv, PCL and Open3D on the same points: pairs with and without outliers,
-// and points without pairing. OpenCV's and opengv's solvers of pixels: bench_pnp and bench_refine.
+// Our solvers compared with Eigen, opengv, PCL and Open3D on the same points: pairs with and
+// without outliers, and points without correspondences. Pixel solvers of OpenCV and opengv are in
+// bench_pnp and bench_refine.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Geometry>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One image and one scan of the paper's two boards, decoded, on one thread: what each sensor sees,
-// the matching, the answer. The answer is checked against the truth before anything is timed.
+// The pipeline for one decoded image and one scan of the paper's two boards on one thread:
+// extraction in each sensor, matching, solving. The result is checked against the truth before
+// timing.
 #include <benchmark/benchmark.h>
 
 #include <opencv2/core.hpp>
@@ -17,7 +18,7 @@
 namespace sextant {
 namespace {
 
-constexpr double kMaxError_m = 0.1;  // Two boards, 2 m away, seen once.
+constexpr double kMaxError_m = 0.1;  // Two boards at 2 m in a single view.
 constexpr double kMaxError_rad = 0.05;
 
 SceneBoard Hang(int id, double y_m, double yaw_rad) {
@@ -67,9 +68,9 @@ Expected<SolveReport> Answer(const Recording& recording, const Observer& observe
                              const Solver& solver) {
   std::vector<SessionView> views(1);
   views[0].seen = observer.Observe(recording.image, recording.cloud);
-  const Expected<Assembly> assembly = Assemble(views, recording.boards, recording.camera);
-  if (!assembly) return tl::unexpected<Error>(assembly.error());
-  return solver.Solve(assembly->problem);
+  SEXTANT_ASSIGN_OR_RETURN(const Assembly assembly,
+                           Assemble(views, recording.boards, recording.camera));
+  return solver.Solve(assembly.problem);
 }
 
 void CalibrateOnePair(benchmark::State& state) {
@@ -84,7 +85,7 @@ void CalibrateOnePair(benchmark::State& state) {
   }
   const PoseDistance error = DistanceBetween(report->cam_from_lidar, recording.cam_from_lidar);
   if (error.translation_m > kMaxError_m || error.rotation_rad > kMaxError_rad) {
-    state.SkipWithError("wrong answer");
+    state.SkipWithError("wrong result");
     return;
   }
   for (auto _ : state) benchmark::DoNotOptimize(Answer(recording, observer, *solver));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels for pixels and points beside those of OpenCV and opengv, on the same views.
+// Our kernels for pixels and points compared with those of OpenCV and opengv on the same views.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Geometry>
@@ -27,7 +27,7 @@
 namespace sextant::bench {
 namespace {
 
-// One view of a scene in the forms that the kernels take.
+// One view of a scene in the input formats of the kernels.
 struct View {
   std::vector<Eigen::Vector3d> rays;          // Unit length.
   std::vector<Eigen::Vector2d> image_points;  // On the plane z = 1.
@@ -52,7 +52,8 @@ std::vector<View> MakeViews(const RandomSceneOptions& options) {
 using Poses = std::vector<Rigid3d>;
 
 // Times prepare(view)() over the views. The pose nearest to the truth among to_poses(answer) must
-// be within the tolerance for all but one in 32 views: some peers lose a few even of exact data.
+// be within the tolerance in all but one of 32 views, as some peers fail in a few views even with
+// exact data.
 template <class Prepare, class ToPoses>
 void Time(benchmark::State& state, const std::vector<View>& views, const Tolerance& tolerance,
           const Prepare& prepare, const ToPoses& to_poses) {
@@ -69,7 +70,7 @@ void Time(benchmark::State& state, const std::vector<View>& views, const Toleran
     if (!found) ++lost;
   }
   if (lost > 0) state.SetLabel(std::to_string(lost) + " wrong");
-  if (lost > views.size() / 32) return state.SkipWithError("too many wrong answers");
+  if (lost > views.size() / 32) return state.SkipWithError("too many wrong results");
   std::size_t next = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(calls[next]());
@@ -77,7 +78,7 @@ void Time(benchmark::State& state, const std::vector<View>& views, const Toleran
   }
 }
 
-// OpenCV's P3P keeps half of the digits at best.
+// OpenCV's P3P is accurate to half of the digits at best.
 constexpr Tolerance kExact = {.rotation_rad = 1e-3, .translation_m = 1e-3};
 constexpr Tolerance kNoisy = {.rotation_rad = 0.3, .translation_m = 0.5};
 
@@ -159,7 +160,7 @@ void Dlt(benchmark::State& state) {
 BENCHMARK(Dlt)->Name("dlt/sextant")->Arg(8)->Arg(20)->Arg(100);
 
 #ifdef SEXTANT_BENCH_OPENGV
-// The adapter outlives the call: only the solver is timed.
+// The adapter is created before the call, so that only the solver is timed.
 struct OpengvView {
   explicit OpengvView(const View& view)
       : bearings(view.rays.begin(), view.rays.end()),
@@ -224,7 +225,7 @@ struct OpenCvAnswer {
   std::vector<cv::Mat> translations;
 };
 
-// The image points are on the plane z = 1 already, so that nothing is undistorted.
+// The image points are already on the plane z = 1, so nothing is undistorted.
 void OpenCv(benchmark::State& state, const std::vector<View>& views, const Tolerance& tolerance,
             int method) {
   const auto prepare = [method](const View& view) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Refinement of a rough pose and consensus among outliers, beside Ceres' TinySolver and OpenCV.
+// Refinement of a rough pose and robust estimation with outliers, compared with Ceres' TinySolver
+// and OpenCV.
 #include <benchmark/benchmark.h>
 #include <ceres/rotation.h>
 #include <ceres/tiny_solver.h>
@@ -44,8 +45,8 @@ std::vector<RoughScene> RoughScenes(const benchmark::State& state) {
   return rough;
 }
 
-// Times call(i), the pose of problem i, after its answers were checked. Some may be lost: of
-// 100 pairs at 80 percent outliers, some scenes have none that a peer could find.
+// Times call(i), the pose of problem i, after checking its results. Some failures are allowed: with
+// 100 pairs and 80 percent outliers, peers fail in some scenes.
 template <class Call>
 void Time(benchmark::State& state, const std::vector<Rigid3d>& truths, const Tolerance& tolerance,
           std::size_t most_lost, const Call& call) {
@@ -99,7 +100,7 @@ std::vector<Rigid3d> TruthsOf(const std::vector<RandomScene>& scenes) {
   return truths;
 }
 
-// From pixels and points to the least squares: the kernels.
+// The kernels: least squares from pixels and points.
 void RefinedP3p(benchmark::State& state) {
   const std::vector<RandomScene> scenes = Scenes(state);
   std::vector<PairTerms> terms;
@@ -113,7 +114,7 @@ void RefinedP3p(benchmark::State& state) {
 }
 BENCHMARK(RefinedP3p)->Name("refine_p3p/sextant")->Arg(8)->Arg(20)->Arg(100)->Arg(1000);
 
-// The whole of Solve: checks, covariance and evaluation besides.
+// The complete Solve, including checks, covariance and evaluation.
 void SolveRefinedP3p(benchmark::State& state) {
   std::vector<RandomScene> scenes = Scenes(state);
   for (RandomScene& scene : scenes) {
@@ -128,7 +129,7 @@ void SolveRefinedP3p(benchmark::State& state) {
 }
 BENCHMARK(SolveRefinedP3p)->Name("refine_p3p_solve/sextant")->Arg(8)->Arg(20)->Arg(100)->Arg(1000);
 
-// What one would write with Ceres: reprojection by automatic derivatives.
+// The obvious implementation with Ceres: reprojection errors with automatic derivatives.
 struct Reprojection {
   const CalibrationProblem* problem;
 
@@ -150,7 +151,7 @@ struct Reprojection {
 };
 
 void TinySolver(benchmark::State& state) {
-  constexpr int kResiduals = 40;  // Fixed, as is best for it.
+  constexpr int kResiduals = 40;  // A fixed size, which is fastest for TinySolver.
   using Function = ceres::TinySolverAutoDiffFunction<Reprojection, kResiduals, 6>;
   const std::vector<RoughScene> scenes = RoughScenes(state);
   Time(state, TruthsOf(scenes), kRefined, 0, [&](std::size_t i) {
@@ -175,7 +176,7 @@ std::vector<RandomScene> Mismatched(int percent) {
   return scenes;
 }
 
-// The whole of Solve: refined, with its covariance.
+// The complete Solve: refined, with covariance.
 void Ransac(benchmark::State& state, int percent) {
   std::vector<RandomScene> scenes = Mismatched(percent);
   for (RandomScene& scene : scenes) {
@@ -214,7 +215,7 @@ Rigid3d PoseOf(const cv::Mat& r, const cv::Mat& t) {
   return {ExpSo3(phi), {t.at<double>(0), t.at<double>(1), t.at<double>(2)}};
 }
 
-// With our rough start, or from its own by DLT.
+// With our rough start, or from its own DLT start.
 void OpenCvIterative(benchmark::State& state, bool use_start) {
   const std::vector<RoughScene> scenes = RoughScenes(state);
   std::vector<OpenCvPairs> pairs;
@@ -238,7 +239,7 @@ void OpenCvRansac(benchmark::State& state, int percent, int method) {
   const std::vector<RandomScene> scenes = Mismatched(percent);
   std::vector<OpenCvPairs> pairs;
   for (const RandomScene& scene : scenes) pairs.emplace_back(scene.problem);
-  // A peer that is wrong in every second scene is no peer.
+  // A peer must be right in at least half of the scenes.
   Time(state, TruthsOf(scenes), kSuccess, scenes.size() / 2, [&](std::size_t i) {
     cv::Mat r = cv::Mat::zeros(3, 1, CV_64F);
     cv::Mat t = cv::Mat::zeros(3, 1, CV_64F);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// bench_scaling <folder of the programs> <folder of the page> [--quick]: how time and memory grow
-// with points, outliers, views, trials, threads and ranks; writes scaling.md and its pictures.
+// bench_scaling <folder of the programs> <folder of the page> [--quick]: growth of time and memory
+// with points, outliers, views, trials, threads and ranks; writes scaling.md and its plots.
 #include <fmt/core.h>
 
 #include <cstdio>
@@ -31,14 +31,14 @@ struct Settings {
   bool quick = false;
 };
 
-// The next point would take ten times as long.
+// Stop here, as the next point would take ten times as long.
 constexpr double kMaxSeconds = 0.3;
 
-// Far more than the noise of the fewest points, so that only a wrong answer is not timed.
+// Far more than the noise with the fewest points, so that only wrong results are not timed.
 constexpr double kMaxRadians = 0.1;
 constexpr double kMaxMetres = 0.3;
 
-// Returns whether the answer is right.
+// Returns whether the result is right.
 bool MeasureSolve(const Solver& solver, const CalibrationProblem& problem, const Rigid3d& truth,
                   const Measure& measure) {
   std::optional<Rigid3d> answer;
@@ -57,7 +57,7 @@ void Tell(const std::string& curve, double x, const std::optional<Cost>& cost) {
                   : "wrong or failed, left out");
 }
 
-// A curve over numbers of pairs and shares of outliers: x is what differs.
+// A curve over numbers of pairs or fractions of outliers; x is the one that varies.
 struct SceneAt {
   double x = 0.0;
   int pairs = 0;
@@ -90,8 +90,8 @@ Chart PointsChart(const Settings& settings) {
   Chart chart{.name = "points",
               .title = "Points",
               .text =
-                  "Whole solves with their covariance: pairs without outliers, 1 cm or 1 px of "
-                  "noise; no more than a second or so each. Memory is what a solve adds to its "
+                  "Complete solves including the covariance: pairs without outliers, 1 cm or 1 px "
+                  "of noise; up to about one second each. Memory is what a solve adds to its "
                   "problem, the pages of its code and of the allocator included, about 1 MB.",
               .x = "pairs",
               .log_x = true,
@@ -114,8 +114,8 @@ Chart OutliersChart() {
   Chart chart{.name = "outliers",
               .title = "Outliers",
               .text =
-                  "Of 100 pairs, so many joined to the point of another pair. Shares at which a "
-                  "solver does not find the pose are left out.",
+                  "The given percentage of 100 pairs is joined to the point of another pair. "
+                  "Percentages at which a solver does not find the pose are left out.",
               .x = "percent of outliers",
               .log_x = false,
               .rates = false,
@@ -136,8 +136,8 @@ Chart ViewsChart(const Settings& settings) {
   Chart chart{.name = "views",
               .title = "Views",
               .text =
-                  "Views of a board by raw observations. Each board's pose is eliminated by "
-                  "itself (Schur complement), so that `joint` stays linear.",
+                  "Views of a board with raw observations. Each board's pose is eliminated "
+                  "separately (Schur complement), so the cost of `joint` is linear.",
               .x = "views",
               .log_x = true,
               .rates = false,
@@ -161,7 +161,7 @@ Chart ViewsChart(const Settings& settings) {
   return chart;
 }
 
-// An experiment of kabsch at eight pairs, with its whole report.
+// An experiment with kabsch at eight pairs, including its report.
 class Sweep {
  public:
   explicit Sweep(const Settings& settings)
@@ -205,8 +205,8 @@ Chart TrialsChart(const Settings& settings, const Sweep& sweep) {
   Chart chart{.name = "trials",
               .title = "Trials",
               .text =
-                  "`sextant run` from its start to its report, on all cores: kabsch at 8 pairs, "
-                  "two metrics. Rows stay on the disk; memory does not grow with them.",
+                  "`sextant run` including its report, on all cores: kabsch at 8 pairs, two "
+                  "metrics. Rows are kept on disk, so memory does not grow with them.",
               .x = "trials",
               .log_x = true,
               .rates = false,
@@ -222,19 +222,19 @@ Chart TrialsChart(const Settings& settings, const Sweep& sweep) {
 
 Chart CoresChart(const Settings& settings, const Sweep& sweep) {
   const long trials = settings.quick ? 50'000 : 400'000;
-  Chart chart{
-      .name = "cores",
-      .title = "Threads and ranks",
-      .text = fmt::format("{} trials of the same experiment, started anew for each: threads "
-                          "of one `sextant run`, ranks of `sextant-mpi` of one thread each. "
-                          "This machine has {} cores; memory is that of the largest "
-                          "process.",
-                          trials, Cores()),
-      .x = "threads or ranks",
-      .log_x = false,
-      .rates = true,
-      .amount = static_cast<double>(trials),
-      .curves = {}};
+  Chart chart{.name = "cores",
+              .title = "Threads and ranks",
+              .text = fmt::format(
+                  "{} trials of the same experiment, run separately for each point: threads of one "
+                  "`sextant run`, ranks of `sextant-mpi` with one thread each. "
+                  "This machine has {} cores; memory is that of the largest "
+                  "process.",
+                  trials, Cores()),
+              .x = "threads or ranks",
+              .log_x = false,
+              .rates = true,
+              .amount = static_cast<double>(trials),
+              .curves = {}};
   Curve threads{.name = "threads", .points = {}};
   Curve ranks{.name = "ranks", .points = {}};
   for (int count = 1; count <= 2 * Cores(); count *= 2) {
@@ -257,14 +257,14 @@ Chart CoresChart(const Settings& settings, const Sweep& sweep) {
 
 Expected<void> WritePage(const std::vector<Chart>& charts, const Settings& settings) {
   std::string page = fmt::format(
-      "# Cost as work grows\n\nWritten by `scripts/scaling`; do not edit. Time is the least of "
-      "several calls, or of a whole program from start to end; memory is the most that was held. "
-      "Every answer was checked against the truth before it was timed.\n\n- machine: {}\n\n",
+      "# Cost as work grows\n\nWritten by `scripts/scaling`; do not edit. Time is the minimum of "
+      "several calls, or that of a complete program run; memory is the peak. Every result was "
+      "checked against the truth before timing.\n\n- machine: {}\n\n",
       DescribeMachine());
   std::error_code error;
   fs::create_directories(settings.page / "scaling", error);
   for (const Chart& chart : charts) {
-    if (Expected<void> ok = DrawChart(chart, settings.page / "scaling"); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(DrawChart(chart, settings.page / "scaling"));
     page += ChapterOf(chart) + (&chart == &charts.back() ? "" : "\n");
   }
   return WriteFileAtomically(settings.page / "scaling.md", page);

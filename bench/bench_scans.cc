@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two scans of a room, 10 cm and 5 degrees apart, to the pose between them. One thread. A hundred
-// rooms are checked against the truth before one is timed.
+// Registration of two scans of a room, 10 cm and 5 degrees apart. One thread. A hundred rooms are
+// checked against the truth before one is timed.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -64,14 +64,15 @@ Checked CheckRooms(const Solver& solver, const LidarModel& model) {
 void Rooms(benchmark::State& state, const char* name, const LidarModel& model, double most_deg) {
   const Expected<SolverPtr> solver = BuiltinSolvers().Make("icp(match=projective,init=identity)");
   if (!solver) return state.SkipWithError(solver.error().message.c_str());
-  static std::map<std::string, Checked> known;  // Each repetition comes here again.
+  // Kept, as each repetition of the benchmark calls this again.
+  static std::map<std::string, Checked> known;
   if (!known.contains(name)) known[name] = CheckRooms(**solver, model);
   const Checked& checked = known[name];
-  if (checked.errors_deg.size() < kRooms) return state.SkipWithError("a room has no answer");
+  if (checked.errors_deg.size() < kRooms) return state.SkipWithError("a room has no result");
   state.counters["median_deg"] = checked.errors_deg[kRooms / 2];
   state.counters["worst_deg"] = checked.errors_deg.back();
   state.counters["points"] = static_cast<double>(checked.first.point_sets.in_cam.size());
-  if (checked.errors_deg.back() > most_deg) return state.SkipWithError("a room is off");
+  if (checked.errors_deg.back() > most_deg) return state.SkipWithError("a room's pose is wrong");
   for (auto _ : state) benchmark::DoNotOptimize((*solver)->Solve(checked.first));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One turn of a simulated LiDAR on one thread, in the paper's scene.
+// One revolution of a simulated LiDAR on one thread, in the paper's scene.
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
@@ -11,7 +11,8 @@
 namespace sextant::bench {
 namespace {
 
-// Faces who stands at the origin: z along `direction`, y down as far as it goes, turned by `roll`.
+// Rotation of a board that faces the origin: z along `direction`, y down as far as possible,
+// rotated by `roll`.
 Rigid3d Facing(const Eigen::Vector3d& position, const Eigen::Vector3d& direction, double roll_rad) {
   const Eigen::Vector3d z = direction.normalized();
   const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
@@ -22,8 +23,8 @@ Rigid3d Facing(const Eigen::Vector3d& position, const Eigen::Vector3d& direction
           position};
 }
 
-// Two boards of 48.4 x 46.8 and 49.0 x 46.8 cm with tags of 20.5 cm, 2 m away, hung from a corner,
-// in a room.
+// Two boards of 48.4 x 46.8 and 49.0 x 46.8 cm with tags of 20.5 cm, 2 m away, one corner up, in a
+// room.
 Scene PaperScene() {
   Scene scene;
   scene.name = "paper";
@@ -54,7 +55,8 @@ Scene PaperScene() {
   return scene;
 }
 
-// Noiseless points of a board lie on it, and there are about as many as its solid angle says.
+// Checks that noiseless points of a board lie on it, and that their number agrees with its solid
+// angle.
 bool Check(benchmark::State& state, const Scene& scene, const LidarModel& model) {
   const ScanOptions noiseless = {
       .noise = false, .quantisation = false, .dropouts = false, .truth = true};
@@ -65,7 +67,7 @@ bool Check(benchmark::State& state, const Scene& scene, const LidarModel& model)
   }
   double expected = 0.0;
   for (const LidarRing& ring : model.rings) {
-    // A square on its corner: its width at a ring's height.
+    // The width of a square standing on its corner, at a ring's height.
     const double half = 0.5 * std::hypot(0.487, 0.468) - std::abs(2.03 * ring.elevation_rad);
     if (half > 0.0) expected += 2.0 * 2.0 * half / 2.03 * ColumnCount(model) / (2.0 * M_PI);
   }
@@ -81,7 +83,7 @@ bool Check(benchmark::State& state, const Scene& scene, const LidarModel& model)
     ++on_boards;
   }
   if (std::abs(on_boards / expected - 1.0) > 0.15) {
-    state.SkipWithError("not as many points on the boards as their size says");
+    state.SkipWithError("the number of points on the boards does not agree with their size");
     return false;
   }
   return true;
@@ -100,7 +102,7 @@ void Turn(benchmark::State& state, const std::string& name) {
   }
 }
 
-// The count is that of the beams.
+// Items are beams.
 BENCHMARK_CAPTURE(Turn, vlp16, "vlp16")
     ->Name("lidar_turn/vlp16/28928")
     ->Unit(benchmark::kMillisecond);

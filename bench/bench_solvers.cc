@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every solver of the catalogue through its interface, by the example that its entry gives. A new
-// line in the table of solvers is timed here without a change.
+// Every solver of the catalogue through its interface, with the example of its entry. New solvers
+// are timed here without any change.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -17,10 +17,10 @@
 namespace sextant::bench {
 namespace {
 
-// A chi-square number of 6 degrees of freedom is larger once in a million: only a wrong answer is
-// farther off. A minimal solver is honestly far from the truth now and then (p3p over 0.1 m in 3
-// percent of these scenes), so that its own covariance, which the contract tests hold to be
-// honest, is the measure; where there is none, the Cramer-Rao bound.
+// A chi-square variable with 6 degrees of freedom exceeds this once in a million, so only wrong
+// results do. A minimal solver can legitimately be far from the truth (p3p over 0.1 m in 3 percent
+// of these scenes), so the error is measured in units of its own covariance, which the contract
+// tests verify, or of the Cramer-Rao bound if there is none.
 constexpr double kMaxSquaredSigmas = 38.26;
 
 bool CheckAnswer(benchmark::State& state, const Solver& solver, const SolveReport& report,
@@ -31,7 +31,7 @@ bool CheckAnswer(benchmark::State& state, const Solver& solver, const SolveRepor
     if (bound) covariance = *bound;
   }
   if (!covariance) {
-    state.SkipWithError("neither a covariance nor a bound to judge the answer by");
+    state.SkipWithError("neither a covariance nor a bound to compare the error with");
     return false;
   }
   const Vector6d error = PoseDifference(report.cam_from_lidar, scene.cam_from_lidar);
@@ -87,7 +87,7 @@ void RegisterAll() {
   const SolverRegistry registry = BuiltinSolvers();
   for (const SolverEntry& entry : registry.entries()) {
     const Expected<SolverPtr> solver = registry.Make(entry.example);
-    // Raw views are another kind of scene: bench_joint.
+    // Solvers of raw views need another kind of scene: bench_joint.
     if (!solver || (*solver)->spec().needs.board_views > 0) continue;
     auto* benchmark = benchmark::RegisterBenchmark(
         ("solve/" + (*solver)->spec().name).c_str(),

@@ -11,22 +11,22 @@
 
 namespace sextant::bench {
 
-/// How far from the truth an answer may be and still be worth timing.
+/// Maximum error of a result that is timed.
 struct Tolerance {
   double rotation_rad = 0.0;
   double translation_m = 0.0;
 };
 
-/// Whether `answer` is the truth within the tolerance; otherwise marks the benchmark as failed and
-/// says by how much, and the caller returns without timing.
+/// Whether `answer` equals the truth within the tolerance. If not, marks the benchmark as failed
+/// with the error, and the caller must return without timing.
 bool CheckPose(benchmark::State& state, const Rigid3d& answer, const Rigid3d& truth,
                const Tolerance& tolerance);
 
-/// How many different problems of `points` points to take in turn, so that no branch predictor
-/// learns a single one: 64, and fewer where they would fill the caches.
+/// Number of different problems of `points` points to cycle through, so that the branch predictor
+/// does not learn a single one: 64, or fewer if they would fill the caches.
 std::size_t SceneCount(std::int64_t points);
 
-/// As many scenes. The same options give the same scenes in every binary.
+/// This number of scenes. The same options give the same scenes in every binary.
 std::vector<RandomScene> MakeScenes(const RandomSceneOptions& options);
 
 }  // namespace sextant::bench

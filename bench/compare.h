@@ -9,12 +9,12 @@
 namespace sextant::bench {
 
 enum class Change {
-  kSlower,    ///< Beyond the noise: a regression.
-  kNowWrong,  ///< Was timed, and now its answer is wrong: a regression.
-  kGone,      ///< Was timed, and is not there any more.
-  kFaster,    ///< Beyond the noise.
-  kNew,       ///< Timed now only.
-  kSame,      ///< Within the noise, or not timed in either.
+  kSlower,    ///< Slower than explained by noise: a regression.
+  kNowWrong,  ///< Was timed before, and its result is wrong now: a regression.
+  kGone,      ///< Was timed before, and is missing now.
+  kFaster,    ///< Faster than explained by noise.
+  kNew,       ///< Only timed now.
+  kSame,      ///< No significant difference, or not timed in either run.
 };
 
 struct Difference {
@@ -22,18 +22,18 @@ struct Difference {
   Change change = Change::kSame;
   double old_ns = 0.0;
   double new_ns = 0.0;
-  double noise = 0.0;  ///< Share by which the medians may differ by chance.
+  double noise = 0.0;  ///< Relative difference of the medians that noise explains.
 };
 
-/// By change, regressions first, then by how much. A time has changed where both medians differ by
-/// more than three standard deviations of a single repetition of either run together, and by 3
-/// percent: what alignment of code alone does.
+/// Sorted by kind of change, regressions first, then by size. A time has changed if the medians
+/// differ by more than three combined standard deviations of a single repetition and by more than 3
+/// percent, the effect of code alignment alone.
 std::vector<Difference> CompareTimings(const Timings& old_timings, const Timings& new_timings);
 
-/// Whether one of them is a regression.
+/// Whether one of the changes is a regression.
 bool HasRegression(const std::vector<Difference>& differences);
 
-/// A table of what changed, and how many did not.
+/// A table of all changes, and the number of unchanged benchmarks.
 std::string FormatDifferences(const std::vector<Difference>& differences);
 
 }  // namespace sextant::bench

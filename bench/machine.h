@@ -5,10 +5,10 @@
 
 namespace sextant::bench {
 
-/// "AMD EPYC"; "unknown" where the system does not say.
+/// The CPU model, such as "AMD EPYC"; "unknown" if the system does not provide it.
 std::string ProcessorName();
 
-/// "AMD EPYC, 2 cores; load 0.4".
+/// CPU, cores and load: "AMD EPYC, 2 cores; load 0.4".
 std::string DescribeMachine();
 
 }  // namespace sextant::bench

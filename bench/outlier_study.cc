@@ -35,7 +35,7 @@ RandomScene MakeScene(const OutlierStudy& study, int pairs, double fraction, std
   return scene;
 }
 
-// Outcomes by contestant and scene.
+// Outcomes indexed by contestant and scene.
 std::vector<std::vector<Outcome>> RunScenes(const OutlierStudy& study, int pairs, double fraction,
                                             std::span<const Contestant> contestants) {
   const auto count = static_cast<std::size_t>(study.scenes);

@@ -44,7 +44,7 @@ Problems PairProblems(int pairs, double outliers) {
   return problems;
 }
 
-// How far least squares of the true pairs is off: no solver is expected to do better.
+// The error of least squares on the true pairs; no solver is expected to do better.
 double OracleError(const PointProblem& problem, double outliers) {
   const auto inliers =
       static_cast<std::size_t>(InlierCount(static_cast<int>(problem.in_cam.size()), outliers));
@@ -54,7 +54,7 @@ double OracleError(const PointProblem& problem, double outliers) {
   return fit ? DistanceBetween(fit->b_from_a, problem.cam_from_lidar).rotation_rad : 1.0;
 }
 
-// Eight corners of two boards, in another order in the second list.
+// Eight corners of two boards, in a different order in the second list.
 Problems CornerProblems() {
   Random random(5);
   Problems problems(64);
@@ -93,10 +93,10 @@ Problems RoomProblems() {
   return problems;
 }
 
-// Allowed errors by problem.
+// Allowed errors of each problem.
 using Allowed = std::vector<Tolerance>;
 
-// A peer's calls, made and checked once for all repetitions.
+// The calls of a peer, prepared and checked once for all repetitions.
 struct Checked {
   Problems problems;
   std::vector<PeerCall> calls;

@@ -61,7 +61,7 @@ PeerCall PointToPoint(const PointProblem& problem, double max_distance_m) {
   };
 }
 
-// With its normals, as whoever has two scans only needs them.
+// Includes computing the normals, as the input is two plain scans.
 PeerCall PointToPlane(const PointProblem& problem) {
   return [&problem]() -> std::optional<Rigid3d> {
     const std::shared_ptr<Cloud> target = ToCloud(problem.in_cam);

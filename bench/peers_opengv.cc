@@ -10,7 +10,7 @@
 namespace sextant::bench {
 namespace {
 
-// opengv finds the pose of the second frame in the first.
+// opengv estimates the pose of the second frame in the first.
 struct Points {
   explicit Points(const PointProblem& problem)
       : in_cam(problem.in_cam.begin(), problem.in_cam.end()),

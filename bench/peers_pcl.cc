@@ -40,7 +40,7 @@ PeerCall Svd(const PointProblem& problem) {
   };
 }
 
-// Consensus, then least squares on its inliers: PCL's own refinement is by the variance of the
+// RANSAC, then least squares on its inliers; PCL's own refinement uses the variance of the
 // distances.
 PeerCall Sac(const PointProblem& problem) {
   auto pairs = std::make_shared<pcl::Correspondences>();

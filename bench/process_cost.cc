@@ -21,7 +21,7 @@ double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// "VmHWM" or "VmRSS" of this process.
+// The field "VmHWM" or "VmRSS" of this process.
 double StatusMb(const std::string& field) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -31,13 +31,13 @@ double StatusMb(const std::string& field) {
 }
 
 Cost CostOf(const std::function<void()>& call) {
-  std::ofstream("/proc/self/clear_refs") << "5";  // Forgets the peak so far.
+  std::ofstream("/proc/self/clear_refs") << "5";  // Resets the peak.
   const double before_mb = StatusMb("VmRSS");
   const Clock::time_point start = Clock::now();
   call();
   const double first = SecondsSince(start);
   Cost cost{.seconds = first, .peak_mb = std::max(0.0, StatusMb("VmHWM") - before_mb)};
-  // Other programs only add: the least of five rounds of 20 ms.
+  // The minimum of five rounds of 20 ms, as other programs only add time.
   constexpr int kRounds = 5;
   const int calls = std::clamp(static_cast<int>(0.02 / first), 1, 100'000);
   const int rounds = first > 0.3 ? 0 : kRounds;

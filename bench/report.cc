@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// bench_report <folder of JSON files> : writes docs/performance.md's text to standard output.
+// bench_report <folder of JSON files>: writes the text of docs/performance.md to standard output.
 // Names of benchmarks are task/implementation/N; ours is `sextant`, the others are peers.
 #include <fmt/core.h>
 
@@ -29,10 +29,10 @@ struct Key {
   friend auto operator<=>(const Key&, const Key&) = default;
 };
 
-using Row = std::map<std::string, Timing>;  // By implementation.
+using Row = std::map<std::string, Timing>;  // Timings by implementation.
 
-// How many times faster than a peer a kernel is to be. Peer: an implementation of the same task, or
-// task/implementation.
+// Goal: a kernel is this many times faster than a peer, which is an implementation of the same
+// task, or task/implementation.
 struct Goal {
   const char* task;
   long count;
@@ -40,7 +40,7 @@ struct Goal {
   double ratio;
 };
 
-// What a task may take at most.
+// Goal: the maximum time of a task.
 struct Limit {
   const char* task;
   long count;
@@ -111,7 +111,7 @@ struct Parsed {
   std::string implementation;
 };
 
-// task/implementation/N, where the implementation may itself hold no slash.
+// Splits task/implementation/N; the implementation must not contain a slash.
 std::optional<Parsed> ParseName(const std::string& name) {
   const std::size_t first = name.find('/');
   const std::size_t last = name.rfind('/');
@@ -120,7 +120,7 @@ std::optional<Parsed> ParseName(const std::string& name) {
                 name.substr(first + 1, last - first - 1)};
 }
 
-// Benchmarks that are named otherwise are left out.
+// Benchmarks with other names are left out.
 std::map<Key, Row> RowsOf(const Timings& timings) {
   std::map<Key, Row> rows;
   for (const auto& [name, timing] : timings) {
@@ -130,7 +130,7 @@ std::map<Key, Row> RowsOf(const Timings& timings) {
   return rows;
 }
 
-// The fastest of the peers; none where there is none.
+// The fastest peer; none if there is no peer.
 std::optional<double> BestPeer(const Row& row) {
   std::optional<double> best;
   for (const auto& [name, timing] : row) {
@@ -156,7 +156,7 @@ void PrintRow(const Key& key, const Row& row) {
   }
 }
 
-// None where it was not measured or gave a wrong answer.
+// None if it was not measured or its result was wrong.
 std::optional<double> MedianOf(const std::map<Key, Row>& rows, const Key& key,
                                const std::string& implementation) {
   const auto row = rows.find(key);
@@ -198,7 +198,8 @@ std::string ReadLine(const fs::path& path) {
   return line;
 }
 
-// What one of the runs says of the machine; they share it. The folder has been read before.
+// The machine as described in one of the files; all have the same. The folder was already read
+// successfully.
 json ContextOf(const fs::path& folder) {
   fs::path run;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -236,9 +237,9 @@ int Main(int argc, char** argv) {
   const std::map<Key, Row> rows = RowsOf(*timings);
   fmt::print(
       "# Performance\n\nWritten by `scripts/bench`; do not edit. One thread, CPU time, medians of "
-      "repetitions; the spread is their standard deviation over their mean. Every answer was "
-      "checked against the truth before it was timed. Ratios are to the fastest peer of the same "
-      "run. What profiles showed, and what each change gave: "
+      "repetitions; the spread is their standard deviation divided by their mean. Every result was "
+      "checked against the truth before timing. Ratios are relative to the fastest peer of the "
+      "same run. Profiles and the effect of each change: "
       "[performance_notes.md](performance_notes.md).\n\n");
   PrintMachine(folder);
   PrintGoals(rows);

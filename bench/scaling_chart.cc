@@ -36,7 +36,7 @@ std::string CellAt(const Chart& chart, const Curve& curve, double x) {
   return {};
 }
 
-// The exponent of the growth from the last point but one to the last; 1 is linear.
+// The exponent of the growth between the last two points; 1 is linear.
 std::string GrowthOf(const Curve& curve) {
   if (curve.points.size() < 2) return {};
   const Curve::Point& a = curve.points[curve.points.size() - 2];
@@ -45,7 +45,7 @@ std::string GrowthOf(const Curve& curve) {
   return fmt::format("x^{:.2f}", exponent);
 }
 
-// At the first and at the last point.
+// Memory at the first and at the last point.
 std::string MemoryOf(const Curve& curve) {
   if (curve.points.empty()) return {};
   const auto text = [](double mb) { return fmt::format("{:.{}f}", mb, mb < 10.0 ? 1 : 0); };
@@ -93,7 +93,7 @@ Expected<void> DrawChart(const Chart& chart, const std::filesystem::path& folder
   commands += Panel(chart, "memory [MB]", 3, true);
   commands += "unset multiplot\n";
   for (const char* extension : {".svg", ".png"}) {
-    if (Expected<void> ok = DrawPlot(commands, folder / (chart.name + extension)); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(DrawPlot(commands, folder / (chart.name + extension)));
   }
   return {};
 }

@@ -10,7 +10,7 @@
 
 namespace sextant::bench {
 
-/// How the cost of one thing grows.
+/// Growth of the cost of one task.
 struct Curve {
   struct Point {
     double x = 0.0;
@@ -22,20 +22,21 @@ struct Curve {
 
 /// A chapter of docs/scaling.md: curves over one quantity.
 struct Chart {
-  std::string name;  ///< Of the files of its picture.
+  std::string name;  ///< File name of its plot.
   std::string title;
   std::string text;
-  std::string x;  ///< What is varied.
+  std::string x;  ///< Name of the quantity that is varied.
   bool log_x = true;
   bool rates = false;  ///< Show `amount` over seconds instead of seconds.
   double amount = 1.0;
   std::vector<Curve> curves;
 };
 
-/// Time and memory side by side, as NAME.svg and NAME.png in the folder. Errors: those of DrawPlot.
+/// Draws time and memory next to each other as NAME.svg and NAME.png in the folder. Errors: those
+/// of DrawPlot.
 Expected<void> DrawChart(const Chart& chart, const std::filesystem::path& folder);
 
-/// Title, text, picture, and a table of every point.
+/// The chapter in Markdown: title, text, plot, and a table of all points.
 std::string ChapterOf(const Chart& chart);
 
 }  // namespace sextant::bench

@@ -24,14 +24,14 @@ std::string Describe(const OrderFinding& order) {
                                 : "no rotation fits";
   return fmt::format(
       "order: another order of the LiDAR's corners{} fits far better: {} as given, RMSE {:.4f} m "
-      "with {} of {} pairs changed; --reorder takes it",
+      "with {} of {} pairs changed; --reorder uses it",
       order.boards_swapped ? " and boards" : "", given, order.rmse_reordered_m, order.moved.size(),
       order.lidar_index.size());
 }
 
 std::string Describe(const EdgeFinding& edge) {
   const std::string known =
-      edge.known_m ? fmt::format(", the board's own {:.3f} m", *edge.known_m) : std::string();
+      edge.known_m ? fmt::format(", nominal {:.3f} m", *edge.known_m) : std::string();
   return fmt::format(
       "edges: board {} of view {}, {} to {}: camera {:.3f} m, LiDAR {:.3f} m{}; one of its corners "
       "is off by about {:.0f} mm",
@@ -45,8 +45,7 @@ std::string Describe(const WeakDirection& weak) {
   const double scale = weak.is_rotation ? 1.0 / kRadPerDeg : 1e3;
   return fmt::format(
       "weak: the {} {} ({:.2f}, {:.2f}, {:.2f}) in the camera frame is known to {:.3g} {}, the "
-      "best "
-      "direction to {:.3g}; spread the boards more widely across it",
+      "best direction to {:.3g}; spread the boards more widely across it",
       weak.is_rotation ? "rotation about" : "translation along", "axis", weak.axis_in_cam.x(),
       weak.axis_in_cam.y(), weak.axis_in_cam.z(), weak.sigma * scale,
       weak.is_rotation ? "deg" : "mm", weak.best_sigma * scale);

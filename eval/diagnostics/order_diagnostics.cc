@@ -15,13 +15,15 @@
 namespace sextant {
 namespace {
 
-constexpr double kFarBetter = 0.5;  // Of the RMSE as given.
-constexpr double kMinMisfit = 0.1;  // Of the mean edge: noise alone does not swap corners.
-constexpr double kMaxMisfit = 0.2;  // Of the mean edge: beyond, no order is the right one.
+constexpr double kFarBetter = 0.5;  // Relative to the RMSE of the given order.
+// Relative to the mean edge: below it, noise explains the misfit.
+constexpr double kMinMisfit = 0.1;
+constexpr double kMaxMisfit = 0.2;  // Relative to the mean edge: above it, no order is right.
 
-using Assignment = std::vector<int>;  // By camera point: the pair whose LiDAR point belongs to it.
+// For each camera point, the pair whose LiDAR point belongs to it.
+using Assignment = std::vector<int>;
 
-// Four turns, each seen from the front or from behind.
+// Four rotations in the plane, each seen from the front or from behind.
 std::array<CornerOrder, 8> EveryOrder() {
   std::array<CornerOrder, 8> orders;
   for (int first = 0; first < kCornersPerBoard; ++first) {
@@ -76,8 +78,8 @@ class OrderSearch {
     return FitPoints(in_cam, in_lidar);
   }
 
-  // Every distinct pose that explains all views, as the assignment that it makes. Tried first: one
-  // order for all boards.
+  // The assignments that belong to every distinct pose that explains all views. The starts are the
+  // fits of one common order for all boards.
   std::vector<Assignment> Explanations() const {
     std::vector<MatchView> match_views;
     std::vector<std::vector<Pairing>> meanings;
@@ -197,7 +199,7 @@ std::optional<OrderFinding> FindBetterOrder(std::span<const Pair3d3d> pairs) {
   double best_rmse = std::min(kFarBetter * as_given, kMaxMisfit * search.MeanEdge());
   for (Assignment& assignment : search.Explanations()) {
     const double rmse = search.FitAll(assignment).rmse_m;
-    // A later one must be better by more than rounding, so that equals do not flip.
+    // Improvements within rounding are ignored, so that ties do not depend on rounding.
     if (rmse < best_rmse * (1.0 - 1e-9)) {
       best_rmse = rmse;
       best = std::move(assignment);

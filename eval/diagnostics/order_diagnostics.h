@@ -11,7 +11,7 @@
 
 namespace sextant {
 
-/// The four pairs of one board in one view, by corner number.
+/// Indices of the four pairs of one board in one view, by corner number.
 struct BoardPairs {
   int view = 0;
   std::array<int, kCornersPerBoard> pairs{};
@@ -21,10 +21,11 @@ struct BoardPairs {
   }
 };
 
-/// The boards that have each of their four corners exactly once, ordered by view and board.
+/// All boards with each of their four corners exactly once, ordered by view and board.
 std::vector<BoardPairs> CompleteBoards(std::span<const Pair3d3d> pairs);
 
-/// See DiagnosePairs; none where the given order is the best or no other is far better.
+/// A better order of the LiDAR corners (see DiagnosePairs); none if no other order is far better
+/// than the given one.
 std::optional<OrderFinding> FindBetterOrder(std::span<const Pair3d3d> pairs);
 
 }  // namespace sextant

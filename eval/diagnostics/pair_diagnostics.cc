@@ -12,7 +12,7 @@
 namespace sextant {
 namespace {
 
-constexpr double kMinEdgeDifference = 0.05;  // Of the edge's length.
+constexpr double kMinEdgeDifference = 0.05;  // Relative to the edge's length.
 constexpr double kEdgeSigmas = 3.0;
 constexpr double kWeakRatio = 5.0;
 constexpr double kMirroredRatio = 2.0;
@@ -20,7 +20,8 @@ constexpr double kMirroredRatio = 2.0;
 struct Edge {
   double in_cam_m = 0.0;
   double in_lidar_m = 0.0;
-  double sigma_m = 0.0;  // Of the difference of the two; 0 where the noise is unknown.
+  // Standard deviation of the difference of the two; 0 if the noise is unknown.
+  double sigma_m = 0.0;
 };
 
 Edge MeasureEdge(const Pair3d3d& from, const Pair3d3d& to) {
@@ -42,7 +43,7 @@ std::optional<double> KnownLength(const CalibrationProblem& problem, int board_i
   return std::nullopt;
 }
 
-// How far the edge is beyond what noise explains; at most 0 where it is not.
+// By how much the edge's error exceeds what noise explains; zero or negative if noise explains it.
 double Excess(const Edge& edge, std::optional<double> known) {
   const double reference = known.value_or(edge.in_cam_m);
   double difference = std::abs(edge.in_cam_m - edge.in_lidar_m);
@@ -87,7 +88,7 @@ CalibrationProblem Reordered(const CalibrationProblem& problem, const OrderFindi
   for (std::size_t i = 0; i < order.lidar_index.size(); ++i) {
     const auto from = static_cast<std::size_t>(order.lidar_index[i]);
     reordered.pairs_3d3d[i].point_in_lidar = problem.pairs_3d3d[from].point_in_lidar;
-    // Pixels of the same corner follow it.
+    // The 2D-3D pairs of the same corner change with it.
     for (Pair2d3d& pair : reordered.pairs_2d3d) {
       if (pair.id != problem.pairs_3d3d[i].id) continue;
       pair.point_in_lidar = problem.pairs_3d3d[from].point_in_lidar;

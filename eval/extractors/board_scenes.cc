@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFloor_m = -1.0;
 
-// Seen squarely from the origin at an azimuth: z away, y down.
+// Rotation of a plane that faces the origin from this azimuth: z points away, y down.
 Eigen::Quaterniond Facing(double azimuth_rad) {
   const Eigen::Vector3d away(std::cos(azimuth_rad), std::sin(azimuth_rad), 0.0);
   const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
@@ -48,15 +48,16 @@ void AddWalls(Scene& scene) {
 
 }  // namespace
 
-SceneBoard Hang(const Board& board, const Hanging& hanging) {
-  const double azimuth = hanging.azimuth_deg * kRadPerDeg;
+SceneBoard PlaceBoard(const Board& board, const BoardPlacement& placement) {
+  const double azimuth = placement.azimuth_deg * kRadPerDeg;
   SceneBoard placed;
   placed.board = board;
-  placed.world_from_board.translation = At(azimuth, hanging.distance_m, hanging.height_m);
+  placed.world_from_board.translation = At(azimuth, placement.distance_m, placement.height_m);
   placed.world_from_board.rotation =
-      Facing(azimuth) * Eigen::AngleAxisd(hanging.yaw_deg * kRadPerDeg, Eigen::Vector3d::UnitY()) *
-      Eigen::AngleAxisd(hanging.pitch_deg * kRadPerDeg, Eigen::Vector3d::UnitX()) *
-      Eigen::AngleAxisd(hanging.turn_deg * kRadPerDeg, Eigen::Vector3d::UnitZ());
+      Facing(azimuth) *
+      Eigen::AngleAxisd(placement.yaw_deg * kRadPerDeg, Eigen::Vector3d::UnitY()) *
+      Eigen::AngleAxisd(placement.pitch_deg * kRadPerDeg, Eigen::Vector3d::UnitX()) *
+      Eigen::AngleAxisd(placement.turn_deg * kRadPerDeg, Eigen::Vector3d::UnitZ());
   return placed;
 }
 
@@ -94,15 +95,15 @@ BoardField FieldOf(const LidarModel& model, double distance_m) {
   BoardField field{.distance_m = distance_m};
   if (model.rosette) {
     const double half_view_deg = 2.0 * model.rosette->deflection_rad / kRadPerDeg;
-    // Side by side, each no wider than half the view.
+    // Next to each other, each no wider than half the field of view.
     field.distance_m =
         std::max(distance_m, 1.1 * kHalfDiagonal_m / std::tan(0.5 * half_view_deg * kRadPerDeg));
-    field.least_azimuth_deg = reach_deg(0.95 * field.distance_m);
-    field.most_azimuth_deg = half_view_deg - field.least_azimuth_deg;
+    field.min_azimuth_deg = reach_deg(0.95 * field.distance_m);
+    field.max_azimuth_deg = half_view_deg - field.min_azimuth_deg;
     return field;
   }
-  // Side by side too: nearer boards would reach into each other.
-  field.least_azimuth_deg = std::max(field.least_azimuth_deg, reach_deg(0.95 * distance_m));
+  // Next to each other as well: nearer boards would overlap.
+  field.min_azimuth_deg = std::max(field.min_azimuth_deg, reach_deg(0.95 * distance_m));
   const double low_deg = model.rings.front().elevation_rad / kRadPerDeg;
   const double high_deg = model.rings.back().elevation_rad / kRadPerDeg;
   const double reach = reach_deg(0.95 * distance_m);
@@ -125,23 +126,23 @@ Scene TwoBoardsInRoom(const BoardField& field, Random& random) {
     board.id = i;
     board.top_right_m = i == 0 ? 0.484 : 0.490;
     board.right_bottom_m = 0.468;
-    Hanging hanging;
-    hanging.azimuth_deg =
-        (i == 0 ? 1.0 : -1.0) * random.Uniform(field.least_azimuth_deg, field.most_azimuth_deg);
-    hanging.distance_m = field.distance_m * random.Uniform(0.95, 1.05);
-    hanging.height_m =
+    BoardPlacement placement;
+    placement.azimuth_deg =
+        (i == 0 ? 1.0 : -1.0) * random.Uniform(field.min_azimuth_deg, field.max_azimuth_deg);
+    placement.distance_m = field.distance_m * random.Uniform(0.95, 1.05);
+    placement.height_m =
         field.height_m + random.Uniform(-field.height_spread_m, field.height_spread_m);
-    hanging.turn_deg = 45.0 + random.Uniform(-field.turned_deg, field.turned_deg);
-    hanging.yaw_deg = random.Uniform(-30.0, 30.0);
-    hanging.pitch_deg = random.Uniform(-15.0, 15.0);
-    scene.boards.push_back(Hang(board, hanging));
+    placement.turn_deg = 45.0 + random.Uniform(-field.turned_deg, field.turned_deg);
+    placement.yaw_deg = random.Uniform(-30.0, 30.0);
+    placement.pitch_deg = random.Uniform(-15.0, 15.0);
+    scene.boards.push_back(PlaceBoard(board, placement));
   }
   return scene;
 }
 
 void AddStand(const SceneBoard& placed, Scene& scene) {
   constexpr double kRadius_m = 0.015;
-  constexpr double kClamp_m = 0.1;  // How far it reaches above the lowest corner.
+  constexpr double kClamp_m = 0.1;  // Reach above the lowest corner.
   const Eigen::Vector3d away = placed.world_from_board.rotation * Eigen::Vector3d::UnitZ();
   const double behind = 0.005 + kRadius_m / std::hypot(away.x(), away.y());
   const Eigen::Vector3d top =
@@ -159,8 +160,8 @@ void AddStand(const SceneBoard& placed, Scene& scene) {
 
 void AddHolder(const SceneBoard& placed, Random& random, Scene& scene) {
   constexpr double kBody_m = 0.2;
-  const double gap =
-      random.Uniform(0.22, 0.45);  // Board's middle to body: a board that leans clears it.
+  // From the board's centre to the body, so that a tilted board does not touch it.
+  const double gap = random.Uniform(0.22, 0.45);
   const double beside = random.Uniform(-0.1, 0.1);
   const Eigen::Vector3d center = placed.world_from_board.translation;
   const Eigen::Vector3d away = Eigen::Vector3d(center.x(), center.y(), 0.0).normalized();
@@ -170,7 +171,7 @@ void AddHolder(const SceneBoard& placed, Random& random, Scene& scene) {
                              .base_in_world = {body.x(), body.y(), kFloor_m},
                              .radius_m = kBody_m,
                              .height_m = 1.75});
-  // A hand grips the edge between the bottom corner and the one beside it, half over the board.
+  // Each hand grips an edge at the bottom corner, half of it in front of the board.
   for (const int side : {1, 3}) {
     const double along = random.Uniform(0.3, 0.7);
     const Eigen::Vector3d grip =
@@ -187,19 +188,6 @@ void AddHolder(const SceneBoard& placed, Random& random, Scene& scene) {
                                               0.5 * (grip + shoulder) + inward},
                            .size_m = Eigen::Vector3d(arm.norm(), 0.07, 0.07)});
   }
-}
-
-std::vector<Board> BoardsIn(const Scene& scene) {
-  std::vector<Board> boards;
-  for (const SceneBoard& placed : scene.boards) boards.push_back(placed.board);
-  return boards;
-}
-
-Eigen::Vector3d TrueCorner(const SceneBoard& placed, int corner) {
-  const double x = corner == 1 || corner == 2 ? 0.5 : -0.5;
-  const double y = corner >= 2 ? 0.5 : -0.5;
-  return placed.world_from_board *
-         Eigen::Vector3d(x * placed.board.top_right_m, y * placed.board.right_bottom_m, 0.0);
 }
 
 }  // namespace sextant

@@ -25,7 +25,7 @@ constexpr double kNotThisTag_px = 8.0;
 
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 
-// One detector's answer for one picture.
+// The result of one detector for one image.
 struct Answer {
   bool is_found = false;
   Vector8d error = Vector8d::Zero();
@@ -52,13 +52,13 @@ double InwardOf(const Vector8d& error, const Quad& truth) {
     const Line2 edge = LineThrough(truth[k], truth[(k + 1) % 4]);
     const auto a = 2 * static_cast<Eigen::Index>(k);
     const auto b = 2 * static_cast<Eigen::Index>((k + 1) % 4);
-    // Corners go clockwise with y down: this normal points out.
+    // Corners go clockwise with y down, so this normal points outwards.
     inward -= edge.normal.dot(error.segment<2>(a) + error.segment<2>(b)) / 8.0;
   }
   return inward;
 }
 
-// Corners as the picture's family numbers them, whichever library's detector found the tag.
+// Corners in the numbering of the image's family, whichever library found the tag.
 std::optional<Quad> FindTag(const TagDetector& detector, const TagPicture& picture, int id,
                             const TagPattern& pattern) {
   const Expected<Detections> found = detector.Detect(picture.image);
@@ -99,11 +99,11 @@ TagPictureOptions Draw(const DetectorStudyOptions& options, int trial) {
   picture.family = options.family;
   picture.id = static_cast<int>(random.Below(30));
   const double log_side =
-      random.Uniform(std::log(options.least_side_px), std::log(options.most_side_px));
+      random.Uniform(std::log(options.min_side_px), std::log(options.max_side_px));
   picture.side_px = std::exp(log_side);
-  picture.tilt_rad = random.Uniform(0.0, options.most_tilt_rad);
+  picture.tilt_rad = random.Uniform(0.0, options.max_tilt_rad);
   picture.seed = DeriveSeed(options.seed, kExperiment, 1, static_cast<std::uint64_t>(trial));
-  picture.field = 0.35;  // The largest board must be wholly in the image.
+  picture.field = 0.35;  // The largest board must be completely in the image.
   picture.image.seed = DeriveSeed(options.seed, kExperiment, 2, static_cast<std::uint64_t>(trial));
   picture.image.blur_sigma_px = options.blur_px;
   picture.image.noise_sigma_grey = options.noise_grey;
@@ -174,7 +174,7 @@ std::vector<std::string> StudiedDetectors(const std::string& family) {
 }
 
 Expected<std::vector<DetectorRow>> StudyDetectors(const DetectorStudyOptions& options) {
-  constexpr std::size_t kStart = 6;  // apriltag(decimate=2).
+  constexpr std::size_t kStart = 6;  // Index of apriltag(decimate=2).
   const std::vector<std::string> names = StudiedDetectors(options.family);
   std::vector<TagDetectorPtr> detectors;
   for (std::size_t i = 0; i + 1 < names.size(); ++i) {

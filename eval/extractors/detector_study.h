@@ -10,38 +10,38 @@
 
 namespace sextant {
 
-/// Pictures of one tag each, that every detector gets.
+/// Simulated images of one tag each; every detector gets the same ones.
 struct DetectorStudyOptions {
   int trials = 200;
   std::uint64_t seed = 1;
-  std::string family = "tag36h11";  ///< That both libraries read.
-  double least_side_px = 30.0;      ///< Sides are drawn uniformly in their logarithm.
-  double most_side_px = 200.0;
-  double most_tilt_rad = 1.0472;  ///< Drawn uniformly from 0.
+  std::string family = "tag36h11";  ///< A family that both libraries support.
+  double min_side_px = 30.0;        ///< The logarithm of the side is drawn uniformly.
+  double max_side_px = 200.0;
+  double max_tilt_rad = 1.0472;  ///< The tilt is drawn uniformly from 0 to this.
   double blur_px = 0.7;
   double noise_grey = 3.0;
 };
 
-/// What one setting of a detector does with them.
+/// Results of one detector setting.
 struct DetectorRow {
   std::string detector{};
   int found = 0;
-  int large_found = 0;   ///< Of those of 100 px and more.
-  double rmse_px = 0.0;  ///< Of the distance between a corner and its truth.
+  int large_found = 0;   ///< Tags found among those of 100 px and more.
+  double rmse_px = 0.0;  ///< RMS distance between a corner and its true position.
   double large_rmse_px = 0.0;
   double median_px = 0.0;
-  Eigen::Vector2d shift_px = Eigen::Vector2d::Zero();  ///< Mean error.
-  double inward_px = 0.0;      ///< Mean of the edges' displacement towards the tag's middle.
-  double bias_sigma_px = 0.0;  ///< Standard error of a component of the shift.
-  double nees = 0.0;  ///< Mean of e^T C^-1 e / 8, for those that state a covariance; else 0.
+  Eigen::Vector2d shift_px = Eigen::Vector2d::Zero();  ///< Mean error of the corners.
+  double inward_px = 0.0;      ///< Mean displacement of the edges towards the tag's centre.
+  double bias_sigma_px = 0.0;  ///< Standard error of one component of the shift.
+  double nees = 0.0;  ///< Mean of e^T C^-1 e / 8; 0 for detectors that state no covariance.
 };
 
-/// The settings that the study compares: each of both libraries, as it normalises them, and ours,
-/// "refined", which starts from "apriltag(decimate=2)".
+/// The detector settings that the study compares, as canonical specs: those of both libraries, and
+/// our "refined", which starts from "apriltag(decimate=2)".
 std::vector<std::string> StudiedDetectors(const std::string& family);
 
-/// A row for each of StudiedDetectors, in their order. All get the same pictures, in parallel; the
-/// same seed gives the same figures on any number of threads. Errors: of RenderTagPicture;
+/// Runs all StudiedDetectors on the same images and returns one row each, in their order. The same
+/// seed gives the same figures on any number of threads. Errors: those of RenderTagPicture;
 /// kUnknownName for a family that one of the libraries lacks.
 Expected<std::vector<DetectorRow>> StudyDetectors(const DetectorStudyOptions& options);
 

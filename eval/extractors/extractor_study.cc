@@ -44,11 +44,11 @@ struct Outcome {
   int due = 0;
   int found = 0;
   int misplaced = 0;
-  int boards = 0;  // Found in a room without one.
+  int boards = 0;  // Boards found in a room without one.
   std::vector<CornerError> errors{};
 };
 
-// Whether enough of the sensor falls onto each board that it must be found.
+// For each board, whether enough rings or returns hit it that it must be found.
 std::vector<bool> AreDue(const SimulatedScan& scan, std::size_t boards) {
   std::vector<int> returns(boards, 0);
   std::vector<std::map<int, int>> rings(boards);
@@ -80,22 +80,21 @@ class Study {
     const auto index = static_cast<std::uint64_t>(trial.index);
     Random random(DeriveSeed(options_.seed, kExperiment, trial.part, index));
     const Scene scene = Draw(trial.part, random);
-    const Expected<SimulatedScan> scan =
+    SEXTANT_ASSIGN_OR_RETURN(
+        const SimulatedScan scan,
         SimulateScan(scene, model_,
                      {.seed = DeriveSeed(options_.seed, model_.name, trial.part, index),
-                      .truth = trial.part == kPlacement});
-    if (!scan) return tl::unexpected<Error>(scan.error());
-    SEXTANT_ASSIGN_OR_RETURN(const ScanRings rings, ScanRings::Build(scan->cloud));
+                      .truth = trial.part == kPlacement}));
+    SEXTANT_ASSIGN_OR_RETURN(const ScanRings rings, ScanRings::Build(scan.cloud));
     BoardSearchOptions search;
     search.beam = beam_;
     const std::vector<Board> boards =
         trial.part == kRoom ? BoardsIn(TwoBoardsInRoom({}, random)) : BoardsIn(scene);
-    const Expected<BoardSearch> found = FindBoards(rings, boards, search);
-    if (!found) return tl::unexpected<Error>(found.error());
+    SEXTANT_ASSIGN_OR_RETURN(const BoardSearch found, FindBoards(rings, boards, search));
     Outcome outcome;
-    if (trial.part == kRoom) outcome.boards = static_cast<int>(found->found.size());
-    if (trial.part == kPlacement) Count(scene, *scan, *found, outcome);
-    if (trial.part == kAccuracy) Measure(scene, *found, outcome);
+    if (trial.part == kRoom) outcome.boards = static_cast<int>(found.found.size());
+    if (trial.part == kPlacement) Count(scene, scan, found, outcome);
+    if (trial.part == kAccuracy) Measure(scene, found, outcome);
     return outcome;
   }
 

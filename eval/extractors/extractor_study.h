@@ -9,16 +9,18 @@
 
 namespace sextant {
 
-/// How the boards of a study are held.
+/// How the boards of a study are held: by nothing that the LiDAR sees, on a stand, in a person's
+/// hands.
 enum class BoardHolding { kHung, kOnStand, kInHands };
 
 struct ExtractorStudyOptions {
-  std::vector<std::string> models{};  ///< LiDARs; empty: all that the simulator has.
-  int trials = 200;      ///< Scans of the paper's two boards 1.8 m away, for the corners' errors.
-  int placements = 200;  ///< Scans of two boards anywhere in a room, for what is found.
-  int rooms = 200;       ///< Scans of rooms without a board.
+  std::vector<std::string> models{};  ///< LiDAR models; empty: all models of the simulator.
+  /// Scans of the paper's two boards at distance_m, for the errors of the corners.
+  int trials = 200;
+  int placements = 200;  ///< Scans of two boards anywhere in a room, for the detection rate.
+  int rooms = 200;       ///< Scans of rooms without a board, for false detections.
   double distance_m = 1.8;
-  double range_sigma_m = 0.01;  ///< Of every model, without the rings' own biases.
+  double range_sigma_m = 0.01;  ///< Range noise of every model; ring biases are switched off.
   BoardHolding holding = BoardHolding::kHung;
   std::uint64_t seed = 1;
 };
@@ -26,28 +28,28 @@ struct ExtractorStudyOptions {
 /// Errors of one extractor's corners.
 struct ExtractorErrors {
   std::string extractor{};
-  int boards = 0;         ///< Of which corners were got...
-  int refused = 0;        ///< ...and of which they were not, though the board was found.
-  double median_m = 0.0;  ///< Of the distances between corners and their truth.
+  int boards = 0;         ///< Boards whose corners were extracted...
+  int refused = 0;        ///< ...and boards that were found but whose corners were refused.
+  double median_m = 0.0;  ///< Median distance between a corner and its true position.
   double rmse_m = 0.0;
-  double outward_m = 0.0;  ///< Mean error away from the board's middle.
+  double outward_m = 0.0;  ///< Mean error away from the board's centre.
   double nees = 0.0;       ///< Mean of e^T C^-1 e / 3 over the corners.
 };
 
-/// What one LiDAR sees.
+/// Results of one LiDAR model.
 struct ExtractorStudyRow {
   std::string model{};
-  int due = 0;           ///< Boards that enough rings cross (or returns lie on, without rings)...
-  int found = 0;         ///< ...and of them those that were found, to a third of their size.
-  int misplaced = 0;     ///< Found elsewhere.
-  int false_boards = 0;  ///< In rooms without one.
-  std::vector<ExtractorErrors> extractors{};  ///< As CornerExtractors().
+  int due = 0;    ///< Boards hit by enough rings (without rings: by enough returns) to be found...
+  int found = 0;  ///< ...and those of them that were found, within a third of their size.
+  int misplaced = 0;                          ///< Boards found at a wrong place.
+  int false_boards = 0;                       ///< Boards found in rooms without one.
+  std::vector<ExtractorErrors> extractors{};  ///< In the order of CornerExtractors().
 };
 
-inline constexpr int kRingsDue = 6;      ///< That must cross a board for it to be found.
-inline constexpr int kReturnsDue = 500;  ///< That must lie on it, of a sensor without rings.
+inline constexpr int kRingsDue = 6;      ///< Rings that must cross a board for it to be due.
+inline constexpr int kReturnsDue = 500;  ///< The same in returns, for a sensor without rings.
 
-/// A row for each model. The same seed gives the same figures on any number of threads.
+/// Returns one row per model. The same seed gives the same figures on any number of threads.
 /// Errors: kUnknownName; those of SimulateScan.
 Expected<std::vector<ExtractorStudyRow>> StudyExtractors(const ExtractorStudyOptions& options);
 

@@ -6,26 +6,18 @@
 
 #include "base/random.h"
 #include "eval/extractors/board_scenes.h"
+#include "geometry/random_vectors.h"
 #include "geometry/so3.h"
 
 namespace sextant {
-namespace {
-
-Eigen::Vector3d Direction(Random& random) {
-  Eigen::Vector3d direction;
-  for (int k = 0; k < 3; ++k) direction[k] = random.Normal();
-  return direction.normalized();
-}
-
-}  // namespace
-
 Expected<ScanPair> ScanTwice(Scene scene, const LidarModel& model, std::uint64_t seed,
                              const ScanPairOptions& options) {
   Random random(DeriveSeed(seed, "scan pair", 0, 0));
   ScanPair pair;
-  const Eigen::Vector3d turn_rad = options.turn_deg * std::numbers::pi / 180.0 * Direction(random);
+  const Eigen::Vector3d turn_rad =
+      options.turn_deg * std::numbers::pi / 180.0 * NormalVector(random).normalized();
   pair.target_from_source.rotation = ExpSo3(turn_rad);
-  pair.target_from_source.translation = options.move_m * Direction(random);
+  pair.target_from_source.translation = options.move_m * NormalVector(random).normalized();
   ScanOptions scan = options.scan;
   scan.seed = seed;
   for (const bool is_source : {false, true}) {

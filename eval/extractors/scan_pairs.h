@@ -13,23 +13,23 @@
 namespace sextant {
 
 struct ScanPairOptions {
-  double turn_deg = 5.0;  ///< Between the scans, about any axis.
-  double move_m = 0.1;    ///< In any direction.
-  ScanOptions scan{};     ///< Its seed and scan_index are not looked at.
+  double turn_deg = 5.0;  ///< Rotation between the scans, about a random axis.
+  double move_m = 0.1;    ///< Translation between the scans, in a random direction.
+  ScanOptions scan{};     ///< `seed` and `scan_index` are ignored.
 };
 
-/// Two scans by one unit of the same room, from two places.
+/// Two scans of the same room by the same LiDAR unit from two places.
 struct ScanPair {
   std::vector<Eigen::Vector3d> in_target;  ///< Metres.
   std::vector<Eigen::Vector3d> in_source;
   Rigid3d target_from_source;
 };
 
-/// Of FurnishedRoom(seed). Errors: those of SimulateScan.
+/// Two scans of a random FurnishedRoom. Errors: those of SimulateScan.
 Expected<ScanPair> ScanRoomTwice(const LidarModel& model, std::uint64_t seed,
                                  const ScanPairOptions& options = {});
 
-/// Of any scene with its LiDAR at the world's origin.
+/// Two scans of any scene; the LiDAR starts at the world's origin.
 Expected<ScanPair> ScanTwice(Scene scene, const LidarModel& model, std::uint64_t seed,
                              const ScanPairOptions& options = {});
 

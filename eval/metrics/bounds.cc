@@ -4,7 +4,6 @@
 #include <Eigen/Cholesky>
 #include <cassert>
 #include <cmath>
-#include <utility>
 
 #include "geometry/pair_noise.h"
 #include "geometry/symmetric.h"
@@ -80,11 +79,11 @@ Expected<Matrix6d> CramerRaoBoundOfViews(const CalibrationProblem& problem,
   Matrix6d sum = Matrix6d::Zero();
   for (std::size_t i = 0; i < problem.board_views.size(); ++i) {
     const BoardView& view = problem.board_views[i];
-    Expected<Matrix6d> information =
+    SEXTANT_ASSIGN_OR_RETURN(
+        const Matrix6d information,
         InformationOfView(view, *FindBoard(problem.boards, view.board), *problem.camera,
-                          true_cam_from_lidar, true_cam_from_board[i]);
-    if (!information) return information;
-    sum += *information;
+                          true_cam_from_lidar, true_cam_from_board[i]));
+    sum += information;
   }
   const std::optional<Matrix6d> bound = InvertSymmetric(sum);
   if (!bound) {

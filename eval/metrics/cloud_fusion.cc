@@ -23,7 +23,8 @@ std::vector<Eigen::Vector3d> FinitePoints(const PointCloud& cloud) {
   return points;
 }
 
-// The plane of some points, where they are flat: distance of `query` along its normal.
+// Distance of `query` from the plane through some points, along its normal; none if the points are
+// not flat.
 std::optional<double> DistanceToPatch(const std::vector<Eigen::Vector3d>& points,
                                       std::span<const unsigned> indices,
                                       const Eigen::Vector3d& query, double flatness) {
@@ -36,7 +37,7 @@ std::optional<double> DistanceToPatch(const std::vector<Eigen::Vector3d>& points
   }
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
   eigen.computeDirect(scatter);
-  // By the second extent: points along a line have no plane.
+  // Compared with the second extent, as points along a line define no plane.
   const Eigen::Vector3d extent = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
   if (!(extent[0] <= flatness * extent[1])) return std::nullopt;
   return std::abs(eigen.eigenvectors().col(0).dot(query - mean));
@@ -68,7 +69,7 @@ CloudAgreement CompareClouds(const PointCloud& a, const Rigid3d& b_from_a, const
   CloudAgreement agreement{.median_m = std::numeric_limits<double>::quiet_NaN(),
                            .rms_m = std::numeric_limits<double>::quiet_NaN()};
   const std::size_t step =
-      std::max<std::size_t>(1, queries.size() / static_cast<std::size_t>(options.most_points));
+      std::max<std::size_t>(1, queries.size() / static_cast<std::size_t>(options.max_points));
   const PointTree tree(points);
   const auto few = static_cast<std::size_t>(options.neighbours);
   std::vector<unsigned> indices(few);

@@ -9,17 +9,18 @@
 
 namespace sextant {
 
-/// All finite points of the clouds in one frame, the clouds one after the other. Intensities are
-/// kept where every cloud has them; rings and times belong to one sensor and are not.
-/// Requires one pose a cloud: target_from_cloud.
+/// All finite points of the clouds in one frame, cloud by cloud. Intensities are kept if every
+/// cloud has them; rings and times are dropped, as they belong to one sensor. Requires one pose
+/// target_from_cloud per cloud.
 PointCloud FuseClouds(std::span<const PointCloud> clouds,
                       std::span<const Rigid3d> target_from_cloud);
 
-/// How far two clouds of the same place are apart where both see the same surface.
+/// Distance between two clouds of the same place, where both have measured the same surface.
 struct CloudAgreement {
-  int points = 0;    ///< Of `a`, finite.
-  int compared = 0;  ///< Of them, near a flat patch of `b`.
-  /// Of the distances to those patches [m], along their normals; NaN where nothing was compared.
+  int points = 0;    ///< Number of finite points of `a` that were examined.
+  int compared = 0;  ///< How many of them are near a flat patch of `b`.
+  /// Median and RMS of the distances to these patches [m] along their normals; NaN if nothing was
+  /// compared.
   double median_m = 0.0;
   double rms_m = 0.0;
 
@@ -27,16 +28,18 @@ struct CloudAgreement {
 };
 
 struct AgreementOptions {
-  double reach_m = 0.2;  ///< Farther from every point of `b`: something that only `a` sees.
-  /// A patch is the plane of the nearest points of `b`, flat where they spread at most this share
-  /// of their extent across it.
+  double reach_m = 0.2;  ///< Points of `a` farther than this from every point of `b` are ignored.
+  /// A patch is the plane through this many nearest points of `b`. It is flat if the points' spread
+  /// along its normal is at most `flatness` times their second largest extent.
   int neighbours = 12;
   double flatness = 0.2;
-  int most_points = 20'000;  ///< Of `a`, evenly chosen: more only take longer.
+  /// At most this many points of `a`, evenly chosen; more only take longer.
+  int max_points = 20'000;
 };
 
-/// Each point of `a` against the plane of its nearest points in `b`. Doubled edges and ghosts
-/// ("hallucinations" in the paper) are large distances; points without a partner are not counted.
+/// Compares each point of `a` with the plane through its nearest points in `b`. Doubled edges and
+/// ghosts ("hallucinations" in the paper) show as large distances; points without a partner are not
+/// counted.
 CloudAgreement CompareClouds(const PointCloud& a, const Rigid3d& b_from_a, const PointCloud& b,
                              const AgreementOptions& options = {});
 

@@ -11,12 +11,13 @@
 
 namespace sextant {
 
-/// One solver's answer beside the others'.
+/// The result of one solver in a comparison.
 struct ComparisonRow {
   std::string solver;
   Expected<SolveReport> report;
-  std::optional<PoseDistance> from_first;  ///< To the first solver that answered.
-  std::optional<PoseDistance> from_truth;  ///< Where the truth is known.
+  /// Distance to the result of the first solver that succeeded.
+  std::optional<PoseDistance> from_first;
+  std::optional<PoseDistance> from_truth;  ///< Distance to the truth, if it is known.
 };
 
 /// Runs every solver on the problem, in the order given.

@@ -10,7 +10,7 @@ std::vector<std::string> DefaultSpecs(const SolverRegistry& registry,
   const auto add_if_met = [&](const std::string& spec) {
     const Expected<SolverPtr> solver = registry.Make(spec);
     if (!solver || !CheckProblem(problem, (*solver)->spec())) return;
-    // Whether points lie on a plane shows when it is fitted.
+    // Whether the points lie on a plane is only known after a fit.
     if ((*solver)->spec().needs.points_on_plane && !(*solver)->Solve(problem)) return;
     specs.push_back((*solver)->spec().name);
     any_whole_pose = any_whole_pose || FindsWholePose((*solver)->spec());

@@ -9,9 +9,9 @@
 
 namespace sextant {
 
-/// Every solver of the registry whose needs the problem meets, in the registry's order, by
-/// canonical name: plain ones as they are, combinators around the closed form of each kind of pairs
-/// (kabsch, epnp) and around nothing else. Empty where only a baseline is left.
+/// Canonical names of all solvers of the registry whose requirements the problem meets, in the
+/// registry's order. Combinators are listed around the closed forms of both kinds of pairs only
+/// (kabsch, epnp). Empty if only baselines would remain.
 std::vector<std::string> DefaultSpecs(const SolverRegistry& registry,
                                       const CalibrationProblem& problem);
 

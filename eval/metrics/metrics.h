@@ -12,15 +12,15 @@
 
 namespace sextant {
 
-/// One figure that an experiment measures.
+/// A quantity that an experiment measures.
 struct Metric {
-  std::string name;     ///< With its unit: "rotation_deg".
-  std::string meaning;  ///< One line.
+  std::string name;     ///< Includes the unit: "rotation_deg".
+  std::string meaning;  ///< Description in one line.
 };
 
 inline constexpr std::size_t kMaxMetrics = 64;
 
-/// The values of one row by metric, NaN until set; those that nobody asked for need not be.
+/// The values of one row by metric, NaN until set. Metrics that are not wanted may stay NaN.
 class MetricValues {
  public:
   MetricValues(std::bitset<kMaxMetrics> wanted, std::span<double> values)
@@ -38,13 +38,14 @@ class MetricValues {
 struct KnownProblem {
   CalibrationProblem problem;  ///< What solvers see.
   Rigid3d cam_from_lidar;      ///< The truth.
-  CalibrationProblem inliers;  ///< With true correspondences and noise only: the bound is of these.
-  std::vector<Rigid3d> cam_from_board;  ///< The truth of each of its board views.
-  CalibrationProblem held_out;          ///< Other pairs, to judge an answer by; may be empty.
+  /// True correspondences with noise only; the bound is computed from these.
+  CalibrationProblem inliers;
+  std::vector<Rigid3d> cam_from_board;  ///< True pose of the board in each board view.
+  CalibrationProblem held_out;          ///< Further pairs to evaluate the result on; may be empty.
 };
 
-/// How far an answer is from the truth; one name, unit and definition for every experiment. The
-/// indices are those of PoseMetrics().
+/// Errors of an estimated pose, with the same name, unit and definition in every experiment. The
+/// values are indices into PoseMetrics().
 enum PoseMetric : int {
   kAnswered,
   kFine,
@@ -71,29 +72,29 @@ enum PoseMetric : int {
   kEstimatedYawDeg,
   kEstimatedPitchDeg,
   kEstimatedRollDeg,
-  kTimeUs,  ///< Wall time: no part of an experiment's rows (eval/experiment/definition/timing.h).
+  kTimeUs,  ///< Wall time; not part of an experiment's rows (eval/experiment/definition/timing.h).
   kPoseMetricCount,
 };
 const std::vector<Metric>& PoseMetrics();
 
-/// When a pose counts as found, and from where on it is another pose and not noise.
+/// Limits within which a pose is a success, and beyond which its error is gross and not noise.
 struct PoseLimits {
   double success_deg = 0.5;
   double success_mm = 50.0;
   double gross_deg = 20.0;
 };
 
-/// Fills the wanted ones of PoseMetrics() but for the bound; an error instead of a report is no
-/// answer. `known.problem` may hold more than the solver saw.
+/// Sets the wanted metrics of PoseMetrics() except the bound; a report that is an error counts as
+/// not answered. `known.problem` may hold more data than the solver was given.
 void MeasurePose(const KnownProblem& known, const Expected<SolveReport>& report,
                  const PoseLimits& limits, MetricValues values);
 
-/// RMS distance [m] from each point of the LiDAR, moved by the pose, to the nearest of the camera's
-/// points, whichever belongs to it. Never above the RMSE over the pairs of the same points.
+/// RMS distance [m] from each LiDAR point, transformed by the pose, to the nearest camera point,
+/// ignoring the correspondences. Never larger than the RMSE over the pairs of the same points.
 double NearestNeighbourRmse(const PointSets& sets, const Rigid3d& cam_from_lidar);
 
-/// Normalised estimation error squared: d^T C^-1 d of the difference d from the truth. Its mean is
-/// 6 where the covariance C is right; NaN where C cannot be inverted.
+/// Normalised estimation error squared, d^T C^-1 d, where d is the difference from the truth. Its
+/// mean is 6 if the covariance C is right; NaN if C cannot be inverted.
 double Nees(const Rigid3d& cam_from_lidar, const Matrix6d& covariance, const Rigid3d& truth);
 
 }  // namespace sextant

@@ -16,9 +16,9 @@ namespace {
 constexpr int kSignificantDigits = 6;
 constexpr double kRotationQuantum = 1e-8;
 
-// Nine entries, each half a quantum off, turn a rotation by at most 3 / sqrt(2) half quanta; a scan
-// takes three of these (twice the later row's), two scans six, and conversion from a matrix that is
-// not quite a rotation up to doubles it.
+// Nine entries, each rounded by half a quantum, change a rotation by at most 3 / sqrt(2) half
+// quanta. A scan contains three of these errors (the later row's counts twice), two scans six, and
+// the conversion from a matrix that is not exactly a rotation at most doubles it.
 constexpr double kSameRotationRad = 2.0 * 6.0 * 2.2 * 0.5 * kRotationQuantum;
 
 // Half a unit of the last printed digit of `value`.
@@ -37,7 +37,7 @@ Expected<void> CheckRow(const RunningAverageRow& row, std::size_t i) {
     return MakeError(
         ErrorCode::kInvalidInput,
         fmt::format("{} is iteration {}, expected {}: single scans can only be recovered from a "
-                    "log that begins at 1 and leaves none out; give one run, from its start",
+                    "log that begins at 1 and has no gaps; give one run, from its start",
                     where, row.iteration, i + 1));
   }
   constexpr double kOrthonormal = 1e-5;

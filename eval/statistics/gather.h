@@ -10,16 +10,17 @@
 
 namespace sextant {
 
-/// sum(numerators) / sum(denominators) of pairs that pass once and are not kept.
+/// Streaming sum(numerators) / sum(denominators) with a bootstrap interval; the pairs are not
+/// stored.
 class RatioSums {
  public:
-  /// Exactly so many pairs will be added.
+  /// `count` is the exact number of pairs that will be added.
   explicit RatioSums(std::uint64_t count);
 
   void Add(double numerator, double denominator);
 
   double ratio() const { return numerator_ / denominator_; }
-  /// BootstrapRatio of the pairs.
+  /// The same interval as BootstrapRatio of the pairs.
   Interval BootstrapInterval(std::uint64_t seed) const;
 
  private:
@@ -27,11 +28,11 @@ class RatioSums {
   std::uint64_t added_ = 0;
   double numerator_ = 0.0;
   double denominator_ = 0.0;
-  std::vector<double> numerators_;  // Sums over runs of pairs, of which there are few.
+  std::vector<double> numerators_;  // Sums over at most kBootstrapRuns runs of consecutive pairs.
   std::vector<double> denominators_;
 };
 
-/// Quantiles of numbers that pass kPasses times and are not kept.
+/// Streaming quantiles: the values are presented kPasses times and not stored.
 class QuantileGatherer {
  public:
   static constexpr int kPasses = RankSelector::kPasses;
@@ -40,13 +41,14 @@ class QuantileGatherer {
     bool interval = false;
   };
 
-  /// Exactly so many numbers will pass each time; at least one.
+  /// `count` is the exact number of values in each pass; at least one.
   QuantileGatherer(std::uint64_t count, const std::vector<Wanted>& wanted);
 
   void Add(double value) { selector_.Add(value); }
   void EndPass() { selector_.EndPass(); }
 
-  /// As QuantileOfSorted and QuantileInterval have them. Requires kPasses, and a wanted q.
+  /// The same values as QuantileOfSorted and QuantileInterval. Requires kPasses passes and one of
+  /// the wanted q.
   double Quantile(double q) const;
   Interval IntervalOf(double q) const;
 

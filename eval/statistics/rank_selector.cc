@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kSign = std::uint64_t{1} << 63U;
 
-// Unsigned numbers in the order of the doubles; both zeros are one.
+// Maps doubles to unsigned integers of the same order; -0.0 and 0.0 get the same key.
 std::uint64_t KeyOf(double value) {
   const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);
   return (bits & kSign) != 0 ? ~bits : bits | kSign;

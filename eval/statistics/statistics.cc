@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kNormalQuantile975 = 1.959963984540054;
 
-// The minimum j in 1..n whose order statistic bounds the resampled k-th from above with at least
-// `probability`.
+// The smallest j in 1..n whose order statistic is an upper bound of the resampled k-th one with at
+// least `probability`.
 std::size_t RankReaching(std::size_t n, std::size_t k, double probability) {
   std::size_t low = 1;
   std::size_t high = n;
@@ -33,7 +33,7 @@ std::size_t RankReaching(std::size_t n, std::size_t k, double probability) {
   return low;
 }
 
-// Sums over `batches` runs of the values.
+// Sums over `batches` runs of consecutive values.
 std::vector<double> BatchSums(std::span<const double> values, std::size_t batches) {
   std::vector<double> sums(batches, 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) sums[i * batches / values.size()] += values[i];
@@ -50,7 +50,7 @@ Interval WilsonInterval(std::uint64_t successes, std::uint64_t trials) {
   const double centre = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
   const double half =
       kNormalQuantile975 / (1.0 + z2 / n) * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n));
-  // None and all are the ends exactly, which the formula meets but for rounding.
+  // With no or only successes the bound is exactly 0 or 1; the formula gives it up to rounding.
   return {successes == 0 ? 0.0 : centre - half, successes == trials ? 1.0 : centre + half};
 }
 

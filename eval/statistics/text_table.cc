@@ -52,9 +52,9 @@ std::string TextTable::Latex() const {
   for (std::size_t i = 0; i < rows_.front().size(); ++i) columns += IsFlushLeft(i) ? 'l' : 'r';
   std::string text = fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n", columns);
   for (const auto& row : rows_) {
-    std::string line;
-    for (const std::string& cell : row) line += (line.empty() ? "" : " & ") + LatexText(cell);
-    text += line + " \\\\\n";
+    text += LatexText(row.front());
+    for (std::size_t i = 1; i < row.size(); ++i) text += " & " + LatexText(row[i]);
+    text += " \\\\\n";
     if (&row == &rows_.front()) text += "\\midrule\n";
   }
   return text + "\\bottomrule\n\\end{tabular}\n";

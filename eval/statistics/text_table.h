@@ -7,7 +7,7 @@
 
 namespace sextant {
 
-/// A table of text with a rule under the header.
+/// A table of text cells with a rule under the header.
 class TextTable {
  public:
   enum class Columns {
@@ -18,16 +18,16 @@ class TextTable {
   explicit TextTable(std::vector<std::string> header, Columns columns = Columns::kNumbers)
       : rows_{std::move(header)}, columns_(columns) {}
 
-  /// A row of as many cells as the header.
+  /// Appends a row, which must have as many cells as the header.
   void AddRow(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
 
-  /// For a terminal; every line ends with a line feed and has no blanks at its end.
+  /// Text for a terminal; every line ends with a line feed and has no trailing blanks.
   std::string Plain() const;
 
-  /// For a page: GitHub's Markdown.
+  /// A Markdown table (GitHub's dialect).
   std::string Markdown() const;
 
-  /// A tabular with the rules of the package booktabs.
+  /// A LaTeX tabular with the rules of the package booktabs.
   std::string Latex() const;
 
  private:
@@ -38,11 +38,11 @@ class TextTable {
   Columns columns_;
 };
 
-/// The text with the signs escaped that LaTeX takes for its own; these texts have no backslashes,
-/// braces, tildes or carets.
+/// The text with LaTeX's special characters _ % & # $ escaped. Backslashes, braces, tildes and
+/// carets are not handled, as our texts have none.
 std::string LatexText(std::string_view text);
 
-/// The number with so many decimals, and no minus before zeros.
+/// The number with a fixed number of decimals, without a minus sign if it rounds to zero.
 std::string Fixed(double value, int decimals);
 
 }  // namespace sextant

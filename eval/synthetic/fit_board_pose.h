@@ -6,15 +6,15 @@
 
 namespace sextant {
 
-/// The pose of a board from the observations of one sensor alone, and its covariance: the best that
-/// a two-stage extractor can make of the raw observations.
+/// The pose of a board estimated from one sensor alone, with its covariance: the best that a
+/// two-stage extractor can make of the raw observations.
 struct BoardPoseFit {
   Rigid3d sensor_from_board;
-  Matrix6d covariance;  ///< (dphi, dt): the inverse of J^T J at the answer.
+  Matrix6d covariance;  ///< Covariance of (dphi [rad], dt [m]): inverse of J^T J at the solution.
 };
 
-/// Least squares near `start` (MinimisePose). Errors: kDegenerate (the observations of that sensor
-/// do not determine a direction), kNoConvergence.
+/// Least squares near `start` by MinimisePose. Errors: kDegenerate (the observations of that
+/// sensor leave a direction undetermined), kNoConvergence.
 Expected<BoardPoseFit> FitBoardInCamera(const BoardViewTerms& terms, const Camera& camera,
                                         const Rigid3d& start);
 Expected<BoardPoseFit> FitBoardInLidar(const BoardViewTerms& terms, const Rigid3d& start);

@@ -5,11 +5,11 @@
 
 namespace sextant {
 
-/// How many of `pairs` stay true where the share `outlier_fraction` does not.
+/// Number of inliers among `pairs` for the given fraction of outliers.
 int InlierCount(int pairs, double outlier_fraction);
 
-/// Outliers as a wrong association makes them: pairs beyond the first `inliers` of both kinds get
-/// the LiDAR point of another place in the box of the scene that `options` made.
+/// Makes outliers as wrong associations do: in both kinds of pairs, all beyond the first `inliers`
+/// get the LiDAR point of another random place in the cube of the scene that `options` describes.
 void MismatchPairs(const RandomSceneOptions& options, int inliers, Random& random,
                    RandomScene& scene);
 

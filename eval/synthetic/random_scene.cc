@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/synthetic/random_scene.h"
 
+#include "eval/synthetic/typical_sensors.h"
 #include "geometry/random_vectors.h"
 
 namespace sextant {
@@ -13,12 +14,7 @@ RandomScene MakeRandomScene(const RandomSceneOptions& options, Random& random) {
   const Rigid3d lidar_from_cam = scene.cam_from_lidar.Inverse();
 
   CalibrationProblem& problem = scene.problem;
-  problem.camera = Camera{.width_px = 1280,
-                          .height_px = 720,
-                          .fx_px = 700.0,
-                          .fy_px = 700.0,
-                          .cx_px = 639.5,
-                          .cy_px = 359.5};
+  problem.camera = ZedLikeCamera();
   const Eigen::Quaterniond tilt = ExpSo3(UniformVector(random, 0.6));
   for (int i = 0; i < options.pairs; ++i) {
     Eigen::Vector3d offset = UniformVector(random, options.extent_m);

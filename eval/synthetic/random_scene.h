@@ -8,9 +8,9 @@ namespace sextant {
 
 struct RandomSceneOptions {
   int pairs = 8;
-  double sigma_m = 0.0;   ///< Noise of the camera points, per axis; also stated if positive.
-  double sigma_px = 0.0;  ///< Noise of the pixels, per axis; also stated if positive.
-  bool planar = false;    ///< All points on one plane of random tilt.
+  double sigma_m = 0.0;   ///< Noise of the camera points per axis; stated in the pairs if positive.
+  double sigma_px = 0.0;  ///< Noise of the pixels per axis; stated in the pairs if positive.
+  bool planar = false;    ///< All points lie on one plane of random tilt.
   double depth_m = 3.0;   ///< Distance of the points' centre from the camera.
   double extent_m = 1.0;  ///< Half the side of the cube that holds the points.
   double max_rotation_rad = 3.14;
@@ -21,8 +21,8 @@ struct RandomScene {
   Rigid3d cam_from_lidar;  ///< The truth.
 };
 
-/// Random pose and points in front of a 1280x720 camera of f = 700 px: 3D-3D pairs, 2D-3D pairs of
-/// the same points, and point sets. The same generator state gives the same scene.
+/// Random pose and points in front of a camera of 1280 x 720 pixels and f = 700 px: 3D-3D pairs,
+/// 2D-3D pairs of the same points, and point sets. The same generator state gives the same scene.
 RandomScene MakeRandomScene(const RandomSceneOptions& options, Random& random);
 
 }  // namespace sextant

@@ -20,7 +20,7 @@ std::vector<Board> PaperBoards() {
           {.id = 1, .top_right_m = 0.468, .right_bottom_m = 0.490}};
 }
 
-// Corners in the camera frame, top, right, bottom, left as the camera sees the board.
+// Corners in the camera frame: top, right, bottom, left as the camera sees the board.
 std::vector<Eigen::Vector3d> PlaceBoardInRoom(const Board& board, int index, Random& random) {
   const double turn = random.Uniform(-25.0, 25.0) * kRadPerDeg;
   const double lean = random.Uniform(-15.0, 15.0) * kRadPerDeg;
@@ -35,8 +35,8 @@ std::vector<Eigen::Vector3d> PlaceBoardInRoom(const Board& board, int index, Ran
       Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ());
   const double a = 0.5 * board.top_right_m;
   const double b = 0.5 * board.right_bottom_m;
-  // Before the roll: x along top-right, y along right-bottom; turned by 45 degrees the first
-  // corner hangs uppermost.
+  // Before the roll, x runs along top-right and y along right-bottom; the roll of 45 degrees turns
+  // the first corner to the top.
   const std::vector<Eigen::Vector3d> in_board = {{-a, -b, 0}, {a, -b, 0}, {a, b, 0}, {-a, b, 0}};
   std::vector<Eigen::Vector3d> in_cam;
   for (const Eigen::Vector3d& corner : in_board) in_cam.push_back(centre + cam_from_board * corner);

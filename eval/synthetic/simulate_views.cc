@@ -25,8 +25,8 @@ Board TheBoard(const ViewSimulation& simulation) {
   return board;
 }
 
-// cam_from_board: its centre about the LiDAR's horizon, which has the narrower view of the two, its
-// front to the camera.
+// cam_from_board with the centre near the LiDAR's horizon, as the LiDAR has the narrower vertical
+// field of view, and the front towards the camera.
 Rigid3d DrawBoardPose(const ViewSimulation& simulation, const Rigid3d& cam_from_lidar,
                       Random& random) {
   const double left = random.Uniform(-25.0, 25.0) * kRadPerDeg;
@@ -42,7 +42,7 @@ Rigid3d DrawBoardPose(const ViewSimulation& simulation, const Rigid3d& cam_from_
           cam_from_lidar * centre_in_lidar};
 }
 
-/// The sight of one board by the rings of a LiDAR.
+/// Simulates the returns and edge rays of one board in a scan with rings.
 class RingScan {
  public:
   RingScan(const ViewSimulation& simulation, const Board& board, const Rigid3d& lidar_from_board)
@@ -96,7 +96,7 @@ class RingScan {
     view.face_in_lidar.push_back((RangeOf(direction) + error) * direction);
   }
 
-  // Between two azimuths of which one is on the board.
+  // Adds the edge between two azimuths of which exactly one is on the board.
   void AddEdge(double elevation, double from, double to, BoardView& view, Random& random) const {
     constexpr int kHalvings = 50;
     const bool from_is_on = IsOn(elevation, from);
@@ -135,7 +135,7 @@ bool IsInImage(const Camera& camera, const Board& board, const Rigid3d& cam_from
   return true;
 }
 
-// Two rays of each side are what fixes the rectangle in its plane.
+// Two rays on each side fix the rectangle in its plane.
 bool HasAllSides(const BoardView& view) {
   constexpr int kMinRays = 2;
   std::array<int, kCornersPerBoard> count{};
@@ -167,7 +167,8 @@ Eigen::Matrix<double, 3, 6> PointByPose(const Rigid3d& pose, const Eigen::Vector
   return by_pose;
 }
 
-// The board's corners by each sensor's pose of the board, with the covariance of their difference.
+// Adds the board's corners, computed from each sensor's pose of the board, with the covariance of
+// their difference.
 void AddCorners(const BoardPoseFit& in_cam, const BoardPoseFit& in_lidar, const Board& board,
                 const Rigid3d& cam_from_lidar, const PairId& of, CalibrationProblem& problem) {
   const Eigen::Matrix3d turn = cam_from_lidar.rotation.toRotationMatrix();
@@ -188,7 +189,7 @@ void AddCorners(const BoardPoseFit& in_cam, const BoardPoseFit& in_lidar, const 
     pair.covariance_in_cam = 0.5 * (covariance + covariance.transpose());
     pair.id = {of.view, of.board, i};
     problem.pairs_3d3d.push_back(pair);
-    // The corner of the board in the image: as sure as the pose makes it there.
+    // The board corner in the image; its uncertainty follows from that of the pose.
     const auto seen = ProjectWithJacobian(*problem.camera, pair.point_in_cam);
     if (!seen) continue;
     const Eigen::Matrix2d of_pixel =
@@ -215,7 +216,7 @@ Expected<void> Check(const ViewSimulation& simulation) {
   return {};
 }
 
-// One view of the board where both sensors see it and tell its pose; none where they do not.
+// Adds one view; returns false if a sensor does not see the board or cannot determine its pose.
 bool TryView(const ViewSimulation& simulation, int index, Random& random, SimulatedViews& session) {
   CalibrationProblem& problem = session.problem;
   const Board& board = problem.boards.front();

@@ -14,8 +14,8 @@ Camera ZedLikeCamera() {
           .cy_px = 359.5};
 }
 
-// The LiDAR's axes (x forward, y left, z up) turned into the camera's (x right, y down, z forward),
-// with a few degrees of mounting error and the paper's offset of some decimetres.
+// Maps the LiDAR's axes (x forward, y left, z up) to the camera's (x right, y down, z forward),
+// with a few degrees of mounting error and the paper's offset of a few decimetres.
 Rigid3d DrawExtrinsic(Random& random) {
   Eigen::Matrix3d axes;
   axes << 0, -1, 0, 0, 0, -1, 1, 0, 0;

@@ -7,10 +7,11 @@
 
 namespace sextant {
 
-/// The camera that simulated sessions without a scene file use: 1280 x 720, f = 700 px.
+/// The camera of simulated sessions without a scene file: 1280 x 720 pixels, f = 700 px.
 Camera ZedLikeCamera();
 
-/// A camera beside a LiDAR that looks the same way: some decimetres off, a few degrees turned.
+/// Random cam_from_lidar of a camera that is mounted next to the LiDAR and looks along its x axis:
+/// offset by a few decimetres, rotated by a few degrees.
 Rigid3d DrawExtrinsic(Random& random);
 
 }  // namespace sextant

@@ -119,7 +119,7 @@ double RangeSigma(const ScanRings& scan, std::span<const RingPoint> swept) {
       }
     }
     if (2 * differences.size() > swept.size()) {
-      return kSigmaOfMedian * Median(differences) / std::sqrt(6.0);
+      return kSigmaOfMedian * UpperMedian(differences) / std::sqrt(6.0);
     }
     differences.clear();
   }
@@ -130,7 +130,7 @@ double RangeSigma(const ScanRings& scan, std::span<const RingPoint> swept) {
       differences.push_back(SecondDifference(points[i - 2], points[i - 1], points[i]));
     }
   }
-  return kSigmaOfMedian * Median(differences) / std::sqrt(6.0);
+  return kSigmaOfMedian * UpperMedian(differences) / std::sqrt(6.0);
 }
 
 }  // namespace
@@ -182,7 +182,7 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
   std::vector<std::pair<double, int>> by_elevation;
   for (std::size_t ring = 0; ring < of_ring.size(); ++ring) {
     if (!of_ring[ring].empty()) {
-      by_elevation.emplace_back(std::asin(Median(of_ring[ring])), static_cast<int>(ring));
+      by_elevation.emplace_back(std::asin(UpperMedian(of_ring[ring])), static_cast<int>(ring));
     }
   }
   std::ranges::sort(by_elevation);

@@ -16,8 +16,8 @@ namespace {
 
 constexpr int kTile = RayTile::kPixels - 2;
 
-// `count` points in the unit square, each at the middle of its strip both ways. Requires two
-// neighbouring Fibonacci numbers.
+// `count` points in the unit square, each in the middle of its own row and column strip. Requires
+// two successive Fibonacci numbers.
 std::vector<Eigen::Vector2d> FibonacciLattice(int count, int number_before) {
   std::vector<Eigen::Vector2d> lattice;
   for (int i = 0; i < count; ++i) {
@@ -26,7 +26,8 @@ std::vector<Eigen::Vector2d> FibonacciLattice(int count, int number_before) {
   return lattice;
 }
 
-// The rays of a pixel, bilinear between its corners': lenses do not bend within a pixel.
+// The rays of a pixel, interpolated bilinearly between its corners: distortion is linear within a
+// pixel.
 struct PixelRays {
   Eigen::Vector3d origin;
   Eigen::Vector3d right;
@@ -45,7 +46,7 @@ class Block {
       : view_(view), tile_(camera, left - 1, top - 1) {
     if (!tile_.any_ray()) return;
     view.FindCandidates(tile_.axis(), tile_.half_angle_rad(), candidates_);
-    // Twice the diagonal of a pixel, about.
+    // About twice the diagonal of a pixel.
     const double sliver_rad = 4.0 * tile_.half_angle_rad() / RayTile::kPixels;
     has_sliver_ = view.HasSliver(candidates_, sliver_rad);
     seen_.resize(RayTile::kCorners * RayTile::kCorners);
@@ -63,7 +64,7 @@ class Block {
     }
   }
 
-  // Of the pixel in the block's row and column, both from 0.
+  // Mean radiance of the pixel in the block's row and column, both from 0.
   double Mean(int row, int column) {
     static const std::vector<Eigen::Vector2d> coarse = FibonacciLattice(55, 34);
     static const std::vector<Eigen::Vector2d> fine = FibonacciLattice(377, 233);
@@ -104,7 +105,7 @@ class Block {
     return seen_[static_cast<std::size_t>(row * RayTile::kCorners + column)];
   }
 
-  // Whether the lens shows all of the pixel.
+  // Whether all corners of the pixel have rays.
   bool IsWhole(int row, int column) const {
     return tile_.any_ray() && tile_.HasRay(row, column) && tile_.HasRay(row, column + 1) &&
            tile_.HasRay(row + 1, column) && tile_.HasRay(row + 1, column + 1);
@@ -116,8 +117,8 @@ class Block {
            !first.SameLayer(At(row + 1, column + 1));
   }
 
-  // The corner of another layer may lie in a pixel and none of the pixel's corners in that layer:
-  // then one of its neighbours sees both.
+  // A corner of another layer may lie in a pixel although none of the pixel's corners is in that
+  // layer; then one of its neighbours contains both layers.
   bool IsNearLayers(int row, int column) const {
     for (int y = row - 1; y <= row + 1; ++y) {
       for (int x = column - 1; x <= column + 1; ++x) {
@@ -133,8 +134,8 @@ class Block {
            first.SamePatch(At(row + 1, column + 1));
   }
 
-  // What the corners of the pixel and of its neighbours see; all there is where that may pass
-  // between them.
+  // Surfaces seen by the corners of the pixel and of its neighbours; all candidates if one is so
+  // narrow that it may lie between the corners.
   void FindSurfacesAround(int row, int column) {
     if (has_sliver_) {
       around_ = candidates_;

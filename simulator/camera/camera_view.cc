@@ -40,7 +40,7 @@ Expected<void> CheckTiles(const SceneWall& wall) {
                                wall.name, wall.tile_m, kMin_m));
 }
 
-// The first that fails of checks that are all made.
+// The first error of several checks.
 Expected<void> FirstOf(std::initializer_list<Expected<void>> checks) {
   for (const Expected<void>& check : checks) {
     if (!check) return check;
@@ -53,7 +53,7 @@ struct ViewFrame {
   Lighting lighting;
 };
 
-// A face of two colours, lit; none where the camera stands in its plane.
+// An illuminated face with two colours; none if the camera is in its plane.
 std::optional<ViewRectangle> LitFace(const ViewFrame& frame, const Rigid3d& world_from_face,
                                      double width_m, double height_m, double white_albedo,
                                      double black_albedo) {
@@ -68,7 +68,7 @@ std::optional<ViewRectangle> LitFace(const ViewFrame& frame, const Rigid3d& worl
 }
 
 std::optional<ViewRectangle> WallFace(const ViewFrame& frame, const SceneWall& wall) {
-  // Tiles are told apart by a twelfth of their brightness, like worn flooring.
+  // Tiles differ by a twelfth of their brightness, like worn flooring.
   constexpr double kDarkerTile = 11.0 / 12.0;
   constexpr double kDarkestSpeckle = 0.2;
   const double albedo = wall.surface.albedo;
@@ -94,7 +94,7 @@ std::optional<ViewRectangle> BoardFace(const ViewFrame& frame, const SceneBoard&
   return face;
 }
 
-// The up to three faces of a box that are turned to the camera.
+// The faces of a box that are visible from the camera, at most three.
 void AddBoxFaces(const ViewFrame& frame, const SceneBox& box, std::vector<ViewRectangle>& faces) {
   for (int normal = 0; normal < 3; ++normal) {
     const int x = (normal + 1) % 3;
@@ -125,7 +125,7 @@ ViewCylinder CylinderOf(const ViewFrame& frame, const SceneCylinder& cylinder) {
           .world_from_cam = frame.cam_from_world.rotation.conjugate().toRotationMatrix()};
 }
 
-// Whether the cone about `axis` may touch the ball. Rounding is far below the slack.
+// Whether the cone about `axis` may touch the sphere. Rounding errors are far below the slack.
 bool MayTouch(const Eigen::Vector3d& axis, double half_angle_rad, const Eigen::Vector3d& center,
               double radius) {
   constexpr double kSlack_rad = 1e-6;

@@ -10,13 +10,13 @@
 
 namespace sextant {
 
-/// What a ray of the camera sees first.
+/// The first surface that a ray of the camera hits.
 struct Seen {
   int surface = -1;  ///< -1: nothing, the background.
   ViewHit hit{};
   ViewPatch patch{};
 
-  /// Whether all that lies between two such points of an image is what they show.
+  /// Whether everything between the two image points is the same patch.
   bool SamePatch(const Seen& other) const {
     return SameLayer(other) && patch.cell == other.patch.cell;
   }
@@ -25,25 +25,26 @@ struct Seen {
   }
 };
 
-/// The surfaces of a scene in the frame of one camera at one instant. Boards are thin sheets whose
-/// front is printed and whose back is plain, with the front's white; the rest is opaque.
+/// The surfaces of a scene in the frame of one camera at one time. Boards are thin sheets with a
+/// printed front and a plain back of the front's white; all objects are opaque.
 class CameraView {
  public:
   /// Errors: those of BoardPrint::Make; kNonFinite for a pose or side; kInvalidInput for a side
-  /// that is not positive, an albedo outside [0, 1], tiles below a millimetre. Messages name the
+  /// that is not positive, an albedo outside of [0, 1], tiles below a millimetre. Messages name the
   /// board, wall, box or cylinder.
   static Expected<CameraView> Make(const Scene& scene, const Rigid3d& world_from_cam, double time_s,
                                    const Lighting& lighting);
 
-  /// Indices of the surfaces that a ray within `half_angle_rad` of the unit vector `axis` may
-  /// meet; ascending, and none that it meets is left out.
+  /// Indices, ascending, of all surfaces that a ray within `half_angle_rad` of the unit vector
+  /// `axis` may hit (possibly more).
   void FindCandidates(const Eigen::Vector3d& axis, double half_angle_rad,
                       std::vector<int>& candidates) const;
 
-  /// Whether one of the candidates looks narrower than `width_rad`: a pole, a board from its edge.
+  /// Whether one of the candidates looks narrower than `width_rad`, such as a pole or a board seen
+  /// edge-on.
   bool HasSliver(std::span<const int> candidates, double width_rad) const;
 
-  /// The nearest of the candidates along a ray (camera frame, any length).
+  /// The nearest hit of a ray (camera frame, any length) among the candidates.
   Seen Cast(const Eigen::Vector3d& ray, std::span<const int> candidates) const;
 
   /// Unit outward normal in the camera frame; zero for the background.
@@ -52,7 +53,8 @@ class CameraView {
  private:
   CameraView() = default;
 
-  std::vector<ViewRectangle> rectangles_;  // Surfaces 0 and on, then the cylinders.
+  // Surface indices start with these, followed by the cylinders.
+  std::vector<ViewRectangle> rectangles_;
   std::vector<ViewCylinder> cylinders_;
   double background_ = 0.0;
 };

@@ -15,7 +15,7 @@ namespace sextant {
 namespace {
 
 struct Kernel {
-  std::vector<double> weights;  // From -radius to radius; they sum to 1.
+  std::vector<double> weights;  // Weights from -radius to radius; their sum is 1.
   double variance = 0.0;
 };
 
@@ -34,8 +34,8 @@ Kernel SampleGaussian(double sigma_px, int radius) {
   return kernel;
 }
 
-// Sampled at whole pixels a narrow Gaussian comes out narrower (by a seventh of its variance at 0.5
-// px), so the one is taken, by bisection, whose samples have the variance.
+// A narrow Gaussian sampled at whole pixels has too small a variance (by a seventh at 0.5 px), so
+// bisection finds the Gaussian whose samples have the requested variance.
 std::vector<float> GaussianWeights(double sigma_px) {
   constexpr int kHalvings = 50;
   const int radius = static_cast<int>(std::ceil(4.0 * sigma_px)) + 1;
@@ -49,7 +49,7 @@ std::vector<float> GaussianWeights(double sigma_px) {
   return {kernel.weights.begin(), kernel.weights.end()};
 }
 
-// Along rows, written transposed, so that twice of it is both ways.
+// Blurs along rows and transposes; applied twice it blurs in both directions.
 cv::Mat BlurRowsAndTranspose(const cv::Mat& image, const std::vector<float>& weights) {
   const int radius = static_cast<int>(weights.size()) / 2;
   cv::Mat blurred(image.cols, image.rows, CV_32F);

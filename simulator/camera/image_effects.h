@@ -9,28 +9,28 @@
 
 namespace sextant {
 
-/// What a camera adds to the light that reaches its pixels.
-
-/// Convolves a CV_32F image with samples of a Gaussian, cut beyond 4 sigma, that sum to 1 and have
-/// the variance sigma_px^2; beyond the border the image goes on as its last pixel. Rows in
-/// parallel, the same bits always.
+/// Convolves a CV_32F image with a sampled Gaussian that is truncated beyond 4 sigma, normalised to
+/// 1 and has the variance sigma_px^2; border pixels are replicated. Rows are processed in parallel,
+/// with the same bits on any number of threads.
 cv::Mat BlurGaussian(const cv::Mat& image, double sigma_px);
 
-/// Multiplies by 1 - share r^2 / R^2: r from the principal point, R the farthest image corner's.
+/// Multiplies by 1 - share r^2 / R^2, where r is the distance from the principal point and R that
+/// of the farthest image corner.
 void Vignette(const Camera& camera, double share, cv::Mat& image);
 
 struct SensorNoise {
-  double read_sigma_grey = 0.0;     ///< Of every pixel, whatever its light.
-  double shot_variance_grey = 0.0;  ///< Variance per grey level of light: grey levels an electron.
-  std::uint64_t seed = 0;    ///< Row r draws from DeriveSeed(seed, "image noise", stream, r).
+  double read_sigma_grey = 0.0;  ///< Read noise of every pixel, independent of its light.
+  /// Shot noise: variance per grey level of light (grey levels per electron).
+  double shot_variance_grey = 0.0;
+  std::uint64_t seed = 0;    ///< Row r uses DeriveSeed(seed, "image noise", stream, r).
   std::uint64_t stream = 0;  ///< Number of the camera.
 };
 
-/// CV_8U: round(grey_per_unit x image + noise), cut to 0..255. Noise is normal with the variance
-/// read_sigma^2 + shot_variance x grey level.
+/// CV_8U image round(grey_per_unit x image + noise), clamped to 0..255. The noise is normal with
+/// the variance read_sigma^2 + shot_variance x grey level.
 cv::Mat Expose(const cv::Mat& image, double grey_per_unit, const SensorNoise& noise);
 
-/// Through JPEG and back, quality 1 to 100. Error: kIo for what the codec says.
+/// Encodes and decodes the image as JPEG, quality 1 to 100. Error: kIo with the codec's message.
 Expected<cv::Mat> ThroughJpeg(const cv::Mat& image, int quality);
 
 }  // namespace sextant

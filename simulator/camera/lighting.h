@@ -5,11 +5,12 @@
 
 namespace sextant {
 
-/// Light of a simulated room: some from everywhere, the rest from one distant lamp that casts no
-/// shadows. A flat face is evenly lit, so that what bends an edge in an image is the camera alone.
+/// Light of a simulated room: ambient light, and one distant lamp that casts no shadows. A flat
+/// face is uniformly illuminated, so that only the camera affects the shape of edges in an image.
 struct Lighting {
-  double ambient = 0.55;  ///< Share of the light that comes from everywhere, in [0, 1].
-  /// Towards the lamp, any length. Boards that face a sensor at the world's origin look along -x.
+  double ambient = 0.55;  ///< Fraction of ambient light, in [0, 1].
+  /// Direction towards the lamp, of any length. Boards that face a sensor at the world's origin
+  /// have normals along -x.
   Eigen::Vector3d lamp_in_world = Eigen::Vector3d(-0.6, 0.25, 0.75);
 };
 

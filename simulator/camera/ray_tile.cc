@@ -12,7 +12,8 @@ constexpr int kNodes = 8;
 
 using Weights = std::array<std::array<double, kNodes>, RayTile::kCorners>;
 
-// Lagrange's weights of the nodes for each corner along a side, both over [0, kPixels].
+// Lagrange weights of the nodes for each corner along a side; nodes and corners both span [0,
+// kPixels].
 Weights LagrangeWeights() {
   constexpr double kSpacing = static_cast<double>(RayTile::kPixels) / (kNodes - 1);
   Weights weights;

@@ -10,25 +10,26 @@
 
 namespace sextant {
 
-/// Rays through the corners of a square block of pixels, and the cone they lie in.
+/// Rays through the pixel corners of a square block of pixels, and a cone that contains them.
 ///
-/// Unprojecting every corner by Newton's method costs more than all the rest of a picture. A lens
-/// is smooth, so 8 x 8 unprojected nodes and Lagrange's polynomial through them give the other
-/// rays: to 1e-7 rad, or 1e-4 px, for the lenses of camera_model.h (tested). A block of which a
-/// node has no ray is unprojected corner by corner.
+/// Unprojecting every corner with Newton's method would take more time than the rest of the
+/// rendering. As lenses are smooth, 8 x 8 unprojected nodes and the Lagrange polynomial through
+/// them give the other rays, to 1e-7 rad or 1e-4 px for the lenses of camera_model.h (tested). If a
+/// node has no ray, all corners of the block are unprojected.
 class RayTile {
  public:
-  static constexpr int kPixels = 34;  ///< A side; 32 and one around for its neighbours.
+  /// Pixels per side: 32, and one on each side for the neighbours.
+  static constexpr int kPixels = 34;
   static constexpr int kCorners = kPixels + 1;
 
-  /// `left` and `top` number the block's first pixel; its first corner is at left - 0.5.
+  /// `left` and `top` are the block's first pixel; its first corner is at left - 0.5.
   RayTile(const Camera& camera, int left, int top);
 
   bool HasRay(int row, int column) const { return has_ray_[Index(row, column)]; }
-  /// Of unit length, nearly. Requires HasRay.
+  /// A ray of nearly unit length. Requires HasRay.
   const Eigen::Vector3d& Ray(int row, int column) const { return rays_[Index(row, column)]; }
 
-  /// Unit vector and angle of a cone that holds all rays that there are, if any.
+  /// Axis (unit vector) and half angle of a cone that contains all existing rays, if there are any.
   const Eigen::Vector3d& axis() const { return axis_; }
   double half_angle_rad() const { return half_angle_rad_; }
   bool any_ray() const { return any_ray_; }

@@ -65,17 +65,15 @@ ImageOptions UsualImageOptions(std::uint64_t seed, double time_s) {
 }
 
 Expected<cv::Mat> RenderImage(const Scene& scene, int camera_index, const ImageOptions& options) {
-  if (const Expected<void> ok = CheckOptions(options); !ok) return tl::unexpected(ok.error());
-  const Expected<const SceneCamera*> scene_camera = FindCamera(scene, camera_index);
-  if (!scene_camera) return tl::unexpected(scene_camera.error());
-  const Expected<Camera> camera = RenderingCamera(**scene_camera);
-  if (!camera) return tl::unexpected(camera.error());
-  const Expected<CameraView> view =
-      CameraView::Make(scene, (*scene_camera)->world_from_cam, options.time_s, options.lighting);
-  if (!view) return tl::unexpected(view.error());
-  cv::Mat image = SampleAreas(*camera, *view);
+  SEXTANT_RETURN_IF_ERROR(CheckOptions(options));
+  SEXTANT_ASSIGN_OR_RETURN(const SceneCamera* scene_camera, FindCamera(scene, camera_index));
+  SEXTANT_ASSIGN_OR_RETURN(const Camera camera, RenderingCamera(*scene_camera));
+  SEXTANT_ASSIGN_OR_RETURN(
+      const CameraView view,
+      CameraView::Make(scene, scene_camera->world_from_cam, options.time_s, options.lighting));
+  cv::Mat image = SampleAreas(camera, view);
   if (options.blur_sigma_px > 0.0) image = BlurGaussian(image, options.blur_sigma_px);
-  if (options.vignetting > 0.0) Vignette(*camera, options.vignetting, image);
+  if (options.vignetting > 0.0) Vignette(camera, options.vignetting, image);
   const cv::Mat grey = Expose(image, 255.0 * options.exposure,
                               {.read_sigma_grey = options.noise_sigma_grey,
                                .shot_variance_grey = options.shot_variance_grey,
@@ -85,27 +83,24 @@ Expected<cv::Mat> RenderImage(const Scene& scene, int camera_index, const ImageO
 }
 
 Expected<SurfaceImage> RenderSurfaces(const Scene& scene, int camera_index, double time_s) {
-  const Expected<void> ok = CheckOptions({.time_s = time_s});
-  if (!ok) return tl::unexpected(ok.error());
-  const Expected<const SceneCamera*> scene_camera = FindCamera(scene, camera_index);
-  if (!scene_camera) return tl::unexpected(scene_camera.error());
-  const Expected<Camera> camera = RenderingCamera(**scene_camera);
-  if (!camera) return tl::unexpected(camera.error());
-  const Expected<CameraView> view =
-      CameraView::Make(scene, (*scene_camera)->world_from_cam, time_s, Lighting{});
-  if (!view) return tl::unexpected(view.error());
+  SEXTANT_RETURN_IF_ERROR(CheckOptions({.time_s = time_s}));
+  SEXTANT_ASSIGN_OR_RETURN(const SceneCamera* scene_camera, FindCamera(scene, camera_index));
+  SEXTANT_ASSIGN_OR_RETURN(const Camera camera, RenderingCamera(*scene_camera));
+  SEXTANT_ASSIGN_OR_RETURN(
+      const CameraView view,
+      CameraView::Make(scene, scene_camera->world_from_cam, time_s, Lighting{}));
   std::vector<int> all;
-  view->FindCandidates(Eigen::Vector3d::UnitZ(), std::acos(-1.0), all);
-  SurfaceImage surfaces{cv::Mat::zeros(camera->height_px, camera->width_px, CV_64F),
-                        cv::Mat::zeros(camera->height_px, camera->width_px, CV_64FC3)};
-  tbb::parallel_for(0, camera->height_px, [&](int row) {
-    for (int column = 0; column < camera->width_px; ++column) {
-      const std::optional<Eigen::Vector3d> ray = Unproject(*camera, {1.0 * column, 1.0 * row});
+  view.FindCandidates(Eigen::Vector3d::UnitZ(), std::acos(-1.0), all);
+  SurfaceImage surfaces{cv::Mat::zeros(camera.height_px, camera.width_px, CV_64F),
+                        cv::Mat::zeros(camera.height_px, camera.width_px, CV_64FC3)};
+  tbb::parallel_for(0, camera.height_px, [&](int row) {
+    for (int column = 0; column < camera.width_px; ++column) {
+      const std::optional<Eigen::Vector3d> ray = Unproject(camera, {1.0 * column, 1.0 * row});
       if (!ray) continue;
-      const Seen seen = view->Cast(*ray, all);
+      const Seen seen = view.Cast(*ray, all);
       if (seen.surface < 0) continue;
       surfaces.depth_m.at<double>(row, column) = ray->z() / seen.hit.inverse_range;
-      const Eigen::Vector3d normal = view->NormalAt(seen, *ray);
+      const Eigen::Vector3d normal = view.NormalAt(seen, *ray);
       surfaces.normal_in_cam.at<cv::Vec3d>(row, column) = {normal.x(), normal.y(), normal.z()};
     }
   });

@@ -10,7 +10,7 @@
 
 namespace sextant {
 
-/// Brightness at a place of the unit square.
+/// Radiance at a point of the unit square.
 struct SquareSample {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   double radiance = 0.0;
@@ -18,14 +18,16 @@ struct SquareSample {
 
 inline bool SameRadiance(double a, double b) { return std::abs(a - b) < 1e-12; }
 
-/// The straight line that cuts a unit square in two parts, by what its corners show.
+/// A straight line that divides a unit square into two parts, determined from the radiance of its
+/// corners.
 struct SquareCut {
-  std::array<Eigen::Vector2d, 2> ends;  ///< On the border, the part of corner 0 on the left.
-  double first_share = 0.0;             ///< Area of the part of corner 0.
-  double first = 0.0;                   ///< Radiance of that part.
-  double second = 0.0;                  ///< Of the other.
+  /// Points on the border; the part with corner 0 is on the left of the line.
+  std::array<Eigen::Vector2d, 2> ends;
+  double first_share = 0.0;  ///< Area of the part with corner 0.
+  double first = 0.0;        ///< Radiance of the part with corner 0.
+  double second = 0.0;       ///< Radiance of the other part.
 
-  /// Whether a sample is what the cut says, or too near to it to tell.
+  /// Whether a sample agrees with the cut, or is too close to the line to decide.
   bool Explains(const SquareSample& sample) const {
     constexpr double kNear = 0.01;
     const Eigen::Vector2d along = (ends[1] - ends[0]).normalized();
@@ -35,7 +37,7 @@ struct SquareCut {
   }
 };
 
-/// The place of the change between two points of different radiance, by bisection.
+/// The point between two points of different radiance where the radiance changes, by bisection.
 template <class RadianceAt>
 Eigen::Vector2d FindChange(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                            double radiance_from, const RadianceAt& radiance_at) {
@@ -51,8 +53,8 @@ Eigen::Vector2d FindChange(const Eigen::Vector2d& from, const Eigen::Vector2d& t
   return (1.0 - middle) * from + middle * to;
 }
 
-/// Corners in the order (0, 0), (1, 0), (1, 1), (0, 1). None where they do not show two parts that
-/// one line separates.
+/// Finds the cut. Corners in the order (0, 0), (1, 0), (1, 1), (0, 1). None if they do not form two
+/// parts separated by one line.
 template <class RadianceAt>
 std::optional<SquareCut> FindSquareCut(const std::array<double, 4>& corners,
                                        const RadianceAt& radiance_at) {
@@ -60,7 +62,7 @@ std::optional<SquareCut> FindSquareCut(const std::array<double, 4>& corners,
       Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 0), Eigen::Vector2d(1, 1), Eigen::Vector2d(0, 1)};
   SquareCut cut{.ends = {places[0], places[0]}, .first = corners[0], .second = corners[0]};
   std::size_t changes = 0;
-  double doubled_area = 0.0;  // Of the first part, by the shoelace formula.
+  double doubled_area = 0.0;  // Twice the area of the first part, by the shoelace formula.
   Eigen::Vector2d last = places[0];
   const auto add_vertex = [&](const Eigen::Vector2d& vertex) {
     doubled_area += last.x() * vertex.y() - last.y() * vertex.x();
@@ -83,8 +85,8 @@ std::optional<SquareCut> FindSquareCut(const std::array<double, 4>& corners,
   return cut;
 }
 
-/// The mean of a unit square that one straight edge cuts into two even parts, exactly. None where
-/// the corners or the samples within do not look like that.
+/// The exact mean of a unit square that is divided by one straight edge into two uniform parts.
+/// None if the corners or the samples do not agree with that.
 template <class RadianceAt>
 std::optional<double> MeanAcrossStraightEdge(const std::array<double, 4>& corners,
                                              std::span<const SquareSample> within,

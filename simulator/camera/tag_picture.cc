@@ -33,17 +33,16 @@ Expected<void> CheckRanges(const TagPictureOptions& options) {
                   options.edge_m, options.side_px, options.tilt_rad, options.field));
 }
 
-// The tag with two cells of white around all that is printed.
+// A board with the tag and two white cells around its print.
 Expected<Board> BoardAround(const TagPictureOptions& options) {
-  const Expected<TagPattern> pattern = MakeTagPattern(options.family, options.id);
-  if (!pattern) return tl::unexpected(pattern.error());
-  const double side_m = options.edge_m * (pattern->cells + 4) / pattern->edge_cells;
+  SEXTANT_ASSIGN_OR_RETURN(const TagPattern pattern, MakeTagPattern(options.family, options.id));
+  const double side_m = options.edge_m * (pattern.cells + 4) / pattern.edge_cells;
   return Board{.top_right_m = side_m,
                .right_bottom_m = side_m,
                .tags = {{.family = options.family, .id = options.id, .edge_m = options.edge_m}}};
 }
 
-// Facing the camera along the line of sight, turned in its plane, then tilted.
+// A random pose: facing the camera along the line of sight, rotated in its plane, then tilted.
 Expected<Rigid3d> DrawPose(const TagPictureOptions& options, const Camera& camera) {
   Random random(DeriveSeed(options.seed, "tag picture", 0, 0));
   const double u = random.Uniform(-0.5, 0.5);
@@ -54,10 +53,10 @@ Expected<Rigid3d> DrawPose(const TagPictureOptions& options, const Camera& camer
                                0.5 * (camera.height_px - 1) + v * options.field * camera.height_px);
   const std::optional<Eigen::Vector3d> sight = Unproject(camera, center);
   if (!sight) {
-    return MakeError(ErrorCode::kInvalidInput,
-                     fmt::format("camera {} has no image at pixel ({:.1f}, {:.1f}); draw from a "
-                                 "smaller field",
-                                 options.camera_model, center.x(), center.y()));
+    return MakeError(
+        ErrorCode::kInvalidInput,
+        fmt::format("camera {} has no image at pixel ({:.1f}, {:.1f}); use a smaller field",
+                    options.camera_model, center.x(), center.y()));
   }
   const double depth_m = camera.fx_px * options.edge_m / options.side_px;
   const Eigen::Quaterniond facing = RotationBetween(Eigen::Vector3d::UnitZ(), *sight);
@@ -67,7 +66,8 @@ Expected<Rigid3d> DrawPose(const TagPictureOptions& options, const Camera& camer
   return Rigid3d{(facing * tilt * turn).normalized(), *sight * (depth_m / sight->z())};
 }
 
-// The camera of the window that holds the board; none where the image does not hold it.
+// The camera of the image window that contains the board; none if the board is not completely in
+// the image.
 std::optional<Camera> WindowAround(const Camera& camera, const Board& board,
                                    const Rigid3d& cam_from_board) {
   Eigen::Array2d low(camera.width_px, camera.height_px);
@@ -98,35 +98,31 @@ std::optional<Camera> WindowAround(const Camera& camera, const Board& board,
 }  // namespace
 
 Expected<TagPicture> RenderTagPicture(const TagPictureOptions& options) {
-  if (const Expected<void> ok = CheckRanges(options); !ok) return tl::unexpected(ok.error());
-  const Expected<Camera> whole = FindCameraModel(options.camera_model);
-  if (!whole) return tl::unexpected(whole.error());
-  Expected<Board> board = BoardAround(options);
-  if (!board) return tl::unexpected(board.error());
-  const Expected<Rigid3d> cam_from_board = DrawPose(options, *whole);
-  if (!cam_from_board) return tl::unexpected(cam_from_board.error());
-  const std::optional<Camera> camera = WindowAround(*whole, *board, *cam_from_board);
+  SEXTANT_RETURN_IF_ERROR(CheckRanges(options));
+  SEXTANT_ASSIGN_OR_RETURN(const Camera whole, FindCameraModel(options.camera_model));
+  SEXTANT_ASSIGN_OR_RETURN(Board board, BoardAround(options));
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_board, DrawPose(options, whole));
+  const std::optional<Camera> camera = WindowAround(whole, board, cam_from_board);
   if (!camera) {
     return MakeError(ErrorCode::kInvalidInput,
-                     fmt::format("a board with a tag of {} px reaches beyond the image of {}; draw "
-                                 "from a smaller field than {} or take a smaller tag",
+                     fmt::format("a board with a tag of {} px reaches beyond the image of {}; use "
+                                 "a field smaller than {} or a smaller tag",
                                  options.side_px, options.camera_model, options.field));
   }
   Scene scene;
   scene.cameras = {{.intrinsics = *camera}};
-  scene.boards = {{.board = *board, .world_from_board = *cam_from_board}};
+  scene.boards = {{.board = board, .world_from_board = cam_from_board}};
   scene.background_albedo = 0.3;
-  Expected<cv::Mat> image = RenderImage(scene, 0, options.image);
-  if (!image) return tl::unexpected(image.error());
-  TagPicture picture{.image = *std::move(image),
+  SEXTANT_ASSIGN_OR_RETURN(cv::Mat image, RenderImage(scene, 0, options.image));
+  TagPicture picture{.image = std::move(image),
                      .camera = *camera,
-                     .board = *std::move(board),
-                     .cam_from_board = *cam_from_board,
+                     .board = std::move(board),
+                     .cam_from_board = cam_from_board,
                      .corners_px = {}};
   const std::array<Eigen::Vector2d, 4> corners = TagCorners(picture.board.tags.front());
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Vector3d in_board(corners[i].x(), corners[i].y(), 0.0);
-    picture.corners_px[i] = *Project(*camera, *cam_from_board * in_board);
+    picture.corners_px[i] = *Project(*camera, cam_from_board * in_board);
   }
   return picture;
 }

@@ -7,7 +7,7 @@
 namespace sextant {
 namespace {
 
-// A number in [0, 1) of the cell's own: the finaliser of splitmix64 (Steele et al. 2014).
+// A pseudo-random number in [0, 1) for each cell: the finaliser of splitmix64 (Steele et al. 2014).
 double Speckle(int cell) {
   auto bits = static_cast<std::uint64_t>(cell) + 0x9e3779b97f4a7c15U;
   bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
@@ -73,7 +73,7 @@ std::optional<ViewHit> ViewCylinder::Meet(const Eigen::Vector3d& ray) const {
   const double c = center.squaredNorm() - radius_m * radius_m;
   const double root = b * b - a * c;
   if (root < 0.0) return std::nullopt;
-  // The near root of a t^2 - 2 b t + c; t = c / (b + sqrt) does not cancel.
+  // The near root of a t^2 - 2 b t + c; the form t = c / (b + sqrt) avoids cancellation.
   if (c > 0.0 && b > 0.0) {
     const double inverse_range = (b + std::sqrt(root)) / c;
     const double height = along / inverse_range - base;

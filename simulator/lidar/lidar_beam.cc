@@ -9,21 +9,22 @@
 namespace sextant {
 namespace {
 
-// Of a split spot. Twelve across resolve the place of an edge to a millimetre and a half.
+// Sub-rays of a split spot. Twelve columns resolve the position of an edge to 1.5 mm.
 constexpr int kSubColumns = 12;
 constexpr int kSubRows = 6;
-// Of a spot on print, to tell how much of it is black.
+// Samples of a spot on a print, to estimate the black fraction.
 constexpr int kPrintColumns = 6;
 constexpr int kPrintRows = 4;
 
-// Beams leave this near the LiDAR's origin, at most: cones are about the origin.
+// Maximum distance of the beams' origins from the LiDAR's origin, the apex of the cones.
 constexpr double kOriginReach = 0.05;
 
 LidarRay InTarget(const LidarBeams::Placed& placed, const LidarRay& ray) {
   return {placed.rotation * ray.origin + placed.translation, placed.rotation * ray.direction};
 }
 
-// Across the beam: to the left as seen along it, level in the LiDAR's frame, and up.
+// Axes across the beam: horizontal in the LiDAR's frame, to the left as seen along the beam, and
+// up.
 struct SpotAxes {
   Eigen::Vector3d h;
   Eigen::Vector3d v;
@@ -34,7 +35,7 @@ SpotAxes AxesOf(const Eigen::Vector3d& direction) {
   return {h, direction.cross(h)};
 }
 
-// Centre of part i of `count` of [-1/2, 1/2].
+// Centre of part i of [-1/2, 1/2] divided into `count` parts.
 double PartCentre(int i, int count) { return (i + 0.5) / count - 0.5; }
 
 }  // namespace
@@ -108,7 +109,7 @@ bool LidarBeams::WholeSpotOn(const Nearest& nearest, const LidarRay& ray,
   const LidarRay in_target = InTarget(*nearest.placed, ray);
   const double radius = spot_.RadiusAt(nearest.entry.range_m);
   if (!target.AllEnter(in_target, nearest.entry, radius)) return false;
-  // The farthest that a part of the spot goes before it meets this target.
+  // The longest range at which a part of the spot hits this target.
   const double cosine = target.CosIncidence(in_target, nearest.entry);
   const double farthest = nearest.entry.range_m + 2.0 * radius / std::max(cosine, 1e-3);
   return std::ranges::none_of(placed, [&](const Placed& other) {
@@ -126,7 +127,7 @@ LidarEcho LidarBeams::WholeEcho(const Nearest& nearest, const LidarRay& ray) con
   double reflectivity = target.white_reflectivity;
   if (target.OnPrint(in_target, nearest.entry)) {
     const SpotAxes axes = AxesOf(ray.direction);
-    // Where a ray beside the central one meets the plane z = 0.
+    // Offset in the plane z = 0 of a ray that is parallel to the central one at the given offset.
     const auto on_plane = [&](const Eigen::Vector3d& across) -> Eigen::Vector2d {
       const Eigen::Vector3d w = nearest.placed->rotation * across;
       return w.head<2>() - in_target.direction.head<2>() * (w.z() / in_target.direction.z());
@@ -197,7 +198,7 @@ std::optional<LidarEcho> LidarBeams::Cast(const LidarRay& ray, double time_s,
   }
   if (!CastSubRays(ray, scratch)) return std::nullopt;
   LidarEcho echo = StrongestEcho(scratch.hits, kSubColumns * kSubRows, pulse_length_m_);
-  // No edge after all: the central ray's range is exact.
+  // All sub-rays hit one face, so the central ray's range is exact.
   const bool one_face = std::ranges::all_of(scratch.hits, [&](const SubHit& sub) {
     return hit && sub.target == nearest.placed->target && sub.face == nearest.entry.face;
   });

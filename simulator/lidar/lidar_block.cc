@@ -9,11 +9,11 @@
 namespace sextant {
 namespace {
 
-// Ranges at which a ray is between bounds; first > last: nowhere.
+// The range interval in which a ray is between bounds; empty if first > last.
 struct Span {
   double first = -std::numeric_limits<double>::infinity();
   double last = std::numeric_limits<double>::infinity();
-  int axis = 0;  // Whose bound is the first.
+  int axis = 0;  // The axis whose bound determines `first`.
 
   bool Empty() const { return first > last; }
 
@@ -38,7 +38,7 @@ struct Span {
 
 Span Within(const LidarRay& ray, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   Span span;
-  // z first: most blocks are thin along it and are entered there, and of equal bounds the first
+  // z first, as most blocks are thin along z and are entered there; of equal bounds the first one
   // counts.
   for (const int axis : {2, 0, 1}) {
     span.Clip(ray.origin[axis], ray.direction[axis], low[axis], high[axis], axis);
@@ -57,7 +57,7 @@ std::optional<LidarEntry> LidarBlock::Enter(const LidarRay& ray) const {
       hole.Clip(ray.origin[axis], ray.direction[axis], hole_low[axis], hole_high[axis], axis);
     }
     if (!hole.Empty() && hole.first < span.first && span.first < hole.last) {
-      // Into the opening: the ray goes through or meets its inner side.
+      // The ray enters the opening: it passes through or hits its inner side.
       if (hole.last >= span.last) return std::nullopt;
       const double x = ray.origin.x() + hole.last * ray.direction.x();
       const bool across_x = std::min(std::abs(x - hole_low.x()), std::abs(x - hole_high.x())) <
@@ -70,7 +70,7 @@ std::optional<LidarEntry> LidarBlock::Enter(const LidarRay& ray) const {
 
 bool LidarBlock::AllEnter(const LidarRay& ray, const LidarEntry& entry, double radius_m) const {
   const Eigen::Vector3d point = ray.origin + entry.range_m * ray.direction;
-  // A parallel ray w away meets the face's plane at most |w| / cos(incidence) from here.
+  // A parallel ray at the offset w hits the face's plane at most |w| / cos(incidence) from here.
   const double reach = radius_m / std::abs(ray.direction[entry.face]);
   for (int axis = 0; axis < 3; ++axis) {
     if (axis == entry.face) continue;

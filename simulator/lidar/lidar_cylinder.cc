@@ -18,7 +18,8 @@ struct Chord {
   double Last() const { return std::min(side_last, ends_last); }
 };
 
-// Ranges inside the infinite cylinder and between the two ends' planes; none where outside either.
+// The range intervals inside the infinite cylinder and between the planes of its ends; none if
+// their intersection is empty.
 std::optional<Chord> Cut(const LidarRay& ray, double radius_m, double low_m, double high_m) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Chord chord{-kInfinity, kInfinity, -kInfinity, kInfinity};
@@ -28,7 +29,7 @@ std::optional<Chord> Cut(const LidarRay& ray, double radius_m, double low_m, dou
   if (a == 0.0) {
     if (origin.norm() > radius_m) return std::nullopt;
   } else {
-    // Distance of the axis from the ray's line, seen along the axis: no difference of large
+    // The distance between axis and ray, projected along the axis, avoids a difference of large
     // squares.
     const double middle = -origin.dot(direction) / a;
     const double miss = (origin + middle * direction).norm();
@@ -66,8 +67,8 @@ bool LidarCylinder::AllEnter(const LidarRay& ray, const LidarEntry& entry,
     const double reach = spot_radius_m / std::abs(ray.direction.z());
     return point.head<2>().norm() + reach < radius_m;
   }
-  // The outermost ray of the spot runs spot_radius farther from the axis and enters later: along
-  // the side it has by then climbed by no more than the reach.
+  // The outermost ray of the spot passes the axis spot_radius farther away and enters later; until
+  // then it has moved along the axis by at most `reach`.
   const double level = ray.direction.head<2>().norm();
   const Eigen::Vector2d along = ray.direction.head<2>() / level;
   const double miss = std::abs(along.x() * point.y() - along.y() * point.x());

@@ -24,7 +24,7 @@ bool SameFace(const LidarBeams::SubHit& a, const LidarBeams::SubHit& b) {
   return a.target == b.target && a.face == b.face;
 }
 
-// One on the face that gives most of the power.
+// A hit on the face that contributes most of the power.
 const LidarBeams::SubHit& OnMainFace(Hits hits) {
   const LidarBeams::SubHit* best = &hits[0];
   double best_power = -1.0;

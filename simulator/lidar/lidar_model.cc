@@ -33,8 +33,8 @@ constexpr std::array kEntries = {
 double FromDegrees(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
 int ColumnCount(const LidarModel& model) {
-  // A turn that is not a whole number of columns ends with the last one that fits; the rounding of
-  // the quotient must not cost one that does.
+  // If a revolution is not a whole number of columns, it ends with the last complete one. The
+  // offset keeps rounding of the quotient from losing a column.
   return static_cast<int>(std::floor(model.turn_period_s / model.column_period_s + 1e-6));
 }
 

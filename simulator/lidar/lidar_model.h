@@ -10,84 +10,92 @@
 
 namespace sextant {
 
-/// One laser of a turning head.
+/// One laser of a rotating head.
 struct LidarRing {
-  double elevation_rad = 0.0;       ///< Above the LiDAR's x-y plane.
-  double azimuth_offset_rad = 0.0;  ///< Counter-clockwise from above, added to the head's azimuth.
-  double firing_time_s = 0.0;       ///< After the start of its column; the head turns on meanwhile.
-  double origin_height_m = 0.0;     ///< Where the beam crosses the turning axis, above the origin.
+  double elevation_rad = 0.0;  ///< Above the LiDAR's x-y plane.
+  /// Added to the head's azimuth; counter-clockwise seen from above.
+  double azimuth_offset_rad = 0.0;
+  double firing_time_s = 0.0;  ///< After the start of its column; the head keeps rotating.
+  /// Height above the origin at which the beam crosses the rotation axis.
+  double origin_height_m = 0.0;
 };
 
-/// Two prisms that turn about the x axis and bend one beam each by the same angle, as unit vectors
-/// in the plane: (y, z) = deflection (e(first t) + e(second t)), e(a) = (cos a, sin a).
+/// Two prisms that rotate about the x axis and each deflect the beam by the same angle: (y, z) =
+/// deflection (e(first t) + e(second t)) with e(a) = (cos a, sin a).
 struct LidarRosette {
   double deflection_rad = 0.0;
   double first_rate_rad_s = 0.0;
   double second_rate_rad_s = 0.0;
 };
 
-/// How a LiDAR measures. Either `rings` or `rosette` is given.
+/// Measurement model of a LiDAR. Exactly one of `rings` and `rosette` is given.
 ///
-/// A column is one firing of every ring; a scan is one turn. Column k of a scan begins at
-/// k column_period_s with the head at start_azimuth -+ 2 pi k column_period_s / turn_period_s.
+/// A column is one firing of every ring; a scan is one revolution. Column k of a scan begins at k
+/// column_period_s with the head at start_azimuth -+ 2 pi k column_period_s / turn_period_s.
 struct LidarModel {
   std::string name{};
-  std::string title{};           ///< Maker and product.
-  std::string source{};          ///< Data sheet that the figures come from.
-  std::string approximations{};  ///< What is not from it.
+  std::string title{};           ///< Manufacturer and product.
+  std::string source{};          ///< Data sheet of the figures.
+  std::string approximations{};  ///< Figures that are not from the data sheet.
 
-  std::vector<LidarRing> rings{};  ///< From the lowest.
+  std::vector<LidarRing> rings{};  ///< From the lowest to the highest.
   std::optional<LidarRosette> rosette{};
   double turn_period_s = 0.1;
   double column_period_s = 0.0;
-  bool clockwise = true;  ///< Sense of turning, seen from above.
+  bool clockwise = true;  ///< Sense of rotation, seen from above.
   double start_azimuth_rad = 0.0;
-  double start_jitter_rad = 0.0;      ///< Each scan starts uniformly within +-this.
-  double beam_origin_radius_m = 0.0;  ///< Beams begin this far from the axis, in head's direction.
+  /// The start azimuth of each scan varies uniformly within +-this.
+  double start_jitter_rad = 0.0;
+  /// Distance of the beams' origins from the axis, in the head's direction.
+  double beam_origin_radius_m = 0.0;
 
   double range_sigma_m = 0.0;
-  double bias_m = 0.0;             ///< Added to every range.
-  double ring_bias_sigma_m = 0.0;  ///< Each ring of a unit has a constant bias of its own besides.
-  double range_step_m = 0.0;       ///< Ranges are multiples of it.
+  double bias_m = 0.0;  ///< Added to every range.
+  /// Standard deviation of an additional constant bias per ring of a unit.
+  double ring_bias_sigma_m = 0.0;
+  double range_step_m = 0.0;  ///< Ranges are multiples of this.
   double min_range_m = 0.0;
   double max_range_m = 0.0;
 
-  double divergence_h_rad = 0.0;  ///< Full angle; the spot is an evenly lit rectangle.
+  double divergence_h_rad = 0.0;  ///< Full angle; the spot is a uniformly illuminated rectangle.
   double divergence_v_rad = 0.0;
-  double aperture_h_m = 0.0;  ///< Size of the spot as it leaves.
+  double aperture_h_m = 0.0;  ///< Size of the spot at the aperture.
   double aperture_v_m = 0.0;
-  double pulse_length_m = 0.0;  ///< Surfaces nearer to each other in range give one return.
+  double pulse_length_m = 0.0;  ///< Surfaces closer than this in range give one return.
 
-  /// A dim spot is measured too far and with more noise: at effective reflectivity (that of the
-  /// surface by the cosine of incidence and the share of the spot) 0 by as much as said here, less
-  /// in proportion up to dim_reflectivity, from where on it is not dim.
+  /// Weak returns are measured too far and with more noise. The effect decreases linearly with the
+  /// effective reflectivity (surface reflectivity times cosine of incidence times fraction of the
+  /// spot): the values given here apply at 0, and there is no effect from dim_reflectivity on.
   double dim_bias_m = 0.0;
-  double dim_sigma_m = 0.0;  ///< Sigma at 0; not less than range_sigma_m where dim_* are given.
+  double dim_sigma_m = 0.0;  ///< Sigma at 0; at least range_sigma_m if dim_* are given.
   double dim_reflectivity = 0.0;
 
-  double detection_range_m = 0.0;       ///< Up to here a surface of detection_reflectivity, seen
-  double detection_reflectivity = 0.1;  ///< squarely by the whole spot, always gives a return.
-  double dropout = 0.0;                 ///< Probability that any other return is lost.
-  /// Probability that one is lost whose spot lies half on black and half on white print; with a
-  /// share s on black it is 4 s (1 - s) times that.
+  /// Up to this range, a surface of detection_reflectivity that faces the LiDAR and is hit by the
+  /// whole spot always gives a return.
+  double detection_range_m = 0.0;
+  double detection_reflectivity = 0.1;
+  double dropout = 0.0;  ///< Probability of losing any other return.
+  /// Probability of losing a return whose spot is half on black and half on white print; with a
+  /// fraction s on black it is 4 s (1 - s) times this.
   double contrast_dropout = 0.0;
-  /// Probability that one is lost of which hardly any of the spot is lit; with a lit share s it is
-  /// 1 - 2 s times that, and 0 from s = 1/2 on.
+  /// Probability of losing a return of which almost nothing of the spot contributes; with a
+  /// contributing fraction s it is (1 - 2 s) times this, and 0 from s = 1/2 on.
   double edge_dropout = 0.0;
-  double intensity_scale = 100.0;  ///< Intensity of a white surface seen squarely.
+  double intensity_scale = 100.0;  ///< Intensity of a white surface at normal incidence.
   double intensity_max = 255.0;
 };
 
-/// Columns of a turn; of a rosette, its points in that time. Requires a valid model.
+/// Number of columns per revolution; for a rosette, the number of points in that time. Requires a
+/// valid model.
 int ColumnCount(const LidarModel& model);
 
-/// Errors: kNonFinite and kInvalidInput for a model that nothing could be, naming its field.
+/// Errors: kNonFinite and kInvalidInput for an impossible model; messages name the field.
 Expected<void> ValidateLidarModel(const LidarModel& model);
 
 /// "vlp16", "hdl32e", "hdl64e", "os1_64", "os1_128", "pandar40p", "livox".
 const std::vector<std::string>& LidarModelNames();
 
-/// Error: kUnknownName, with the nearest known.
+/// Error: kUnknownName, with the nearest known name.
 Expected<LidarModel> FindLidarModel(std::string_view name);
 
 }  // namespace sextant

@@ -5,7 +5,7 @@
 
 namespace sextant {
 
-/// The entries of FindLidarModel's table, by maker.
+/// The entries of FindLidarModel's table, by manufacturer.
 LidarModel Vlp16();
 LidarModel Hdl32e();
 LidarModel Hdl64e();
@@ -14,7 +14,7 @@ LidarModel Os1With128Rings();
 LidarModel Pandar40p();
 LidarModel LivoxMid40();
 
-/// For figures of data sheets.
+/// Converts degrees, as given in data sheets, to radians.
 double FromDegrees(double degrees);
 
 }  // namespace sextant

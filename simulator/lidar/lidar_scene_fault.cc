@@ -8,7 +8,7 @@
 namespace sextant {
 namespace {
 
-// As many as a person would describe, and more; each beam looks at every one.
+// More than any hand-written scene needs; each beam is tested against every object.
 constexpr std::size_t kMaxObjects = 10000;
 
 Expected<void> CheckPoseAndSizes(const std::string& what, const Rigid3d& pose,
@@ -28,7 +28,7 @@ Expected<void> CheckPoseAndSizes(const std::string& what, const Rigid3d& pose,
 Expected<void> CheckBoard(const SceneBoard& board, std::size_t index) {
   const std::string what = fmt::format("board {} ('{}')", index, board.board.name);
   const auto sides = Eigen::Vector2d(board.board.top_right_m, board.board.right_bottom_m);
-  if (Expected<void> ok = CheckPoseAndSizes(what, board.world_from_board, sides); !ok) return ok;
+  SEXTANT_RETURN_IF_ERROR(CheckPoseAndSizes(what, board.world_from_board, sides));
   if (!(board.board.thickness_m >= 0.0) || !std::isfinite(board.board.thickness_m)) {
     return MakeError(ErrorCode::kInvalidInput, what + ": its thickness must be 0 or more");
   }
@@ -64,23 +64,22 @@ Expected<void> CheckLidarScene(const Scene& scene) {
     return MakeError(ErrorCode::kNonFinite, "the LiDAR's pose is not finite");
   }
   for (std::size_t i = 0; i < scene.boards.size(); ++i) {
-    if (Expected<void> ok = CheckBoard(scene.boards[i], i); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(CheckBoard(scene.boards[i], i));
   }
   for (const SceneWall& wall : scene.walls) {
-    Expected<void> ok = CheckPoseAndSizes(fmt::format("wall '{}'", wall.name), wall.world_from_wall,
-                                          Eigen::Vector2d(wall.width_m, wall.height_m));
-    if (!ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(CheckPoseAndSizes(fmt::format("wall '{}'", wall.name),
+                                              wall.world_from_wall,
+                                              Eigen::Vector2d(wall.width_m, wall.height_m)));
   }
   for (const SceneBox& box : scene.boxes) {
-    Expected<void> ok =
-        CheckPoseAndSizes(fmt::format("box '{}'", box.name), box.world_from_box, box.size_m);
-    if (!ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(
+        CheckPoseAndSizes(fmt::format("box '{}'", box.name), box.world_from_box, box.size_m));
   }
   for (const SceneCylinder& cylinder : scene.cylinders) {
     const Rigid3d pose{Eigen::Quaterniond::Identity(), cylinder.base_in_world};
-    Expected<void> ok = CheckPoseAndSizes(fmt::format("cylinder '{}'", cylinder.name), pose,
-                                          Eigen::Vector2d(cylinder.radius_m, cylinder.height_m));
-    if (!ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(
+        CheckPoseAndSizes(fmt::format("cylinder '{}'", cylinder.name), pose,
+                          Eigen::Vector2d(cylinder.radius_m, cylinder.height_m)));
   }
   return {};
 }

@@ -8,21 +8,21 @@
 
 namespace sextant {
 
-/// Of a laser, in the frame of whatever it is cast at. `direction` is of unit length.
+/// A laser ray in the frame of the object that it is cast at. `direction` has unit length.
 struct LidarRay {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
 };
 
-/// Where a ray enters a shape from outside.
+/// The point where a ray enters a shape from outside.
 struct LidarEntry {
   double range_m = 0.0;
-  /// 0 to 2: the face across that axis. Cylinders: 0 the side, 2 an end.
+  /// 0 to 2: a face normal to this axis. Cylinders: 0 is the side, 2 an end.
   int face = 0;
 };
 
-/// An upright rectangular block, perhaps without height along z and with a rectangular opening
-/// through it along z: boards, walls, boxes. Bounds in its own frame [m].
+/// An axis-aligned rectangular block for boards, walls and boxes. It may have no thickness along z
+/// and a rectangular opening through it along z. Bounds in its own frame [m].
 struct LidarBlock {
   Eigen::Vector3d low = Eigen::Vector3d::Zero();
   Eigen::Vector3d high = Eigen::Vector3d::Zero();
@@ -30,14 +30,15 @@ struct LidarBlock {
   Eigen::Vector2d hole_low = Eigen::Vector2d::Zero();
   Eigen::Vector2d hole_high = Eigen::Vector2d::Zero();
 
-  /// None for a ray that passes by, begins inside, or goes through the opening.
+  /// None for a ray that misses, starts inside, or passes through the opening.
   std::optional<LidarEntry> Enter(const LidarRay& ray) const;
 
-  /// Whether all rays within `radius_m` of this one, parallel to it, enter by the same face.
+  /// Whether all parallel rays within `radius_m` of this one enter through the same face.
   bool AllEnter(const LidarRay& ray, const LidarEntry& entry, double radius_m) const;
 
-  /// Range from which on a parallel ray within `radius_m` may enter (0: from the start); none where
-  /// none does. Never too far; may tell a range where none is.
+  /// Lower bound of the range at which a parallel ray within `radius_m` may enter (0: from the
+  /// start); none if no such ray enters. Conservative: the bound is never too large, and may exist
+  /// although no ray enters.
   std::optional<double> MayEnter(const LidarRay& ray, double radius_m) const;
 };
 

@@ -21,12 +21,12 @@ Expected<LidarTarget> FromBoard(const SceneBoard& board, const Rigid3d& lidar_fr
   target.white_reflectivity = board.white.reflectivity;
   target.black_reflectivity = board.black.reflectivity;
   if (!shape.tags.empty() || shape.checker) {
-    Expected<BoardPrint> print = BoardPrint::Make(shape);
-    if (!print) return tl::unexpected<Error>(print.error());
-    target.print = *std::move(print);
+    SEXTANT_ASSIGN_OR_RETURN(BoardPrint print, BoardPrint::Make(shape));
+    target.print = std::move(print);
   }
   target.target_from_lidar = (lidar_from_world * board.world_from_board).Inverse();
-  // A swinging board turns about its corner 0 and stays within its diagonal of it.
+  // A swinging board rotates about its corner 0 and stays within the length of its diagonal from
+  // it.
   const Eigen::Vector3d& low = target.block.low;
   const Eigen::Vector3d& high = target.block.high;
   const Eigen::Vector3d center = board.swing ? low : Eigen::Vector3d(0.5 * (low + high));
@@ -36,7 +36,7 @@ Expected<LidarTarget> FromBoard(const SceneBoard& board, const Rigid3d& lidar_fr
   return target;
 }
 
-// Of a size, centred on its own origin.
+// A block of the given size, centred on its own origin.
 LidarTarget FromBlock(SceneObject object, const Eigen::Vector3d& size_m,
                       const Rigid3d& lidar_from_block, const Surface& surface) {
   LidarTarget target;
@@ -86,9 +86,8 @@ Expected<std::vector<LidarTarget>> MakeLidarTargets(const Scene& scene) {
     targets.push_back(std::move(target));
   };
   for (std::size_t i = 0; i < scene.boards.size(); ++i) {
-    Expected<LidarTarget> target = FromBoard(scene.boards[i], lidar_from_world);
-    if (!target) return tl::unexpected<Error>(target.error());
-    add(*std::move(target), i);
+    SEXTANT_ASSIGN_OR_RETURN(LidarTarget target, FromBoard(scene.boards[i], lidar_from_world));
+    add(std::move(target), i);
   }
   for (std::size_t i = 0; i < scene.walls.size(); ++i) {
     const SceneWall& wall = scene.walls[i];

@@ -13,21 +13,21 @@
 
 namespace sextant {
 
-/// One object of a scene as a LiDAR meets it.
+/// One object of a scene, prepared for casting LiDAR beams.
 struct LidarTarget {
   SceneObject object = SceneObject::kBoard;
   int index = 0;
   bool is_cylinder = false;
-  LidarBlock block{};        ///< A board's spans z from 0, its front, to its thickness.
-  LidarCylinder cylinder{};  ///< Instead, where is_cylinder.
+  LidarBlock block{};        ///< For a board, z extends from 0 (the front) to its thickness.
+  LidarCylinder cylinder{};  ///< Used instead of `block` if is_cylinder.
   Rigid3d target_from_lidar{};
-  std::optional<SceneBoard> swinging{};  ///< Then target_from_lidar follows from the time.
+  std::optional<SceneBoard> swinging{};  ///< If set, target_from_lidar depends on the time.
 
   double white_reflectivity = 0.0;
   double black_reflectivity = 0.0;
-  std::optional<BoardPrint> print{};  ///< On the front.
+  std::optional<BoardPrint> print{};  ///< Print on the front.
 
-  /// A sphere that it never leaves, in the LiDAR frame.
+  /// Bounding sphere at all times, in the LiDAR frame.
   Eigen::Vector3d center_in_lidar = Eigen::Vector3d::Zero();
   double reach_m = 0.0;
 
@@ -42,10 +42,10 @@ struct LidarTarget {
     return is_cylinder ? cylinder.MayEnter(ray, radius_m) : block.MayEnter(ray, radius_m);
   }
 
-  /// Cosine of the angle between the ray (target frame) and the normal where it enters.
+  /// Cosine of the angle between the ray (target frame) and the normal at the entry point.
   double CosIncidence(const LidarRay& ray, const LidarEntry& entry) const;
 
-  /// Whether a ray that enters so meets the front, where the print is.
+  /// Whether the entry is on the front, which carries the print.
   bool OnPrint(const LidarRay& ray, const LidarEntry& entry) const {
     return print.has_value() && entry.face == 2 && ray.direction.z() > 0.0;
   }
@@ -53,11 +53,12 @@ struct LidarTarget {
   Rigid3d TargetFromLidar(const Rigid3d& world_from_lidar, double time_s) const;
 };
 
-/// What a scan needs of a scene: finite poses, positive sizes, at most 10000 objects. Whether it
-/// makes sense for calibration is not asked. Errors: kNonFinite, kInvalidInput, naming the object.
+/// Checks what a scan requires of a scene: finite poses, positive sizes, at most 10000 objects.
+/// Does not check whether the scene is useful for calibration. Errors: kNonFinite, kInvalidInput;
+/// messages name the object.
 Expected<void> CheckLidarScene(const Scene& scene);
 
-/// Error: kInvalidInput for a LiDAR inside a box or cylinder, which is named.
+/// Error: kInvalidInput if the LiDAR is inside a box or cylinder; the message names it.
 Expected<void> CheckLidarOutside(const Scene& scene, const std::vector<LidarTarget>& targets);
 
 /// Errors: those of the two checks above and of BoardPrint::Make.

@@ -7,13 +7,15 @@
 namespace sextant {
 namespace {
 
-// Every pixel of a column fires at once; one row of emitters in four, hence the azimuth offsets.
+// All pixels of a column fire at once. The emitters are staggered in four columns, hence the
+// azimuth offsets.
 LidarModel Ouster(int rings, double top_deg, double azimuth_step_deg, double divergence_deg) {
   LidarModel model;
   model.source = "OS1 data sheet (2018)";
   model.approximations =
       "evenly spaced elevations and azimuth offsets as published for typical units; lost returns "
-      "as the VLP-16's; sigma at high signal; 1 mm steps as recorded, not the sheet's 12";
+      "as for the VLP-16; sigma at high signal; range steps of 1 mm as in recordings, not 12 mm as "
+      "in the data sheet";
   for (int i = 0; i < rings; ++i) {
     LidarRing ring;
     ring.elevation_rad = FromDegrees(-top_deg + 2.0 * top_deg * i / (rings - 1));
@@ -58,24 +60,25 @@ LidarModel Pandar40p() {
   model.title = "Hesai Pandar40P";
   model.source = "Pandar40P User Manual, 402-en-2002A2 (2020)";
   model.approximations =
-      "spot as the VLP-16's; evenly spaced firings, from the highest ring; lost returns as the "
-      "VLP-16's";
+      "spot as for the VLP-16; evenly spaced firings, from the highest ring; lost returns as for "
+      "the VLP-16";
   constexpr int kChannels = 40;
-  // Of the manual's table, from channel 40, the lowest.
+  // From the manual's table, starting with channel 40, the lowest.
   constexpr std::array kLowDeg = {-25.0, -19.0, -14.0, -13.0, -12.0, -11.0,
                                   -10.0, -9.0,  -8.0,  -7.0,  -6.0};
   constexpr std::array kHighDeg = {3.0, 5.0, 8.0, 11.0, 15.0};
   model.column_period_s = 0.1 / 1800.0;
   for (int i = 0; i < kChannels; ++i) {
     LidarRing ring;
-    double elevation_deg = (i - 28) / 3.0;  // A third of a degree apart from -6 to 2.
+    double elevation_deg = (i - 28) / 3.0;  // Steps of a third of a degree from -6 to 2.
     if (i < static_cast<int>(kLowDeg.size())) {
       elevation_deg = kLowDeg[static_cast<std::size_t>(i)];
     } else if (i >= 35) {
       elevation_deg = kHighDeg[static_cast<std::size_t>(i - 35)];
     }
     ring.elevation_rad = FromDegrees(elevation_deg);
-    // Clockwise in the manual. Channels 7 to 30 in three columns of emitters, the rest in one.
+    // Clockwise in the manual. Channels 7 to 30 are in three columns of emitters, the others in
+    // one.
     constexpr std::array kClockwiseDeg = {-1.042, 3.125, -5.208};
     const int channel = kChannels - i;
     const bool staggered = channel >= 7 && channel <= 30;
@@ -107,8 +110,8 @@ LidarModel LivoxMid40() {
   model.title = "Livox Mid-40";
   model.source = "Livox Mid Series User Manual v1.0 (2019)";
   model.approximations =
-      "two thin prisms of equal strength at 7294 and -4664 turns a minute; size of the spot as it "
-      "leaves; lost returns as the VLP-16's";
+      "two thin prisms of equal strength at 7294 and -4664 revolutions per minute; size of the "
+      "spot at the aperture; lost returns as for the VLP-16";
   constexpr double kPerMinute = 2.0 * std::numbers::pi / 60.0;
   model.rosette = LidarRosette{.deflection_rad = FromDegrees(38.4 / 4.0),
                                .first_rate_rad_s = 7294.0 * kPerMinute,

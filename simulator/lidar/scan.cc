@@ -20,10 +20,10 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 
 struct Firing {
   LidarRay ray{};
-  double time_s = 0.0;  // Since the start of the scan.
+  double time_s = 0.0;  // Time since the start of the scan.
 };
 
-// What a beam gave, if anything.
+// The measurement of a beam, if there is one.
 struct Slot {
   std::optional<LidarEcho> echo{};
   Eigen::Vector3d point_in_lidar = Eigen::Vector3d::Zero();
@@ -31,7 +31,7 @@ struct Slot {
   float intensity = 0.0F;
 };
 
-// One turn of a head, or the same time of a rosette.
+// Simulates one revolution of a rotating head, or a rosette for the same time.
 class Scanner {
  public:
   Scanner(const LidarModel& model, const ScanOptions& options, const LidarBeams& beams)
@@ -49,7 +49,7 @@ class Scanner {
     }
   }
 
-  /// In a column.
+  /// Number of beams per column.
   int Beams() const { return model_.rosette ? 1 : static_cast<int>(model_.rings.size()); }
 
   void ScanColumn(int column, LidarBeams::Scratch& scratch, Slot* slots) const {
@@ -57,7 +57,7 @@ class Scanner {
                              static_cast<std::uint64_t>(options_.scan_index),
                              static_cast<std::uint64_t>(column)));
     for (int ring = 0; ring < Beams(); ++ring) {
-      // Drawn whether there is an echo or not: a beam's draws do not depend on the scene.
+      // Drawn even without an echo, so that a beam's random numbers do not depend on the scene.
       const double lot = random.Uniform();
       const double deviation = random.Normal();
       const Firing firing = model_.rosette ? RosetteFiring(column) : RingFiring(column, ring);
@@ -84,7 +84,7 @@ class Scanner {
     return firing;
   }
 
-  // The pattern goes on from scan to scan.
+  // The pattern continues from scan to scan.
   Firing RosetteFiring(int column) const {
     const LidarRosette& prisms = *model_.rosette;
     Firing firing;
@@ -101,7 +101,7 @@ class Scanner {
   }
 
   double ChanceOfReturn(const LidarEcho& echo) const {
-    // Certain from the power of the data sheet's target on, none below half of it.
+    // Certain from the echo power of the data sheet's target on, impossible below half of it.
     const double needed =
         model_.detection_reflectivity / (model_.detection_range_m * model_.detection_range_m);
     const double strong = std::clamp(2.0 * echo.power / needed - 1.0, 0.0, 1.0);
@@ -176,7 +176,7 @@ Expected<SimulatedScan> SimulateScan(const Scene& scene, const LidarModel& model
   const int columns = ColumnCount(model);
   const int per_column = scanner.Beams();
   std::vector<Slot> slots(static_cast<std::size_t>(columns) * static_cast<std::size_t>(per_column));
-  // A column's noise is seeded by its number, so threads may take any.
+  // Each column is seeded by its number, so the result does not depend on the threads.
   tbb::parallel_for(
       tbb::blocked_range<int>(0, columns, 16), [&](const tbb::blocked_range<int>& range) {
         LidarBeams::Scratch scratch;

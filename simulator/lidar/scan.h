@@ -13,43 +13,44 @@ namespace sextant {
 
 enum class SceneObject : std::uint8_t { kBoard, kWall, kBox, kCylinder };
 
-/// What a point really is.
+/// The true origin of a point.
 struct PointTruth {
   SceneObject object = SceneObject::kBoard;
-  int index = 0;          ///< Into the scene's list of such objects.
-  double spot_share = 1;  ///< Of the beam's spot, what is on that face of it; 1: no edge in it.
-  bool mixed = false;     ///< Its range lies between that face's and another's.
+  int index = 0;          ///< Index into the scene's list of such objects.
+  double spot_share = 1;  ///< Fraction of the beam's spot on this face; 1: no edge within the spot.
+  bool mixed = false;     ///< The range is a mixture of this face's and another's.
 };
 
 struct ScanOptions {
-  std::uint64_t seed = 1;     ///< Also of what is constant for the unit: its rings' biases.
-  int scan_index = 0;         ///< Scans of one seed differ by it.
-  double start_time_s = 0.0;  ///< After the session's start: where swinging boards are.
-  bool noise = true;          ///< Of range, biases, start azimuth.
-  bool quantisation = true;   ///< Of range and intensity.
-  bool divergence = true;     ///< Off: a beam is a line, and there are no mixed points.
-  bool dropouts = true;       ///< Random and for weakness.
-  bool truth = false;         ///< Fill SimulatedScan::truth.
+  std::uint64_t seed = 1;  ///< Also determines what is constant for the unit, the ring biases.
+  int scan_index = 0;      ///< Distinguishes the scans of one seed.
+  /// Time after the session's start; determines the pose of swinging boards.
+  double start_time_s = 0.0;
+  bool noise = true;         ///< Range noise, biases and jitter of the start azimuth.
+  bool quantisation = true;  ///< Quantisation of range and intensity.
+  bool divergence = true;    ///< If false, a beam is a line, and there are no mixed points.
+  bool dropouts = true;      ///< Random losses and losses of weak returns.
+  bool truth = false;        ///< Fill SimulatedScan::truth.
 };
 
 struct SimulatedScan {
   PointCloud cloud;               ///< Column by column; `ring` is empty for a rosette.
-  std::vector<PointTruth> truth;  ///< One a point, where asked for.
+  std::vector<PointTruth> truth;  ///< One per point, if requested.
 };
 
-/// One turn of `model` at scene.lidar.world_from_lidar. (scene.lidar.model is not looked at.)
+/// Simulates one revolution of `model` at scene.lidar.world_from_lidar (scene.lidar.model is
+/// ignored).
 ///
-/// Every beam leaves at its own time, so that swinging boards smear. A spot within one surface
-/// gives its central ray's range, exactly on the surface where noise and quantisation are off. A
-/// spot across an edge is cut into sub-rays of equal power; a surface's echo is the sum of
-/// reflectivity cos(incidence) / range^2 over its sub-rays, echoes nearer than a pulse length merge
-/// to their power-weighted mean, and the strongest echo is returned, along the central ray. So
-/// edges look up to half a spot too wide where there is nothing bright behind them.
+/// Every beam is emitted at its own time, so swinging boards are distorted. A spot within one
+/// surface gives the range of its central ray, exactly on the surface if noise and quantisation are
+/// off. A spot across an edge is divided into sub-rays of equal power: a surface's echo is the sum
+/// of reflectivity cos(incidence) / range^2 over its sub-rays, echoes closer than a pulse length
+/// merge to their power-weighted mean, and the strongest echo is returned along the central ray.
+/// Objects therefore appear up to half a spot too wide if there is nothing bright behind them.
 ///
-/// The same scene, model and options give the same bits, whatever the number of threads.
-/// Errors, before any beam is cast: those of ValidateLidarModel; kNonFinite, kInvalidInput and
-/// kUnknownName for objects and prints that cannot be, too many objects (10000), a LiDAR inside
-/// one.
+/// The same scene, model and options give the same bits on any number of threads. Errors, before
+/// any beam is cast: those of ValidateLidarModel; kNonFinite, kInvalidInput and kUnknownName for
+/// invalid objects and prints, more than 10000 objects, and a LiDAR inside an object.
 Expected<SimulatedScan> SimulateScan(const Scene& scene, const LidarModel& model,
                                      const ScanOptions& options = {});
 

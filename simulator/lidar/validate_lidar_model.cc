@@ -18,7 +18,7 @@ Expected<void> Refuse(const LidarModel& model, const std::string& what) {
   return MakeError(ErrorCode::kInvalidInput, fmt::format("LiDAR model '{}': {}", model.name, what));
 }
 
-// Lengths, times and probabilities: none is negative.
+// Lengths, times and probabilities, which must not be negative.
 std::array<Field, 22> FieldsOf(const LidarModel& model) {
   return {{{"turn_period_s", model.turn_period_s},
            {"column_period_s", model.column_period_s},

@@ -10,8 +10,9 @@ namespace {
 
 constexpr double kMicrosecond = 1e-6;
 
-// What Velodyne's turning sensors share. Spot as it leaves and its growth: table of the laser pulse
-// in the manuals; two returns of a pulse are at least a metre apart there.
+// Common properties of Velodyne's rotating sensors. Size of the spot at the aperture and its
+// divergence: table of the laser pulse in the manuals, which also state that two returns of a pulse
+// are at least a metre apart.
 LidarModel Velodyne() {
   LidarModel model;
   model.turn_period_s = 0.1;
@@ -29,10 +30,10 @@ LidarModel Velodyne() {
 
 }  // namespace
 
-// Noise, biases and lost returns are not in the data sheet ("+-3 cm typical"). They are measured on
-// the seven recordings of a checkerboard in acfr/cam_lidar_calibration's public data, one VLP-16 at
-// 1.7 to 2.9 m, by one least-squares fit of a plane a recording, a bias a ring and one of black
-// (4808 points, docs/simulator.md).
+// Noise, biases and lost returns are not in the data sheet ("+-3 cm typical"). They were measured
+// on the seven recordings of a checkerboard in the public data of acfr/cam_lidar_calibration, taken
+// with one VLP-16 at 1.7 to 2.9 m, by a joint least-squares fit of one plane per recording, one
+// bias per ring and one bias of black (4808 points, docs/simulator.md).
 LidarModel Vlp16() {
   LidarModel model = Velodyne();
   model.title = "Velodyne VLP-16";
@@ -43,12 +44,12 @@ LidarModel Vlp16() {
   constexpr int kLasers = 16;
   model.rings.resize(kLasers);
   for (int laser = 0; laser < kLasers; ++laser) {
-    // Fired alternately from the lower and the upper half.
+    // The lasers fire alternately in the lower and the upper half.
     const int elevation_deg = laser % 2 == 0 ? laser - 15 : laser;
     LidarRing& ring = model.rings[static_cast<std::size_t>((elevation_deg + 15) / 2)];
     ring.elevation_rad = FromDegrees(elevation_deg);
     ring.firing_time_s = 2.304 * kMicrosecond * laser;
-    // The manual's vertical corrections, 11.2 mm at -15 degrees to -11.2 mm, to 0.1 mm.
+    // Reproduces the manual's vertical corrections, 11.2 mm at -15 degrees to -11.2 mm, to 0.1 mm.
     ring.origin_height_m = -0.0418 * std::tan(ring.elevation_rad);
   }
   model.column_period_s = 55.296 * kMicrosecond;
@@ -70,11 +71,11 @@ LidarModel Hdl32e() {
   LidarModel model = Velodyne();
   model.title = "Velodyne HDL-32E";
   model.source = "HDL-32E User's Manual, 63-9113 Rev. H (2015)";
-  model.approximations = "ranges at 10 % reflectivity; lost returns as the VLP-16's";
+  model.approximations = "ranges at 10 % reflectivity; lost returns as for the VLP-16";
   constexpr int kLasers = 32;
   model.rings.resize(kLasers);
   for (int laser = 0; laser < kLasers; ++laser) {
-    // Fired alternately from two banks of 16, each from its lowest; 4/3 of a degree apart.
+    // The lasers fire alternately in two banks of 16, each from the lowest; 4/3 of a degree apart.
     const int ring_number = laser % 2 == 0 ? laser / 2 : 16 + laser / 2;
     LidarRing& ring = model.rings[static_cast<std::size_t>(ring_number)];
     ring.elevation_rad = FromDegrees((4.0 * ring_number - 92.0) / 3.0);

@@ -11,7 +11,7 @@
 namespace sextant {
 namespace {
 
-// The index of the cell of a row of `count` cells, from 0; none outside.
+// Index (from 0) of the cell in a centred row of `count` cells; none outside of the row.
 std::optional<int> CellAlong(double offset_m, double cell_m, int count) {
   const double index = std::floor(offset_m / cell_m + 0.5 * count);
   if (!(index >= 0.0 && index < count)) return std::nullopt;

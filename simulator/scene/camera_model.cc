@@ -100,8 +100,8 @@ Expected<Camera> RenderingCamera(const SceneCamera& camera) {
 }
 
 Expected<Camera> PublishedCamera(const SceneCamera& camera) {
-  return camera.told_intrinsics ? Checked(camera, *camera.told_intrinsics)
-                                : RenderingCamera(camera);
+  return camera.assumed_intrinsics ? Checked(camera, *camera.assumed_intrinsics)
+                                   : RenderingCamera(camera);
 }
 
 SceneCamera StereoPartner(const SceneCamera& left, double baseline_m, const std::string& name) {

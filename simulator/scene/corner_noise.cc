@@ -34,7 +34,7 @@ void AddMeasuredCorner(const CornerNoise& noise, const PairId& id, const Eigen::
                                 .covariance_in_cam = CameraCovariance(noise, ray) +
                                                      lidar_variance * Eigen::Matrix3d::Identity(),
                                 .id = id});
-  // A LiDAR error across the ray moves the projection by f / z pixels a metre.
+  // A LiDAR error across the ray shifts the projection by f / z pixels per metre.
   const double lidar_px = problem.camera->fx_px / in_cam.z() * noise.lidar_sigma_m;
   problem.pairs_2d3d.push_back({.pixel = measured_px,
                                 .point_in_lidar = in_lidar + lidar_noise,

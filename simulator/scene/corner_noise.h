@@ -6,11 +6,11 @@
 
 namespace sextant {
 
-/// Errors of corners as extractors or people find them.
+/// Errors of corners found by extractors or marked by people.
 ///
-/// Defaults: four independent 3D edge lines at a range sigma of 1 cm leave 11.8 mm RMSE in the
-/// LiDAR, so 6.8 mm per axis; a tag's depth is far less certain than its bearing; a corner that is
-/// found in the image is good to 1 px, one that a person marks to 3 or 4 px.
+/// Defaults: intersecting four independent 3D edge lines at a range sigma of 1 cm leaves 11.8 mm
+/// RMSE in the LiDAR, that is 6.8 mm per axis; a tag's depth is far less certain than its bearing;
+/// a corner detected in the image is accurate to 1 px, one marked by a person to 3 or 4 px.
 struct CornerNoise {
   double lidar_sigma_m = 0.0068;  ///< Per axis.
   double camera_lateral_sigma_m = 0.003;
@@ -18,8 +18,8 @@ struct CornerNoise {
   double pixel_sigma_px = 1.0;
 };
 
-/// Appends a 3D-3D and a 2D-3D pair of one corner as they would be measured, with their covariance.
-/// The projection into problem.camera must exist. Draws nine normal numbers.
+/// Appends the measured 3D-3D and 2D-3D pair of one corner, with noise and its covariance. The
+/// projection into problem.camera must exist. Draws nine normal numbers.
 void AddMeasuredCorner(const CornerNoise& noise, const PairId& id, const Eigen::Vector3d& in_cam,
                        const Eigen::Vector3d& in_lidar, const Eigen::Vector2d& pixel,
                        Random& random, CalibrationProblem& problem);

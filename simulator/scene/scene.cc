@@ -19,4 +19,17 @@ Rigid3d BoardPoseAt(const SceneBoard& board, double time_s) {
           pivot_in_world + turn * (board.world_from_board.translation - pivot_in_world)};
 }
 
+std::vector<Board> BoardsIn(const Scene& scene) {
+  std::vector<Board> boards;
+  for (const SceneBoard& board : scene.boards) boards.push_back(board.board);
+  return boards;
+}
+
+Eigen::Vector3d TrueCorner(const SceneBoard& board, int corner) {
+  const double x = corner == 1 || corner == 2 ? 0.5 : -0.5;
+  const double y = corner >= 2 ? 0.5 : -0.5;
+  return board.world_from_board *
+         Eigen::Vector3d(x * board.board.top_right_m, y * board.board.right_bottom_m, 0.0);
+}
+
 }  // namespace sextant

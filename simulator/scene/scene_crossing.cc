@@ -17,7 +17,7 @@ std::array<Segment, 4> EdgesOf(const SceneRectangle& rectangle) {
   return {{{c[0], c[1]}, {c[1], c[2]}, {c[2], c[3]}, {c[3], c[0]}}};
 }
 
-// Cuts [first, last] of the segment's parameter to where low <= value + t slope <= high.
+// Restricts the parameter interval [first, last] to low <= value + t slope <= high.
 void Clip(double value, double slope, double low, double high, double& first, double& last) {
   if (slope == 0.0) {
     if (value < low || value > high) last = first - 1.0;
@@ -29,7 +29,7 @@ void Clip(double value, double slope, double low, double high, double& first, do
   last = std::min(last, std::max(a, b));
 }
 
-// Whether a part of the segment, in the box's frame, lies within +-half.
+// Whether part of the segment (in the box's frame) lies within +-half.
 bool Enters(const Segment& segment, const Eigen::Vector3d& half) {
   double first = 0.0;
   double last = 1.0;
@@ -40,7 +40,8 @@ bool Enters(const Segment& segment, const Eigen::Vector3d& half) {
   return first <= last;
 }
 
-// Whether the segment goes through the rectangle, ending more than a touch on both sides.
+// Whether the segment passes through the rectangle and ends more than kSceneTouch_m away on both
+// sides.
 bool Pierces(const Segment& segment, const SceneRectangle& rectangle) {
   const Rigid3d plane_from_world = rectangle.world_from_plane.Inverse();
   const Eigen::Vector3d a = plane_from_world * segment.from;
@@ -59,7 +60,7 @@ bool AnyPierces(const SceneRectangle& of_edges, const SceneRectangle& rectangle)
                      [&](const Segment& edge) { return Pierces(edge, rectangle); });
 }
 
-// Distance from the axis's point (0, 0) to the part [first, last] of a segment in the plane.
+// Distance between the axis, at (0, 0), and the part [first, last] of a segment in the plane.
 double DistanceFromAxis(const Eigen::Vector2d& from, const Eigen::Vector2d& along, double first,
                         double last) {
   const double length2 = along.squaredNorm();
@@ -98,7 +99,7 @@ bool Crosses(const SceneRectangle& rectangle, const SceneBox& box) {
     return Enters({box_from_world * edge.from, box_from_world * edge.to}, half);
   });
   if (enters) return true;
-  // Or an edge of the box goes through the rectangle.
+  // Otherwise an edge of the box may pass through the rectangle.
   for (int axis = 0; axis < 3; ++axis) {
     for (int corner = 0; corner < 4; ++corner) {
       Eigen::Vector3d from = half;

@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include "base/units.h"
 #include "io/blocks/board_block.h"
 #include "io/blocks/camera_block.h"
@@ -18,6 +20,69 @@ using Keys = std::vector<std::string>;
 
 std::string NameAt(YamlFields& in, const YamlNode& node, const std::string& otherwise = {}) {
   return node.Find("name") != nullptr ? in.TextAt(node, "name") : otherwise;
+}
+
+// The upright attitude whose forward axis points along `direction`.
+EulerZyx Along(const Eigen::Vector3d& direction) {
+  const double level = std::hypot(direction.x(), direction.y());
+  return {.yaw = level > 0.0 ? std::atan2(direction.y(), direction.x()) : 0.0,
+          .pitch = -std::atan2(direction.z(), level)};
+}
+
+Eigen::Quaterniond ReadQuaternion(YamlFields& in, const YamlNode& node) {
+  double wxyz[4] = {1.0, 0.0, 0.0, 0.0};
+  in.Reals(node, "quaternion_wxyz", wxyz);
+  const Eigen::Quaterniond q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  constexpr double kTolerance = 1e-3;
+  if (in.ok() && std::abs(q.norm() - 1.0) > kTolerance) {
+    in.Fail(node.line, "quaternion_wxyz", "expected a quaternion of length 1");
+  }
+  // A quaternion that was written with all digits is used bit by bit.
+  constexpr double kRounding = 1e-14;
+  return std::abs(q.norm() - 1.0) < kRounding ? q : q.normalized();
+}
+
+// world_from_object of a map with `position_m` and one of
+// - `yaw_deg`, `pitch_deg`, `roll_deg`, as SceneRotation has them (0 where absent);
+// - `facing_m` and `roll_deg`: the point in the world that a camera, LiDAR or box looks at, or
+//   that sees the front of a board or wall squarely; upright before the roll;
+// - `quaternion_wxyz`: the rotation of world_from_object as it is.
+// Errors go to `in`.
+Rigid3d ReadScenePose(YamlFields& in, const YamlNode& node, SceneAxes axes,
+                      bool front_is_backward = false) {
+  static const std::vector<std::string> kKeys = {"position_m", "yaw_deg",  "pitch_deg",
+                                                 "roll_deg",   "facing_m", "quaternion_wxyz"};
+  Rigid3d pose;
+  if (!in.IsMap(node, "pose", kKeys)) return pose;
+  pose.translation = in.PointAt(node, "position_m");
+  const bool has_angles = node.Find("yaw_deg") != nullptr || node.Find("pitch_deg") != nullptr;
+  const YamlNode* facing = node.Find("facing_m");
+  const YamlNode* quaternion = node.Find("quaternion_wxyz");
+  if ((quaternion != nullptr && (facing != nullptr || node.Find("roll_deg") != nullptr)) ||
+      (has_angles && (facing != nullptr || quaternion != nullptr))) {
+    in.Fail(node.line, "pose",
+            "expected one of: yaw_deg, pitch_deg and roll_deg; facing_m and roll_deg; "
+            "quaternion_wxyz");
+    return pose;
+  }
+  if (quaternion != nullptr) {
+    pose.rotation = ReadQuaternion(in, *quaternion);
+    return pose;
+  }
+  EulerZyx euler;
+  if (facing != nullptr) {
+    const Eigen::Vector3d toward = in.Point(*facing, "facing_m") - pose.translation;
+    if (in.ok() && !(toward.norm() > 0.0)) {
+      in.Fail(facing->line, "facing_m", "expected another point than position_m");
+    }
+    euler = Along(front_is_backward ? -toward : toward);
+  } else {
+    euler.yaw = kRadPerDeg * in.RealAt(node, "yaw_deg", 0.0);
+    euler.pitch = kRadPerDeg * in.RealAt(node, "pitch_deg", 0.0);
+  }
+  euler.roll = kRadPerDeg * in.RealAt(node, "roll_deg", 0.0);
+  pose.rotation = SceneRotation(axes, euler);
+  return pose;
 }
 
 Surface SurfaceAt(YamlFields& in, const YamlNode& map, std::string_view key, Surface surface) {
@@ -38,10 +103,10 @@ SceneLidar ReadLidar(YamlFields& in, const YamlNode& node) {
   return lidar;
 }
 
-// One camera, and its partner where it has a baseline.
+// Reads one camera, and adds its stereo partner if it has a baseline.
 void ReadCamera(YamlFields& in, const YamlNode& node, std::vector<SceneCamera>& cameras) {
   static const Keys kKeys = {
-      "name", "model", "intrinsics", "told_intrinsics", "pose", "stereo_baseline_m"};
+      "name", "model", "intrinsics", "assumed_intrinsics", "pose", "stereo_baseline_m"};
   if (!in.IsMap(node, "camera", kKeys)) return;
   SceneCamera camera;
   camera.name = NameAt(in, node, camera.name);
@@ -55,8 +120,8 @@ void ReadCamera(YamlFields& in, const YamlNode& node, std::vector<SceneCamera>& 
   } else {
     camera.model = in.TextAt(node, "model");
   }
-  if (const YamlNode* told = node.Find("told_intrinsics")) {
-    camera.told_intrinsics = ReadCameraBlock(in, *told);
+  if (const YamlNode* told = node.Find("assumed_intrinsics")) {
+    camera.assumed_intrinsics = ReadCameraBlock(in, *told);
   }
   camera.world_from_cam = ReadScenePose(in, in.Require(node, "pose"), SceneAxes::kForwardIsZ);
   cameras.push_back(camera);
@@ -134,7 +199,7 @@ SceneCylinder ReadCylinder(YamlFields& in, const YamlNode& node) {
   return cylinder;
 }
 
-// The items of an optional list, of a bounded number.
+// The items of an optional list of limited length.
 std::vector<const YamlNode*> ItemsAt(YamlFields& in, const YamlNode& root, std::string_view key,
                                      std::size_t most) {
   std::vector<const YamlNode*> items;

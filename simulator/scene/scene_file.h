@@ -12,11 +12,12 @@ namespace sextant {
 
 inline constexpr std::size_t kMaxSceneBoards = 1000;
 inline constexpr std::size_t kMaxSceneCameras = 16;
-inline constexpr std::size_t kMaxSceneShapes = 10'000;  ///< Of walls, boxes or cylinders.
+/// Limit for walls, boxes and cylinders each.
+inline constexpr std::size_t kMaxSceneShapes = 10'000;
 
-/// A scene from YAML (docs/formats.md); not yet checked by ValidateScene.
-/// Errors: kIo; kParse and kNonFinite with file, line and field: unknown keys, boards that
-/// contradict themselves, lists that are too long.
+/// Reads a scene from YAML (docs/formats.md) without the checks of ValidateScene. Errors: kIo;
+/// kParse and kNonFinite with file, line and field: unknown keys, inconsistent boards, lists that
+/// are too long.
 Expected<Scene> ReadScene(const std::filesystem::path& path);
 Expected<Scene> ParseScene(std::string_view text, const std::string& file);
 

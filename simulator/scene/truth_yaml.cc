@@ -8,7 +8,7 @@
 namespace sextant {
 namespace {
 
-// The value of each corner as one list.
+// The value of each corner, as one YAML list.
 template <class Value>
 std::string ListOf(const std::vector<CornerTruth>& corners, Value value) {
   std::string list;

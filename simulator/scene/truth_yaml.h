@@ -9,14 +9,15 @@
 
 namespace sextant {
 
-/// What is true of one scan of a session.
+/// The truth of one scan of a session.
 struct ScanTruth {
   int index = 0;
-  double start_time_s = 0.0;  ///< Of the scan, after the session's start.
-  double image_time_s = 0.0;  ///< Of the images, and of `boards`.
-  std::string scan_file{};    ///< Empty where points were not simulated; so are image_files.
-  std::vector<std::string> image_files{};    ///< One a camera.
-  std::vector<std::uint64_t> image_seeds{};  ///< One a camera; of the corners' noise otherwise.
+  double start_time_s = 0.0;  ///< Start of the scan, after the session's start.
+  double image_time_s = 0.0;  ///< Time of the images and of `boards`.
+  std::string scan_file{};    ///< Empty, like image_files, if points were not simulated.
+  std::vector<std::string> image_files{};  ///< One per camera.
+  /// One per camera; seeds of the corner noise if there are no images.
+  std::vector<std::uint64_t> image_seeds{};
   std::vector<BoardTruth> boards{};
 };
 

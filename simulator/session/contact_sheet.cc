@@ -22,7 +22,7 @@ constexpr int kRows = 480;
 constexpr int kColumns = 640;
 const cv::Scalar kBackground(24, 20, 18);
 
-// Looks from the LiDAR along its x axis at the boards.
+// Perspective view of the boards from the LiDAR along its x axis.
 class FrontView {
  public:
   explicit FrontView(const std::vector<BoardTruth>& boards) {
@@ -51,7 +51,7 @@ class FrontView {
   double farthest_m() const { return farthest_m_; }
 
  private:
-  // Right and down per metre ahead.
+  // Offsets to the right and down per metre of distance.
   static Eigen::Vector2d Slopes(const Eigen::Vector3d& p) {
     return {-p.y() / p.x(), -p.z() / p.x()};
   }
@@ -77,7 +77,7 @@ void Dot(cv::Mat& panel, const cv::Point2d& at, int radius, const cv::Scalar& co
              cv::LINE_AA, kShift);
 }
 
-// Red near, blue far, as viewers of scans colour them.
+// Red for near and blue for far points, as in common point cloud viewers.
 std::vector<cv::Scalar> ColorsByRange(const PointCloud& cloud, double near_m, double far_m) {
   cv::Mat levels(1, static_cast<int>(cloud.points.size()), CV_8U);
   for (int i = 0; i < levels.cols; ++i) {
@@ -108,7 +108,7 @@ cv::Mat DrawScan(const FrontView& view, const PointCloud& cloud) {
   return panel;
 }
 
-// Points at which the range jumps to something farther off, along each ring.
+// Points next to a jump to a larger range along each ring.
 std::vector<Eigen::Vector3d> EdgePoints(const PointCloud& cloud) {
   constexpr double kJump_m = 0.3;
   std::map<int, std::map<double, Eigen::Vector3d>> rings;

@@ -9,10 +9,10 @@
 
 namespace sextant {
 
-/// What both sensors see of a scene, for people: the first camera's image, the scan from the
-/// LiDAR's place coloured by range, and its points at jumps in range near the boards, with the
-/// boards' true outlines. 8-bit BGR, three panels of 480 rows. The first scan of the session of
-/// that seed. Errors: those of ValidateScene.
+/// An overview image of a scene: the first camera's image, the scan seen from the LiDAR and
+/// coloured by range, and the points at range jumps near the boards with the boards' true outlines.
+/// 8-bit BGR, three panels of 480 rows, from the first scan of the session with this seed. Errors:
+/// those of ValidateScene.
 Expected<cv::Mat> DrawContactSheet(const Scene& scene, std::uint64_t seed);
 
 }  // namespace sextant

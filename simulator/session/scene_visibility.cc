@@ -39,7 +39,7 @@ std::string WhyUnseen(const SceneBoard& board, const SceneCamera& scene_camera,
                       const Camera& camera) {
   const Eigen::Vector3d camera_in_board =
       board.world_from_board.Inverse() * scene_camera.world_from_cam.translation;
-  if (camera_in_board.z() >= 0.0) return "it shows its back to camera '" + scene_camera.name + "'";
+  if (camera_in_board.z() >= 0.0) return "its back faces camera '" + scene_camera.name + "'";
   const Rigid3d cam_from_world = scene_camera.world_from_cam.Inverse();
   bool is_in_front = false;
   for (const Eigen::Vector3d& point : PointsInWorld(board)) {

@@ -9,12 +9,12 @@
 
 namespace sextant {
 
-/// Why no point of the board's front, where it hangs at rest, is in the camera's image; empty
-/// where one is. `camera` is what renders. What hides what is not looked at.
+/// The reason why no point of the board's front at rest is in the camera's image; empty if one is.
+/// `camera` is the rendering camera. Occlusions are ignored.
 std::string WhyUnseen(const SceneBoard& board, const SceneCamera& scene_camera,
                       const Camera& camera);
 
-/// Whether the model's beams can meet a point of the board, by their angles and their range.
+/// Whether a point of the board at rest is within the angles and the range of the LiDAR model.
 bool IsReached(const SceneBoard& board, const Rigid3d& world_from_lidar, const LidarModel& model);
 
 }  // namespace sextant

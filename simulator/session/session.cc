@@ -56,7 +56,8 @@ Expected<void> CheckOptions(const SessionOptions& options) {
   return {};
 }
 
-// All that decides the bytes of the files besides the scene; not the number of scans.
+// Everything besides the scene that determines the bytes of the files, except for the number of
+// scans.
 std::string Configuration(const SessionOptions& options) {
   YamlText out;
   out.Line("sextant_simulation: 1");
@@ -83,19 +84,17 @@ class Session {
       : scene_(scene), options_(options), lidar_(std::move(lidar)), folder_(std::move(folder)) {}
 
   Expected<SessionReport> Run() {
-    Expected<void> ok = WriteBoardsAndCameras();
+    SEXTANT_RETURN_IF_ERROR(WriteBoardsAndCameras());
     for (int scan = 0; scan < options_.scans; ++scan) truths_.push_back(TruthOf(scan));
     if (options_.level == SessionLevel::kFull) {
-      for (const ScanTruth& truth : truths_) {
-        if (ok) ok = WriteScan(truth);
-      }
+      for (const ScanTruth& truth : truths_) SEXTANT_RETURN_IF_ERROR(WriteScan(truth));
     } else {
       for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
-        if (ok) ok = WriteProblem(i);
+        SEXTANT_RETURN_IF_ERROR(WriteProblem(i));
       }
     }
-    if (ok) ok = folder_.Write("truth.yaml", FormatTruth(scene_, options_.seed, truths_));
-    if (!ok) return tl::unexpected<Error>(ok.error());
+    SEXTANT_RETURN_IF_ERROR(
+        folder_.Write("truth.yaml", FormatTruth(scene_, options_.seed, truths_)));
     report_.scans = std::move(truths_);
     return std::move(report_);
   }
@@ -125,18 +124,12 @@ class Session {
   }
 
   Expected<void> WriteBoardsAndCameras() {
-    Expected<void> ok = folder_.Write("boards.yaml", FormatBoards(Boards()));
+    SEXTANT_RETURN_IF_ERROR(folder_.Write("boards.yaml", FormatBoards(BoardsIn(scene_))));
     for (const SceneCamera& camera : scene_.cameras) {
       const std::string text = FormatCameraInfo(*PublishedCamera(camera), camera.name);
-      if (ok) ok = folder_.Write(camera.name + "_info.yaml", text);
+      SEXTANT_RETURN_IF_ERROR(folder_.Write(camera.name + "_info.yaml", text));
     }
-    return ok;
-  }
-
-  std::vector<Board> Boards() const {
-    std::vector<Board> boards;
-    for (const SceneBoard& board : scene_.boards) boards.push_back(board.board);
-    return boards;
+    return {};
   }
 
   Expected<void> Complete(const std::string& name,
@@ -148,13 +141,11 @@ class Session {
   }
 
   Expected<void> WriteScan(const ScanTruth& truth) {
-    Expected<void> ok =
-        Complete(truth.scan_file, [&]() -> Expected<std::string> { return ScanFile(truth); });
-    for (std::size_t i = 0; ok && i < scene_.cameras.size(); ++i) {
-      ok = Complete(truth.image_files[i],
-                    [&]() -> Expected<std::string> { return ImageFile(truth, i); });
+    SEXTANT_RETURN_IF_ERROR(Complete(truth.scan_file, [&] { return ScanFile(truth); }));
+    for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
+      SEXTANT_RETURN_IF_ERROR(Complete(truth.image_files[i], [&] { return ImageFile(truth, i); }));
     }
-    return ok;
+    return {};
   }
 
   Expected<std::string> ScanFile(const ScanTruth& truth) const {
@@ -181,12 +172,12 @@ class Session {
     return options_.encode_image(image);
   }
 
-  // More scans than an earlier run had change this file, so it is written anew.
+  // This file changes with the number of scans, so it is always rewritten.
   Expected<void> WriteProblem(std::size_t camera) {
     const SceneCamera& scene_camera = scene_.cameras[camera];
     ProblemFile file;
     file.problem.camera = *PublishedCamera(scene_camera);
-    file.problem.boards = Boards();
+    file.problem.boards = BoardsIn(scene_);
     file.true_cam_from_lidar = CamFromLidar(scene_, scene_camera);
     file.comment = fmt::format("simulated: scene {}, seed {}, {} scans", scene_.name, options_.seed,
                                options_.scans);
@@ -242,10 +233,9 @@ Expected<SessionReport> SimulateSession(const Scene& scene, std::string_view sce
   SEXTANT_RETURN_IF_ERROR(CheckOptions(options));
   SEXTANT_RETURN_IF_ERROR(ValidateScene(scene));
   SEXTANT_ASSIGN_OR_RETURN(LidarModel lidar, FindLidarModel(scene.lidar.model));
-  Expected<SessionFolder> folder =
-      SessionFolder::Open(options.folder, scene_text, Configuration(options));
-  if (!folder) return tl::unexpected<Error>(folder.error());
-  return Session(scene, options, std::move(lidar), std::move(*folder)).Run();
+  SEXTANT_ASSIGN_OR_RETURN(SessionFolder folder,
+                           SessionFolder::Open(options.folder, scene_text, Configuration(options)));
+  return Session(scene, options, std::move(lidar), std::move(folder)).Run();
 }
 
 }  // namespace sextant

@@ -17,14 +17,14 @@
 
 namespace sextant {
 
-/// What is simulated of each scan, from the whole way to the shortest.
+/// Level of detail of the simulation of each scan.
 enum class SessionLevel {
-  kFull,     ///< Points and images, as a user would have them.
-  kCorners,  ///< Corners in both sensors, as extractors find them, with their covariance.
-  kPairs,    ///< Corners in the LiDAR and marked by a person in the image.
+  kFull,     ///< Points and images, like a real recording.
+  kCorners,  ///< Corners in both sensors as found by extractors, with covariances.
+  kPairs,    ///< Corners in the LiDAR, and marked by a person in the image.
 };
 
-/// "full", "corners" or "pairs". Error: kUnknownName, with the nearest known.
+/// Finds "full", "corners" or "pairs". Error: kUnknownName, with the nearest known name.
 Expected<SessionLevel> FindSessionLevel(std::string_view name);
 
 struct SessionOptions {
@@ -32,36 +32,37 @@ struct SessionOptions {
   SessionLevel level = SessionLevel::kFull;
   std::uint64_t seed = 1;
   int scans = 1;
-  double interval_s = 1.0;  ///< From the start of one scan to that of the next.
-  bool ideal = false;       ///< Full level without noise, blur, quantisation and spot of the beam.
+  double interval_s = 1.0;  ///< Time between the starts of successive scans.
+  bool ideal = false;       ///< Level kFull without noise, blur, quantisation and beam width.
   PcdEncoding encoding = PcdEncoding::kBinary;
-  CornerNoise noise{};  ///< Of the levels kCorners and kPairs.
-  /// The bytes of an image file (PNG); kept out of this library with its dependencies.
+  CornerNoise noise{};  ///< Noise of the levels kCorners and kPairs.
+  /// Encodes an image file (PNG); injected to keep the codec's dependencies out of this library.
   std::function<Expected<std::string>(const cv::Mat&)> encode_image{};
   std::function<void()> step{};  ///< Called after each file of a scan; may be empty.
 };
 
 struct SessionReport {
   int written = 0;
-  int kept = 0;  ///< Complete files of an earlier run with the same configuration.
-  std::vector<ScanTruth> scans{};  ///< Their times and files; all of truth.yaml.
+  int kept = 0;  ///< Complete files kept from an earlier run with the same configuration.
+  std::vector<ScanTruth> scans{};  ///< Contents of truth.yaml for each scan.
 };
 
-/// Files of scans that SimulateSession will write or keep.
+/// Number of scan files that SimulateSession will write or keep.
 long CountSessionFiles(const Scene& scene, const SessionOptions& options);
 
-/// Simulates a session into a folder, which is made:
-/// - scene.yaml (`scene_text` as it stands) and simulation.yaml (the options);
-/// - boards.yaml, and <camera>_info.yaml with what the pipeline is told of each camera;
-/// - kFull: scan_000.pcd, and <camera>_000.png taken in the middle of the scan;
-///   kCorners, kPairs: <level>_<camera>.yaml, a problem file with one view a scan;
-/// - truth.yaml: cam_from_lidar, every corner in every frame, every seed.
-/// Every file is written whole or not at all. Where the folder holds a run of the same scene and
-/// options, its files are kept: a run that was stopped goes on, and more scans may be asked for.
-/// The same scene, seed and options give the same bytes, whatever the number of threads.
+/// Simulates a session into a folder, which is created:
+/// - scene.yaml (`scene_text` unchanged) and simulation.yaml (the options);
+/// - boards.yaml, and <camera>_info.yaml with the assumed intrinsics of each camera;
+/// - kFull: scan_000.pcd and so on, and <camera>_000.png taken in the middle of the scan;
+///   kCorners, kPairs: <level>_<camera>.yaml, a problem file with one view per scan;
+/// - truth.yaml: cam_from_lidar, every corner in every frame, all seeds.
+///
+/// Every file is written completely or not at all. If the folder holds a run of the same scene and
+/// options, its files are kept: an interrupted run is continued, and the number of scans may be
+/// increased. The same scene, seed and options give the same bytes on any number of threads.
 ///
 /// Errors: those of ValidateScene, before anything is written; kInvalidOption; kInvalidInput for a
-/// folder that holds something else; kIo.
+/// folder with other contents; kIo.
 Expected<SessionReport> SimulateSession(const Scene& scene, std::string_view scene_text,
                                         const SessionOptions& options);
 

@@ -28,10 +28,10 @@ Error FolderError(const fs::path& path, const std::error_code& reason) {
 Expected<void> RequireSame(const fs::path& path, std::string_view expected) {
   SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
   if (text == expected) return {};
-  return MakeError(ErrorCode::kInvalidInput,
-                   fmt::format("{}: the folder holds another simulation; remove it, or name "
-                               "another folder",
-                               path.string()));
+  return MakeError(
+      ErrorCode::kInvalidInput,
+      fmt::format("{}: the folder holds another simulation; remove it or choose another folder",
+                  path.string()));
 }
 
 }  // namespace
@@ -64,23 +64,15 @@ Expected<SessionFolder> SessionFolder::Open(const fs::path& path, std::string_vi
   }
   const SessionFolder folder(path);
   if (is_ours) {
-    // In this order: the scene decides more often.
-    if (auto same = RequireSame(path / kSceneFile, scene_text); !same) {
-      return tl::unexpected<Error>(same.error());
-    }
-    if (auto same = RequireSame(path / kConfigurationFile, configuration); !same) {
-      return tl::unexpected<Error>(same.error());
-    }
+    // The scene first, as it differs more often.
+    SEXTANT_RETURN_IF_ERROR(RequireSame(path / kSceneFile, scene_text));
+    SEXTANT_RETURN_IF_ERROR(RequireSame(path / kConfigurationFile, configuration));
   }
   for (const fs::path& leftover : half_written) fs::remove(leftover, failed);
   if (is_ours) return folder;
-  // The configuration last: a folder with it is whole.
-  if (auto ok = folder.Write(kSceneFile, scene_text); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
-  if (auto ok = folder.Write(kConfigurationFile, configuration); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  // The configuration is written last, so that its presence marks a complete folder.
+  SEXTANT_RETURN_IF_ERROR(folder.Write(kSceneFile, scene_text));
+  SEXTANT_RETURN_IF_ERROR(folder.Write(kConfigurationFile, configuration));
   return folder;
 }
 
@@ -89,7 +81,7 @@ Expected<bool> SessionFolder::Complete(const std::string& name,
   std::error_code ignored;
   if (fs::is_regular_file(path_ / name, ignored)) return false;
   SEXTANT_ASSIGN_OR_RETURN(const std::string text, make());
-  if (auto ok = Write(name, text); !ok) return tl::unexpected<Error>(ok.error());
+  SEXTANT_RETURN_IF_ERROR(Write(name, text));
   return true;
 }
 

@@ -10,17 +10,18 @@
 
 namespace sextant {
 
-/// The folder of a simulated session, which goes on where an earlier run was stopped.
+/// The folder of a simulated session, which can continue an interrupted run.
 class SessionFolder {
  public:
-  /// Makes the folder or takes up the one of the same configuration, and removes what a killed run
-  /// left half written. Errors: kIo; kInvalidInput where something else is in the folder.
+  /// Creates the folder, or opens one with the same configuration and removes incomplete files of a
+  /// killed run. Errors: kIo; kInvalidInput if the folder has other contents.
   static Expected<SessionFolder> Open(const std::filesystem::path& path,
                                       std::string_view scene_text, std::string_view configuration);
 
-  /// Writes the file that `make` gives, unless it is there already; whether it was written.
+  /// Writes the file with the text from `make` unless it exists; returns whether it was written.
   Expected<bool> Complete(const std::string& name,
                           const std::function<Expected<std::string>()>& make) const;
+  /// Writes the file, replacing an existing one.
   Expected<void> Write(const std::string& name, std::string_view text) const;
 
  private:

@@ -23,9 +23,9 @@ Expected<void> CheckOptions(const StereoOptions& options) {
                   options.nearest_m, options.farthest_m, options.block_px));
 }
 
-// Disparities in pixels, CV_32F; not positive where there is no match.
+// Disparities in pixels, CV_32F; zero or negative where there is no match.
 cv::Mat MatchImages(const cv::Mat& left, const cv::Mat& right, int most_px, int block_px) {
-  // The weights that OpenCV's own documentation gives for one channel.
+  // Smoothness penalties from OpenCV's documentation for one channel.
   const int small_step = 8 * block_px * block_px;
   const int large_step = 32 * block_px * block_px;
   const auto matcher =
@@ -39,7 +39,7 @@ cv::Mat MatchImages(const cv::Mat& left, const cv::Mat& right, int most_px, int 
   return disparities;
 }
 
-// Both eyes as pinholes of the camera's focal length.
+// Both cameras as pinholes with the camera's focal length.
 Expected<Scene> RectifiedPair(const Scene& scene, int camera_index, double baseline_m) {
   if (camera_index < 0 || camera_index >= static_cast<int>(scene.cameras.size())) {
     return MakeError(ErrorCode::kInvalidInput,
@@ -52,7 +52,7 @@ Expected<Scene> RectifiedPair(const Scene& scene, int camera_index, double basel
   left.intrinsics = camera;
   left.intrinsics.model = CameraModel::kPinhole;
   left.intrinsics.distortion.fill(0.0);
-  left.told_intrinsics.reset();
+  left.assumed_intrinsics.reset();
   Scene pair = scene;
   pair.cameras = {left, StereoPartner(left, baseline_m, left.name + "_right")};
   return pair;
@@ -85,7 +85,7 @@ std::optional<Eigen::Vector3d> Triangulate(const StereoImages& images, const Eig
 }
 
 Expected<PointCloud> MatchStereo(const StereoImages& images, const StereoOptions& options) {
-  if (const Expected<void> ok = CheckOptions(options); !ok) return tl::unexpected(ok.error());
+  SEXTANT_RETURN_IF_ERROR(CheckOptions(options));
   const double depth_times_px = images.camera.fx_px * images.baseline_m;
   const int most_px = 16 * static_cast<int>(std::ceil(depth_times_px / options.nearest_m / 16.0));
   const cv::Mat disparities = MatchImages(images.left, images.right, most_px, options.block_px);

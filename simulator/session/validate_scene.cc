@@ -29,7 +29,7 @@ std::string NameOf(const SceneBoard& board) {
   return Named("board", static_cast<std::size_t>(board.board.id), board.board.name);
 }
 
-// The first error is kept; a check after it costs little.
+// Keeps the first error; later checks are cheap.
 class SceneCheck {
  public:
   explicit SceneCheck(const Scene& scene) : scene_(scene) {}
@@ -58,7 +58,7 @@ class SceneCheck {
   void RequirePose(const Rigid3d& pose, const std::string& what) {
     if (!pose.IsFinite()) Fail({ErrorCode::kNonFinite, what + ": its pose is not finite"});
     Require(std::abs(pose.rotation.norm() - 1.0) < 1e-6, what,
-            "its rotation is no quaternion of length 1");
+            "its rotation is not a quaternion of length 1");
   }
   void RequireSize(double size_m, const std::string& what, const char* field) {
     Require(size_m > 0.0 && std::isfinite(size_m), what,
@@ -101,7 +101,7 @@ class SceneCheck {
           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                  c == '_' || c == '-';
         });
-    Require(is_name, what, "its name names files: expected letters, digits, _ and -");
+    Require(is_name, what, "its name is used in file names: expected letters, digits, _ and -");
     const auto same = std::count_if(scene_.cameras.begin(), scene_.cameras.end(),
                                     [&](const SceneCamera& c) { return c.name == camera.name; });
     Require(same == 1, what, "another camera has the same name");
@@ -111,7 +111,7 @@ class SceneCheck {
     if (!told) return Fail(told.error());
     Require(
         told->width_px == rendering->width_px && told->height_px == rendering->height_px, what,
-        fmt::format("its image has {} x {} px, told_intrinsics say {} x {}", rendering->width_px,
+        fmt::format("its image has {} x {} px, assumed_intrinsics say {} x {}", rendering->width_px,
                     rendering->height_px, told->width_px, told->height_px));
     cameras_.push_back(*rendering);
   }
@@ -177,20 +177,20 @@ class SceneCheck {
     constexpr double kClosest_m = 0.01;
     for (std::size_t i = 0; i < scene_.boxes.size(); ++i) {
       Require(!IsInside(at, scene_.boxes[i]), what,
-              "it stands inside " + Named("box", i, scene_.boxes[i].name) + "; move one of them");
+              "it is inside " + Named("box", i, scene_.boxes[i].name) + "; move one of them");
     }
     for (std::size_t i = 0; i < scene_.cylinders.size(); ++i) {
-      Require(!IsInside(at, scene_.cylinders[i]), what,
-              "it stands inside " + Named("cylinder", i, scene_.cylinders[i].name) +
-                  "; move one of them");
+      Require(
+          !IsInside(at, scene_.cylinders[i]), what,
+          "it is inside " + Named("cylinder", i, scene_.cylinders[i].name) + "; move one of them");
     }
     for (std::size_t i = 0; i < scene_.walls.size(); ++i) {
       Require(RectangleOf(scene_.walls[i]).DistanceTo(at) > kClosest_m, what,
-              "it stands inside " + Named("wall", i, scene_.walls[i].name) + "; move one of them");
+              "it is inside " + Named("wall", i, scene_.walls[i].name) + "; move one of them");
     }
     for (const SceneBoard& board : scene_.boards) {
       Require(RectangleOf(board, board.world_from_board).DistanceTo(at) > kClosest_m, what,
-              "it stands inside " + NameOf(board) + "; move one of them");
+              "it is inside " + NameOf(board) + "; move one of them");
     }
   }
 
@@ -205,25 +205,25 @@ class SceneCheck {
     const std::string what = NameOf(board);
     for (std::size_t i = 0; i < scene_.walls.size(); ++i) {
       Require(!Crosses(place, RectangleOf(scene_.walls[i])), what,
-              "it goes through " + Named("wall", i, scene_.walls[i].name) + "; move one of them");
+              "it intersects " + Named("wall", i, scene_.walls[i].name) + "; move one of them");
     }
     for (std::size_t i = 0; i < scene_.boxes.size(); ++i) {
       Require(!Crosses(place, scene_.boxes[i]), what,
-              "it goes through " + Named("box", i, scene_.boxes[i].name) + "; move one of them");
+              "it intersects " + Named("box", i, scene_.boxes[i].name) + "; move one of them");
     }
     for (std::size_t i = 0; i < scene_.cylinders.size(); ++i) {
-      Require(!Crosses(place, scene_.cylinders[i]), what,
-              "it goes through " + Named("cylinder", i, scene_.cylinders[i].name) +
-                  "; move one of them");
+      Require(
+          !Crosses(place, scene_.cylinders[i]), what,
+          "it intersects " + Named("cylinder", i, scene_.cylinders[i].name) + "; move one of them");
     }
     for (const SceneBoard& other : scene_.boards) {
       if (&other == &board) continue;
       Require(!Crosses(place, RectangleOf(other, other.world_from_board)), what,
-              "it goes through " + NameOf(other) + "; move one of them");
+              "it intersects " + NameOf(other) + "; move one of them");
     }
   }
 
-  // At rest and at both ends of the swing.
+  // Positions at rest and at both ends of the swing.
   static std::vector<SceneRectangle> PlacesOf(const SceneBoard& board) {
     if (!board.swing) return {RectangleOf(board, board.world_from_board)};
     SceneBoard still = board;
@@ -249,7 +249,7 @@ class SceneCheck {
         why = WhyUnseen(board, scene_.cameras[i], cameras_[i]);
         if (why.empty()) break;
       }
-      Require(why.empty(), NameOf(board), "no camera sees it: " + why + "; turn or move it");
+      Require(why.empty(), NameOf(board), "no camera sees it: " + why + "; rotate or move it");
       Require(IsReached(board, scene_.lidar.world_from_lidar, lidar_), NameOf(board),
               fmt::format("the LiDAR does not see it: it is outside the angles or the range of {} "
                           "to {} m of {}; move it",

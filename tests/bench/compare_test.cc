@@ -22,7 +22,7 @@ Change ChangeOf(const Timing& before, const Timing& after) {
   return CompareTimings({{"a", before}}, {{"a", after}}).front().change;
 }
 
-TEST(CompareTimings, OnlyBeyondTheNoiseIsAChange) {
+TEST(CompareTimings, IgnoresDifferencesWithinTheNoise) {
   // Three times sqrt(2) times 2 percent are 8.5.
   EXPECT_EQ(ChangeOf(Timed(100.0, 0.02), Timed(108.0, 0.02)), Change::kSame);
   EXPECT_EQ(ChangeOf(Timed(100.0, 0.02), Timed(109.0, 0.02)), Change::kSlower);
@@ -31,12 +31,12 @@ TEST(CompareTimings, OnlyBeyondTheNoiseIsAChange) {
   EXPECT_EQ(ChangeOf(Timed(100.0, 0.2), Timed(150.0, 0.0)), Change::kSame);
 }
 
-TEST(CompareTimings, RepetitionsThatAgreeByChanceAreNotTakenForExact) {
+TEST(CompareTimings, DoesNotTrustAgreementOfFewRepetitions) {
   EXPECT_EQ(ChangeOf(Timed(100.0, 0.0), Timed(102.9, 0.0)), Change::kSame);
   EXPECT_EQ(ChangeOf(Timed(100.0, 0.0), Timed(103.1, 0.0)), Change::kSlower);
 }
 
-TEST(CompareTimings, WhatIsWrongNowIsARegressionAndWhatIsGoneIsNone) {
+TEST(CompareTimings, WrongResultsAreRegressionsButMissingOnesAreNot) {
   const Timing wrong{.median_ns = {}, .spread = 0.0, .error = "wrong: 1 rad"};
   const auto now_wrong = CompareTimings({{"a", Timed(5.0, 0.01)}}, {{"a", wrong}});
   EXPECT_EQ(now_wrong.front().change, Change::kNowWrong);
@@ -49,7 +49,7 @@ TEST(CompareTimings, WhatIsWrongNowIsARegressionAndWhatIsGoneIsNone) {
   EXPECT_EQ(ChangeOf(wrong, Timed(5.0, 0.0)), Change::kNew);
 }
 
-TEST(CompareTimings, TheWorstStandsFirst) {
+TEST(CompareTimings, ListsTheWorstFirst) {
   const Timings before = {
       {"a", Timed(100.0, 0.0)}, {"b", Timed(100.0, 0.0)}, {"c", Timed(100.0, 0.0)}};
   const Timings after = {
@@ -61,7 +61,7 @@ TEST(CompareTimings, TheWorstStandsFirst) {
   EXPECT_THAT(names, ElementsAre("c", "b", "a"));
 }
 
-// As Google Benchmark writes seven repetitions.
+// Output of Google Benchmark for seven repetitions.
 nlohmann::json MadeUpRun(double median_us, double spread) {
   const auto entry = [](const char* aggregate, double time) {
     return nlohmann::json{{"run_name", "kabsch/sextant/8"},
@@ -83,7 +83,7 @@ void WriteRun(const std::filesystem::path& folder, double median_us, double spre
   test::WriteText(folder / "bench_kernels.json", MadeUpRun(median_us, spread).dump());
 }
 
-TEST(ReadTimings, OfAFolder) {
+TEST(ReadTimings, ReadsAFolder) {
   WriteRun(test::TestFolder() / "run", 1.5, 0.01);
   test::WriteText(test::TestFolder() / "run" / "flags.txt", "-O3\n");
   const Expected<Timings> timings = ReadTimings(test::TestFolder() / "run");
@@ -95,7 +95,7 @@ TEST(ReadTimings, OfAFolder) {
   EXPECT_FALSE(ReadTimings(test::TestFolder() / "nowhere"));
 }
 
-TEST(AddTimings, OfSeveralRunsTheFastestStandsOrTheWrongOne) {
+TEST(AddTimings, KeepsTheFastestRunOrAWrongOne) {
   Timings timings;
   for (const double median_us : {1.6, 1.5, 1.7}) AddTimings(MadeUpRun(median_us, 0.01), timings);
   EXPECT_DOUBLE_EQ(*timings.at("kabsch/sextant/8").median_ns, 1500.0);
@@ -106,7 +106,7 @@ TEST(AddTimings, OfSeveralRunsTheFastestStandsOrTheWrongOne) {
   EXPECT_FALSE(timings.at("kabsch/sextant/8").median_ns);
 }
 
-TEST(BenchCompare, EndsWithOneWhereSomethingBecameSlower) {
+TEST(BenchCompare, ReturnsOneIfSomethingBecameSlower) {
   const std::filesystem::path folder = test::TestFolder();
   WriteRun(folder / "old", 1.5, 0.01);
   WriteRun(folder / "same", 1.53, 0.01);

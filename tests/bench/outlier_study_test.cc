@@ -12,7 +12,7 @@ namespace {
 
 Contestant Make(const char* spec) { return ContestantOf(*BuiltinSolvers().Make(spec)); }
 
-TEST(OutlierStudy, TellsRobustSolversFromOthers) {
+TEST(OutlierStudy, SeparatesRobustSolversFromOthers) {
   const std::vector<Contestant> contestants = {
       Make("ransac(p3p)"),
       Make("refine(epnp)"),
@@ -33,8 +33,8 @@ TEST(OutlierStudy, TellsRobustSolversFromOthers) {
   EXPECT_THAT(table, testing::HasSubstr("0 (20)"));
 }
 
-// The goals that the whole study is held to by bench_outliers, in the cells that matter most.
-TEST(OutlierStudy, RansacMissesNoneAtAHundredPairs) {
+// The goals that bench_outliers checks in the whole study, here in the most important cells.
+TEST(OutlierStudy, RansacSolvesAllScenesAtAHundredPairs) {
   const std::vector<Contestant> contestants = {Make("refine(ransac(p3p))"), Make("ransac(epnp)")};
   const OutlierStudy study{.pairs = {100}, .outlier_fractions = {0.0, 0.3, 0.5}};
   for (const OutlierCell& cell : StudyOutliers(study, contestants)) {
@@ -42,7 +42,7 @@ TEST(OutlierStudy, RansacMissesNoneAtAHundredPairs) {
   }
 }
 
-TEST(OutlierStudy, FiguresDoNotDependOnThreads) {
+TEST(OutlierStudy, ResultsDoNotDependOnThreads) {
   const std::vector<Contestant> contestants = {Make("ransac(p3p)")};
   OutlierStudy study{.scenes = 30, .threads = 1, .pairs = {20}, .outlier_fractions = {0.6}};
   const int alone = StudyOutliers(study, contestants).front().successes;

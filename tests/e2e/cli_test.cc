@@ -201,7 +201,7 @@ TEST(Cli, ReordersCornersWhereAskedAndSaysSoWhereNot) {
 
   const ProgramRun told =
       RunSextant("solve " + path.string() + " --json " + (TestFolder() / "given.json").string());
-  EXPECT_THAT(told.out, HasSubstr("--reorder takes it"));
+  EXPECT_THAT(told.out, HasSubstr("--reorder uses it"));
   const ProgramRun taken = RunSextant("solve " + path.string() + " --reorder --json " +
                                       (TestFolder() / "taken.json").string());
   EXPECT_EQ(taken.exit_code, 0) << taken.err;

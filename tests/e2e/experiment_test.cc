@@ -95,7 +95,7 @@ TEST(Run, AFullDiskLosesNothing) {
   const ProgramRun full = RunProgram("trap '' XFSZ; ulimit -f 64; " SEXTANT_BINARY,
                                      RunArguments(experiment, "full", "--no-csv"));
   EXPECT_EQ(full.exit_code, 2);
-  EXPECT_THAT(full.err, HasSubstr("the rows so far are kept: make room and run the same command"));
+  EXPECT_THAT(full.err, HasSubstr("the rows written so far are kept: free some space and run the same command"));
   const std::string kept = Rows("full");
   EXPECT_GT(kept.size(), 9000U) << "at least one block";
   EXPECT_LE(kept.size(), 64U * 1024);
@@ -135,7 +135,7 @@ TEST(Run, FinishedRowsAreNotRunAgainUnlessAsked) {
   EXPECT_EQ(RunSextant(RunArguments(experiment, "out", "--fresh")).err, "");
   const ProgramRun other = RunSextant(RunArguments(experiment, "out", "--seed 5"));
   EXPECT_EQ(other.exit_code, 2);
-  EXPECT_THAT(other.err, HasSubstr("start anew with --fresh, or name another folder"));
+  EXPECT_THAT(other.err, HasSubstr("start over with --fresh, or choose another folder"));
 }
 
 TEST(Merge, OfShardsIsTheWhole) {

@@ -14,7 +14,7 @@
 namespace sextant {
 namespace {
 
-TEST(CramerRaoBound, OfOnePointClusterAtTheOriginIsTheMeanOfItsNoise) {
+TEST(CramerRaoBound, MatchesTheClosedFormForSymmetricPoints) {
   // Symmetric axes: the translation decouples and is known to sigma / sqrt(n) per axis.
   CalibrationProblem problem;
   for (int axis = 0; axis < 3; ++axis) {
@@ -35,7 +35,7 @@ TEST(CramerRaoBound, OfOnePointClusterAtTheOriginIsTheMeanOfItsNoise) {
   EXPECT_NEAR(RmsOf(*bound).translation_m, std::sqrt(3.0 * 0.09 / 6.0), 1e-15);
 }
 
-TEST(CramerRaoBound, EqualsThePropagatedCovarianceWithoutNoiseInTheData) {
+TEST(CramerRaoBound, EqualsThePropagatedCovarianceForExactData) {
   Random random(1);
   test::PairScene scene = test::MakeScene({.pairs = 10}, random);
   for (Pair3d3d& pair : scene.problem.pairs_3d3d) pair.sigma_m = 0.01;
@@ -47,7 +47,7 @@ TEST(CramerRaoBound, EqualsThePropagatedCovarianceWithoutNoiseInTheData) {
   EXPECT_LT((*bound - *propagated).norm(), 1e-10 * bound->norm());
 }
 
-TEST(CramerRaoBound, BothKindsOfPairsAddTheirInformation) {
+TEST(CramerRaoBound, AddsTheInformationOfBothKindsOfPairs) {
   Random random(2);
   const test::PairScene scene =
       test::MakeScene({.pairs = 10, .sigma_m = 0.01, .sigma_px = 1.0}, random);
@@ -63,7 +63,7 @@ TEST(CramerRaoBound, BothKindsOfPairsAddTheirInformation) {
             1e-8 * both->inverse().norm());
 }
 
-// The Fisher information from nothing but Project and the transform, by differences.
+// The Fisher information by finite differences of Project and the transform only.
 Matrix6d NumericBound(const CalibrationProblem& problem, const Rigid3d& pose) {
   constexpr double kStep = 1e-5;
   Matrix6d information = Matrix6d::Zero();
@@ -90,9 +90,9 @@ Matrix6d NumericBound(const CalibrationProblem& problem, const Rigid3d& pose) {
   return information.inverse();
 }
 
-// Bound, Ceres and our own least squares state the same covariance, of points, pixels and both, and
-// under distortion.
-TEST(CramerRaoBound, IsWhatCeresAndRefinePoseSayAtTheTruth) {
+// The bound, Ceres and our own least squares give the same covariance for points, pixels and both,
+// also with distortion.
+TEST(CramerRaoBound, EqualsTheCovarianceOfCeresAndRefinePoseAtTheTruth) {
   Random random(4);
   for (const bool distorted : {false, true}) {
     for (const unsigned kinds : {1U, 2U, 3U}) {
@@ -121,7 +121,7 @@ TEST(CramerRaoBound, IsWhatCeresAndRefinePoseSayAtTheTruth) {
   }
 }
 
-TEST(CramerRaoBound, SaysWhatIsMissing) {
+TEST(CramerRaoBound, ReportsMissingData) {
   Random random(3);
   EXPECT_EQ(CramerRaoBound({}, {}).error().code, ErrorCode::kMissingData);
   const test::PairScene silent = test::MakeScene({.pairs = 5}, random);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNoise = 0.004;
 
-// Two walls and a floor of a corner, seen in the frame whose pose is given.
+// Two walls and the floor of a room corner in the frame with the given pose.
 PointCloud Corner(const Rigid3d& frame_from_world, std::uint64_t seed, int points = 6000) {
   Random random(seed);
   PointCloud cloud;
@@ -31,7 +31,7 @@ Rigid3d SomePose() {
   return Perturb({}, delta);
 }
 
-TEST(CloudFusion, PointsOfAllCloudsLieInOneFrame) {
+TEST(CloudFusion, FusesAllCloudsIntoOneFrame) {
   PointCloud a = Corner({}, 1, 30);
   PointCloud b = Corner(SomePose().Inverse(), 1, 30);
   a.points[4].setConstant(std::nan(""));
@@ -51,9 +51,9 @@ TEST(CloudFusion, PointsOfAllCloudsLieInOneFrame) {
   EXPECT_TRUE(FuseClouds(one_without, poses).intensity.empty());
 }
 
-// A patch of 12 points is known to about noise / sqrt(12) in its middle: the distance's sigma is
-// about noise sqrt(1 + 1/12), its median 0.6745 of that.
-TEST(CloudFusion, AgreesToTheNoiseUnderTheTruePose) {
+// The position of a patch of 12 points has a standard error of about noise / sqrt(12) at its
+// centre, so the sigma of the distance is about noise sqrt(1 + 1/12) and its median 0.6745 of that.
+TEST(CloudFusion, DistancesAreTheNoiseUnderTheTruePose) {
   const PointCloud a = Corner({}, 1);
   const PointCloud b = Corner(SomePose(), 2);
   const CloudAgreement agreement = CompareClouds(a, SomePose(), b);
@@ -62,7 +62,7 @@ TEST(CloudFusion, AgreesToTheNoiseUnderTheTruePose) {
   EXPECT_NEAR(agreement.median_m, 0.6745 * kNoise * std::sqrt(13.0 / 12.0), 0.1 * kNoise);
 }
 
-TEST(CloudFusion, AShiftOfAWallShowsAsItsDistance) {
+TEST(CloudFusion, MeasuresTheShiftOfAWall) {
   const PointCloud a = Corner({}, 1);
   const PointCloud b = Corner({}, 2);
   for (const double shift : {0.03, 0.06}) {
@@ -72,7 +72,7 @@ TEST(CloudFusion, AShiftOfAWallShowsAsItsDistance) {
   }
 }
 
-TEST(CloudFusion, SaysThatCloudsDoNotOverlap) {
+TEST(CloudFusion, ReportsCloudsWithoutOverlap) {
   const Rigid3d far{Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}};
   const CloudAgreement agreement = CompareClouds(Corner({}, 1), far, Corner({}, 2));
   EXPECT_EQ(agreement.compared, 0);

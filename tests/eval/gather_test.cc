@@ -52,7 +52,7 @@ TEST(RankSelector, FindsEveryOrderStatistic) {
   for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(selector.ValueAt(i), values[i]) << i;
 }
 
-TEST(RankSelector, OfOneValue) {
+TEST(RankSelector, HandlesOneValue) {
   RankSelector selector({0});
   PassAll({-2.5}, selector);
   EXPECT_EQ(selector.ValueAt(0), -2.5);
@@ -78,7 +78,7 @@ TEST(QuantileGatherer, AgreesWithSortedValues) {
   }
 }
 
-TEST(RatioSums, AreThoseOfTheBootstrap) {
+TEST(RatioSums, MatchBootstrapRatio) {
   for (const std::size_t count :
        {std::size_t{1}, std::size_t{200}, std::size_t{201}, std::size_t{5003}}) {
     Random random(count);

@@ -18,7 +18,7 @@ std::vector<double> Measure(const KnownProblem& known, const Expected<SolveRepor
   return values;
 }
 
-// Two points a metre apart along x; the answer is turned by a degree about z and shifted.
+// Two points one metre apart along x; the estimate is rotated by one degree about z and shifted.
 KnownProblem TwoPoints() {
   KnownProblem known;
   known.problem.camera = Camera{.width_px = 1280,
@@ -49,7 +49,7 @@ TEST(PoseMetrics, HaveDistinctNamesInTheOrderOfTheirIndices) {
   EXPECT_EQ(PoseMetrics()[kTimeUs].name, "time_us");
 }
 
-TEST(MeasurePose, KnowsEachErrorByItsDefinition) {
+TEST(MeasurePose, MeasuresEachErrorByItsDefinition) {
   const KnownProblem known = TwoPoints();
   SolveReport report;
   report.cam_from_lidar = {ExpSo3({0.0, 0.0, kRadPerDeg}), {0.003, 0.0, -0.004}};
@@ -66,7 +66,7 @@ TEST(MeasurePose, KnowsEachErrorByItsDefinition) {
   EXPECT_NEAR(values[kZMm], -4.0, 1e-12);
   EXPECT_NEAR(values[kNees], (kRadPerDeg * kRadPerDeg + 25e-6) / 1e-4, 1e-9);
   EXPECT_NEAR(values[kEstimatedYawDeg], 1.0, 1e-12);
-  // Each point is moved by half a metre's turn of a degree, and by the shift.
+  // Each point is displaced by the rotation of one degree at half a metre, and by the shift.
   const double chord = 2.0 * 0.5 * std::sin(0.5 * kRadPerDeg);
   EXPECT_NEAR(values[kRmseMm] * values[kRmseMm], 1e6 * (chord * chord + 25e-6), 1e-3);
   EXPECT_EQ(values[kHeldOutMm], values[kRmseMm]);
@@ -75,7 +75,7 @@ TEST(MeasurePose, KnowsEachErrorByItsDefinition) {
   EXPECT_EQ(values[kInliers], 2.0);
 }
 
-TEST(MeasurePose, AnErrorIsNoAnswerAndHasNoFigures) {
+TEST(MeasurePose, AnErrorHasNoValues) {
   const std::vector<double> values =
       Measure(TwoPoints(), MakeError(ErrorCode::kDegenerate, "on a line"));
   EXPECT_EQ(values[kAnswered], 0.0);
@@ -85,9 +85,10 @@ TEST(MeasurePose, AnErrorIsNoAnswerAndHasNoFigures) {
   EXPECT_TRUE(std::isnan(values[kRmseMm]));
 }
 
-// The paper's dataset 2 prints an RMSE of ICP below Kabsch's: no pose is better on the pairs than
-// the best, but the distance to nearest neighbours is never above that to the paired points.
-TEST(NearestNeighbourRmse, IsNeverAboveThePairs) {
+// The paper's dataset 2 prints an RMSE of ICP below that of Kabsch. No pose can have a smaller RMSE
+// on the pairs than the optimum, but the distance to nearest neighbours is never larger than that
+// to the paired points.
+TEST(NearestNeighbourRmse, IsNeverLargerThanTheRmseOfThePairs) {
   Random random(5);
   for (int trial = 0; trial < 50; ++trial) {
     PointSets sets;
@@ -106,9 +107,7 @@ TEST(NearestNeighbourRmse, IsNeverAboveThePairs) {
   }
 }
 
-TEST(Nees, IsNoNumberWithoutACovariance) {
-  EXPECT_TRUE(std::isnan(Nees({}, Matrix6d::Zero(), {})));
-}
+TEST(Nees, IsNanForASingularCovariance) { EXPECT_TRUE(std::isnan(Nees({}, Matrix6d::Zero(), {}))); }
 
 }  // namespace
 }  // namespace sextant

@@ -31,14 +31,14 @@ void RotateLabels(CalibrationProblem& problem, int view, int board, int turns) {
   for (int i = 0; i < 4; ++i) (first + i)->point_in_lidar = lidar[static_cast<std::size_t>(i)];
 }
 
-TEST(Judge, SaysNothingOfGoodData) {
+TEST(PairDiagnostics, ReportsNothingForGoodData) {
   const PairDiagnostics judgement = DiagnosePairs(CleanProblem(3));
   EXPECT_FALSE(judgement.order);
   EXPECT_FALSE(judgement.mirrored_rmse_m);
   EXPECT_THAT(judgement.edges, testing::IsEmpty());
 }
 
-TEST(Judge, FindsRotatedLabelsOfOneBoard) {
+TEST(PairDiagnostics, FindsRotatedLabelsOfOneBoard) {
   for (int turns = 1; turns < 4; ++turns) {
     const CalibrationProblem truth = CleanProblem(1);
     CalibrationProblem problem = truth;
@@ -52,11 +52,11 @@ TEST(Judge, FindsRotatedLabelsOfOneBoard) {
     for (std::size_t i = 0; i < truth.pairs_3d3d.size(); ++i) {
       EXPECT_EQ(reordered.pairs_3d3d[i].point_in_lidar, truth.pairs_3d3d[i].point_in_lidar);
     }
-    EXPECT_THAT(Describe(judgement).front(), HasSubstr("--reorder takes it"));
+    EXPECT_THAT(Describe(judgement).front(), HasSubstr("--reorder uses it"));
   }
 }
 
-TEST(Judge, FindsSwappedBoardsAndReversedOrders) {
+TEST(PairDiagnostics, FindsSwappedBoardsAndReversedOrders) {
   const CalibrationProblem truth = CleanProblem(2);
   CalibrationProblem problem = truth;
   std::vector<Pair3d3d>& pairs = problem.pairs_3d3d;
@@ -72,7 +72,7 @@ TEST(Judge, FindsSwappedBoardsAndReversedOrders) {
   }
 }
 
-TEST(Judge, NamesTheBoardWhoseEdgesDisagree) {
+TEST(PairDiagnostics, ReportsTheBoardWithInconsistentEdges) {
   CalibrationProblem problem = CleanProblem(2);
   problem.pairs_3d3d[13].point_in_lidar.z() += 0.3;
   const PairDiagnostics judgement = DiagnosePairs(problem);
@@ -82,7 +82,7 @@ TEST(Judge, NamesTheBoardWhoseEdgesDisagree) {
   EXPECT_THAT(Describe(judgement), testing::Contains(HasSubstr("board 1 of view 1")));
 }
 
-TEST(Judge, NamesABoardFileThatDisagreesWithBothSensors) {
+TEST(PairDiagnostics, ReportsANominalSizeThatDisagreesWithBothSensors) {
   CalibrationProblem problem = CleanProblem(1);
   problem.boards[0].top_right_m = 0.60;
   const PairDiagnostics judgement = DiagnosePairs(problem);
@@ -91,7 +91,7 @@ TEST(Judge, NamesABoardFileThatDisagreesWithBothSensors) {
   EXPECT_EQ(judgement.edges[0].known_m, 0.60);
 }
 
-TEST(Judge, NamesTheTurnThatAlmostCollinearPointsLeaveWeak) {
+TEST(PairDiagnostics, ReportsTheWeakRotationOfAlmostCollinearPoints) {
   CalibrationProblem problem = CleanProblem(1);
   const Rigid3d truth = SimulatePairs({.seed = 1, .outliers = 0})->true_cam_from_lidar;
   for (Pair3d3d& pair : problem.pairs_3d3d) {
@@ -106,7 +106,7 @@ TEST(Judge, NamesTheTurnThatAlmostCollinearPointsLeaveWeak) {
   EXPECT_THAT(Describe(judgement), testing::Contains(HasSubstr("rotation about")));
 }
 
-TEST(SimulatePairs, SameSeedSameBytes) {
+TEST(SimulatePairs, TheSameSeedGivesTheSameBytes) {
   const SimulatedSession a = *SimulatePairs({.seed = 3, .views = 2});
   const SimulatedSession b = *SimulatePairs({.seed = 3, .views = 2});
   const SimulatedSession c = *SimulatePairs({.seed = 4, .views = 2});
@@ -136,7 +136,7 @@ TEST(SimulatePairs, CornersRunClockwiseFromTheTop) {
   }
 }
 
-TEST(SimulatePairs, RefusesNonsense) {
+TEST(SimulatePairs, RejectsInvalidOptions) {
   EXPECT_EQ(SimulatePairs({.views = 0}).error().code, ErrorCode::kInvalidOption);
   EXPECT_EQ(SimulatePairs({.outliers = 9}).error().code, ErrorCode::kInvalidOption);
   EXPECT_EQ(SimulatePairs({.lidar_sigma_m = -1.0}).error().code, ErrorCode::kInvalidOption);

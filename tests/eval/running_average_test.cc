@@ -30,7 +30,8 @@ std::vector<Rigid3d> ScansAround(const Rigid3d& pose, int count, Random& random)
 
 double Printed(double value, double quantum) { return std::round(value / quantum) * quantum; }
 
-// The log of the scans, taken in turn `iterations` times, as the original package prints it.
+// The log of the scans, repeated cyclically for `iterations` iterations, as the original package
+// prints it.
 std::vector<RunningAverageRow> Log(const std::vector<Rigid3d>& scans, int iterations) {
   std::vector<RunningAverageRow> rows;
   std::vector<Eigen::Quaterniond> rotations;
@@ -53,7 +54,7 @@ std::vector<RunningAverageRow> Log(const std::vector<Rigid3d>& scans, int iterat
 
 const Rigid3d kPose{ExpSo3({0.1, 0.4, -0.2}), {0.08, -0.12, -0.14}};
 
-TEST(RunningAverage, RecoversTheScansAndTheirLoop) {
+TEST(RunningAverage, RecoversScansAndPeriodOfALoop) {
   Random random(1);
   const std::vector<Rigid3d> scans = ScansAround(kPose, 7, random);
   const auto analysis = AnalyseRunningAverage(Log(scans, 40));
@@ -75,7 +76,8 @@ TEST(RunningAverage, RecoversTheScansAndTheirLoop) {
   EXPECT_LT(RotationDistance(analysis->quaternion_sum, *QuaternionSumMean(rotations)), 1e-7);
 }
 
-// A sample standard deviation of n values is within five of its standard errors, 1 / sqrt(2 n - 2).
+// The sample standard deviation of n values is within five of its standard errors, 1 / sqrt(2 n -
+// 2).
 TEST(RunningAverage, MeasuresTheScatterOfDistinctScans) {
   Random random(2);
   const std::vector<Rigid3d> scans = ScansAround(kPose, 50, random);
@@ -92,7 +94,7 @@ TEST(RunningAverage, MeasuresTheScatterOfDistinctScans) {
   }
 }
 
-TEST(RunningAverage, ASingleScanHasNoScatter) {
+TEST(RunningAverage, ASingleScanHasNoStandardDeviation) {
   Random random(3);
   const auto analysis = AnalyseRunningAverage(Log({kPose}, 5));
   ASSERT_TRUE(analysis);
@@ -102,7 +104,7 @@ TEST(RunningAverage, ASingleScanHasNoScatter) {
   EXPECT_LT(analysis->logged_from_mean_rad, 1e-7);
 }
 
-TEST(RunningAverage, RefusesLogsItCannotUndo) {
+TEST(RunningAverage, RejectsLogsThatCannotBeInverted) {
   Random random(4);
   const std::vector<RunningAverageRow> rows = Log(ScansAround(kPose, 5, random), 10);
   const auto error = [](const std::vector<RunningAverageRow>& log) {
@@ -148,14 +150,14 @@ std::vector<Pair3d3d> ReadPoints(const std::filesystem::path& path) {
   return pairs;
 }
 
-TEST(RunningAverage, SeesThroughTheLogOfTheOriginal) {
+TEST(RunningAverage, AnalysesTheLogOfTheOriginal) {
   SEXTANT_REAL_DATA(path, "dhall");
   const auto analysis = AnalyseRunningAverage(ReadLog(path / "avg_values_head.txt"));
   ASSERT_TRUE(analysis) << analysis.error().message;
   EXPECT_EQ(analysis->scans.size(), 100U);
-  // A recording of 18 scans in a loop. Scans 1 to 3 do not recur (19 to 21 take their place), and
-  // 42 differs from both 24 and 60, by thousands of times what printing allows: 18 + 3 + 1 distinct
-  // ones.
+  // A recording of 18 scans in a loop. Scans 1 to 3 do not recur (19 to 21 replace them), and 42
+  // differs from both 24 and 60 by thousands of times the rounding error: 18 + 3 + 1 distinct
+  // scans.
   EXPECT_EQ(analysis->period, 18);
   EXPECT_EQ(analysis->off_period, 5);
   EXPECT_EQ(analysis->distinct_scans, 22);
@@ -174,7 +176,7 @@ TEST(RunningAverage, SeesThroughTheLogOfTheOriginal) {
   EXPECT_LT(distance.translation_m, 6e-6);
   EXPECT_LT(distance.rotation_rad, 1e-5);
 
-  // The last scan is the tenth again, seen under the logged average.
+  // The last scan repeats the tenth; its rotation is recovered from the logged average.
   EXPECT_EQ(analysis->scans[99].repeats, 10);
   const Rigid3d logged{analysis->logged_rotation, analysis->mean.translation};
   EXPECT_NEAR(*Evaluate(problem, logged).rmse_m, analysis->last_rmse_m, 1e-6);

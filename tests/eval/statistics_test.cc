@@ -13,7 +13,7 @@
 namespace sextant {
 namespace {
 
-TEST(WilsonInterval, IsThatOfThePaperAndNeverEmpty) {
+TEST(WilsonInterval, MatchesThePaperAndIsNeverEmpty) {
   // 7 of 10: the roots of (p - 0.7)^2 = z^2 p (1 - p) / 10.
   const Interval interval = WilsonInterval(7, 10);
   for (const double p : {interval.low, interval.high}) {
@@ -25,7 +25,7 @@ TEST(WilsonInterval, IsThatOfThePaperAndNeverEmpty) {
   EXPECT_LT(WilsonInterval(50, 50).low, 0.95);
 }
 
-TEST(QuantileOfSorted, LiesBetweenOrderStatistics) {
+TEST(QuantileOfSorted, InterpolatesBetweenOrderStatistics) {
   const std::vector<double> values = {1.0, 2.0, 4.0, 8.0};
   EXPECT_EQ(QuantileOfSorted(values, 0.0), 1.0);
   EXPECT_EQ(QuantileOfSorted(values, 0.5), 3.0);
@@ -33,9 +33,9 @@ TEST(QuantileOfSorted, LiesBetweenOrderStatistics) {
   EXPECT_EQ(QuantileOfSorted(std::vector<double>{5.0}, 0.3), 5.0);
 }
 
-// Resamples drawn one by one have the same interval, up to the chance of 20000 of them: a standard
-// error of sqrt(0.025 * 0.975 / 20000) = 0.0011 of probability, which may move a rank by one.
-TEST(QuantileInterval, IsTheLimitOfDrawnResamples) {
+// 20000 drawn resamples give the same interval up to sampling error: a standard error of sqrt(0.025
+// * 0.975 / 20000) = 0.0011 in probability, which may shift a rank by one.
+TEST(QuantileInterval, IsTheLimitOfTheResampledBootstrap) {
   constexpr int kSize = 41;
   std::vector<double> values(kSize);
   std::iota(values.begin(), values.end(), 1.0);
@@ -55,9 +55,9 @@ TEST(QuantileInterval, IsTheLimitOfDrawnResamples) {
   }
 }
 
-// How often intervals cover the truth. 600 repetitions leave a standard error of 0.9 percent; the
-// percentile bootstrap of a root mean square of 60 values covers about 93 percent.
-TEST(Intervals, CoverTheTruthAsOftenAsTheySay) {
+// Coverage of the truth. 600 repetitions have a standard error of 0.9 percent; the percentile
+// bootstrap of a root mean square of 60 values covers about 93 percent.
+TEST(Intervals, HaveTheirNominalCoverage) {
   constexpr int kRepetitions = 600;
   constexpr int kSize = 60;
   int median = 0;
@@ -83,7 +83,7 @@ TEST(Intervals, CoverTheTruthAsOftenAsTheySay) {
   EXPECT_LT(square, 0.975 * kRepetitions);
 }
 
-TEST(BootstrapRatio, OfManyValuesIsAsWideAsTheNormalInterval) {
+TEST(BootstrapRatio, HasTheWidthOfTheNormalIntervalForManyValues) {
   Random random(11);
   std::vector<double> values;
   for (int i = 0; i < 50000; ++i) values.push_back(3.0 + random.Normal());

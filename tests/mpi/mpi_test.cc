@@ -183,7 +183,7 @@ TEST_F(Mpi, AFullDiskOfOneRankLosesNothing) {
             "OMPI_MCA_btl=self,tcp exec " +
                 rank);
   EXPECT_EQ(full.exit_code, 2);
-  EXPECT_THAT(full.err, HasSubstr("make room and run the same command again"));
+  EXPECT_THAT(full.err, HasSubstr("free some space and run the same command again"));
   const ProgramRun again = Run(2, experiment, "out");
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_THAT(again.err, HasSubstr(" of 4000 trials were already in"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The accuracy of every registered solver on seeded scenes, against what it was: golden/NAME.json
-// holds the figures of golden/NAME.yaml. scripts/update-golden rewrites them through this test.
+// Compares the accuracy of every registered solver on seeded scenes with recorded figures:
+// golden/NAME.json holds those of golden/NAME.yaml. scripts/update-golden rewrites them with this
+// test.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,9 +9,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "regression/golden_figures.h"
 #include "eval/experiment/run/run_trials.h"
 #include "io/text/text_file.h"
+#include "regression/golden_figures.h"
 #include "solvers/builtin_solvers.h"
 #include "support/run_program.h"
 #include "support/source_tree.h"
@@ -20,7 +21,7 @@ namespace {
 
 std::filesystem::path GoldenFolder() { return SourceRoot() / "tests" / "regression" / "golden"; }
 
-// The figures of the experiment as the solvers are now.
+// The figures of the experiment with the current solvers.
 std::vector<GoldenFigure> RunGolden(const std::string& name) {
   const Expected<Experiment> experiment =
       ReadExperiment(GoldenFolder() / (name + ".yaml"), BuiltinKinds(), BuiltinSolvers());
@@ -63,14 +64,14 @@ constexpr const char* kExperiments[] = {"accuracy", "board_views"};
 INSTANTIATE_TEST_SUITE_P(Golden, AccuracyRegression, testing::ValuesIn(kExperiments),
                          [](const auto& test) { return std::string(test.param); });
 
-TEST(GoldenFigures, HoldEveryRegisteredSolver) {
+TEST(GoldenFigures, ContainEveryRegisteredSolver) {
   std::vector<GoldenFigure> golden;
   for (const char* name : kExperiments) {
     for (const GoldenFigure& figure : ReadGolden(name)) golden.push_back(figure);
   }
   const SolverRegistry registry = BuiltinSolvers();
   for (const SolverEntry& entry : registry.entries()) {
-    if (entry.name == "mean_offset") continue;  // A baseline, wrong by design.
+    if (entry.name == "mean_offset") continue;  // A baseline that ignores the rotation.
     const bool held = std::any_of(golden.begin(), golden.end(), [&entry](const GoldenFigure& f) {
       return f.subject == entry.name || f.subject.starts_with(entry.name + "(");
     });
@@ -78,8 +79,8 @@ TEST(GoldenFigures, HoldEveryRegisteredSolver) {
   }
 }
 
-// The comparison sees what it looks for.
-TEST(GoldenFigures, NameWhatGotWorseWhereAndByHowMuch) {
+// The comparison reports worse, new and missing figures.
+TEST(GoldenFigures, ReportWhatBecameWorse) {
   const std::vector<GoldenFigure> golden = {
       {"20 pixels", "epnp", "median(rotation_deg)", 0.10, 0.09, 0.11},
       {"20 pixels", "epnp", "rate(fine)", 0.99, 0.97, 1.0},
@@ -95,13 +96,14 @@ TEST(GoldenFigures, NameWhatGotWorseWhereAndByHowMuch) {
           "epnp, 20 pixels: median(rotation_deg) is 0.15, was 0.1 [0.09, 0.11]: 50.0 percent worse",
           "epnp, 20 pixels: rate(fine) is 0.95, was 0.99 [0.97, 1]: 4.0 percent worse",
           "p4p, 20 pixels: median(rotation_deg) is new; run scripts/update-golden",
-          "p3p, 20 pixels: median(rotation_deg) is gone: the solver no longer answers there"));
+          "p3p, 20 pixels: median(rotation_deg) is missing: the solver no longer returns a pose "
+          "there"));
   now = golden;
   now[0].value = 0.05;
   EXPECT_THAT(CompareWithGolden(golden, now), testing::IsEmpty()) << "better is not worse";
 }
 
-TEST(GoldenFigures, SurviveTheirFile) {
+TEST(GoldenFigures, RoundTripThroughTheirFile) {
   const std::vector<GoldenFigure> golden = {{"a \"b\"", "x(y)", "rate(fine)", 0.5, 0.25, 0.75}};
   const auto read = ParseGolden(FormatGolden(golden), "golden");
   ASSERT_TRUE(read) << read.error().message;

@@ -21,7 +21,7 @@ CalibrationProblem AllPlacements(const std::filesystem::path& path) {
   return *problem;
 }
 
-TEST(AcfrPoses, KabschOverAllHasTheKnownError) {
+TEST(AcfrPoses, KabschOfAllPairsHasTheKnownError) {
   SEXTANT_REAL_DATA(path, "acfr_vlp16/poses.csv");
   const Expected<SolveReport> report =
       (*BuiltinSolvers().Make("kabsch"))->Solve(AllPlacements(path));
@@ -29,7 +29,8 @@ TEST(AcfrPoses, KabschOverAllHasTheKnownError) {
   EXPECT_NEAR(*report->evaluation.rmse_m, 0.01615, 2e-5);
 }
 
-// Eight folds over whole placements: what a robust solver leaves out must not cost it elsewhere.
+// Cross-validation with eight folds over whole placements: rejecting outliers must not increase the
+// error on held-out placements.
 TEST(AcfrPoses, RobustSolversAreNeverWorseOnHeldOutPlacements) {
   SEXTANT_REAL_DATA(path, "acfr_vlp16/poses.csv");
   const CalibrationProblem problem = AllPlacements(path);

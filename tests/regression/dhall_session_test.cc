@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels of a real session of ankitdhall/lidar_camera_calibration: the corners of its two tags as
-// detected, and the poses that its own pipeline stored.
+// Pixels of a real session of ankitdhall/lidar_camera_calibration: the detected corners of its two
+// tags, and the poses stored by its own pipeline.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kMarkerSide = 0.205;
 
-// A tag in its own frame: x right, y up, corners clockwise from the top left. Its frame stands in
-// for the LiDAR's.
+// A tag in its own frame, which takes the role of the LiDAR frame: x right, y up, corners clockwise
+// from the top left.
 CalibrationProblem ProblemOf(const DetectedMarker& marker, const Camera& camera) {
   constexpr double kHalf = 0.5 * kMarkerSide;
   const Eigen::Vector3d corners[] = {
@@ -43,7 +43,7 @@ SolveReport Solve(const char* spec, const CalibrationProblem& problem) {
   return report ? *report : SolveReport{};
 }
 
-TEST(DhallSession, LeastSquaresGivesTheStoredPoses) {
+TEST(DhallSession, LeastSquaresReproducesTheStoredPoses) {
   SEXTANT_REAL_DATA(ini, "dhall/zed_left_uurmi.ini");
   SEXTANT_REAL_DATA(transforms, "dhall/session_2017-05-03/transform.txt");
   const Expected<Camera> camera = ReadCamera(ini);
@@ -63,7 +63,7 @@ TEST(DhallSession, LeastSquaresGivesTheStoredPoses) {
       EXPECT_EQ(report.inliers.size(), 4U);
       ASSERT_TRUE(report.covariance);
     }
-    // Closed forms weigh the pixels otherwise: less than one sigma away.
+    // Closed forms weight the pixels differently; the difference is below one sigma.
     const Matrix6d covariance = *Solve("refine(ippe)", problem).covariance;
     const double sigma_m = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
     for (const char* spec : {"ippe", "epnp"}) {
@@ -74,7 +74,8 @@ TEST(DhallSession, LeastSquaresGivesTheStoredPoses) {
   }
 }
 
-// The K that the session's own configuration states is another camera's, and the pose shows it.
+// The camera matrix in the session's configuration belongs to another camera, which shows in the
+// pose.
 TEST(DhallSession, TheConfiguredMatrixGivesAWrongDistance) {
   SEXTANT_REAL_DATA(path, "dhall/session_2017-05-03/config_file.txt");
   SEXTANT_REAL_DATA(transforms, "dhall/session_2017-05-03/transform.txt");

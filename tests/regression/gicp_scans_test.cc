@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two real scans of small_gicp's data and the pose between them that its authors publish.
+// Two real scans of small_gicp's data with the relative pose published by its authors.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -24,8 +24,8 @@ Eigen::Matrix4d ReadMatrix(const std::filesystem::path& path) {
   return matrix;
 }
 
-// One point, the mean, for each cell: a wall far off then counts as much as the ground at the
-// sensor's foot. The data's authors do the same.
+// One mean point per cell, so that a distant wall has the same weight as the ground near the
+// sensor. The authors of the data do the same.
 std::vector<Eigen::Vector3d> Thinned(const std::vector<Eigen::Vector3d>& points, double cell_m) {
   struct Sum {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -43,9 +43,9 @@ std::vector<Eigen::Vector3d> Thinned(const std::vector<Eigen::Vector3d>& points,
   return thinned;
 }
 
-// Point to plane, from no idea at all. The published pose is a result, not the truth: hence degrees
-// and centimetres.
-TEST(GicpScans, IcpFromIdentityMeetsThePublishedPose) {
+// Point-to-plane ICP from the identity. The published pose is an estimate, not the truth, hence
+// tolerances in degrees and centimetres.
+TEST(GicpScans, IcpFromIdentityReachesThePublishedPose) {
   SEXTANT_REAL_DATA(folder, "gicp");
   const Expected<PointCloud> target = ReadCloud(folder / "target.ply");
   const Expected<PointCloud> source = ReadCloud(folder / "source.ply");

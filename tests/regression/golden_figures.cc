@@ -66,7 +66,7 @@ Expected<std::vector<GoldenFigure>> ParseGolden(const std::string& text, const s
   const auto refuse = [&file] {
     return MakeError(ErrorCode::kParse,
                      fmt::format("{}: expected a list of [condition, solver, statistic, value, "
-                                 "low, high]; write it by scripts/update-golden",
+                                 "low, high]; write it with scripts/update-golden",
                                  file));
   };
   if (!json.is_array()) return refuse();
@@ -102,7 +102,7 @@ std::vector<std::string> CompareWithGolden(const std::vector<GoldenFigure>& gold
   }
   for (const GoldenFigure& figure : golden) {
     if (after.count({figure.condition, figure.subject, figure.statistic}) == 0) {
-      lines.push_back(Name(figure) + " is gone: the solver no longer answers there");
+      lines.push_back(Name(figure) + " is missing: the solver no longer returns a pose there");
     }
   }
   return lines;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes that no scan can be of are refused by name.
+// Invalid scenes are rejected with a message that names the object.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ TEST(BadScan, TagsMustExist) {
   EXPECT_THAT(error.message, HasSubstr("5000"));
 }
 
-TEST(BadScan, TheLidarStandsOutsideThings) {
+TEST(BadScan, TheLidarMustBeOutsideOfObjects) {
   EXPECT_THAT(AfterChange([](Scene& s) {
                 s.boxes[0].world_from_box.translation = s.lidar.world_from_lidar.translation;
               }).message,
@@ -65,7 +65,7 @@ TEST(BadScan, TheLidarStandsOutsideThings) {
               HasSubstr("inside cylinder 'person'"));
 }
 
-TEST(BadScan, AMillionBoardsAreTooMany) {
+TEST(BadScan, RejectsAMillionBoards) {
   EXPECT_THAT(AfterChange([](Scene& s) { s.boards.resize(1000000); }).message,
               HasSubstr("10000 at most"));
 }

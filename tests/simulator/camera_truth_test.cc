@@ -46,8 +46,8 @@ sextant::Scene TruthScene(const Camera& camera) {
   return scene;
 }
 
-// How far a world point with a normal is from the nearest of TruthScene's surfaces whose outward
-// normal is that one, each by its own equation.
+// Distance of a world point from the nearest surface of TruthScene with this outward normal, each
+// computed from its own equation.
 double DistanceToSurfaces(const sextant::Scene& scene, const Eigen::Vector3d& point,
                           const Eigen::Vector3d& normal) {
   constexpr double kNoMatch = 1e3;
@@ -76,7 +76,7 @@ double DistanceToSurfaces(const sextant::Scene& scene, const Eigen::Vector3d& po
 
 class CameraTruthTest : public testing::TestWithParam<std::string> {};
 
-TEST_P(CameraTruthTest, DepthAndNormalAreThoseOfTheSurfaces) {
+TEST_P(CameraTruthTest, DepthAndNormalMatchTheSurfaces) {
   Camera camera = *FindCameraModel(GetParam());
   const sextant::Scene scene = TruthScene(camera);
   const Expected<SurfaceImage> surfaces = RenderSurfaces(scene, 0, 0.0);
@@ -101,7 +101,7 @@ TEST_P(CameraTruthTest, DepthAndNormalAreThoseOfTheSurfaces) {
   EXPECT_GT(seen, 0.1 * camera.width_px * camera.height_px / 49.0);
 }
 
-TEST_P(CameraTruthTest, RaysBetweenNodesAreTheLenss) {
+TEST_P(CameraTruthTest, InterpolatedRaysMatchTheLens) {
   const Camera camera = *FindCameraModel(GetParam());
   double worst = 0.0;
   for (const int left : {-1, camera.width_px / 3, camera.width_px - 33}) {
@@ -122,8 +122,9 @@ TEST_P(CameraTruthTest, RaysBetweenNodesAreTheLenss) {
 INSTANTIATE_TEST_SUITE_P(Cameras, CameraTruthTest, testing::ValuesIn(CameraModelNames()),
                          [](const auto& camera) { return camera.param; });
 
-// A lens that folds within the image shows nothing beyond, and what it shows is not disturbed.
-TEST(RayTile, LeavesOutWhatTheLensDoesNotShow) {
+// A lens model that folds over within the image has no rays beyond the fold, and valid rays are not
+// affected.
+TEST(RayTile, HasNoRaysOutsideOfTheLensImage) {
   const Camera camera{.model = CameraModel::kBrownConrady,
                       .width_px = 400,
                       .height_px = 400,
@@ -142,7 +143,7 @@ TEST(RayTile, LeavesOutWhatTheLensDoesNotShow) {
   EXPECT_EQ(image->at<std::uint8_t>(200, 200), 153);
 }
 
-TEST(TagPicture, ShowsTheWindowOfTheWholeImageAndItsCorners) {
+TEST(TagPicture, IsAWindowOfTheWholeImage) {
   for (const std::string& model : CameraModelNames()) {
     TagPictureOptions options{.side_px = 90.0, .tilt_rad = 0.6, .camera_model = model, .seed = 3};
     const Expected<TagPicture> picture = RenderTagPicture(options);
@@ -157,7 +158,7 @@ TEST(TagPicture, ShowsTheWindowOfTheWholeImageAndItsCorners) {
     const cv::Mat image = *RenderImage(scene, 0, {});
     const cv::Mat window =
         image(cv::Rect(left, top, picture->camera.width_px, picture->camera.height_px));
-    // Blocks begin elsewhere, so that rays differ in their last digits.
+    // The blocks are at different positions, so the rays differ in their last digits.
     EXPECT_LE(cv::norm(window, picture->image, cv::NORM_INF), 1.0);
     for (const Eigen::Vector2d& corner : picture->corners_px) {
       EXPECT_GT(corner.minCoeff(), 8.0);
@@ -170,7 +171,7 @@ TEST(TagPicture, ShowsTheWindowOfTheWholeImageAndItsCorners) {
   }
 }
 
-TEST(TagPicture, RefusesWhatCannotBe) {
+TEST(TagPicture, RejectsInvalidOptions) {
   EXPECT_FALSE(RenderTagPicture({.side_px = 0.0}));
   EXPECT_FALSE(RenderTagPicture({.tilt_rad = 1.6}));
   EXPECT_FALSE(RenderTagPicture({.id = 4000}));

@@ -28,7 +28,7 @@ Camera SmallCamera(CameraModel model) {
   return camera;
 }
 
-// A wide board that ends at its right edge, turned and shifted in the image.
+// A wide board with its right edge in the image, rotated and shifted.
 Rigid3d EdgePose(double angle_rad, double shift_px) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()));
   const double metre_per_px = 1.0 / 180.0;
@@ -36,7 +36,8 @@ Rigid3d EdgePose(double angle_rad, double shift_px) {
   return {turn, edge_center - turn * Eigen::Vector3d(0.5, 0.0, 0.0)};
 }
 
-// Where the true edge crosses the line (row or column) of a measured point, by bisection.
+// The intersection of the true edge with the line (row or column) of a measured point, by
+// bisection.
 double TrueCrossing(const Camera& camera, const Rigid3d& pose, const Eigen::Vector2d& measured,
                     int down) {
   const auto pixel_at = [&](double y) {
@@ -52,7 +53,7 @@ double TrueCrossing(const Camera& camera, const Rigid3d& pose, const Eigen::Vect
   return pixel_at(low)[1 - down];
 }
 
-// White before black: 230 grey levels.
+// White on black: a step of 230 grey levels.
 Expected<cv::Mat> RenderEdge(const Camera& camera, const Rigid3d& pose,
                              const ImageOptions& options) {
   sextant::Scene scene = OneBoardScene(camera, {.top_right_m = 1.0, .right_bottom_m = 0.7}, pose);
@@ -62,7 +63,7 @@ Expected<cv::Mat> RenderEdge(const Camera& camera, const Rigid3d& pose,
 
 class EdgeTest : public testing::TestWithParam<CameraModel> {};
 
-TEST_P(EdgeTest, LiesWithinAHundredthOfAPixel) {
+TEST_P(EdgeTest, IsAccurateToAHundredthOfAPixel) {
   const Camera camera = SmallCamera(GetParam());
   double worst_line = 0.0;
   double worst_mean = 0.0;
@@ -88,7 +89,7 @@ TEST_P(EdgeTest, LiesWithinAHundredthOfAPixel) {
       EXPECT_LT(std::abs(mean), 0.002) << angle_deg << " deg, shift " << shift_px;
     }
   }
-  // A line has up to three pixels of the edge, each rounded by up to half of 230 grey levels.
+  // A line has up to three edge pixels, each rounded by up to half a grey level of 230.
   EXPECT_LT(worst_line, 1.5 / 230.0);
   RecordProperty("worst_line_px", std::to_string(worst_line));
   RecordProperty("worst_mean_px", std::to_string(worst_mean));
@@ -98,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, EdgeTest,
                          testing::Values(CameraModel::kPinhole, CameraModel::kBrownConrady,
                                          CameraModel::kEquidistant));
 
-TEST(EdgeTest, ShowsAnErrorOfTwoHundredthsOfAPixel) {
+TEST(EdgeTest, TheTestDetectsAnErrorOfTwoHundredthsOfAPixel) {
   const Camera camera = SmallCamera(CameraModel::kPinhole);
   const auto crossing = [&](double shift_px) {
     const Rigid3d pose = EdgePose(0.0, shift_px);
@@ -108,7 +109,7 @@ TEST(EdgeTest, ShowsAnErrorOfTwoHundredthsOfAPixel) {
   EXPECT_NEAR(crossing(0.02) - crossing(0.0), 0.02, 0.008);
 }
 
-TEST(EdgeTest, StaysWhereItIsUnderBlur) {
+TEST(EdgeTest, IsNotShiftedByBlur) {
   const Camera camera = SmallCamera(CameraModel::kPinhole);
   const Rigid3d pose = EdgePose(0.4, 0.2);
   ImageOptions options = EvenLight();

@@ -30,17 +30,17 @@ Moments MomentsOf(const cv::Mat& image) {
 }
 
 // Tolerances of five standard errors: a seed in a million fails.
-TEST(Expose, HasTheMeanAndVarianceThatWereAskedFor) {
+TEST(Expose, HasTheSpecifiedMeanAndVariance) {
   for (const double level : {50.0, 100.3, 180.0}) {
     const SensorNoise noise{.read_sigma_grey = 3.0, .shot_variance_grey = 0.05, .seed = 11};
     const Moments moments = MomentsOf(Expose(Flat(level), 1.0, noise));
-    const double variance = 9.0 + 0.05 * level + 1.0 / 12.0;  // The last by rounding.
+    const double variance = 9.0 + 0.05 * level + 1.0 / 12.0;  // 1/12 is due to rounding.
     EXPECT_NEAR(moments.mean, level, 5.0 * std::sqrt(variance / kCount));
     EXPECT_NEAR(moments.variance, variance, 5.0 * variance * std::sqrt(2.0 / kCount));
   }
 }
 
-TEST(Expose, HasNormalNoiseByChiSquare) {
+TEST(Expose, NoiseIsNormalByChiSquare) {
   constexpr double kLevel = 100.3;
   constexpr double kSigma = 3.0;
   constexpr int kFirst = 92;
@@ -62,7 +62,7 @@ TEST(Expose, HasNormalNoiseByChiSquare) {
   EXPECT_NEAR(chi_square, freedom, 5.0 * std::sqrt(2.0 * freedom));
 }
 
-TEST(Expose, DrawsEachRowAndCameraByItself) {
+TEST(Expose, NoiseDiffersBetweenRowsAndCameras) {
   const SensorNoise noise{.read_sigma_grey = 3.0, .seed = 13};
   SensorNoise other = noise;
   other.stream = 1;
@@ -72,14 +72,14 @@ TEST(Expose, DrawsEachRowAndCameraByItself) {
   EXPECT_GT(cv::countNonZero(image.row(0) != image.row(1)), 0.8 * kSide);
 }
 
-TEST(Expose, RoundsAndCutsOff) {
+TEST(Expose, RoundsAndClamps) {
   const cv::Mat levels = (cv::Mat_<float>(1, 5) << -3.0F, 10.49F, 10.5F, 254.6F, 400.0F);
   const cv::Mat expected = (cv::Mat_<std::uint8_t>(1, 5) << 0, 10, 11, 255, 255);
   EXPECT_EQ(cv::countNonZero(Expose(levels, 1.0, {}) != expected), 0);
 }
 
-// A point becomes a Gaussian: its sum, centre and second moments.
-TEST(BlurGaussian, SpreadsAPointByItsSigma) {
+// A point becomes a Gaussian: checks its sum, centre and second moments.
+TEST(BlurGaussian, HasTheSpecifiedVariance) {
   for (const double sigma : {0.2, 0.5, 0.7, 1.5}) {
     cv::Mat image = cv::Mat::zeros(41, 31, CV_32F);
     image.at<float>(20, 14) = 1.0F;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a spot that is wider than a point does at the edges of things.
+// Effects of the spot size at the edges of objects.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using test::Model;
 using test::Noiseless;
 using test::Scan;
 
-constexpr double kBoard = 2.0;  // Metres away.
+constexpr double kBoard = 2.0;  // Distance in metres.
 constexpr double kWidth = 0.8;
 
 Scene BoardBefore(double wall_distance_m) {
@@ -33,7 +33,8 @@ Scene BoardBefore(double wall_distance_m) {
   return scene;
 }
 
-// A ring in ten thousand columns a turn, so that the azimuth step is 1.3 mm on the board.
+// One ring with ten thousand columns per revolution, so that the azimuth step is 1.3 mm on the
+// board.
 LidarModel FineVlp16() {
   LidarModel model = Model("vlp16");
   model.rings = {{.elevation_rad = 0.0}};
@@ -52,7 +53,7 @@ struct Extent {
   double right_m = 1.0;
 };
 
-// Of what is said to be the board, where central rays cross its plane.
+// Width of the points on the board, measured where their central rays intersect its plane.
 Extent BoardExtent(const SimulatedScan& scan) {
   Extent extent;
   for (std::size_t i = 0; i < scan.truth.size(); ++i) {
@@ -69,27 +70,27 @@ Extent BoardExtent(const SimulatedScan& scan) {
 constexpr double kSpot = 0.0127 + kBoard * 0.003;
 constexpr double kResolution = kSpot / 12.0 + 0.0013;
 
-TEST(LidarEdge, ABoardBeforeNothingLooksHalfASpotWiderOnEachSide) {
+TEST(LidarEdge, ABoardWithoutBackgroundAppearsHalfASpotWiderOnEachSide) {
   const Extent extent = BoardExtent(Scan(BoardBefore(0.0), FineVlp16(), OnlySpot()));
   EXPECT_NEAR(extent.left_m, 0.5 * kWidth + 0.5 * kSpot, kResolution);
   EXPECT_NEAR(extent.right_m, -0.5 * kWidth - 0.5 * kSpot, kResolution);
 }
 
-// Equally bright, twice as far away: the board is the stronger echo from a fifth of the spot on,
-// f / 4 > (1 - f) / 16.
-TEST(LidarEdge, ABrightWallBehindTakesTheEdgeBack) {
+// The wall is equally bright and twice as far away, so the board is the stronger echo from a fifth
+// of the spot on: f / 4 > (1 - f) / 16.
+TEST(LidarEdge, ABrightWallBehindRemovesTheWidening) {
   const Extent extent = BoardExtent(Scan(BoardBefore(4.0), FineVlp16(), OnlySpot()));
   EXPECT_NEAR(extent.left_m, 0.5 * kWidth + 0.3 * kSpot, kResolution);
   EXPECT_NEAR(extent.right_m, -0.5 * kWidth - 0.3 * kSpot, kResolution);
 }
 
-TEST(LidarEdge, WithoutDivergenceTheEdgeIsWhereItIs) {
+TEST(LidarEdge, WithoutDivergenceTheEdgeIsExact) {
   const Extent extent = BoardExtent(Scan(BoardBefore(4.0), FineVlp16(), Noiseless()));
   EXPECT_NEAR(extent.left_m, 0.5 * kWidth, 0.0013);
   EXPECT_NEAR(extent.right_m, -0.5 * kWidth, 0.0013);
 }
 
-// Not the wall's own ends, where the lit part is far beside the central ray.
+// Excludes the wall's own ends, where the illuminated part is far from the central ray.
 bool NearBoard(const Eigen::Vector3d& point) { return std::abs(point.y()) < 1.0; }
 
 int PointsBetween(const SimulatedScan& scan, double low_x, double high_x) {
@@ -98,9 +99,9 @@ int PointsBetween(const SimulatedScan& scan, double low_x, double high_x) {
   }));
 }
 
-TEST(LidarEdge, PointsLieBetweenSurfacesThatAreNear) {
+TEST(LidarEdge, MixedPointsLieBetweenNearSurfaces) {
   const SimulatedScan near = Scan(BoardBefore(2.5), FineVlp16(), OnlySpot());
-  // Two edges of one spot each, 1.3 mm a step.
+  // Two edges of one spot each, in steps of 1.3 mm.
   EXPECT_NEAR(PointsBetween(near, 2.01, 2.49), 2.0 * kSpot / 0.00127, 5.0);
   const SimulatedScan far = Scan(BoardBefore(3.5), FineVlp16(), OnlySpot());
   EXPECT_EQ(PointsBetween(far, 2.01, 3.49), 0);
@@ -117,7 +118,7 @@ TEST(LidarEdge, MixedPointsAreMarked) {
   }
 }
 
-// Points of many scans, each a little turned against the one before.
+// Points of many scans, each slightly rotated relative to the previous one.
 int PointsOf(const Scene& scene, LidarModel model, bool dropouts) {
   int points = 0;
   for (int k = 0; k < 60; ++k) {
@@ -130,9 +131,9 @@ int PointsOf(const Scene& scene, LidarModel model, bool dropouts) {
   return points;
 }
 
-// Shares of a spot come in twelfths: of those below a half, 1 - 2 s is lost, 5/24 of a spot's
-// width.
-TEST(LidarEdge, SpotsThatHardlyTouchAreLost) {
+// Fractions s of a spot come in twelfths: of those below one half, 1 - 2 s are lost, 5/24 of a
+// spot's width.
+TEST(LidarEdge, SpotsThatHardlyHitAreLost) {
   LidarModel model = FineVlp16();
   model.dropout = 0.0;
   const Scene scene = BoardBefore(0.0);
@@ -141,8 +142,8 @@ TEST(LidarEdge, SpotsThatHardlyTouchAreLost) {
   EXPECT_NEAR(lost, expected, 4.0 * std::sqrt(expected) + 0.05 * expected);
 }
 
-// 4 s (1 - s) is 2/3 on average over a spot's way across an edge. The ring crosses two, into the
-// black square in the middle and out of it.
+// 4 s (1 - s) is 2/3 on average while a spot crosses an edge. The ring crosses two edges, into and
+// out of the black square in the middle.
 TEST(LidarEdge, SpotsHalfOnBlackAreLost) {
   LidarModel model = FineVlp16();
   model.dropout = 0.0;
@@ -178,7 +179,7 @@ TEST(LidarEdge, NearEchoesMergeToTheirPowerWeightedMean) {
   EXPECT_TRUE(echo.truth.mixed);
 }
 
-TEST(LidarEdge, OfApartEchoesTheStrongestCounts) {
+TEST(LidarEdge, TheStrongestOfSeparateEchoesIsReturned) {
   LidarTarget front;
   LidarTarget back;
   back.object = SceneObject::kWall;
@@ -190,8 +191,8 @@ TEST(LidarEdge, OfApartEchoesTheStrongestCounts) {
   EXPECT_FALSE(echo.truth.mixed);
 }
 
-// Whatever is returned as a spot on one surface must be one: its corners are cast as lines.
-TEST(LidarEdge, NoEdgeIsOverlooked) {
+// Every spot reported to be on one surface must be: the rays of its corners are cast to check.
+TEST(LidarEdge, FindsEveryEdge) {
   const Scene scene = FullRoom();
   const LidarSpot spot = {.aperture_h_m = 0.0127,
                           .aperture_v_m = 0.0095,
@@ -218,7 +219,7 @@ TEST(LidarEdge, NoEdgeIsOverlooked) {
     ++whole;
     const Eigen::Vector3d h(-std::sin(azimuth), std::cos(azimuth), 0.0);
     const Eigen::Vector3d v = direction.cross(h);
-    // Within the outermost sub-rays: what only the rim of a spot meets may be missed.
+    // Checks within the outermost sub-rays, as objects hit only by the rim of a spot may be missed.
     for (const double a : {-0.45, 0.45}) {
       for (const double b : {-0.41, 0.41}) {
         const LidarRay corner = {

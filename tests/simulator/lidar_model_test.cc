@@ -20,7 +20,7 @@ LidarModel Find(const char* name) {
   return model.value_or(LidarModel{});
 }
 
-TEST(LidarModel, EveryNameIsAValidModelThatNamesItsSource) {
+TEST(LidarModel, EveryModelIsValidAndNamesItsSource) {
   for (const std::string& name : LidarModelNames()) {
     const Expected<LidarModel> model = FindLidarModel(name);
     ASSERT_TRUE(model) << name;
@@ -33,7 +33,7 @@ TEST(LidarModel, EveryNameIsAValidModelThatNamesItsSource) {
   }
 }
 
-TEST(LidarModel, AnUnknownNameIsAnsweredWithTheNearest) {
+TEST(LidarModel, AnUnknownNameSuggestsTheNearest) {
   const Expected<LidarModel> model = FindLidarModel("vlp-16");
   ASSERT_FALSE(model);
   EXPECT_EQ(model.error().code, ErrorCode::kUnknownName);
@@ -48,7 +48,7 @@ struct Sheet {
   double highest_deg;
 };
 
-TEST(LidarModel, FansAreThoseOfTheDataSheets) {
+TEST(LidarModel, RingElevationsMatchTheDataSheets) {
   const Sheet sheets[] = {
       {"vlp16", 16, 1808, -15.0, 15.0},    {"hdl32e", 32, 2170, -30.67, 10.67},
       {"hdl64e", 64, 2083, -24.33, 2.0},   {"os1_64", 64, 1024, -16.61, 16.61},
@@ -68,7 +68,7 @@ TEST(LidarModel, FansAreThoseOfTheDataSheets) {
 }
 
 // Rows of the tables in the VLP-16's, the HDL-32E's and the Pandar40P's manuals.
-TEST(LidarModel, SingleLasersAreWhereTheManualsPutThem) {
+TEST(LidarModel, SelectedLasersMatchTheManuals) {
   const LidarModel vlp = Find("vlp16");
   EXPECT_NEAR(vlp.rings[8].elevation_rad, 1.0 * kRadPerDeg, 1e-12);  // Laser 1, fired second.
   EXPECT_NEAR(vlp.rings[8].firing_time_s, 2.304e-6, 1e-12);
@@ -86,7 +86,7 @@ TEST(LidarModel, SingleLasersAreWhereTheManualsPutThem) {
   EXPECT_NEAR(pandar.rings[40 - 6].elevation_rad, 2.0 * kRadPerDeg, 1e-12);
 }
 
-TEST(LidarModel, NoTwoLasersOfATurningHeadOfVelodyneFireTogetherExceptInTwoBlocks) {
+TEST(LidarModel, VelodyneLasersFireOneByOneExceptInTwoBlocks) {
   for (const char* name : {"vlp16", "hdl32e"}) {
     const LidarModel model = Find(name);
     std::set<double> times;
@@ -95,7 +95,7 @@ TEST(LidarModel, NoTwoLasersOfATurningHeadOfVelodyneFireTogetherExceptInTwoBlock
   }
 }
 
-TEST(LidarModel, WhatNothingCouldBeIsRefused) {
+TEST(LidarModel, RejectsImpossibleModels) {
   const auto refused = [](auto change) {
     LidarModel model = Find("vlp16");
     change(model);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulated VLP-16 beside seven scans of a real one, with the board where it stood.
+// Compares the simulated VLP-16 with seven scans of a real one, with the board in the same place.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,9 +28,9 @@ struct BoardStatistics {
   double points = 0.0;
   double rings = 0.0;
   double extent_deg =
-      0.0;  ///< Of all rings, from the first to the last point and half a step more.
+      0.0;  ///< Sum over all rings, from the first to the last point plus half a step.
   double plane_rms_mm = 0.0;
-  double step_deg = 0.0;  ///< Median between neighbours of a ring.
+  double step_deg = 0.0;  ///< Median step between adjacent points of a ring.
   std::map<int, double> per_ring{};
 };
 
@@ -54,7 +54,8 @@ BoardStatistics Measure(const RingPoints& board) {
   return result;
 }
 
-// The recordings' driver takes all beams to leave from the origin: so do ours here.
+// The driver of the recordings assumes that all beams start at the origin, so the simulation does
+// here as well.
 LidarModel AsRecorded() {
   LidarModel model = test::Model("vlp16");
   for (LidarRing& ring : model.rings) ring.origin_height_m = 0.0;
@@ -86,12 +87,12 @@ BoardStatistics MeanOfSimulations(const Scene& scene) {
   return mean;
 }
 
-// Tolerances. The stored corners, by which the board is placed, are off by 20 mm here and there. On
-// a board of 610 x 850 mm that is 10 % of its points, one ring at either end and, where an edge
-// runs along the rings, 12 points of one. All boards together: 3 %. Plane rms: 3.5 mm, since the 16
-// biases of 9.5 mm are one draw a unit, and the worst placement has one ring 19 mm off that is not
-// so elsewhere.
-TEST(RealVlp16, BoardsLookAsSimulatedOnes) {
+// Tolerances. The stored corners, which determine the board's pose, have errors of up to 20 mm. On
+// a board of 610 x 850 mm that is 10 % of its points, one ring at either end and, where an edge is
+// parallel to the rings, 12 points of one ring. All boards together: 3 %. Plane RMS: 3.5 mm, since
+// the 16 biases of 9.5 mm are one sample per unit, and in the worst placement one ring is off by 19
+// mm, which it is not in the others.
+TEST(RealVlp16, RealBoardsResembleSimulatedOnes) {
   SEXTANT_REAL_DATA(folder, "acfr_vlp16");
   const auto poses = ReadAcfrPoses(folder / "poses.csv");
   ASSERT_TRUE(poses) << poses.error().message;
@@ -126,8 +127,8 @@ TEST(RealVlp16, BoardsLookAsSimulatedOnes) {
     simulated_extent += simulated.extent_deg;
   }
   EXPECT_NEAR(simulated_points / real_points, 1.0, 0.03);
-  // The board's area as its edges are seen: 2 % of it are 6 mm of width and of height, half of what
-  // edges grow by. Where a ring ends is known to a step, which over 180 ends is 0.1 %.
+  // The apparent area of the board: 2 % correspond to 6 mm of width and of height, half the growth
+  // of the edges. The ends of a ring are known to one step, which over 180 ends is 0.1 %.
   std::printf("extent of all rings: %.2f / %.2f deg (real / simulated)\n", real_extent,
               simulated_extent);
   EXPECT_NEAR(simulated_extent / real_extent, 1.0, 0.02);

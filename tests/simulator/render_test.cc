@@ -40,7 +40,7 @@ bool SameBytes(const cv::Mat& a, const cv::Mat& b) {
 
 int LevelAt(const cv::Mat& image, int x, int y) { return image.at<std::uint8_t>(y, x); }
 
-// A board, a hollow one before a wall, a floor, a box and a cylinder.
+// A solid board, a hollow one in front of a wall, a floor, a box and a cylinder.
 sextant::Scene FullScene() {
   sextant::Scene scene = OneBoardScene(kCamera, TagBoard(), At(-0.2, 0.0, 1.5));
   scene.boards.push_back(scene.boards.front());
@@ -70,23 +70,23 @@ TEST(RenderImage, GivesTheSameBytesOnOneAndTwoThreads) {
   EXPECT_FALSE(SameBytes(one, *RenderImage(FullScene(), 0, options)));
 }
 
-TEST(RenderImage, MovesABoardThatSwings) {
+TEST(RenderImage, MovesASwingingBoard) {
   const auto at = [](double time_s) { return *RenderImage(FullScene(), 0, {.time_s = time_s}); };
   EXPECT_FALSE(SameBytes(at(0.0), at(0.25)));
   EXPECT_TRUE(SameBytes(at(0.0), at(0.5)));
 }
 
-TEST(RenderImage, TakesTheIntrinsicsThatRenderNotThoseThatAreTold) {
+TEST(RenderImage, UsesTheTrueNotTheAssumedIntrinsics) {
   sextant::Scene scene = FullScene();
   const cv::Mat true_image = *RenderImage(scene, 0, {});
-  scene.cameras[0].told_intrinsics = kCamera;
-  scene.cameras[0].told_intrinsics->fx_px *= 1.02;
+  scene.cameras[0].assumed_intrinsics = kCamera;
+  scene.cameras[0].assumed_intrinsics->fx_px *= 1.02;
   EXPECT_TRUE(SameBytes(*RenderImage(scene, 0, {}), true_image));
   EXPECT_EQ(PublishedCamera(scene.cameras[0])->fx_px, 1.02 * kCamera.fx_px);
   EXPECT_EQ(RenderingCamera(scene.cameras[0])->fx_px, kCamera.fx_px);
 }
 
-TEST(RenderImage, HidesWhatIsBehindAndShowsWhatIsInAHole) {
+TEST(RenderImage, BoardsOccludeExceptThroughHoles) {
   sextant::Scene scene = OneBoardScene(kCamera,
                                        {.top_right_m = 0.6,
                                         .right_bottom_m = 0.6,
@@ -113,20 +113,21 @@ TEST(RenderImage, ShowsAPlainBack) {
       << "75 x 60 px, whose left and right end halve a column each";
 }
 
-TEST(RenderImage, ShowsACheckerboardsSquaresInTheirAreas) {
+TEST(RenderImage, ShowsTheSquaresOfACheckerboard) {
   const Board board{.top_right_m = 0.5,
                     .right_bottom_m = 0.4,
                     .checker = BoardChecker{.inner_columns = 4, .inner_rows = 3, .square_m = 0.08}};
   const cv::Mat image = *RenderImage(OneBoardScene(kCamera, board, At(0, 0, 1.0)), 0, EvenLight());
-  // 5 x 4 squares of 12 px, ten of each colour; the centre is where four of them meet below.
-  // Their edges are pixels' borders, where rounding may put a ray on either side.
+  // 5 x 4 squares of 12 px, ten of each colour. Their edges coincide with pixel borders, where
+  // rounding may put a ray on either side.
   EXPECT_EQ(cv::countNonZero(image < 30), 10 * 12 * 12);
   EXPECT_EQ(LevelAt(image, 79 - 30 + 5, 59 - 24 + 5), 20) << "top-left";
   EXPECT_EQ(LevelAt(image, 79 - 30 + 17, 59 - 24 + 5), 250);
 }
 
-// All light is there, however small the print: the mean over an image of a far checkerboard.
-TEST(RenderImage, KeepsTheMeanOfWhatIsSmallerThanAPixel) {
+// The total light is preserved however small the print: mean over an image of a distant
+// checkerboard.
+TEST(RenderImage, KeepsTheMeanOfDetailsSmallerThanAPixel) {
   const Board board{
       .top_right_m = 2.0,
       .right_bottom_m = 2.0,
@@ -138,8 +139,9 @@ TEST(RenderImage, KeepsTheMeanOfWhatIsSmallerThanAPixel) {
   EXPECT_NEAR(cv::mean(middle)[0], 135.0, 1.0);
 }
 
-// A pole of 0.3 px, wherever it stands between the pixels' corners: its share of each row's light.
-TEST(RenderImage, ShowsWhatIsNarrowerThanAPixel) {
+// A pole of 0.3 px at any position between the pixel corners: its contribution to the light of each
+// row.
+TEST(RenderImage, ShowsObjectsNarrowerThanAPixel) {
   Eigen::Matrix3d axes;
   axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   for (const double shift_px : {0.0, 0.25, 0.5, 0.8}) {
@@ -154,14 +156,14 @@ TEST(RenderImage, ShowsWhatIsNarrowerThanAPixel) {
     scene.background_albedo = 90.0 / 255.0;
     const cv::Mat image = *RenderImage(scene, 0, EvenLight());
     for (const int y : {0, 30, 59, 119}) {
-      // 165 levels between the two; two pixels are rounded.
+      // The step is 165 grey levels; two pixels are rounded.
       EXPECT_NEAR((cv::sum(image.row(y))[0] - 90.0 * image.cols) / 165.0, 0.3, 0.01)
           << "row " << y << ", shift " << shift_px;
     }
   }
 }
 
-TEST(RenderImage, LosesTheLightOfTheFarthestCornerThatVignettingSays) {
+TEST(RenderImage, VignettingDarkensTheFarthestCornerAsSpecified) {
   sextant::Scene scene = OneBoardScene(kCamera, TagBoard(), At(0, 0, -1));
   scene.background_albedo = 200.0 / 255.0;
   const cv::Mat image = *RenderImage(scene, 0, {.vignetting = 0.5});
@@ -169,15 +171,15 @@ TEST(RenderImage, LosesTheLightOfTheFarthestCornerThatVignettingSays) {
   EXPECT_EQ(LevelAt(image, 79, 59), 200);
 }
 
-TEST(RenderImage, GoesThroughJpegOnRequest) {
+TEST(RenderImage, CompressesAsJpegOnRequest) {
   const cv::Mat plain = *RenderImage(FullScene(), 0, {});
   const cv::Mat coded = *RenderImage(FullScene(), 0, {.jpeg_quality = 80});
   EXPECT_FALSE(SameBytes(plain, coded));
   EXPECT_LT(cv::norm(plain, coded, cv::NORM_L1) / static_cast<double>(plain.total()), 4.0);
 }
 
-// Half the baseline's disparity each way of where the left camera sees it.
-TEST(StereoPartner, SeesTheDisparityOfItsBaseline) {
+// The disparity is that of the baseline.
+TEST(StereoPartner, HasTheDisparityOfItsBaseline) {
   sextant::Scene scene = OneBoardScene(kCamera, TagBoard(), At(0, 0, 1.5));
   scene.cameras.push_back(StereoPartner(scene.cameras[0], 0.12, "right"));
   const auto center = [&](int camera) {
@@ -206,7 +208,7 @@ struct BadRender {
 
 class BadRenderTest : public testing::TestWithParam<BadRender> {};
 
-TEST_P(BadRenderTest, IsRefusedByName) {
+TEST_P(BadRenderTest, IsRejectedByName) {
   sextant::Scene scene = FullScene();
   int camera = 0;
   ImageOptions options;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where points are when nothing disturbs them.
+// Positions of points without noise.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ double BlockDistance(const Eigen::Vector3d& point, const Eigen::Vector3d& half) 
   return (point.cwiseAbs() - half).maxCoeff();
 }
 
-// Distance of a point from the surface that it is said to be on, by the object's own definition.
+// Distance of a point from its stated surface, by the definition of the object.
 double SurfaceDistance(const Scene& scene, const Eigen::Vector3d& point_in_lidar, double time_s,
                        const PointTruth& truth) {
   const Eigen::Vector3d point = scene.lidar.world_from_lidar * point_in_lidar;
@@ -91,7 +91,7 @@ TEST_P(EveryModel, PutsEveryPointOnItsSurface) {
   }
 }
 
-TEST_P(EveryModel, GivesEveryBeamInAClosedRoomAReturn) {
+TEST_P(EveryModel, EveryBeamInAClosedRoomReturns) {
   const LidarModel model = Model(GetParam());
   ScanOptions options = Noiseless();
   LidarModel near_sighted = model;
@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Lidar, EveryModel, testing::ValuesIn(LidarModelNames())
 
 double WrapAngle(double angle) { return std::remainder(angle, 2.0 * kPi); }
 
-TEST(ScanGeometry, RingsAndAzimuthsAreTheModels) {
+TEST(ScanGeometry, RingsAndAzimuthsMatchTheModel) {
   const LidarModel model = Model("pandar40p");
   const SimulatedScan scan = Scan(FullRoom(), model, Noiseless());
   for (std::size_t i = 0; i < scan.cloud.points.size(); ++i) {
@@ -121,7 +121,7 @@ TEST(ScanGeometry, RingsAndAzimuthsAreTheModels) {
   }
 }
 
-TEST(ScanGeometry, BeamsLeaveFromWhereTheManualSays) {
+TEST(ScanGeometry, BeamOriginsMatchTheManual) {
   const LidarModel vlp = Model("vlp16");
   const SimulatedScan scan = Scan(FullRoom(), vlp, Noiseless());
   for (std::size_t i = 0; i < scan.cloud.points.size(); ++i) {
@@ -132,7 +132,7 @@ TEST(ScanGeometry, BeamsLeaveFromWhereTheManualSays) {
   }
 }
 
-TEST(ScanGeometry, TheRosetteStaysInItsConeAndFillsIt) {
+TEST(ScanGeometry, TheRosetteFillsItsCone) {
   const SimulatedScan scan = Scan(FullRoom(), Model("livox"), Noiseless());
   EXPECT_TRUE(scan.cloud.ring.empty());
   int outer = 0;
@@ -142,19 +142,20 @@ TEST(ScanGeometry, TheRosetteStaysInItsConeAndFillsIt) {
     ASSERT_LE(angle, 19.2 * kPi / 180.0 + 1e-12);
     (angle > 9.6 * kPi / 180.0 ? outer : inner) += 1;
   }
-  // Two turning phasors of equal length: |sum| <= half of the most with probability 1/3.
+  // Sum of two rotating phasors of equal length: |sum| is at most half of its maximum with
+  // probability 1/3.
   const double share = static_cast<double>(inner) / (inner + outer);
   EXPECT_NEAR(share, 1.0 / 3.0, 0.01);
 }
 
-// A board that turns about its corner while the beam passes over it: a point's time must explain
-// where it is, and the board as it was at the start must not.
-TEST(ScanGeometry, AMovingBoardSmears) {
+// A board rotates about its corner while the beam passes over it: its pose at a point's time must
+// explain the point, and its pose at the start must not.
+TEST(ScanGeometry, AMovingBoardIsDistorted) {
   Scene scene;
   scene.boards = {test::PlainBoard(test::Facing({2.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), 1.0, 1.0)};
   scene.boards[0].swing =
       Swing{.axis_in_world = Eigen::Vector3d::UnitY(), .amplitude_rad = 0.5, .period_s = 1.0};
-  // Slow, so that it takes 1/20 of a turn of 2 s to pass the board.
+  // A slow revolution of 2 s, of which the beam takes 1/20 to pass the board.
   LidarModel model = Model("vlp16");
   model.turn_period_s = 2.0;
   model.column_period_s *= 20.0;
@@ -170,7 +171,7 @@ TEST(ScanGeometry, AMovingBoardSmears) {
   EXPECT_GT(off_at_rest, 0.05);
 }
 
-TEST(ScanGeometry, NothingIsSeenThroughABoardAndAHoleIsSeenThrough) {
+TEST(ScanGeometry, BoardsOccludeExceptThroughHoles) {
   Scene scene;
   scene.boards = {test::PlainBoard(test::Facing({2.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), 1.0, 1.0)};
   scene.boards[0].board.hole = BoardHole{.width_m = 0.4, .height_m = 0.4};
@@ -179,7 +180,8 @@ TEST(ScanGeometry, NothingIsSeenThroughABoardAndAHoleIsSeenThrough) {
   int through = 0;
   for (std::size_t i = 0; i < scan.cloud.points.size(); ++i) {
     const Eigen::Vector3d& p = scan.cloud.points[i];
-    // Beams start 12 mm from the origin in their azimuth, which moves where they cross x = 2.
+    // Beams start 12 mm from the origin along their azimuth, which shifts their intersection with x
+    // = 2.
     const Eigen::Vector2d at_board = p.tail<2>() * (2.0 / p.x());
     const double size = at_board.cwiseAbs().maxCoeff();
     if (scan.truth[i].object == SceneObject::kBoard) {
@@ -190,7 +192,7 @@ TEST(ScanGeometry, NothingIsSeenThroughABoardAndAHoleIsSeenThrough) {
       if (size < 0.2) ++through;
     }
   }
-  // 0.4 m at 2 m: 11.4 degrees of 0.35 by as many of 0.527.
+  // 0.4 m at 2 m are 11.4 degrees, in steps of 0.35 and of 0.527 degrees.
   EXPECT_NEAR(through, (11.42 / 0.3516) * (11.42 / 0.5273), 60);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What disturbs points, against what was asked for.
+// Noise and losses of points, compared with the model's parameters.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -22,7 +22,7 @@ using test::Model;
 using test::Noiseless;
 using test::Scan;
 
-// All around, bright and near: no return is dim or weak.
+// A wall all around, bright and near, so that no return is weak.
 Scene BrightRoom() {
   Scene scene = FullRoom();
   scene.boards.clear();
@@ -35,7 +35,7 @@ double RangeOf(const LidarModel& model, const SimulatedScan& scan, std::size_t i
   return (scan.cloud.points[i] - Eigen::Vector3d(0, 0, ring.origin_height_m)).norm();
 }
 
-// Range errors of all beams, by ring.
+// Range errors of all beams by ring.
 std::map<int, std::vector<double>> RangeErrors(const LidarModel& model, std::uint64_t seed,
                                                int scan_index) {
   ScanOptions options = Noiseless();
@@ -52,7 +52,7 @@ std::map<int, std::vector<double>> RangeErrors(const LidarModel& model, std::uin
   return errors;
 }
 
-// Beams and start without the jitter, so that noisy and true beams are the same; no range limits.
+// No jitter of the start, so that noisy and noiseless beams coincide; no range limits.
 LidarModel Steady(const char* name) {
   LidarModel model = Model(name);
   model.start_jitter_rad = 0.0;
@@ -60,7 +60,7 @@ LidarModel Steady(const char* name) {
   return model;
 }
 
-TEST(ScanNoise, RangesAreNormalWithTheSigmaAndBiasAskedFor) {
+TEST(ScanNoise, RangesAreNormalWithTheModelsSigmaAndBias) {
   LidarModel model = Steady("hdl32e");
   model.bias_m = 0.013;
   double sum = 0.0;
@@ -87,7 +87,7 @@ TEST(ScanNoise, RangesAreNormalWithTheSigmaAndBiasAskedFor) {
   EXPECT_LT(chi_square, 33.7);  // 9 degrees of freedom, 1 in 10^4.
 }
 
-TEST(ScanNoise, EachRingOfAUnitKeepsItsOwnBias) {
+TEST(ScanNoise, EachRingOfAUnitHasAConstantBias) {
   LidarModel model = Steady("vlp16");
   model.column_period_s *= 16.0;
   const auto mean = [](const std::vector<double>& v) {
@@ -137,7 +137,7 @@ TEST(ScanNoise, DimSurfacesAreFartherAndNoisier) {
       ++count;
     }
   }
-  // Dimness 1 - 0.03 / 0.15 and up to 3 % of the reflectivity less at the wall's ends.
+  // The effect is 1 - 0.03 / 0.15; at the wall's ends the reflectivity is up to 3 % lower.
   const double dim = 1.0 - 0.029 / 0.15;
   const double sigma = model.range_sigma_m + dim * (model.dim_sigma_m - model.range_sigma_m);
   const double mean = sum / count;
@@ -146,7 +146,7 @@ TEST(ScanNoise, DimSurfacesAreFartherAndNoisier) {
               4.0 * std::sqrt(0.5 / count) + 0.01);
 }
 
-TEST(ScanNoise, ReturnsAreLostAtTheRateAskedFor) {
+TEST(ScanNoise, ReturnsAreLostAtTheModelsRate) {
   LidarModel model = Steady("os1_64");
   model.dropout = 0.05;
   ScanOptions options = Noiseless();
@@ -157,8 +157,8 @@ TEST(ScanNoise, ReturnsAreLostAtTheRateAskedFor) {
   EXPECT_NEAR(static_cast<double>(all - left), 0.05 * n, 4.0 * std::sqrt(0.05 * 0.95 * n));
 }
 
-// Detection at 10 % reflectivity up to 40 m: one of 5 % is certain to 40 / sqrt(2) m, lost from 40
-// m.
+// Detection at 10 % reflectivity up to 40 m: a surface of 5 % is always detected up to 40 / sqrt(2)
+// m and never beyond 40 m.
 TEST(ScanNoise, WeakReturnsAreLostWithDistance) {
   LidarModel model = Steady("os1_64");
   model.dropout = 0.0;
@@ -176,7 +176,7 @@ TEST(ScanNoise, WeakReturnsAreLostWithDistance) {
   };
   EXPECT_EQ(share_at(27.0), 1.0);
   EXPECT_EQ(share_at(41.0), 0.0);
-  // At 32.66 m 3/4 of the power needed, so half of 150 beams or more.
+  // At 32.66 m the power is 3/4 of that needed, so half of the beams, 150 or more, return.
   EXPECT_NEAR(share_at(32.66), 0.5, 4.0 * std::sqrt(0.25 / 150.0));
 }
 
@@ -191,10 +191,10 @@ TEST(ScanNoise, RangesAreMultiplesOfTheStep) {
     odd = odd || std::fmod(std::round(steps), 2.0) == 1.0;
     ASSERT_EQ(scan.cloud.intensity[i], std::round(scan.cloud.intensity[i]));
   }
-  EXPECT_TRUE(odd);  // Not a coarser step.
+  EXPECT_TRUE(odd);  // The step is not a multiple of the model's.
 }
 
-// White paper seen squarely gives 80 % of the scale, black cells an eighth of that.
+// White paper at normal incidence gives 80 % of the scale, black cells an eighth of that.
 TEST(ScanNoise, IntensityFollowsThePrint) {
   Scene scene;
   scene.boards = {test::PlainBoard(test::Facing({1.5, 0.0, 0.0}, {1.0, 0.0, 0.0}), 1.2, 1.2)};
@@ -209,7 +209,7 @@ TEST(ScanNoise, IntensityFollowsThePrint) {
     const Eigen::Array2d squares = p.head<2>().array() / 0.4 + 1.5;
     const Eigen::Array2d to_line = (squares - squares.round()).abs();
     if (to_line.minCoeff() < 0.05 || scan.truth[i].spot_share < 1.0) continue;
-    // Black at the top-left and wherever an even number of squares lies between.
+    // The top-left square is black, and so is every second one.
     const Eigen::Array2i square = squares.floor().cast<int>();
     const bool is_black = square.sum() % 2 == 0;
     const double cosine = scan.cloud.points[i].x() / scan.cloud.points[i].norm();
@@ -227,7 +227,7 @@ bool SameBytes(const SimulatedScan& a, const SimulatedScan& b) {
          same(a.cloud.ring, b.cloud.ring) && same(a.cloud.time_s, b.cloud.time_s);
 }
 
-TEST(ScanNoise, SameSeedSameBytesOnOneAndTwoThreads) {
+TEST(ScanNoise, TheSameSeedGivesTheSameBytesOnOneAndTwoThreads) {
   for (const char* name : {"vlp16", "livox"}) {
     const LidarModel model = Model(name);
     const ScanOptions options{.seed = 3, .scan_index = 2};
@@ -245,7 +245,7 @@ TEST(ScanNoise, SameSeedSameBytesOnOneAndTwoThreads) {
   }
 }
 
-TEST(ScanNoise, TheStartOfAScanJitters) {
+TEST(ScanNoise, TheStartAzimuthJitters) {
   LidarModel model = Model("vlp16");
   model.start_jitter_rad = 0.01;
   ScanOptions options = Noiseless();

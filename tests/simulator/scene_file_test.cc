@@ -20,7 +20,7 @@ using test::BadText;
 constexpr ErrorCode kParse = ErrorCode::kParse;
 constexpr ErrorCode kInvalid = ErrorCode::kInvalidInput;
 
-// A scene of one board 2 m before a LiDAR and a camera, with other lines in its places.
+// A scene with one board 2 m in front of a LiDAR and a camera, in which lines can be replaced.
 struct Parts {
   std::string lidar = "{model: vlp16, pose: {position_m: [0, 0, 1]}}";
   std::string camera = "{model: pinhole, pose: {position_m: [0, 0.1, 1]}}";
@@ -35,7 +35,7 @@ std::string SceneText(const Parts& parts) {
          parts.more;
 }
 
-TEST(SceneFile, PosesAreAsAPersonWouldSayThem) {
+TEST(SceneFile, PosesFollowTheirDescription) {
   const auto scene = ParseScene(
       SceneText({.pose = "position_m: [2, 0, 1], facing_m: [0, 0, 1], roll_deg: 45"}), "s");
   ASSERT_TRUE(scene) << scene.error().message;
@@ -44,13 +44,13 @@ TEST(SceneFile, PosesAreAsAPersonWouldSayThem) {
                   .isApprox(Eigen::Vector3d::UnitX(), 1e-12));
   EXPECT_TRUE((world_from_cam.rotation * Eigen::Vector3d::UnitY())
                   .isApprox(-Eigen::Vector3d::UnitZ(), 1e-12));
-  // Turned clockwise by 45 degrees, corner 0 hangs on top.
+  // Rotated clockwise by 45 degrees, corner 0 is up.
   const Eigen::Vector3d top =
       scene->boards[0].world_from_board * Eigen::Vector3d(-0.25, -0.25, 0.0);
   EXPECT_TRUE(top.isApprox(Eigen::Vector3d(2, 0, 1 + 0.25 * std::sqrt(2.0)), 1e-12)) << top;
 }
 
-TEST(SceneFile, AnglesTurnTheWayTheirNamesSay) {
+TEST(SceneFile, AnglesRotateInTheDocumentedDirection) {
   const auto scene = ParseScene(
       SceneText({.lidar = "{pose: {position_m: [0, 0, 1], yaw_deg: 90}}",
                  .camera = "{model: pinhole, pose: {position_m: [0, 0, 1], pitch_deg: 10}}"}),
@@ -61,7 +61,7 @@ TEST(SceneFile, AnglesTurnTheWayTheirNamesSay) {
   EXPECT_LT((scene->cameras[0].world_from_cam.rotation * Eigen::Vector3d::UnitZ()).z(), -0.1);
 }
 
-TEST(SceneFile, AFacedPointIsSeenOnTheAxis) {
+TEST(SceneFile, FacingPutsThePointOnTheAxis) {
   const auto scene = ParseScene(
       SceneText({.camera = "{model: pinhole, pose: {position_m: [0.3, 0.1, 1.2], facing_m: "
                            "[2, -0.2, 0.9]}}",
@@ -78,7 +78,7 @@ TEST(SceneFile, AFacedPointIsSeenOnTheAxis) {
   EXPECT_LT(in_board.z(), 0.0);
 }
 
-TEST(SceneFile, AStereoCameraIsTwo) {
+TEST(SceneFile, AStereoCameraBecomesTwoCameras) {
   const auto scene =
       ParseScene(SceneText({.camera = "{name: zed, model: zed_left, stereo_baseline_m: 0.12, pose: "
                                       "{position_m: [0, 0, 1]}}"}),
@@ -115,8 +115,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SceneOfTheSet, testing::ValuesIn(ScenesOfTheSet
                            return name.param.substr(0, name.param.find('.'));
                          });
 
-// Not a parameter, which every start of the binary would write down.
-TEST(SceneFile, RefusesAMillionBoards) {
+// Not a test parameter, as the text would be printed at every start of the binary.
+TEST(SceneFile, RejectsAMillionBoards) {
   const std::string text = SceneText({}) + test::Repeated("  - {}\n", 1'000'000);
   ExpectRefused(ParseScene(text, "s"), BadText{"AMillionBoards", "", ErrorCode::kParse,
                                                "s:6: boards: expected at most 1000, got 1000001"});
@@ -124,7 +124,7 @@ TEST(SceneFile, RefusesAMillionBoards) {
 
 class BadSceneTest : public testing::TestWithParam<BadText> {};
 
-TEST_P(BadSceneTest, IsRefusedBeforeAnyWork) {
+TEST_P(BadSceneTest, IsRejectedBeforeAnyWork) {
   const Expected<Scene> scene = ParseScene(GetParam().text, "s");
   if (!scene) {
     ExpectRefused(scene, GetParam());
@@ -179,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"OutsideTheImage", WithPose("position_m: [2, 4, 1], facing_m: [0, 0, 1]"), kInvalid,
                 "board 0: no camera sees it: it is outside the image of camera 'cam'"},
         BadText{"BackToTheCamera", WithPose("position_m: [2, 0, 1], yaw_deg: 180"), kInvalid,
-                "board 0: no camera sees it: it shows its back to camera 'cam'"},
+                "board 0: no camera sees it: its back faces camera 'cam'"},
         BadText{"AboveTheLidar",
                 SceneText({.camera = "{model: pinhole, pose: {position_m: [0, 0, 1], pitch_deg: "
                                      "-40}}",
@@ -191,29 +191,29 @@ INSTANTIATE_TEST_SUITE_P(
                 SceneText({.pose = "position_m: [2, 0, 0.3], roll_deg: 45",
                            .more = "walls: [{name: floor, width_m: 9, height_m: 9, pose: "
                                    "{position_m: [0, 0, 0], pitch_deg: 90}}]\n"}),
-                kInvalid, "board 0: it goes through wall 'floor'"},
+                kInvalid, "board 0: it intersects wall 'floor'"},
         BadText{"SwingsThroughAWall",
                 "sextant_scene: 1\nlidar: {pose: {position_m: [0, 0, 1]}}\ncameras: [{model: "
                 "pinhole, pose: {position_m: [0, 0, 1]}}]\nboards: [{board: {id: 0, top_right_m: "
                 "0.5, right_bottom_m: 0.5}, pose: {position_m: [2, 0, 1]}, swing: {axis_in_world: "
                 "[0, 1, 0], amplitude_deg: 40, period_s: 1}}]\nwalls: [{name: back, width_m: 9, "
                 "height_m: 3, pose: {position_m: [2.2, 0, 1]}}]\n",
-                kInvalid, "board 0: it goes through wall 'back'"},
+                kInvalid, "board 0: it intersects wall 'back'"},
         BadText{"InABox",
                 WithMore("boxes: [{name: crate, size_m: [1, 1, 1], pose: {position_m: [2, 0.4, "
                          "1]}}]\n"),
-                kInvalid, "board 0: it goes through box 'crate'"},
+                kInvalid, "board 0: it intersects box 'crate'"},
         BadText{"ThroughAPerson",
                 WithMore("cylinders: [{name: person, base_m: [2, 0.3, 0], radius_m: 0.25, "
                          "height_m: 1.75}]\n"),
-                kInvalid, "board 0: it goes through cylinder 'person'"},
+                kInvalid, "board 0: it intersects cylinder 'person'"},
         BadText{"CameraInAWall",
                 WithMore("walls: [{name: near, width_m: 9, height_m: 9, pose: {position_m: [0.005, "
                          "0, 1], yaw_deg: 0}}]\n"),
-                kInvalid, "it stands inside wall 'near'"},
+                kInvalid, "it is inside wall 'near'"},
         BadText{"CameraInABox",
                 WithMore("boxes: [{size_m: [0.1, 0.1, 0.1], pose: {position_m: [0, 0.12, 1]}}]\n"),
-                kInvalid, "camera 'cam': it stands inside box 0"},
+                kInvalid, "camera 'cam': it is inside box 0"},
         BadText{"TagId",
                 WithBoard("id: 0, top_right_m: 0.5, right_bottom_m: 0.5, tags: [{family: "
                           "aruco_4x4_50, id: 50, edge_m: 0.2}]"),
@@ -235,7 +235,7 @@ INSTANTIATE_TEST_SUITE_P(
                 kInvalid, "camera 'cam': an image of 0 x 720 px cannot be rendered"},
         BadText{"CameraNamesAPath",
                 WithCamera("{name: ../cam, model: pinhole, pose: {position_m: [0, 0, 1]}}"),
-                kInvalid, "its name names files"}),
+                kInvalid, "its name is used in file names"}),
     [](const auto& bad) { return bad.param.name; });
 
 }  // namespace

@@ -10,7 +10,8 @@
 namespace sextant {
 namespace {
 
-// A hollow board with a turned tag before a turned LiDAR and two cameras, one of which looks away.
+// A hollow board with a rotated tag in front of a rotated LiDAR and two cameras, one of which looks
+// away.
 Scene SomeScene() {
   Scene scene;
   scene.lidar.world_from_lidar = {ExpSo3({0.02, -0.03, 0.1}), {0.1, -0.2, 1.0}};
@@ -37,7 +38,7 @@ Scene SomeScene() {
   return scene;
 }
 
-TEST(SceneTruth, EveryFrameSeesTheSameCorner) {
+TEST(SceneTruth, CornersAgreeInAllFrames) {
   const Scene scene = SomeScene();
   const std::vector<BoardTruth> boards = BoardsAt(scene, 0.2);
   ASSERT_EQ(boards.size(), 1U);
@@ -53,7 +54,7 @@ TEST(SceneTruth, EveryFrameSeesTheSameCorner) {
   }
 }
 
-TEST(SceneTruth, CornersAreWhereTheBoardSwings) {
+TEST(SceneTruth, CornersFollowTheSwing) {
   const Scene scene = SomeScene();
   const BoardTruth still = BoardsAt(scene, 0.0).at(0);
   const BoardTruth swung = BoardsAt(scene, 0.25).at(0);
@@ -65,7 +66,7 @@ TEST(SceneTruth, CornersAreWhereTheBoardSwings) {
   EXPECT_NEAR(before.norm(), 0.5, 1e-12);
 }
 
-TEST(SceneTruth, HolesAndTagsFollowTheirBoard) {
+TEST(SceneTruth, HolesAndTagsMoveWithTheirBoard) {
   const BoardTruth board = BoardsAt(SomeScene(), 0.0).at(0);
   const auto in_board = [&](const CornerTruth& corner) -> Eigen::Vector3d {
     return board.world_from_board.Inverse() * corner.in_world;
@@ -73,7 +74,7 @@ TEST(SceneTruth, HolesAndTagsFollowTheirBoard) {
   EXPECT_LT((in_board(board.corners[4]) - Eigen::Vector3d(0.0, 0.0, 0.0)).norm(), 1e-12);
   EXPECT_LT((in_board(board.corners[6]) - Eigen::Vector3d(0.2, 0.1, 0.0)).norm(), 1e-12);
   ASSERT_EQ(board.tags.size(), 1U);
-  // Turned by 90 degrees clockwise, the tag's own top-left is at its right.
+  // Rotated clockwise by 90 degrees, the tag's own top-left corner is at the right.
   EXPECT_LT((in_board(board.tags[0].corners[0]) - Eigen::Vector3d(-0.15, -0.15, 0.0)).norm(),
             1e-12);
 }

@@ -13,7 +13,8 @@
 namespace sextant::test {
 namespace {
 
-// A tilted hollow board, a box and two walls, before a LiDAR and a camera a hand apart.
+// A tilted hollow board, a box and two walls in front of a LiDAR and a camera that are close to
+// each other.
 sextant::Scene SharedScene() {
   Eigen::Matrix3d axes;
   axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
@@ -56,9 +57,9 @@ std::optional<PixelSurface> SurfaceAt(const Camera& camera, const SurfaceImage& 
   return PixelSurface{ray * (depth / ray.z()), {n[0], n[1], n[2]}};
 }
 
-// The truth of one sensor, carried to the other by the true poses: a LiDAR point lies in the plane
-// of the pixel that it falls on, unless an edge hides it from one of them.
-TEST(Sensors, SeeTheSamePlanes) {
+// Transforms the truth of one sensor to the other with the true poses: a LiDAR point lies in the
+// plane of the pixel onto which it projects, unless an edge hides it from one of the sensors.
+TEST(Sensors, MeasureTheSamePlanes) {
   const sextant::Scene scene = SharedScene();
   const Camera camera = *RenderingCamera(scene.cameras[0]);
   const Expected<SurfaceImage> surfaces = RenderSurfaces(scene, 0, 0.0);
@@ -90,7 +91,7 @@ TEST(Sensors, SeeTheSamePlanes) {
   }
   EXPECT_GT(seen, 2000);
   EXPECT_GT(on_board, 300);
-  // Shadows of a baseline of 0.15 m at the borders of board, hole and box.
+  // Occlusions at the borders of board, hole and box due to the baseline of 0.15 m.
   EXPECT_LT(hidden, 0.08 * seen);
 }
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double kFocal_px = 350.0;
 constexpr double kBaseline_m = 0.12;
 
-// A speckled wall, turned a little, 2 m before a camera at VGA.
+// A speckled, slightly rotated wall 2 m in front of a VGA camera.
 Scene WallScene() {
   Scene scene;
   scene.name = "wall";
@@ -44,12 +44,12 @@ Expected<PointCloud> CloudOf(const Scene& scene) {
   return MatchStereo(*images, {});
 }
 
-// Along z the wall is off by no more than a third of a pixel's disparity for most points.
+// For most points the error along z is below a third of a pixel of disparity.
 TEST(StereoCloud, PointsLieOnTheWall) {
   const Scene scene = WallScene();
   const Expected<PointCloud> cloud = CloudOf(scene);
   ASSERT_TRUE(cloud) << cloud.error().message;
-  // Left of the widest disparity there is no partner.
+  // Pixels left of the largest disparity have no match.
   const double most_px = kFocal_px * kBaseline_m / 0.8 + 16.0;
   EXPECT_GT(cloud->points.size(), 0.9 * 240.0 * (320.0 - most_px));
   ASSERT_EQ(cloud->intensity.size(), cloud->points.size());
@@ -69,12 +69,12 @@ TEST(StereoCloud, PointsLieOnTheWall) {
   EXPECT_LT(std::abs(sum_px / static_cast<double>(errors_px.size())), 0.1);
 }
 
-TEST(StereoCloud, SameSeedSamePoints) {
+TEST(StereoCloud, TheSameSeedGivesTheSamePoints) {
   const Scene scene = WallScene();
   EXPECT_EQ(CloudOf(scene)->points, CloudOf(scene)->points);
 }
 
-TEST(StereoCloud, BlankWallsHaveNoDepth) {
+TEST(StereoCloud, BlankWallsGiveNoPoints) {
   Scene scene = WallScene();
   scene.walls[0].tile_m = 0.0;
   const Expected<PointCloud> cloud = CloudOf(scene);
@@ -82,7 +82,7 @@ TEST(StereoCloud, BlankWallsHaveNoDepth) {
   EXPECT_LT(cloud->points.size(), 320U * 240U / 10U);
 }
 
-TEST(StereoCloud, TriangulatesBackToThePoint) {
+TEST(StereoCloud, TriangulationInvertsProjection) {
   StereoImages images;
   images.camera = {.fx_px = 700.0, .fy_px = 690.0, .cx_px = 639.5, .cy_px = 359.5};
   images.baseline_m = kBaseline_m;
@@ -94,7 +94,7 @@ TEST(StereoCloud, TriangulatesBackToThePoint) {
   EXPECT_FALSE(Triangulate(images, right, left));
 }
 
-TEST(StereoCloud, RefusesWhatCannotBe) {
+TEST(StereoCloud, RejectsInvalidOptions) {
   const Scene scene = WallScene();
   const ImageOptions image;
   EXPECT_EQ(RenderStereo(scene, 1, kBaseline_m, image).error().code, ErrorCode::kInvalidInput);

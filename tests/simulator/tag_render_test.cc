@@ -49,8 +49,8 @@ Points TrueCorners(const Camera& camera, const Rigid3d& cam_from_board, const Bo
 
 class TagCornerTest : public testing::TestWithParam<std::string> {};
 
-// Straight on, tilted both ways, hung from a corner, far out in the image.
-TEST_P(TagCornerTest, IsWhereTheCameraModelPutsIt) {
+// Frontal, tilted in both directions, one corner up, near the image border.
+TEST_P(TagCornerTest, IsAtItsProjection) {
   const Camera camera = *FindCameraModel(GetParam());
   const BoardTag tag{.family = "aruco_original",
                      .id = 26,
@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(Cameras, TagCornerTest, testing::ValuesIn(CameraModelNa
 
 struct Found {
   int id = -1;
-  Points corners;  // Clockwise from the tag's top-left, in our pixels.
+  Points corners;  // Clockwise from the tag's top-left, in our pixel convention.
 };
 
 std::vector<Found> FindAruco(const cv::Mat& image,
@@ -103,7 +103,8 @@ std::vector<Found> FindAprilTag(const cv::Mat& image, apriltag_family_t* family)
   const std::unique_ptr<apriltag_detector_t, void (*)(apriltag_detector_t*)> detector(
       apriltag_detector_create(), apriltag_detector_destroy);
   detector->quad_decimate = 1.0F;
-  // Without corrected bits: the tables for two take gigabytes for the families of 50 thousand.
+  // Without bit correction: the tables for two bits take gigabytes for families of 50 thousand
+  // tags.
   apriltag_detector_add_family_bits(detector.get(), family, 0);
   cv::Mat copy = image.clone();
   image_u8_t view = {copy.cols, copy.rows, static_cast<std::int32_t>(copy.step), copy.data};
@@ -126,7 +127,7 @@ std::vector<Found> FindAprilTag(const cv::Mat& image, apriltag_family_t* family)
 
 class TagFamilyTest : public testing::TestWithParam<std::string> {};
 
-TEST_P(TagFamilyTest, IsFoundByItsOwnLibraryInARenderedImage) {
+TEST_P(TagFamilyTest, IsDetectedByItsLibraryInARenderedImage) {
   const std::string& family = GetParam();
   const Camera camera{.width_px = 300,
                       .height_px = 260,
@@ -150,7 +151,7 @@ TEST_P(TagFamilyTest, IsFoundByItsOwnLibraryInARenderedImage) {
     ASSERT_EQ(found.size(), 1U) << family << " " << id;
     EXPECT_EQ(found[0].id, id);
     const Points truth = TrueCorners(camera, pose, tag);
-    // Without refinement ArUco's corners are whole pixels; a cell is a dozen.
+    // Without refinement ArUco's corners are whole pixels; a cell has about twelve pixels.
     for (std::size_t i = 0; i < 4; ++i) {
       EXPECT_LT((found[0].corners[i] - truth[i]).norm(), aruco ? 2.0 : 0.5) << family << " " << i;
     }

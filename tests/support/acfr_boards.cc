@@ -15,8 +15,8 @@ double Azimuth(const Eigen::Vector3d& point) { return std::atan2(point.y(), poin
 }  // namespace
 
 RingPoints FirstPass(const PointCloud& board) {
-  // In order of time, clockwise: the azimuth falls, but for one jump back where the scan's end
-  // meets its start.
+  // In order of time, clockwise: the azimuth decreases, except for one jump back where the end of
+  // the scan overlaps its start.
   constexpr double kJump = 0.02;
   struct Pass {
     double first = 0.0;
@@ -78,14 +78,15 @@ Scene AcfrScene(const AcfrPose& pose) {
   board.board.checker =
       BoardChecker{.inner_columns = wide ? 7 : 5, .inner_rows = wide ? 5 : 7, .square_m = 0.095};
   const Eigen::Vector3d z = x.cross(y).normalized();
-  // Half of what the two directions lack of a right angle each.
+  // Distributes the deviation from a right angle equally between the two directions.
   const Eigen::Vector3d diagonal = (x.normalized() + y.normalized()).normalized();
   const Eigen::Vector3d across = z.cross(diagonal);
   Eigen::Matrix3d rotation;
   rotation << (diagonal - across).normalized(), (diagonal + across).normalized(), z;
   const Eigen::Vector3d center = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
   board.world_from_board = {Eigen::Quaterniond(rotation), center};
-  // As the VLP-16 saw this board: most of its white at intensity 50 to 60, its black at 0 to 4.
+  // As measured by the VLP-16 on this board: white mostly at intensities of 50 to 60, black at 0 to
+  // 4.
   board.white.reflectivity = 0.6;
   board.black.reflectivity = 0.03;
   Scene scene;
@@ -95,7 +96,8 @@ Scene AcfrScene(const AcfrPose& pose) {
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.5 * M_PI * side, Eigen::Vector3d::UnitZ()));
     SceneWall wall;
     wall.name = "wall";
-    // x to the right and y down for who looks along the wall's z, here the world's x turned.
+    // x to the right and y down when looking along the wall's z axis, here the rotated x axis of
+    // the world.
     Eigen::Matrix3d forward;
     forward << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     wall.world_from_wall = {turn * Eigen::Quaterniond(forward), turn * Eigen::Vector3d(6, 0, 0)};

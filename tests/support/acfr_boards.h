@@ -12,7 +12,7 @@
 
 namespace sextant::test {
 
-/// The placements of acfr/cam_lidar_calibration that come with a scan.
+/// The placements of acfr/cam_lidar_calibration that have a scan.
 inline constexpr int kAcfrScans[] = {2, 5, 9, 16, 20, 26, 30};
 
 /// A point of a board in a scan.
@@ -21,10 +21,10 @@ struct BoardReturn {
   double azimuth_rad = 0.0;
 };
 
-/// A board's points by ring, each ring from its least azimuth.
+/// A board's points by ring, each ring in ascending azimuth.
 using RingPoints = std::map<int, std::vector<BoardReturn>>;
 
-/// Points of a real scan's board. The recording's scans are 363 degrees long: where both ends lie
+/// The points on the board in a real scan. The recorded scans cover 363 degrees: if both ends lie
 /// on the board, the second pass over it is left out.
 RingPoints FirstPass(const PointCloud& board);
 
@@ -34,11 +34,11 @@ struct Plane {
   double rms_m = 0.0;
 };
 
-/// Least squares over the points within 5 cm of it, eight times.
+/// Least-squares plane, refitted eight times to the points within 5 cm of it.
 Plane FitPlane(const RingPoints& board);
 
-/// The placement as a scene in the LiDAR's frame: the board of 610 x 850 mm with its checkerboard
-/// where the stored corners put it, a room's walls 6 m away behind it.
+/// The placement as a scene in the LiDAR frame: the board of 610 x 850 mm with its checkerboard at
+/// the pose given by the stored corners, and walls of a room 6 m away behind it.
 Scene AcfrScene(const AcfrPose& pose);
 
 }  // namespace sextant::test

@@ -10,7 +10,7 @@
 
 namespace sextant::test {
 
-/// A text that a reader must refuse, and how.
+/// A text that a reader must reject, with the expected error.
 struct BadText {
   const char* name;
   std::string text;
@@ -26,7 +26,7 @@ inline std::string Repeated(const std::string& piece, int times) {
   return text;
 }
 
-/// The error is one short line that names the place.
+/// Checks that the error is one short line that names the position.
 template <class T>
 void ExpectRefused(const Expected<T>& read, const BadText& bad) {
   ASSERT_FALSE(read) << bad.name;

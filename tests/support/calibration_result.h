@@ -5,7 +5,7 @@
 
 namespace sextant::test {
 
-/// A result in which every optional part is there, and one view was dropped.
+/// A result with every optional part, and one dropped view.
 CalibrationResult FullCalibrationResult();
 
 }  // namespace sextant::test

@@ -9,14 +9,14 @@
 
 namespace sextant::test {
 
-/// The paper's two boards with their tags, hung anew by chance about 2 m before a LiDAR at the
-/// world's origin and a ZED beside it that does not quite look along its x.
+/// The paper's two boards with their tags at random poses about 2 m in front of a LiDAR at the
+/// world's origin and a ZED next to it that looks roughly along the LiDAR's x axis.
 Scene TaggedBoards(Random& random);
 
 /// cam_from_lidar of the scene's only camera.
 Rigid3d TrueCamFromLidar(const Scene& scene);
 
-/// A scan and the image of the scene's camera, with the noise of usual sensors.
+/// A scan and the image of the scene's camera, with typical sensor noise.
 struct SensorData {
   cv::Mat image{};
   PointCloud cloud{};

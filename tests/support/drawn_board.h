@@ -25,8 +25,8 @@ inline BoardCorners CornersOf(const SceneBoard& board, const Rigid3d& world_from
           lidar_from_board * Eigen::Vector3d(-x, y, 0)};
 }
 
-/// What a person draws round the edges of a board: areas that leave out a tenth of an edge at both
-/// ends and reach `margin_m` to both sides of it, as they are seen in that projection.
+/// Polygons that a person would draw around the edges of a board in that projection: they leave out
+/// a tenth of the edge at both ends and extend `margin_m` to both sides.
 inline MarkedBoard DrawBoard(int id, const BoardCorners& corners, const ScanMarks& projection,
                              double margin_m) {
   MarkedBoard drawn{.id = id, .edges = {}};
@@ -50,8 +50,8 @@ inline MarkedBoard DrawBoard(int id, const BoardCorners& corners, const ScanMark
   return drawn;
 }
 
-/// The paper's boards: 0.48 m, hung from a corner 1.8 m before a LiDAR at the origin, a wall behind
-/// them.
+/// The paper's boards of 0.48 m, one corner up, 1.8 m in front of a LiDAR at the origin, with a
+/// wall behind them.
 inline Scene PlacedBoards(int boards) {
   Scene scene;
   scene.name = "hung boards";

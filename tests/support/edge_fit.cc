@@ -8,7 +8,7 @@
 namespace sextant::test {
 namespace {
 
-// Offset from the chord as a cubic of the place along it.
+// Offset from the chord as a cubic polynomial of the position along it.
 struct Cubic {
   Eigen::Vector2d origin;
   Eigen::Vector2d along;
@@ -43,7 +43,7 @@ Cubic FitCubic(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d
   return cubic;
 }
 
-// Newton's method along `a`, from its place nearest to `start`.
+// Newton's method along `a`, starting at its point nearest to `start`.
 Eigen::Vector2d Intersect(const Cubic& a, const Cubic& b, const Eigen::Vector2d& start) {
   constexpr double kStep = 1e-3;
   double t = (start - a.origin).dot(a.along);
@@ -60,7 +60,7 @@ std::vector<Eigen::Vector2d> EdgeCrossings(const cv::Mat& image, const Eigen::Ve
                                            const Eigen::Vector2d& to, int half_width_px) {
   constexpr double kMargin = 0.1;
   const bool by_rows = std::abs(to.y() - from.y()) >= std::abs(to.x() - from.x());
-  const int down = by_rows ? 1 : 0;  // Coordinate that counts the lines.
+  const int down = by_rows ? 1 : 0;  // Coordinate that numbers the lines.
   const Eigen::Vector2d& first = from[down] < to[down] ? from : to;
   const Eigen::Vector2d& last = from[down] < to[down] ? to : from;
   const double span = last[down] - first[down];

@@ -34,7 +34,7 @@ inline Eigen::Vector3d FakeNoise(Random& random, double sigma) {
   return sigma * Eigen::Vector3d(x, y, z);
 }
 
-// A pose whose corners are off by about the sigma.
+// A pose with corner errors of about the sigma.
 inline Rigid3d Disturbed(const Rigid3d& pose, double half_m, Random& random) {
   const Eigen::Vector3d turn = FakeNoise(random, kFakeSigma_m / half_m);
   return {ExpSo3(turn) * pose.rotation, pose.translation + FakeNoise(random, kFakeSigma_m)};
@@ -67,7 +67,7 @@ inline std::vector<BoardPlacement> EveryPlacement(const Board& seen, std::span<c
   return placements;
 }
 
-/// cam_from_board of a board by chance about 2 m before the camera, hung from corner 0.
+/// Random cam_from_board of a board about 2 m in front of the camera, with corner 0 up.
 inline Rigid3d PlacedAtRandom(Random& random) {
   const Eigen::Vector3d lean = FakeNoise(random, 0.3);
   const double x = random.Uniform(-0.8, 0.8);
@@ -76,9 +76,9 @@ inline Rigid3d PlacedAtRandom(Random& random) {
   return {ExpSo3(lean) * ExpSo3({0.0, 0.0, 0.25 * std::numbers::pi}), {x, y, z}};
 }
 
-/// What sensors would see of boards that hang there, without images and scans: corners with
-/// kFakeSigma_m per axis in both, patches that may be every board in every turn that leaves its
-/// outline within an eighth, last board first.
+/// Observations of boards at these poses, without images and scans: corners with noise of
+/// kFakeSigma_m per axis in both sensors, and patches that match every board whose outline fits
+/// within an eighth, in every such rotation, last board first.
 inline Observation FakeObservation(std::span<const Board> boards,
                                    std::span<const Rigid3d> cam_from_board,
                                    const Rigid3d& cam_from_lidar, Random& random) {

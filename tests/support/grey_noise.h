@@ -8,7 +8,7 @@
 
 namespace sextant::test {
 
-/// Normal noise of `sigma_grey` over what is in the image, cut off at black and white.
+/// Adds normal noise of `sigma_grey` to the image, clamped at black and white.
 inline void AddNoise(cv::Mat& image, double sigma_grey, std::uint64_t seed) {
   Random random(seed);
   for (int y = 0; y < image.rows; ++y) {

@@ -7,18 +7,18 @@
 
 namespace sextant::test {
 
-/// A kernel with everything it needs at hand.
+/// A kernel with all its inputs prepared.
 struct KernelCall {
-  std::string name;  ///< "kabsch/8": with the number of points.
-  int problems = 0;  ///< That one call solves, all different.
+  std::string name;  ///< Includes the number of points: "kabsch/8".
+  int problems = 0;  ///< Number of different problems that one call solves.
   std::function<void()> call;
 };
 
-/// The kernels that others are built from. What they need is made here and kept; the same in every
-/// run.
+/// The basic kernels. Their inputs are prepared here and kept, and are the same in every run.
 std::vector<KernelCall> KernelCalls();
 
-/// Whole solvers, by spec and number of pairs, which may allocate: "ransac(p3p)/100".
+/// Complete solvers by spec and number of pairs, such as "ransac(p3p)/100"; they may allocate
+/// memory.
 std::vector<KernelCall> SolverCalls();
 
 }  // namespace sextant::test

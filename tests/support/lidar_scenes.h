@@ -11,8 +11,8 @@
 
 namespace sextant::test {
 
-/// A pose whose z axis points along the world's `direction` and whose y axis down as far as it can:
-/// a board that looks back at a sensor which sees it in that direction.
+/// A rotation whose z axis points along `direction` in the world and whose y axis points down as
+/// far as possible: a board that faces a sensor which sees it in that direction.
 inline Rigid3d Facing(const Eigen::Vector3d& position, const Eigen::Vector3d& direction,
                       double roll_rad = 0.0) {
   const Eigen::Vector3d z = direction.normalized();
@@ -42,8 +42,8 @@ inline SceneWall Wall(const std::string& name, const Rigid3d& pose, double width
   return wall;
 }
 
-/// Of everything one: a closed room of 10 x 8 x 3 m with two boards (one hollow, one with a tag and
-/// thick), a box and a person. The LiDAR stands 1 m above the floor, tilted.
+/// A scene with every kind of object: a closed room of 10 x 8 x 3 m with two boards (one hollow,
+/// one thick with a tag), a box and a person. The LiDAR is 1 m above the floor and tilted.
 inline Scene FullRoom() {
   Scene scene;
   scene.name = "full room";
@@ -87,7 +87,7 @@ inline SimulatedScan Scan(const Scene& scene, const LidarModel& model, const Sca
   return scan ? *std::move(scan) : SimulatedScan{};
 }
 
-/// Everything off that is not geometry.
+/// Options without noise, quantisation, beam width and lost returns.
 inline ScanOptions Noiseless() {
   return {
       .noise = false, .quantisation = false, .divergence = false, .dropouts = false, .truth = true};

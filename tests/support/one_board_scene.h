@@ -8,8 +8,8 @@
 
 namespace sextant::test {
 
-/// A board before a camera at the world's origin, white 250 and black 20 grey levels under
-/// EvenLight(), before a background of 90: levels without rounding.
+/// A board in front of a camera at the world's origin; under EvenLight() white has 250 grey levels,
+/// black 20 and the background 90, all without rounding.
 inline sextant::Scene OneBoardScene(const Camera& camera, Board board,
                                     const Rigid3d& cam_from_board) {
   SceneBoard scene_board{.board = std::move(board), .world_from_board = cam_from_board};
@@ -23,7 +23,7 @@ inline sextant::Scene OneBoardScene(const Camera& camera, Board board,
   return scene;
 }
 
-/// From everywhere alike.
+/// Uniform light from all directions.
 inline ImageOptions EvenLight() { return {.lighting = {.ambient = 1.0}}; }
 
 }  // namespace sextant::test

@@ -7,9 +7,9 @@
 
 namespace sextant::test {
 
-/// Replaces the measurements of a random share of the pairs by others of the same kind that have
-/// nothing to do with the LiDAR point: camera points anywhere in the scene's cube, pixels anywhere
-/// in the image. Returns the indices, ascending, of the pairs left true.
+/// Replaces the measurements of a random fraction of the pairs by random ones of the same kind:
+/// camera points anywhere in the scene's cube, pixels anywhere in the image. Returns the indices of
+/// the remaining true pairs, ascending.
 std::vector<int> AddOutliers(double share, const SceneOptions& options, Random& random,
                              PairScene& scene);
 

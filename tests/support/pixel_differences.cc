@@ -45,7 +45,7 @@ std::optional<Matrix6d> CovarianceByPixelDifferences(const Solver& solver,
       const Rigid3d behind = PoseNear(solver, displaced, cam_from_lidar);
       coordinate = pair.pixel[axis];
       const Vector6d slope = PoseDifference(ahead, behind) / (2.0 * step_px);
-      // The two one-sided differences of a smooth answer differ in second order only.
+      // The two one-sided differences of a smooth function differ only in second order.
       const Vector6d bend = PoseDifference(ahead, cam_from_lidar) / step_px - slope;
       if (bend.norm() > kMaxBend * slope.norm()) return std::nullopt;
       covariance += pair.sigma_px * pair.sigma_px * slope * slope.transpose();

@@ -7,14 +7,15 @@
 
 namespace sextant::test {
 
-/// Covariance of (dphi, dt) by the definition: every pixel coordinate displaced to both sides by
-/// 1e-5 focal lengths, the solver asked each time. Requires stated sigmas. Costs 4 n solves. None
-/// where the answer jumps: between two candidates that fit alike it has no derivative.
+/// Covariance of (dphi, dt) by finite differences: every pixel coordinate is displaced to both
+/// sides by 1e-5 focal lengths and the problem solved again. Requires stated sigmas. Takes 4 n
+/// solves. None if the solution jumps: between two candidates that fit equally well it has no
+/// derivative.
 std::optional<Matrix6d> CovarianceByPixelDifferences(const Solver& solver,
                                                      const CalibrationProblem& problem,
                                                      const Rigid3d& cam_from_lidar);
 
-/// Largest entry of the difference of two covariances, both whitened by the second.
+/// Largest entry of the difference between two covariances, both whitened by the second.
 double WhitenedDifference(const Matrix6d& a, const Matrix6d& b);
 
 }  // namespace sextant::test

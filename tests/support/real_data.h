@@ -13,8 +13,8 @@ std::optional<std::filesystem::path> RealDataFolder();
 
 }  // namespace sextant::test
 
-/// Declares `variable` as the path of a file of the real data, or skips the test and says loudly
-/// why.
+/// Declares `variable` as the path of a file of the real data, or skips the test and prints the
+/// reason.
 #define SEXTANT_REAL_DATA(variable, relative)                                              \
   const auto variable##_folder = sextant::test::RealDataFolder();                          \
   if (!variable##_folder) {                                                                \

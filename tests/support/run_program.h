@@ -12,14 +12,13 @@ struct ProgramRun {
   std::string err;
 };
 
-/// Runs the program as a user's shell would, without standard input; `arguments` are quoted by the
-/// caller.
+/// Runs the program in a shell without standard input; the caller quotes `arguments`.
 ProgramRun RunProgram(const std::string& program, const std::string& arguments);
 
-/// A folder of the running test's own; the next test gets another.
+/// A folder for the running test only.
 std::filesystem::path TestFolder();
 
-/// Of a file there.
+/// Path of a file in that folder.
 std::string TestPath(const std::string& name);
 
 void WriteText(const std::filesystem::path& path, const std::string& text);

@@ -15,8 +15,8 @@ inline PairScene MakeScene(const SceneOptions& options, Random& random) {
   return MakeRandomScene(options, random);
 }
 
-/// The same kind of scene of raw board views, four pairs each: exact where no noise is asked for,
-/// else with the noise that SimulateViews states.
+/// A scene of raw board views with four pairs each: exact if no noise is requested, else with the
+/// noise of SimulateViews.
 inline PairScene MakeBoardScene(const SceneOptions& options, Random& random) {
   const bool exact = options.sigma_m == 0.0 && options.sigma_px == 0.0;
   const int views = (options.pairs + kCornersPerBoard - 1) / kCornersPerBoard;

@@ -5,7 +5,7 @@
 
 namespace sextant::test {
 
-/// A new empty folder that is removed with all it holds at the end of the test.
+/// A new empty folder that is removed with its contents at the end of the test.
 class ScratchFolder {
  public:
   ScratchFolder();

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 10> kTextSuffixes = {
     ".cc", ".h", ".txt", ".cmake", ".in", ".md", ".yaml", ".json", ".py", ".sh"};
 
-// Scripts are text without a suffix.
+// Scripts are text files without a suffix.
 bool IsText(const fs::path& path) {
   const std::string suffix = path.extension().string();
   return suffix.empty() || std::ranges::count(kTextSuffixes, suffix) > 0;

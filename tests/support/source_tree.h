@@ -9,7 +9,7 @@ namespace sextant::test {
 
 /// A text file of the project.
 struct SourceFile {
-  std::string path;    ///< From the project's root: "solvers/kernels/kabsch.cc".
+  std::string path;    ///< Relative to the project's root: "solvers/kernels/kabsch.cc".
   std::string folder;  ///< "solvers"; empty for the root itself.
   std::vector<std::string> lines;
 };
@@ -17,14 +17,14 @@ struct SourceFile {
 /// The project's root.
 std::filesystem::path SourceFolder();
 
-/// Every text file of the project by path: sources, build files, scripts and pages; not what was
-/// built, nor hidden folders.
+/// All text files of the project by path: sources, build files, scripts and pages, without build
+/// folders and hidden ones.
 std::vector<SourceFile> ReadSourceTree();
 
 /// The project's root.
 std::filesystem::path SourceRoot();
 
-/// Whether it is a C++ file.
+/// Whether the file is a C++ file.
 bool IsCpp(const SourceFile& file);
 
 /// Whether the project has this file.

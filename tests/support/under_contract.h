@@ -8,11 +8,12 @@
 
 namespace sextant {
 
-// Each binary that holds the contract tests defines these: the solvers that they run for.
+// Defined by each binary with the contract tests: the solvers to test.
 SolverRegistry RegistryUnderContract();
 std::vector<std::string> SpecsUnderContract();
 
-/// Why a solver need not keep a promise; empty where it must. `promise` is a test's name.
+/// The reason why a solver is exempt from a test; empty if it is not. `promise` is the name of the
+/// test.
 std::string ExcuseFrom(const std::string& promise, const std::string& spec);
 
 }  // namespace sextant

@@ -65,7 +65,7 @@ int BackgroundProgram::Wait(double seconds) {
 bool VirtualDisplay::IsInstalled() { return IsOnPath("Xvfb") && IsOnPath("xdotool"); }
 
 VirtualDisplay::VirtualDisplay(const std::string& folder) {
-  // The server chooses a free number and writes it to its standard output.
+  // The server chooses a free display number and writes it to its standard output.
   const std::string log = folder + "/display";
   server_ = std::make_unique<BackgroundProgram>(
       std::vector<std::string>{"Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-screen", "0",

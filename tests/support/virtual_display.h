@@ -9,18 +9,19 @@
 
 namespace sextant::test {
 
-/// A program that runs beside the test; ended with it.
+/// A background program that is ended with the test.
 class BackgroundProgram {
  public:
-  /// `environment`: "NAME=value" that the program gets besides the test's own. Its standard output
-  /// and error go to the file `log`.
+  /// `environment`: "NAME=value", added to the test's own environment. Standard output and error go
+  /// to the file `log`.
   BackgroundProgram(const std::vector<std::string>& command,
                     const std::vector<std::string>& environment, const std::string& log);
   ~BackgroundProgram();
   BackgroundProgram(const BackgroundProgram&) = delete;
   BackgroundProgram& operator=(const BackgroundProgram&) = delete;
 
-  /// The exit code, once it ends; -1 if it does not within so many seconds or dies of a signal.
+  /// Waits for the end and returns the exit code; -1 after a timeout or if it is killed by a
+  /// signal.
   int Wait(double seconds);
 
  private:
@@ -30,15 +31,15 @@ class BackgroundProgram {
 /// An X server without a screen (Xvfb), with mouse and keyboard from xdotool.
 class VirtualDisplay {
  public:
-  /// Whether both programs are installed; if not, a test skips with this reason.
+  /// The reason to skip a test if one of both programs is not installed.
   static bool IsInstalled();
   static constexpr const char* kAbsent =
       "XVFB OR XDOTOOL ABSENT: install xvfb and xdotool to test windows";
 
-  /// `folder` for its log. Asserts by ADD_FAILURE that it starts.
+  /// `folder` is for the log. Reports a failure to start with ADD_FAILURE.
   explicit VirtualDisplay(const std::string& folder);
 
-  /// "DISPLAY=:7".
+  /// The environment variable, such as "DISPLAY=:7".
   const std::string& variable() const { return variable_; }
   /// Runs xdotool with these arguments and returns what it prints; at most 30 s.
   std::string Do(const std::string& arguments) const;
@@ -48,10 +49,10 @@ class VirtualDisplay {
   std::unique_ptr<BackgroundProgram> server_;
 };
 
-/// For 50 ms.
+/// Sleeps for 50 ms.
 void SleepBriefly();
 
-/// Tries until it holds, for at most so many seconds; whether it does.
+/// Repeats the check until it holds or the timeout has passed; returns whether it holds.
 template <class Condition>
 bool Eventually(double seconds, Condition condition) {
   for (int i = 0; i < static_cast<int>(seconds / 0.05); ++i) {

@@ -10,11 +10,10 @@ namespace sextant {
 Expected<Experiment> ParseExperiment(std::string_view text, const std::string& file,
                                      const std::vector<TrialKind>& kinds,
                                      const SolverRegistry& registry, const std::string& solvers) {
-  const Expected<std::vector<SpecNode>> specs =
-      solvers.empty() ? std::vector<SpecNode>() : ParseSpecList(solvers);
-  if (!specs) return tl::unexpected<Error>(specs.error());
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<SpecNode> specs,
+                           solvers.empty() ? std::vector<SpecNode>() : ParseSpecList(solvers));
   SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
-  return ExperimentParser(file, kinds, registry, *specs).Parse(root);
+  return ExperimentParser(file, kinds, registry, specs).Parse(root);
 }
 
 Expected<Experiment> ReadExperiment(const std::filesystem::path& path,
@@ -27,7 +26,7 @@ Expected<Experiment> ReadExperiment(const std::filesystem::path& path,
 
 std::uint64_t SeedOf(const Experiment& experiment, const Condition& condition,
                      std::uint64_t trial) {
-  // By name, so that a condition keeps its trials whatever stands beside it.
+  // The seed depends on the names, so a condition keeps its trials when others are added.
   const std::string place =
       experiment.same_seeds ? experiment.name : experiment.name + "/" + condition.name;
   return DeriveSeed(experiment.seed, place, 0, trial);

@@ -15,28 +15,28 @@
 
 namespace sextant {
 
-/// What is tried `trials` times: the kind under one set of parameters.
+/// One set of parameters of the kind, under which `trials` trials are run.
 struct Condition {
   std::string name{};
-  std::string base{};  ///< Its name in the list of conditions, without the grid; may be empty.
-  /// Its place on the axes of the grid, in their order; empty without a grid.
+  std::string base{};  ///< Name in the list of conditions, without the grid; may be empty.
+  /// Values on the axes of the grid, in the order of the axes; empty without a grid.
   std::vector<std::string> place{};
-  OptionValues parameters{};  ///< All that the file sets, the condition's own last.
+  OptionValues parameters{};  ///< All parameters that the file sets; the condition's own come last.
   TrialsPtr trials{};
 };
 
-/// A table of the report: subjects down; statistics, or places of one axis, across.
+/// A table of the report: one row per subject; one column per statistic, or per value of one axis.
 struct TableSpec {
   std::string title;
   std::vector<Statistic> columns;
-  bool intervals = true;  ///< Each figure with its 95 percent interval.
-  std::string across;     ///< Axis whose places are the columns (of one statistic); empty: none.
+  bool intervals = true;  ///< Show each figure with its 95 percent interval.
+  std::string across;     ///< Axis whose values are the columns (of one statistic); empty: none.
 };
 
-/// A plot of the report: a line a subject.
+/// A plot of the report with one line per subject.
 struct PlotSpec {
   std::string title;
-  std::string name;  ///< Of the file, without extension.
+  std::string name;  ///< File name without extension.
   std::string x;     ///< An axis of the grid, or "index" for the steps of a sequence.
   std::string x_label;
   std::string y_label;
@@ -49,28 +49,28 @@ struct PlotSpec {
 struct Experiment {
   std::string name;
   std::string title;
-  std::string text;  ///< What it is for; a paragraph of the report.
+  std::string text;  ///< Purpose of the experiment; a paragraph of the report.
   std::string kind;
   int trials_per_block = 100;
   std::uint64_t seed = 1;
   std::uint64_t trials = 0;
   std::uint64_t quick_trials = 0;
-  std::uint64_t timed_trials = 0;  ///< So many are timed, alone on one thread; 0: none.
-  bool same_seeds = false;         ///< Every condition draws from the same seeds: paired.
-  std::vector<std::string> axes;   ///< Of the grid.
+  std::uint64_t timed_trials = 0;  ///< Number of trials that are timed on one thread; 0: none.
+  bool same_seeds = false;  ///< All conditions use the same seeds, so their trials are paired.
+  std::vector<std::string> axes;  ///< Names of the grid's axes.
   std::vector<Condition> conditions;
-  std::vector<Metric> metrics;  ///< All of the kind.
+  std::vector<Metric> metrics;  ///< All metrics of the kind.
   std::bitset<kMaxMetrics> wanted;
   std::vector<TableSpec> tables;
   std::vector<PlotSpec> plots;
 };
 
-/// Reads and checks all that can be known before the first trial: keys, kind, parameters, solvers,
-/// metrics, statistics. Formats: docs/experiments.md. Errors name file, line and key (kParse,
-/// kUnknownName with the nearest known, kInvalidOption); kIo.
+/// Reads an experiment file and checks everything that can be checked before the first trial: keys,
+/// kind, parameters, solvers, metrics, statistics. Format: docs/experiments.md. Errors name file,
+/// line and key (kParse, kUnknownName with the nearest known name, kInvalidOption); kIo.
 ///
-/// `solvers` (specs, separated by commas) take the place of all that the file names; conditions
-/// that they have no data for are then left out.
+/// `solvers` (specs separated by commas) replaces all solvers that the file names; conditions
+/// without the data that they need are then left out.
 Expected<Experiment> ReadExperiment(const std::filesystem::path& path,
                                     const std::vector<TrialKind>& kinds,
                                     const SolverRegistry& registry,
@@ -80,7 +80,8 @@ Expected<Experiment> ParseExperiment(std::string_view text, const std::string& f
                                      const SolverRegistry& registry,
                                      const std::string& solvers = "");
 
-/// The seed of a trial: by the experiment's seed and name, the condition's name and the trial.
+/// The seed of a trial, derived from the experiment's seed and name, the condition's name and the
+/// trial's number.
 std::uint64_t SeedOf(const Experiment& experiment, const Condition& condition, std::uint64_t trial);
 
 }  // namespace sextant

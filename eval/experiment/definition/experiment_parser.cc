@@ -27,7 +27,7 @@ const std::vector<std::string>& RootKeys() {
   return keys;
 }
 
-// A name of files and folders.
+// Whether the name is safe as a file and folder name.
 bool IsPlainName(const std::string& name) {
   return !name.empty() && name.size() <= 100 && name.front() != '.' &&
          std::all_of(name.begin(), name.end(), [](unsigned char c) {
@@ -124,7 +124,7 @@ void ExperimentParser::ParseMetrics(const YamlNode& root, Experiment& experiment
   for (const Metric& metric : experiment.metrics) known.push_back(metric.name);
   for (const YamlNode& item : node->items) {
     if (item.text == kTimeMetric) {
-      fields_.Fail(item.line, "metrics", "time differs from run to run: write timed_trials");
+      fields_.Fail(item.line, "metrics", "time differs from run to run; use timed_trials instead");
       return;
     }
     const auto found = std::find(known.begin(), known.end(), item.text);
@@ -136,7 +136,7 @@ void ExperimentParser::ParseMetrics(const YamlNode& root, Experiment& experiment
     }
     experiment.wanted.set(static_cast<std::size_t>(found - known.begin()));
   }
-  // What the report shows is measured too.
+  // Metrics that the report shows are measured as well.
   const auto want = [&experiment](const Statistic& statistic) {
     for (const int metric : {statistic.metric, statistic.reference, statistic.where}) {
       if (metric >= 0) experiment.wanted.set(static_cast<std::size_t>(metric));
@@ -238,11 +238,11 @@ void ExperimentParser::MakeTrials(std::vector<Draft> drafts, Experiment& experim
     Condition& condition = draft.condition;
     const std::string what = condition.name.empty() ? "parameters" : condition.name;
     if (!names.insert(condition.name).second) {
-      fields_.Fail(draft.line, what, "a second condition of this name");
+      fields_.Fail(draft.line, what, "a second condition has this name");
       return;
     }
     if (kind_->takes_solvers && draft.solvers.empty()) {
-      fields_.Fail(draft.line, what, "expected solvers, a list of at least one");
+      fields_.Fail(draft.line, what, "expected solvers, a list with at least one entry");
       return;
     }
     Expected<TrialsPtr> trials =
@@ -262,7 +262,7 @@ void ExperimentParser::MakeTrials(std::vector<Draft> drafts, Experiment& experim
     experiment.conditions.push_back(std::move(condition));
   }
   if (fields_.ok() && experiment.conditions.empty()) {
-    fields_.Fail(0, "solvers", "no condition has the data that they need");
+    fields_.Fail(0, "solvers", "no condition has the data that these solvers need");
   }
 }
 

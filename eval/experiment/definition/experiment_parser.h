@@ -10,7 +10,7 @@
 
 namespace sextant {
 
-/// Takes an experiment out of the tree of its file, and keeps the first error.
+/// Parses an experiment from the YAML tree of its file and keeps the first error.
 class ExperimentParser {
  public:
   ExperimentParser(std::string file, const std::vector<TrialKind>& kinds,
@@ -22,7 +22,7 @@ class ExperimentParser {
   Expected<Experiment> Parse(const YamlNode& root);
 
  private:
-  // One condition before its trials are made.
+  // A condition whose trials are not made yet.
   struct Draft {
     Condition condition;
     std::vector<SolverPtr> solvers;
@@ -52,7 +52,8 @@ class ExperimentParser {
   YamlFields fields_;
   const std::vector<TrialKind>& kinds_;
   const SolverRegistry& registry_;
-  std::vector<std::string> instead_;  ///< Solvers that replace the file's; empty: none do.
+  /// Solvers that replace those of the file; empty: no replacement.
+  std::vector<std::string> instead_;
   const TrialKind* kind_ = nullptr;
 };
 

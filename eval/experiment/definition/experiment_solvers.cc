@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The solvers of an experiment file.
+// Parses the solvers of an experiment file.
 #include <fmt/core.h>
 
 #include "eval/experiment/definition/experiment_parser.h"
@@ -7,7 +7,8 @@
 
 namespace sextant {
 
-// Every solver by itself, and the combinators around the closed form of each kind of pairs.
+// "all" expands to every plain solver and to every combinator around the closed forms of both kinds
+// of pairs.
 std::vector<std::string> ExperimentParser::SpecsOf(const std::string& text) const {
   if (text != "all") return {text};
   std::vector<std::string> specs;
@@ -28,14 +29,14 @@ void ExperimentParser::AddSolvers(const std::string& text, int line,
   const bool all = text == "all";
   for (const std::string& spec : SpecsOf(text)) {
     const Expected<SolverPtr> solver = registry_.Make(spec);
-    // Some combinators cannot be put around some solvers.
+    // Some combinators do not accept some solvers.
     if (!solver && all) continue;
     if (!solver) return fields_.Fail(line, "solvers", solver.error().message);
-    // Baselines and local searches are there where they are named.
+    // Baselines and local searches are included only if they are named.
     if (all && !FindsWholePose((*solver)->spec())) continue;
     for (const SolverPtr& other : solvers) {
       if (other->spec().name != (*solver)->spec().name) continue;
-      return fields_.Fail(line, "solvers", Quoted(spec) + " stands here a second time");
+      return fields_.Fail(line, "solvers", Quoted(spec) + " is listed twice");
     }
     solvers.push_back(*solver);
   }

@@ -11,7 +11,7 @@
 namespace sextant {
 
 /// Parameters of a kind of experiment: those of an OptionSet, and texts (paths, names, lists of
-/// numbers), which whoever uses them checks.
+/// numbers), which are checked where they are used.
 template <class Options>
 class ParameterSet {
  public:
@@ -21,7 +21,7 @@ class ParameterSet {
     return *this;
   }
 
-  // Members may be of a base class of Options.
+  // The member may belong to a base class of Options.
   template <class Integer, class Base>
   ParameterSet& Count(std::string name, Integer Base::*member, std::int64_t low, std::int64_t high,
                       std::string meaning) {
@@ -45,7 +45,7 @@ class ParameterSet {
     return *this;
   }
 
-  /// Of a name given more than once the last counts. Error: kInvalidOption.
+  /// If a name is given more than once, its last value counts. Error: kInvalidOption.
   Expected<Options> Parse(const OptionValues& values) const {
     Expected<Options> options = options_.Parse(values);
     if (!options) return options;

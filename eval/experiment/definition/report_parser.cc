@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of an experiment file that says what its report shows.
+// Parses the tables and plots of an experiment file.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -24,9 +24,10 @@ std::string ExperimentParser::ParseAxis(const YamlNode& map, std::string_view ke
   std::vector<std::string> known = experiment.axes;
   if (may_be_index) known.emplace_back("index");
   if (!fields_.ok() || std::find(known.begin(), known.end(), name) != known.end()) return name;
-  fields_.Fail(map.Find(key)->line, key,
-               fmt::format("{} is no axis of the grid; {}", Quoted(name),
-                           known.empty() ? "it has none" : SuggestName(name.substr(0, 60), known)));
+  fields_.Fail(
+      map.Find(key)->line, key,
+      fmt::format("{} is not an axis of the grid; {}", Quoted(name),
+                  known.empty() ? "the grid has no axes" : SuggestName(name.substr(0, 60), known)));
   return {};
 }
 

@@ -15,8 +15,9 @@ namespace {
 
 Expected<int> FindMetric(const std::string& name, const std::vector<Metric>& metrics) {
   if (name == kTimeMetric) {
-    return MakeError(ErrorCode::kInvalidOption,
-                     "time differs from run to run and is no part of the rows: write timed_trials");
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        "time differs from run to run and is not part of the rows; use timed_trials instead");
   }
   const auto found = std::find_if(metrics.begin(), metrics.end(),
                                   [&name](const Metric& metric) { return metric.name == name; });
@@ -78,7 +79,7 @@ Expected<void> SetOption(const std::string& key, const std::string& value,
 
 Expected<void> Fill(const SpecNode& node, const std::vector<Metric>& metrics,
                     Statistic& statistic) {
-  if (Expected<void> ok = SetKind(node.name, statistic); !ok) return ok;
+  SEXTANT_RETURN_IF_ERROR(SetKind(node.name, statistic));
   const bool takes_two = statistic.kind == Statistic::Kind::kEfficiency;
   if (node.inner.size() != (takes_two ? 2U : 1U)) {
     return MakeError(ErrorCode::kParse,
@@ -92,7 +93,7 @@ Expected<void> Fill(const SpecNode& node, const std::vector<Metric>& metrics,
     statistic.reference = reference;
   }
   for (const auto& [key, value] : node.options) {
-    if (Expected<void> ok = SetOption(key, value, metrics, statistic); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(SetOption(key, value, metrics, statistic));
   }
   return {};
 }

@@ -11,31 +11,31 @@
 
 namespace sextant {
 
-/// A figure of a report, over the trials of one condition and subject, as experiment files write
-/// it: `rms(rotation_deg)`, `p95(rotation_deg)`, `rate(success)`,
-/// `efficiency(rotation_deg, bound_rotation_deg, where=fine)`.
+/// A statistic over the trials of one condition and subject, in the notation of experiment files:
+/// `rms(rotation_deg)`, `p95(rotation_deg)`, `rate(success)`, `efficiency(rotation_deg,
+/// bound_rotation_deg, where=fine)`.
 struct Statistic {
   enum class Kind {
     kMean,
     kRms,
     kSd,
     kQuantile,
-    kRate,        ///< Share of the trials in which the metric is not 0 (NaN counts as 0).
-    kEfficiency,  ///< RMS of the first metric over RMS of the second.
+    kRate,        ///< Fraction of the trials in which the metric is not 0 (NaN counts as 0).
+    kEfficiency,  ///< RMS of the first metric divided by the RMS of the second.
   };
 
-  std::string text;   ///< As written, canonical.
-  std::string label;  ///< Heading of its column.
+  std::string text;   ///< Canonical spec.
+  std::string label;  ///< Column heading.
   Kind kind = Kind::kMean;
   double quantile = 0.5;
   int metric = 0;
-  int reference = -1;  ///< Second metric of an efficiency.
+  int reference = -1;  ///< Second metric of an efficiency, else -1.
   int where = -1;      ///< Only trials in which this metric is not 0; -1: all.
   int decimals = 3;
 };
 
-/// Statistics by name: mean, rms, sd, min, median, max, p01 to p99, rate, efficiency. Options:
-/// where=METRIC, label=TEXT, decimals=0..9. Errors: kParse, kUnknownName, kInvalidOption.
+/// Statistics: mean, rms, sd, min, median, max, p01 to p99, rate, efficiency. Options:
+/// where=METRIC, decimals=0..9. Errors: kParse, kUnknownName, kInvalidOption.
 Expected<Statistic> ParseStatistic(const std::string& text, const std::vector<Metric>& metrics);
 
 }  // namespace sextant

@@ -48,9 +48,8 @@ std::vector<TimingRow> TimeSubjects(const Experiment& experiment,
 
 std::string FormatTimingMarkdown(const Experiment& experiment, const std::vector<TimingRow>& rows) {
   std::string text = fmt::format(
-      "# Time of {}\n\nMedian and quartiles in microseconds over {} trials, on one thread; of "
-      "trials "
-      "that were answered.\n",
+      "# Time of {}\n\nMedian and quartiles in microseconds over {} trials on one thread; only "
+      "trials with an answer count.\n",
       experiment.title, experiment.timed_trials);
   for (const Condition& condition : experiment.conditions) {
     TextTable table({"", "time [us]", "from", "to"});

@@ -9,7 +9,7 @@
 
 namespace sextant {
 
-/// How long a subject took for one trial of a condition, in microseconds.
+/// Time that a subject took for one trial of a condition, in microseconds.
 struct TimingRow {
   std::string condition;
   std::string subject;
@@ -18,12 +18,12 @@ struct TimingRow {
   double p75_us = 0.0;
 };
 
-/// The metric of wall time. It is no part of the rows, which are the same in every run: the runner
-/// asks for it here alone.
+/// The metric of wall time. It is not part of the rows, which are the same in every run; only
+/// TimeSubjects measures it.
 inline constexpr const char* kTimeMetric = "time_us";
 
-/// Runs `timed_trials` of every condition on this thread alone. Empty where the kind does not
-/// measure its time.
+/// Runs `timed_trials` trials of every condition on the calling thread. Empty if the kind does not
+/// measure time.
 std::vector<TimingRow> TimeSubjects(const Experiment& experiment,
                                     const std::function<void()>& after_trial);
 

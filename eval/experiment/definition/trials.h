@@ -15,7 +15,7 @@
 
 namespace sextant {
 
-/// What the trials of an experiment measured, a row a subject (and step, for sequences).
+/// Measurements of the trials of an experiment: one row per subject (and step, for sequences).
 class TrialRows {
  public:
   TrialRows(std::size_t metrics, std::bitset<kMaxMetrics> wanted)
@@ -27,17 +27,17 @@ class TrialRows {
     std::uint32_t index = 0;
   };
 
-  /// Rows added from here on are of this trial; the runner calls it.
+  /// Rows added from here on belong to this trial; called by the runner.
   void BeginTrial(std::uint64_t trial) { trial_ = trial; }
 
-  /// A new row of NaN, to be filled before the next is added. `subject` counts in the order of
+  /// Appends a row of NaN, to be filled before the next one is added. `subject` is an index into
   /// Trials::subjects(); `index` numbers the steps of a sequence (iterations of an average).
   MetricValues Add(int subject, int index = 0);
 
   bool Wants(int metric) const { return wanted_[static_cast<std::size_t>(metric)]; }
   std::size_t metrics() const { return metrics_; }
   const std::vector<Key>& keys() const { return keys_; }
-  /// Row by row, all metrics of each.
+  /// All metrics of each row, row by row.
   const std::vector<double>& values() const { return values_; }
 
  private:
@@ -48,13 +48,13 @@ class TrialRows {
   std::vector<double> values_;
 };
 
-/// One trial's place; everything random in it comes from the seed.
+/// Identifies a trial; everything random in it is derived from the seed.
 struct TrialId {
   std::uint64_t trial = 0;
   std::uint64_t seed = 0;
 };
 
-/// What is tried under one condition. Immutable, thread-safe; the same id adds the same rows.
+/// The trials of one condition. Immutable and thread-safe; the same id gives the same rows.
 class Trials {
  public:
   virtual ~Trials() = default;
@@ -62,34 +62,34 @@ class Trials {
   Trials(const Trials&) = delete;
   Trials& operator=(const Trials&) = delete;
 
-  /// Whom the rows are about: solvers by canonical name, or what the kind itself compares.
+  /// What the rows compare: solvers by canonical name, or the kind's own subjects.
   virtual const std::vector<std::string>& subjects() const = 0;
-  /// Where a trial cannot be carried out for a subject, its row says so (answered = 0, or NaN).
+  /// Runs one trial. If it fails for a subject, its row says so (answered = 0, or NaN).
   virtual void Run(const TrialId& id, TrialRows& rows) const = 0;
 };
 using TrialsPtr = std::shared_ptr<const Trials>;
 
-/// What the maker of a kind gets: parameters whose names are checked, and the solvers to compare.
+/// Arguments of TrialKind::make: parameters whose names are checked, and the solvers to compare.
 struct KindArguments {
   OptionValues parameters;
   std::vector<SolverPtr> solvers;
-  std::filesystem::path folder;  ///< Of the experiment file: relative paths start here.
+  std::filesystem::path folder;  ///< Folder of the experiment file, to which relative paths refer.
 };
 
-/// A kind of experiment, as `kind:` of an experiment file names it.
+/// A kind of experiment, selected by `kind:` in an experiment file.
 struct TrialKind {
   std::string name;
-  std::string summary;  ///< What one trial is, in one line.
+  std::string summary;  ///< Describes one trial in one line.
   bool takes_solvers = true;
   std::vector<OptionDoc> parameters = {};
   std::vector<Metric> metrics = {};  ///< At most kMaxMetrics.
-  /// Trials are stored in blocks of so many, and a kill loses the blocks in flight: fewer for
-  /// trials that take long.
+  /// Number of trials per stored block. A killed run loses its unfinished blocks, so slow trials
+  /// use smaller ones.
   int trials_per_block = 100;
   std::function<Expected<TrialsPtr>(const KindArguments&)> make;
 };
 
-/// Every kind of this library; the table stands in builtin_kinds.cc.
+/// All kinds of this library; the table is in kinds/builtin_kinds.cc.
 std::vector<TrialKind> BuiltinKinds();
 
 }  // namespace sextant

@@ -22,12 +22,12 @@ enum AverageLogMeasured : int { kXM, kYM, kZM, kFromMeanMm, kFromMeanDeg, kRepea
 
 const std::vector<Metric>& AverageLogMetrics() {
   static const std::vector<Metric> metrics = {
-      {"x_m", "averaged translation"},
-      {"y_m", "averaged translation"},
-      {"z_m", "averaged translation"},
-      {"from_mean_mm", "distance from the true mean of all scans of the log"},
-      {"from_mean_deg", "angle to it"},
-      {"repeats", "whether this scan is one that was there before"},
+      {"x_m", "x of the averaged translation"},
+      {"y_m", "y of the averaged translation"},
+      {"z_m", "z of the averaged translation"},
+      {"from_mean_mm", "distance of the translation from the true mean of all scans of the log"},
+      {"from_mean_deg", "angle of the rotation to the same mean"},
+      {"repeats", "1 if this scan repeats an earlier one, else 0"},
   };
   return metrics;
 }
@@ -35,11 +35,11 @@ const std::vector<Metric>& AverageLogMetrics() {
 const ParameterSet<AverageLogSettings>& AverageLogParameters() {
   static const ParameterSet<AverageLogSettings> set = ParameterSet<AverageLogSettings>().Text(
       "log", &AverageLogSettings::log, "path",
-      "avg_values.txt of the original package, in the folder of the real data");
+      "avg_values.txt of the original package, relative to the folder of the real data");
   return set;
 }
 
-// As the tests find it; docs of the data are with it, not with this project.
+// Finds the real data in the same way as the tests.
 Expected<fs::path> RealFile(const std::string& name, const fs::path& experiments) {
   const char* set = std::getenv("SEXTANT_DATA");  // NOLINT(concurrency-mt-unsafe): read only.
   const fs::path folder =
@@ -60,7 +60,7 @@ class AverageLogTrials final : public Trials {
     return names;
   }
 
-  // A log is what it is: every trial is the same.
+  // The log is fixed, so all trials are the same.
   void Run(const TrialId& /*id*/, TrialRows& rows) const override {
     std::vector<Rigid3d> scans;
     for (const RecoveredScan& scan : analysis_.scans) {
@@ -101,7 +101,7 @@ Expected<TrialsPtr> MakeAverageLogTrials(const KindArguments& arguments) {
 
 TrialKind AverageLogKind() {
   return {.name = "average_log",
-          .summary = "the scans of a log of the original package, and how it averages them",
+          .summary = "the scans of a log of the original package, and their running average",
           .takes_solvers = false,
           .parameters = AverageLogParameters().Describe(),
           .metrics = AverageLogMetrics(),

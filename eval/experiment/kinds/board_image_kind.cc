@@ -32,12 +32,12 @@ enum BoardImageMeasured : int {
 
 const std::vector<Metric>& BoardImageMetrics() {
   static const std::vector<Metric> metrics = {
-      {"found", "whether the print was found and gave a pose"},
-      {"corner_mm", "RMS distance of the board's corners from the true ones"},
-      {"depth_mm", "absolute error of the board's middle along the line of sight"},
-      {"across_mm", "error of the board's middle across it"},
+      {"found", "1 if the print was found and gave a pose, else 0"},
+      {"corner_mm", "RMS distance of the board's corners from the true corners"},
+      {"depth_mm", "absolute error of the board's centre along the line of sight"},
+      {"across_mm", "error of the board's centre across the line of sight"},
       {"rotation_deg", "error of the board's rotation"},
-      {"ambiguous", "whether another pose fits nearly as well"},
+      {"ambiguous", "1 if another pose fits nearly as well, else 0"},
   };
   return metrics;
 }
@@ -48,15 +48,15 @@ const ParameterSet<BoardImageSettings>& BoardImageParameters() {
           .Text("camera_model", &BoardImageSettings::camera_model, "name", "see docs/simulator.md")
           .Real("distance_m", &BoardImageSettings::distance_m, "m", 0.3, 100.0,
                 "from camera to board")
-          .Real("side_m", &BoardImageSettings::side_m, "m", 0.05, 10.0, "of the square board")
+          .Real("side_m", &BoardImageSettings::side_m, "m", 0.05, 10.0, "side of the square board")
           .Real("print_m", &BoardImageSettings::print_m, "m", 0.02, 9.0,
-                "side of the tag, and of all the checkerboard's squares together")
+                "side of the tag, or of the whole checkerboard")
           .Real("tilt_deg", &BoardImageSettings::tilt_deg, "deg", 0.0, 70.0,
-                "the board is turned and leans by up to this");
+                "maximum yaw and pitch of the board");
   return set;
 }
 
-// The same area of paper, printed in three ways.
+// The same area printed in three ways.
 Board PrintedBoard(const BoardImageSettings& settings, std::size_t print) {
   constexpr int kSquares = 8;
   Board board{.id = 0, .top_right_m = settings.side_m, .right_bottom_m = settings.side_m};

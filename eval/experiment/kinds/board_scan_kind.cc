@@ -41,15 +41,15 @@ enum BoardScanMeasured : int {
 
 const std::vector<Metric>& BoardScanMetrics() {
   static const std::vector<Metric> metrics = {
-      {"found", "whether the board was found and had all four corners"},
-      {"rings", "rings that hit the board"},
-      {"edge_points", "mean number of edge points of a side"},
-      {"fewest_edge_points", "edge points of the side that has fewest"},
-      {"gap_mm", "mean shortest distance between neighbouring edge lines"},
-      {"off_mm", "mean distance of a corner from the lines that it is taken for the meeting of"},
-      {"edge_mm", "mean absolute difference of an edge's length from the true one"},
-      {"corner_mm", "RMS distance of the corners from the true ones"},
-      {"worst_mm", "largest distance of a corner from its true place"},
+      {"found", "1 if the board was found with all four corners, else 0"},
+      {"rings", "number of rings that hit the board"},
+      {"edge_points", "mean number of edge points per side"},
+      {"fewest_edge_points", "number of edge points of the side with the fewest"},
+      {"gap_mm", "mean shortest distance between adjacent edge lines"},
+      {"off_mm", "mean distance of a corner from the two edge lines that define it"},
+      {"edge_mm", "mean absolute error of an edge's length"},
+      {"corner_mm", "RMS distance of the corners from the true corners"},
+      {"worst_mm", "largest distance of a corner from its true position"},
   };
   return metrics;
 }
@@ -57,16 +57,18 @@ const std::vector<Metric>& BoardScanMetrics() {
 const ParameterSet<BoardScanSettings>& BoardScanParameters() {
   static const ParameterSet<BoardScanSettings> set =
       ParameterSet<BoardScanSettings>()
-          .Text("lidar_model", &BoardScanSettings::lidar_model, "name", "see sextant lidars")
-          .Text("extractor", &BoardScanSettings::extractor, "name", "only this one; empty: all")
+          .Text("lidar_model", &BoardScanSettings::lidar_model, "name", "see sextant list lidars")
+          .Text("extractor", &BoardScanSettings::extractor, "name",
+                "run only this extractor; empty: all")
           .Real("distance_m", &BoardScanSettings::distance_m, "m", 0.5, 100.0,
-                "from the LiDAR to the board's middle")
-          .Real("side_m", &BoardScanSettings::side_m, "m", 0.05, 10.0, "of the square board")
+                "from the LiDAR to the board's centre")
+          .Real("side_m", &BoardScanSettings::side_m, "m", 0.05, 10.0, "side of the square board")
           .Real("yaw_deg", &BoardScanSettings::yaw_deg, "deg", 0.0, 60.0,
-                "the board is turned about the vertical by up to this")
-          .Real("pitch_deg", &BoardScanSettings::pitch_deg, "deg", 0.0, 60.0, "leans by up to this")
+                "maximum rotation of the board about the vertical")
+          .Real("pitch_deg", &BoardScanSettings::pitch_deg, "deg", 0.0, 60.0,
+                "maximum tilt forwards or backwards")
           .Real("roll_deg", &BoardScanSettings::roll_deg, "deg", 0.0, 30.0,
-                "and hangs askew from its corner by up to this")
+                "maximum rotation in its plane away from one corner up")
           .Real("background_m", &BoardScanSettings::background_m, "m", 0.5, 100.0,
                 "from the board to the wall behind it");
   return set;
@@ -99,7 +101,7 @@ class BoardScanTrials final : public Trials {
         if (search && !search->found.empty()) patch = search->found[0];
       }
       for (std::size_t k = 0; k < extractors_.size(); ++k) {
-        // The paper's extractor takes last returns as they are; ours correct them.
+        // The paper's extractor uses the last returns as edge points; ours use corrected edges.
         if (extractors_[k].starts_with("lines3d") == corrected) continue;
         Measure(scene, patch, extractors_[k], rows.Add(static_cast<int>(k)));
       }
@@ -152,7 +154,8 @@ class BoardScanTrials final : public Trials {
     for (std::size_t i = 0; i < 4; ++i) {
       gap += 0.25e3 * corners->checks.line_gaps_m[i];
       edge += 0.25e3 * std::abs(corners->checks.edge_lengths_m[i] - board.EdgeLengths()[i]);
-      const double error = 1e3 * (corners->in_lidar[i] - CornerInLidar(scene, i)).norm();
+      const double error =
+          1e3 * (corners->in_lidar[i] - TrueCorner(scene.boards[0], static_cast<int>(i))).norm();
       squares += 0.25 * error * error;
       worst = std::max(worst, error);
     }
@@ -161,14 +164,6 @@ class BoardScanTrials final : public Trials {
     values.Set(kEdgeMm, edge);
     values.Set(kCornerMm, std::sqrt(squares));
     values.Set(kWorstMm, worst);
-  }
-
-  static Eigen::Vector3d CornerInLidar(const Scene& scene, std::size_t corner) {
-    const Board& board = scene.boards[0].board;
-    const double x = corner == 1 || corner == 2 ? 0.5 : -0.5;
-    const double y = corner >= 2 ? 0.5 : -0.5;
-    return scene.boards[0].world_from_board *
-           Eigen::Vector3d(x * board.top_right_m, y * board.right_bottom_m, 0.0);
   }
 
   BoardScanSettings settings_;
@@ -192,14 +187,13 @@ Expected<TrialsPtr> MakeBoardScanTrials(const KindArguments& arguments) {
 }  // namespace
 
 TrialKind BoardScanKind() {
-  return {
-      .name = "board_scan",
-      .summary = "one board in a simulated scan: its edge points and corners, by each extractor",
-      .takes_solvers = false,
-      .parameters = BoardScanParameters().Describe(),
-      .metrics = BoardScanMetrics(),
-      .trials_per_block = 20,
-      .make = MakeBoardScanTrials};
+  return {.name = "board_scan",
+          .summary = "one board in a simulated scan: edge points and corners from each extractor",
+          .takes_solvers = false,
+          .parameters = BoardScanParameters().Describe(),
+          .metrics = BoardScanMetrics(),
+          .trials_per_block = 20,
+          .make = MakeBoardScanTrials};
 }
 
 }  // namespace sextant

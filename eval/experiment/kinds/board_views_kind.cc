@@ -11,7 +11,7 @@ struct BoardViewsSettings : ViewSimulation, PoseLimits {
   double size_error = 0.0;
 };
 
-// Members of ViewSimulation, as OptionSet<BoardViewsSettings> wants them.
+// Converts members of ViewSimulation to members of BoardViewsSettings, as OptionSet requires.
 template <class T>
 T BoardViewsSettings::*Of(T ViewSimulation::*member) {
   return member;
@@ -20,32 +20,34 @@ T BoardViewsSettings::*Of(T ViewSimulation::*member) {
 const OptionSet<BoardViewsSettings>& BoardViewsParameters() {
   static const OptionSet<BoardViewsSettings> set = AddPoseLimits(
       OptionSet<BoardViewsSettings>()
-          .Count("views", Of(&ViewSimulation::views), 1, 1000, "times that the board is held anew")
+          .Count("views", Of(&ViewSimulation::views), 1, 1000,
+                 "number of views, each with a new pose of the board")
           .Real("board_side_m", Of(&ViewSimulation::board_side_m), "m", 0.05, 10.0,
                 "side of the square board")
           .Real("tag_edge_m", Of(&ViewSimulation::tag_edge_m), "m", 0.01, 10.0,
-                "edge of the tag in its middle")
+                "edge of the tag in the board's centre")
           .Real("nearest_m", Of(&ViewSimulation::nearest_m), "m", 0.1, 1e3,
-                "the board's distance is at least this")
+                "minimum distance of the board")
           .Real("farthest_m", Of(&ViewSimulation::farthest_m), "m", 0.1, 1e3,
-                "the board's distance is at most this")
+                "maximum distance of the board")
           .Count("rings", Of(&ViewSimulation::rings), 1, 1024, "rings of the LiDAR")
           .Real("ring_step_deg", Of(&ViewSimulation::ring_step_deg), "deg", 0.01, 30.0,
-                "from ring to ring")
+                "elevation step between rings")
           .Real("azimuth_step_deg", Of(&ViewSimulation::azimuth_step_deg), "deg", 0.001, 10.0,
-                "from point to point of a ring")
+                "azimuth step between points of a ring")
           .Real("range_sigma_m", Of(&ViewSimulation::range_sigma_m), "m", 1e-9, 1.0,
-                "noise of a point along its ray")
+                "range noise of a point, along its ray")
           .Real("edge_sigma_m", Of(&ViewSimulation::edge_sigma_m), "m", 1e-9, 1.0,
-                "error of where a ring ends on the board")
+                "error of the edge points, where a ring leaves the board")
           .Real("pixel_sigma_px", Of(&ViewSimulation::pixel_sigma_px), "px", 1e-9, 100.0,
                 "noise of a tag's corner, per axis")
           .Real("size_error", &BoardViewsSettings::size_error, "1", -0.5, 0.5,
-                "board and tag are stated larger by this share than they are"));
+                "relative error of the stated sizes of board and tag; positive: stated too large"));
   return set;
 }
 
-// All that rests on the stated size: the camera sees a board of another size farther or nearer.
+// Scales everything that depends on the stated size: with a wrong size the camera sees the board at
+// a wrong distance.
 void StateWrongSize(double share, CalibrationProblem& problem) {
   const double scale = 1.0 + share;
   for (Board& board : problem.boards) {
@@ -93,15 +95,14 @@ Expected<TrialsPtr> MakeBoardViewsTrials(const KindArguments& arguments) {
 }  // namespace
 
 TrialKind BoardViewsKind() {
-  return {
-      .name = "board_views",
-      .summary =
-          "a board with a tag seen by a camera and a LiDAR of rings, as raw observations, and as "
-          "the corners that extractors make of them at best",
-      .parameters = BoardViewsParameters().Describe(),
-      .metrics = PoseMetrics(),
-      .trials_per_block = 20,
-      .make = MakeBoardViewsTrials};
+  return {.name = "board_views",
+          .summary =
+              "a board with a tag seen by a camera and a LiDAR with rings: raw observations, and "
+              "the corners of an optimal two-stage extractor",
+          .parameters = BoardViewsParameters().Describe(),
+          .metrics = PoseMetrics(),
+          .trials_per_block = 20,
+          .make = MakeBoardViewsTrials};
 }
 
 }  // namespace sextant

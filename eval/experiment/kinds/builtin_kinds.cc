@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/definition/trials.h"
 
-// One line a kind, in the order of the catalogue; X(Name) is `TrialKind NameKind()` in the kind's
-// own file.
+// One line per kind, in the order of the catalogue; X(Name) refers to `TrialKind NameKind()` in the
+// kind's own file.
 #define SEXTANT_KINDS(X) \
   X(RandomScene)         \
   X(BoardViews)          \

@@ -7,7 +7,7 @@
 #include "base/units.h"
 #include "eval/experiment/definition/trials.h"
 #include "eval/experiment/kinds/pose_graph.h"
-#include "eval/experiment/kinds/scene_sight.h"
+#include "eval/experiment/kinds/scene_observer.h"
 #include "eval/experiment/kinds/stereo_scene.h"
 #include "eval/metrics/cloud_fusion.h"
 #include "solvers/averaging/average.h"
@@ -28,11 +28,11 @@ enum FusionMeasured : int { kFusedTranslationMm, kFusedRotationDeg, kCloudMm, kW
 
 const std::vector<Metric>& FusionMetrics() {
   static const std::vector<Metric> metrics = {
-      {"translation_mm", "of cam2_from_cam1, against the truth"},
-      {"rotation_deg", "of cam2_from_cam1, against the truth"},
+      {"translation_mm", "translation error of cam2_from_cam1"},
+      {"rotation_deg", "rotation error of cam2_from_cam1"},
       {"cloud_mm", "median distance of the first stereo cloud from the surfaces of the second"},
-      {"wall_mm", "distance between both clouds' images of a wall: RMS over the walls"},
-      {"checker_mm", "distance between both stereo cameras' mean checkerboard corner"},
+      {"wall_mm", "distance between the two clouds on a wall, RMS over the walls"},
+      {"checker_mm", "distance between the mean checkerboard corners of the two stereo cameras"},
   };
   return metrics;
 }
@@ -42,22 +42,22 @@ const ParameterSet<FusionSettings>& FusionParameters() {
     ParameterSet<FusionSettings> options;
     AddSceneSettings(options)
         .Count("scans", &FusionSettings::scans, 1, 1000,
-               "of one placement, whose answers are averaged")
+               "number of scans of one placement whose estimates are averaged")
         .Real("tape_m", &FusionSettings::tape_m, "m", 0.0, 1.0,
-              "standard error of a distance by tape, per axis of each camera's pose")
+              "standard error of a tape measurement, per axis of each camera's position")
         .Real("tape_deg", &FusionSettings::tape_deg, "deg", 0.0, 45.0,
-              "standard error of an angle by tape and trigonometry");
+              "standard error of an angle computed from tape measurements");
     return options;
   }();
   return set;
 }
 
-// cam1 and cam2 never look at the same board: each is calibrated to the LiDAR, and the graph of
-// sensors joins them.
+// cam1 and cam2 never see the same board: each is calibrated to the LiDAR, and the pose graph joins
+// them.
 class FusionTrials final : public Trials {
  public:
-  FusionTrials(SceneSight first, SceneSight second, const FusionSettings& settings)
-      : sights_{std::move(first), std::move(second)}, settings_(settings) {}
+  FusionTrials(SceneObserver first, SceneObserver second, const FusionSettings& settings)
+      : observers_{std::move(first), std::move(second)}, settings_(settings) {}
 
   const std::vector<std::string>& subjects() const override {
     static const std::vector<std::string> names = {"truth", "tape", "pipeline, one scan",
@@ -66,8 +66,8 @@ class FusionTrials final : public Trials {
   }
 
   void Run(const TrialId& id, TrialRows& rows) const override {
-    std::call_once(looked_, [this] { pair_ = LookInStereo(sights_[0].whole_scene()); });
-    const Rigid3d truth = sights_[1].cam_from_lidar() * sights_[0].cam_from_lidar().Inverse();
+    std::call_once(rendered_, [this] { pair_ = RenderStereoPair(observers_[0].whole_scene()); });
+    const Rigid3d truth = observers_[1].cam_from_lidar() * observers_[0].cam_from_lidar().Inverse();
     Measure(truth, truth, rows.Add(0));
     Measure(ByTape(id.seed), truth, rows.Add(1));
     Measure(ByPipeline(id.seed, 1), truth, rows.Add(2));
@@ -83,32 +83,33 @@ class FusionTrials final : public Trials {
       for (int k = 0; k < 6; ++k) {
         delta[k] = (k < 3 ? kRadPerDeg * settings_.tape_deg : settings_.tape_m) * random.Normal();
       }
-      cam_from_lidar[i] = Perturb(sights_[i].cam_from_lidar(), delta);
+      cam_from_lidar[i] = Perturb(observers_[i].cam_from_lidar(), delta);
     }
     return cam_from_lidar[1] * cam_from_lidar[0].Inverse();
   }
 
-  Expected<UncertainPose> Calibrate(const SceneSight& sight, std::uint64_t seed, int scans) const {
+  Expected<UncertainPose> Calibrate(const SceneObserver& observer, std::uint64_t seed,
+                                    int scans) const {
     constexpr double kBetweenScans_s = 0.1;
-    const Scene scene = sight.PlaceBoardsInRoom(seed);
+    const Scene scene = observer.PlaceBoardsInRoom(seed);
     std::vector<Rigid3d> answers;
     for (int scan = 0; scan < scans; ++scan) {
       const Expected<CalibrationProblem> seen =
-          sight.Look(scene, seed, scan, kBetweenScans_s * scan);
+          observer.Observe(scene, seed, scan, kBetweenScans_s * scan);
       if (!seen) continue;
       const PointSets points = PointsOf(seen->pairs_3d3d);
       const Expected<KabschFit> fit = FitKabsch(points.in_cam, points.in_lidar);
       if (fit) answers.push_back(fit->b_from_a);
     }
     SEXTANT_ASSIGN_OR_RETURN(const Rigid3d mean, AveragePoses(answers, RotationAverage::kChordal));
-    // A chain has no loop for the weights to matter in; any covariance gives the same answer.
+    // Without a loop the weights do not matter: any covariance gives the same result.
     return UncertainPose{mean, 1e-6 * Matrix6d::Identity()};
   }
 
   Expected<Rigid3d> ByPipeline(std::uint64_t seed, int scans) const {
     std::vector<PoseEdge> edges;
     for (std::size_t i = 0; i < 2; ++i) {
-      SEXTANT_ASSIGN_OR_RETURN(const UncertainPose pose, Calibrate(sights_[i], seed, scans));
+      SEXTANT_ASSIGN_OR_RETURN(const UncertainPose pose, Calibrate(observers_[i], seed, scans));
       edges.push_back({.from = "lidar", .to = i == 0 ? "cam1" : "cam2", .to_from = pose});
     }
     SEXTANT_ASSIGN_OR_RETURN(const SensorGraph graph, SensorGraph::Solve(edges));
@@ -123,28 +124,29 @@ class FusionTrials final : public Trials {
     values.Set(kFusedRotationDeg, error.rotation_rad / kRadPerDeg);
     if (!pair_) return;
     values.Set(kCloudMm, 1e3 * CompareClouds(pair_->clouds[0], *cam2_from_cam1, pair_->clouds[1],
-                                             {.most_points = kComparedPoints})
+                                             {.max_points = kComparedPoints})
                                    .median_m);
     values.Set(kWallMm, 1e3 * WallOffset(*pair_, *cam2_from_cam1));
     values.Set(kCheckerMm, 1e3 * CheckerOffset(*pair_, *cam2_from_cam1));
   }
 
-  std::array<SceneSight, 2> sights_;
+  std::array<SceneObserver, 2> observers_;
   FusionSettings settings_;
-  mutable std::once_flag looked_;
-  mutable Expected<StereoPair> pair_ = MakeError(ErrorCode::kMissingData, "not looked yet");
+  mutable std::once_flag rendered_;
+  mutable Expected<StereoPair> pair_ = MakeError(ErrorCode::kMissingData, "not rendered yet");
 };
 
 Expected<TrialsPtr> MakeFusionTrials(const KindArguments& arguments) {
   SEXTANT_ASSIGN_OR_RETURN(const FusionSettings settings,
                            FusionParameters().Parse(arguments.parameters));
   if (!settings.translation_m.empty() || !settings.rotation_deg.empty()) {
-    return MakeError(ErrorCode::kInvalidOption,
-                     "both cameras stand where the scene says; leave out translation_m and "
-                     "rotation_deg");
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        "the scene gives the poses of both cameras; leave out translation_m and rotation_deg");
   }
-  SEXTANT_ASSIGN_OR_RETURN(SceneSight first, SceneSight::Make(settings, arguments.folder, 0));
-  SEXTANT_ASSIGN_OR_RETURN(SceneSight second, SceneSight::Make(settings, arguments.folder, 1));
+  SEXTANT_ASSIGN_OR_RETURN(SceneObserver first, SceneObserver::Make(settings, arguments.folder, 0));
+  SEXTANT_ASSIGN_OR_RETURN(SceneObserver second,
+                           SceneObserver::Make(settings, arguments.folder, 1));
   return std::make_shared<FusionTrials>(std::move(first), std::move(second), settings);
 }
 
@@ -153,8 +155,8 @@ Expected<TrialsPtr> MakeFusionTrials(const KindArguments& arguments) {
 TrialKind FusionKind() {
   return {.name = "fusion",
           .summary =
-              "two stereo cameras joined through the LiDAR: their clouds fused by tape and by "
-              "the pipeline",
+              "two stereo cameras joined through the LiDAR: their clouds fused with poses measured "
+              "by tape and estimated by the pipeline",
           .takes_solvers = false,
           .parameters = FusionParameters().Describe(),
           .metrics = FusionMetrics(),

@@ -8,7 +8,7 @@
 
 namespace sextant {
 
-/// Every kind with its parameters and metrics, as the part of a page (Markdown).
+/// Documentation of every kind with its parameters and metrics, in Markdown.
 std::string FormatKindsPage(const std::vector<TrialKind>& kinds);
 
 }  // namespace sextant

@@ -15,7 +15,7 @@
 namespace sextant {
 namespace {
 
-// An edge with its frames by number and its noise ready for whitening.
+// An edge with the indices of its frames and its information matrix.
 struct Link {
   std::size_t from = 0;
   std::size_t to = 0;
@@ -38,7 +38,7 @@ Expected<Matrix6d> InformationOf(const PoseEdge& edge) {
   if (!information) {
     return MakeError(ErrorCode::kInvalidInput,
                      fmt::format("{}: the covariance is not positive definite; every calibration "
-                                 "that goes into a graph must say how sure it is",
+                                 "in a graph needs a valid covariance",
                                  NameOf(edge)));
   }
   return *information;
@@ -51,7 +51,8 @@ std::size_t NumberOf(const std::string& name, std::vector<std::string>& frames) 
   return number;
 }
 
-// By the fewest edges from the reference; none for a frame that nothing leads to.
+// Poses along the shortest chains of edges from the reference (breadth-first); none for an
+// unreachable frame.
 std::vector<std::optional<Rigid3d>> ChainedPoses(const std::vector<Link>& links,
                                                  std::size_t frames) {
   std::vector<std::optional<Rigid3d>> poses(frames);
@@ -71,7 +72,7 @@ std::vector<std::optional<Rigid3d>> ChainedPoses(const std::vector<Link>& links,
   return poses;
 }
 
-// How to_from = to_from_reference * (from_from_reference)^-1 follows from both.
+// Jacobians of to_from_reference * (from_from_reference)^-1 with respect to both poses.
 std::pair<Matrix6d, Matrix6d> JacobiansBetween(const Rigid3d& to, const Rigid3d& from) {
   const ProductJacobians by = JacobiansOfProduct(to, from.Inverse());
   return {by.by_left, by.by_right * JacobianOfInverse(from)};
@@ -83,7 +84,7 @@ struct NormalEquations {
   double chi_square = 0.0;
 };
 
-// The reference has no columns: frame i has those from 6 (i - 1) on.
+// The reference is fixed: frame i has the six columns from 6 (i - 1) on.
 NormalEquations Linearise(const std::vector<Link>& links, const std::vector<Rigid3d>& poses) {
   const auto size = 6 * static_cast<Eigen::Index>(poses.size() - 1);
   NormalEquations normal{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size), 0.0};
@@ -163,8 +164,8 @@ Expected<SensorGraph> SensorGraph::Solve(const std::vector<PoseEdge>& edges) {
   const std::optional<Eigen::MatrixXd> covariance = InvertSymmetric(normal.information);
   if (!converged || !covariance) {
     return MakeError(ErrorCode::kNoConvergence,
-                     "the measured transforms contradict each other too much to be brought "
-                     "together; look at the loops of the graph one by one");
+                     "the measured transforms contradict each other too much to be reconciled; "
+                     "check the loops of the graph one by one");
   }
   graph.frame_from_reference_ = std::move(poses);
   graph.covariance_ = *covariance;

@@ -10,7 +10,8 @@
 namespace sextant {
 namespace {
 
-// The kinds of data that a solver looks at; solvers alike in them share a view and a bound.
+// The kinds of data that a solver uses; solvers that use the same kinds share a problem and a
+// bound.
 struct DataKinds {
   bool points = false;
   bool pixels = false;
@@ -39,9 +40,9 @@ CalibrationProblem ViewOf(const CalibrationProblem& problem, const DataKinds& ki
   return view;
 }
 
-// The bound of what the solver may use; NaN stays where there is none.
+// Sets the bound for the data that the solver may use; it stays NaN if there is none.
 void MeasureBound(const KnownProblem& known, DataKinds kinds, MetricValues& values) {
-  // Unpaired points can at best be paired rightly.
+  // At best, unpaired points are paired correctly.
   kinds.points = kinds.points || kinds.sets;
   const CalibrationProblem seen = ViewOf(known.inliers, kinds);
   const Expected<Matrix6d> bound =
@@ -74,7 +75,7 @@ class ProblemTrials final : public Trials {
         kinds = KindsOf(spec);
         view = ViewOf(known->problem, *kinds);
       }
-      // Only those that ask for a start may know where the truth is.
+      // Only solvers that need a start pose may be given the truth.
       view.initial_cam_from_lidar = known->problem.initial_cam_from_lidar;
       if (spec.needs.initial_pose && !view.initial_cam_from_lidar) {
         view.initial_cam_from_lidar = known->cam_from_lidar;
@@ -103,7 +104,7 @@ Expected<TrialsPtr> MakeProblemTrials(ProblemMaker maker, std::vector<SolverPtr>
   std::string reasons;
   std::erase_if(solvers, [&](const SolverPtr& solver) {
     Expected<void> met = CheckProblem(problem, solver->spec());
-    // Whether points lie on a plane shows when it is fitted.
+    // Whether the points lie on a plane is only known after a fit.
     if (met && solver->spec().needs.points_on_plane) {
       met = solver->Solve(problem).map([](const SolveReport&) {});
     }
@@ -112,7 +113,7 @@ Expected<TrialsPtr> MakeProblemTrials(ProblemMaker maker, std::vector<SolverPtr>
   });
   if (solvers.empty()) {
     return MakeError(ErrorCode::kMissingData,
-                     "none of the solvers can work with this condition's data" + reasons);
+                     "none of the solvers can use this condition's data" + reasons);
   }
   return std::make_shared<ProblemTrials>(std::move(maker), std::move(solvers));
 }

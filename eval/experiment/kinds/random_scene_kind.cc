@@ -32,31 +32,32 @@ const OptionSet<RandomSceneTrialSettings>& RandomSceneTrialParameters() {
       OptionSet<RandomSceneTrialSettings>()
           .Choice("data", &RandomSceneTrialSettings::data, {"points", "pixels", "both"},
                   "3D-3D pairs and point sets, 2D-3D pairs, or both of the same points")
-          .Count("pairs", &RandomSceneTrialSettings::pairs, 3, 1'000'000, "points in the scene")
+          .Count("pairs", &RandomSceneTrialSettings::pairs, 3, 1'000'000,
+                 "number of points in the scene")
           .Real("sigma_m", &RandomSceneTrialSettings::sigma_m, "m", 1e-9, 10.0,
                 "noise of 3D-3D pairs, per axis")
           .Real("sigma_px", &RandomSceneTrialSettings::sigma_px, "px", 1e-9, 1e3,
                 "noise of pixels, per axis")
           .Choice("planar", &RandomSceneTrialSettings::planar, {"false", "true"},
-                  "all points on one plane of random tilt")
+                  "all points lie on one plane of random tilt")
           .Real("depth_m", &RandomSceneTrialSettings::depth_m, "m", 0.01, 1e4,
                 "distance of the points' centre from the camera")
           .Real("extent_m", &RandomSceneTrialSettings::extent_m, "m", 1e-3, 1e4,
                 "half the side of the cube that holds the points")
           .Real("max_rotation_deg", &RandomSceneTrialSettings::max_rotation_deg, "deg", 0.0, 180.0,
-                "the true rotation is by at most this")
+                "maximum angle of the true rotation")
           .Real("outliers", &RandomSceneTrialSettings::outliers, "1", 0.0, 0.99,
-                "share of the pairs that join different points")
+                "fraction of the pairs that join different points")
           .Choice("known_inliers", &RandomSceneTrialSettings::known_inliers, {"false", "true"},
-                  "solvers get the pairs that join the same points only: what noise alone allows")
+                  "give the solvers only the true pairs: the accuracy that noise alone allows")
           .Real("focal_error", &RandomSceneTrialSettings::focal_error, "1", -0.5, 0.5,
-                "focal lengths told to the solver are too long by this share")
+                "relative error of the focal lengths given to the solver")
           .Real("scale_error", &RandomSceneTrialSettings::scale_error, "1", -0.5, 0.5,
-                "points in the camera frame are too far by this share: a wrong board size"));
+                "relative error of the distances in the camera frame, as of a wrong board size"));
   return set;
 }
 
-// Errors that the solver is not told of, by how much they are stated wrongly.
+// Applies systematic errors that the solver does not know.
 void Distort(const RandomSceneTrialSettings& settings, CalibrationProblem& problem) {
   problem.camera->fx_px *= 1.0 + settings.focal_error;
   problem.camera->fy_px *= 1.0 + settings.focal_error;
@@ -72,7 +73,7 @@ void Restrict(Data data, CalibrationProblem& problem) {
   }
 }
 
-// Exact pairs of other points of the same box.
+// Exact pairs of further points in the same cube.
 CalibrationProblem HeldOut(const RandomSceneOptions& scene, const Rigid3d& cam_from_lidar,
                            const Camera& camera, Random& random) {
   constexpr int kPairs = 20;
@@ -123,30 +124,30 @@ KnownProblem MakeRandomSceneTrialProblem(const RandomSceneTrialSettings& setting
 }
 
 Expected<TrialsPtr> MakeRandomSceneTrialTrials(const KindArguments& arguments) {
-  Expected<RandomSceneTrialSettings> settings =
-      RandomSceneTrialParameters().Parse(arguments.parameters);
-  if (!settings) return tl::unexpected<Error>(settings.error());
-  if (settings->depth_m < 1.8 * settings->extent_m) {
+  SEXTANT_ASSIGN_OR_RETURN(RandomSceneTrialSettings settings,
+                           RandomSceneTrialParameters().Parse(arguments.parameters));
+  if (settings.depth_m < 1.8 * settings.extent_m) {
     return MakeError(ErrorCode::kInvalidOption,
                      fmt::format("extent_m = {} puts points behind the camera at depth_m = {}; "
                                  "expected depth_m of at least 1.8 extent_m",
-                                 settings->extent_m, settings->depth_m));
+                                 settings.extent_m, settings.depth_m));
   }
-  return MakeProblemTrials({[s = *settings](const TrialId& id) -> Expected<KnownProblem> {
+  return MakeProblemTrials({[s = settings](const TrialId& id) -> Expected<KnownProblem> {
                               return MakeRandomSceneTrialProblem(s, id);
                             },
-                            *settings},
+                            settings},
                            arguments.solvers);
 }
 
 }  // namespace
 
 TrialKind RandomSceneKind() {
-  return {.name = "random_scene",
-          .summary = "random pose and points in front of a camera of 1280x720 and f = 700 px",
-          .parameters = RandomSceneTrialParameters().Describe(),
-          .metrics = PoseMetrics(),
-          .make = MakeRandomSceneTrialTrials};
+  return {
+      .name = "random_scene",
+      .summary = "random pose and points in front of a camera of 1280 x 720 pixels and f = 700 px",
+      .parameters = RandomSceneTrialParameters().Describe(),
+      .metrics = PoseMetrics(),
+      .make = MakeRandomSceneTrialTrials};
 }
 
 }  // namespace sextant

@@ -4,7 +4,7 @@
 
 #include "base/units.h"
 #include "eval/experiment/definition/trials.h"
-#include "eval/experiment/kinds/scene_sight.h"
+#include "eval/experiment/kinds/scene_observer.h"
 #include "solvers/averaging/average.h"
 #include "solvers/kernels/kabsch.h"
 
@@ -27,10 +27,10 @@ enum SceneAverageMeasured : int {
 const std::vector<Metric>& SceneAverageMetrics() {
   static const std::vector<Metric> metrics = {
       {"translation_mm", "distance of the averaged translation from the truth"},
-      {"rotation_deg", "angle of the averaged rotation against the truth"},
-      {"x_m", "averaged translation"},
-      {"y_m", "averaged translation"},
-      {"z_m", "averaged translation"},
+      {"rotation_deg", "angle between the averaged and the true rotation"},
+      {"x_m", "x of the averaged translation"},
+      {"y_m", "y of the averaged translation"},
+      {"z_m", "z of the averaged translation"},
   };
   return metrics;
 }
@@ -40,9 +40,9 @@ const ParameterSet<SceneAverageSettings>& SceneAverageParameters() {
     ParameterSet<SceneAverageSettings> options;
     AddSceneSettings(options)
         .Count("scans", &SceneAverageSettings::scans, 1, 10'000,
-               "averaged; a row after 1, 2, 3, 5, 7, 10 ...")
+               "number of scans; rows are written after 1, 2, 3, 5, 7, 10 ... of them")
         .Real("interval_s", &SceneAverageSettings::interval_s, "s", 0.0, 1e6,
-              "from one scan to the next");
+              "time from one scan to the next");
     return options;
   }();
   return set;
@@ -60,8 +60,8 @@ bool IsReported(int scans) {
 
 class AverageTrials final : public Trials {
  public:
-  AverageTrials(SceneSight sight, const SceneAverageSettings& settings)
-      : sight_(std::move(sight)), scans_(settings.scans), interval_s_(settings.interval_s) {}
+  AverageTrials(SceneObserver observer, const SceneAverageSettings& settings)
+      : observer_(std::move(observer)), scans_(settings.scans), interval_s_(settings.interval_s) {}
 
   const std::vector<std::string>& subjects() const override {
     static const std::vector<std::string> names = {"true mean", "original's running average",
@@ -69,15 +69,15 @@ class AverageTrials final : public Trials {
     return names;
   }
 
-  // The boards hang where they hang and the unit is the same one: what a trial averages is noise.
+  // Boards and sensors do not move within a trial, so only noise is averaged.
   void Run(const TrialId& id, TrialRows& rows) const override {
-    const Scene scene = sight_.PlaceBoardsInRoom(id.seed);
+    const Scene scene = observer_.PlaceBoardsInRoom(id.seed);
     std::vector<Rigid3d> answers;
     std::vector<Eigen::Vector3d> in_cam;
     std::vector<Eigen::Vector3d> in_lidar;
     for (int scan = 0; scan < scans_; ++scan) {
       const Expected<CalibrationProblem> seen =
-          sight_.Look(scene, id.seed, scan, interval_s_ * scan);
+          observer_.Observe(scene, id.seed, scan, interval_s_ * scan);
       if (!seen) continue;
       const PointSets points = PointsOf(seen->pairs_3d3d);
       const Expected<KabschFit> fit = FitKabsch(points.in_cam, points.in_lidar);
@@ -99,16 +99,16 @@ class AverageTrials final : public Trials {
   }
 
  private:
-  // What is left of the first scan's error where all of it is noise.
+  // The first scan's error divided by sqrt(N), as if all of it were noise.
   void MeasureIdeal(const Rigid3d& first, int scans, MetricValues values) const {
-    const PoseDistance error = DistanceBetween(first, sight_.cam_from_lidar());
+    const PoseDistance error = DistanceBetween(first, observer_.cam_from_lidar());
     values.Set(kAverageTranslationMm, 1e3 * error.translation_m / std::sqrt(scans));
     values.Set(kAverageRotationDeg, kDegPerRad * error.rotation_rad / std::sqrt(scans));
   }
 
   void Measure(const Expected<Rigid3d>& pose, MetricValues values) const {
     if (!pose) return;
-    const PoseDistance error = DistanceBetween(*pose, sight_.cam_from_lidar());
+    const PoseDistance error = DistanceBetween(*pose, observer_.cam_from_lidar());
     values.Set(kAverageTranslationMm, 1e3 * error.translation_m);
     values.Set(kAverageRotationDeg, kDegPerRad * error.rotation_rad);
     values.Set(kAverageXM, pose->translation.x());
@@ -116,24 +116,23 @@ class AverageTrials final : public Trials {
     values.Set(kAverageZM, pose->translation.z());
   }
 
-  SceneSight sight_;
+  SceneObserver observer_;
   int scans_;
   double interval_s_;
 };
 
 Expected<TrialsPtr> MakeSceneAverageTrials(const KindArguments& arguments) {
-  const Expected<SceneAverageSettings> settings =
-      SceneAverageParameters().Parse(arguments.parameters);
-  if (!settings) return tl::unexpected<Error>(settings.error());
-  SEXTANT_ASSIGN_OR_RETURN(SceneSight sight, SceneSight::Make(*settings, arguments.folder));
-  return std::make_shared<AverageTrials>(std::move(sight), *settings);
+  SEXTANT_ASSIGN_OR_RETURN(const SceneAverageSettings settings,
+                           SceneAverageParameters().Parse(arguments.parameters));
+  SEXTANT_ASSIGN_OR_RETURN(SceneObserver observer, SceneObserver::Make(settings, arguments.folder));
+  return std::make_shared<AverageTrials>(std::move(observer), settings);
 }
 
 }  // namespace
 
 TrialKind SceneAverageKind() {
   return {.name = "scene_average",
-          .summary = "answers of many scans of one session, averaged in four ways",
+          .summary = "the estimates of many scans of one session, averaged in four ways",
           .takes_solvers = false,
           .parameters = SceneAverageParameters().Describe(),
           .metrics = SceneAverageMetrics(),

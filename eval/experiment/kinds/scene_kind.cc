@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "eval/experiment/kinds/problem_trials.h"
-#include "eval/experiment/kinds/scene_sight.h"
+#include "eval/experiment/kinds/scene_observer.h"
 #include "solvers/kernels/kabsch.h"
 
 namespace sextant {
@@ -15,14 +15,15 @@ struct SceneViewsSettings : SceneSettings, PoseLimits {
   int views = 1;
 };
 
-// Beside PoseMetrics(), in this order.
+// Metrics after PoseMetrics(), in this order.
 enum Extra : int { kKeptPx = kPoseMetricCount, kPairsMm, kMeanMm, kWithoutWorstMm, kBelowKabsch };
 
 const ParameterSet<SceneViewsSettings>& SceneViewsParameters() {
   static const ParameterSet<SceneViewsSettings> set = [] {
     ParameterSet<SceneViewsSettings> options;
-    AddPoseLimits(AddSceneSettings(options).Count("views", &SceneViewsSettings::views, 1, 1000,
-                                                  "moments, with the boards hung anew for each"));
+    AddPoseLimits(
+        AddSceneSettings(options).Count("views", &SceneViewsSettings::views, 1, 1000,
+                                        "number of views, each with new poses of the boards"));
     return options;
   }();
   return set;
@@ -30,11 +31,11 @@ const ParameterSet<SceneViewsSettings>& SceneViewsParameters() {
 
 std::vector<Metric> SceneViewsMetrics() {
   std::vector<Metric> metrics = PoseMetrics();
-  metrics.push_back({"kept_px", "mean reprojection error of the pairs that the answer rests on"});
-  metrics.push_back({"pairs_mm", "RMSE of the 3D-3D pairs, also of solvers that did not get them"});
-  metrics.push_back({"mean_mm", "mean distance of the 3D-3D pairs (not its root mean square)"});
-  metrics.push_back({"without_worst_mm", "RMSE of the 3D-3D pairs but for the worst"});
-  metrics.push_back({"below_kabsch", "1 where rmse_mm is below that of Kabsch on the same pairs"});
+  metrics.push_back({"kept_px", "mean reprojection error of the pairs that the estimate uses"});
+  metrics.push_back({"pairs_mm", "RMSE of the 3D-3D pairs, also for solvers that do not use them"});
+  metrics.push_back({"mean_mm", "mean distance of the 3D-3D pairs (not the root mean square)"});
+  metrics.push_back({"without_worst_mm", "RMSE of the 3D-3D pairs without the worst one"});
+  metrics.push_back({"below_kabsch", "1 if pairs_mm is below that of Kabsch on the same pairs"});
   return metrics;
 }
 
@@ -50,7 +51,8 @@ void MeasureExtras(const Expected<SolveReport>& report, MetricValues values) {
   }
 }
 
-// Of the pairs, whatever the solver used: icp sees no pairs, but its pose has residuals on them.
+// Measured on the pairs, whatever the solver used: icp gets no pairs, but its pose has residuals on
+// them.
 void MeasureDistances(const KnownProblem& known, const Expected<SolveReport>& report,
                       MetricValues values) {
   const auto& pairs = known.problem.pairs_3d3d;
@@ -75,37 +77,37 @@ void MeasureDistances(const KnownProblem& known, const Expected<SolveReport>& re
   if (best) values.Set(kBelowKabsch, squares < (1.0 - kRounding) * best->sum_squares ? 1.0 : 0.0);
 }
 
-Expected<KnownProblem> MakeKnown(const SceneSight& sight, int views, const TrialId& id) {
+Expected<KnownProblem> MakeKnown(const SceneObserver& observer, int views, const TrialId& id) {
   constexpr double kBetweenViews_s = 60.0;
   KnownProblem known;
-  known.cam_from_lidar = sight.cam_from_lidar();
+  known.cam_from_lidar = observer.cam_from_lidar();
   for (int view = 0; view < views; ++view) {
     const std::uint64_t hang_seed =
         DeriveSeed(id.seed, "view", static_cast<std::uint64_t>(view), 0);
-    Expected<CalibrationProblem> seen =
-        sight.Look(sight.PlaceBoardsInRoom(hang_seed), id.seed, view, kBetweenViews_s * view);
-    if (!seen) return tl::unexpected<Error>(seen.error());
+    SEXTANT_ASSIGN_OR_RETURN(CalibrationProblem seen,
+                             observer.Observe(observer.PlaceBoardsInRoom(hang_seed), id.seed, view,
+                                              kBetweenViews_s * view));
     if (view == 0) {
-      known.problem = std::move(*seen);
+      known.problem = std::move(seen);
       continue;
     }
     CalibrationProblem& all = known.problem;
-    all.pairs_3d3d.insert(all.pairs_3d3d.end(), seen->pairs_3d3d.begin(), seen->pairs_3d3d.end());
-    all.pairs_2d3d.insert(all.pairs_2d3d.end(), seen->pairs_2d3d.begin(), seen->pairs_2d3d.end());
+    all.pairs_3d3d.insert(all.pairs_3d3d.end(), seen.pairs_3d3d.begin(), seen.pairs_3d3d.end());
+    all.pairs_2d3d.insert(all.pairs_2d3d.end(), seen.pairs_2d3d.begin(), seen.pairs_2d3d.end());
   }
   known.problem.point_sets = WithholdPairing(known.problem.pairs_3d3d);
-  known.problem.initial_cam_from_lidar = sight.DrawStart(id.seed, known.problem.point_sets);
+  known.problem.initial_cam_from_lidar = observer.DrawStart(id.seed, known.problem.point_sets);
   return known;
 }
 
 Expected<TrialsPtr> MakeSceneViewsTrials(const KindArguments& arguments) {
   SEXTANT_ASSIGN_OR_RETURN(const SceneViewsSettings settings,
                            SceneViewsParameters().Parse(arguments.parameters));
-  SEXTANT_ASSIGN_OR_RETURN(SceneSight made, SceneSight::Make(settings, arguments.folder));
-  const auto sight = std::make_shared<const SceneSight>(std::move(made));
+  SEXTANT_ASSIGN_OR_RETURN(SceneObserver made, SceneObserver::Make(settings, arguments.folder));
+  const auto observer = std::make_shared<const SceneObserver>(std::move(made));
   const int views = settings.views;
   return MakeProblemTrials(
-      {.make = [sight, views](const TrialId& id) { return MakeKnown(*sight, views, id); },
+      {.make = [observer, views](const TrialId& id) { return MakeKnown(*observer, views, id); },
        .limits = settings,
        .measure_more =
            [](const KnownProblem& known, const Expected<SolveReport>& report, MetricValues values) {
@@ -119,7 +121,7 @@ Expected<TrialsPtr> MakeSceneViewsTrials(const KindArguments& arguments) {
 
 TrialKind SceneKind() {
   return {.name = "scene",
-          .summary = "boards of a scene file, seen by a simulated LiDAR and camera",
+          .summary = "the boards of a scene file, seen by a simulated LiDAR and camera",
           .parameters = SceneViewsParameters().Describe(),
           .metrics = SceneViewsMetrics(),
           .trials_per_block = 10,

@@ -10,15 +10,17 @@
 #include "features/camera/tag_detector.h"
 #include "geometry/symmetric.h"
 #include "simulator/session/stereo_cloud.h"
+#include "solvers/kernels/cloud_sums.h"
 
 namespace sextant {
 namespace {
 
 constexpr double kBaseline_m = 0.12;
-constexpr std::size_t kEnoughPoints = 500;  // Of a wall, in each cloud.
+constexpr std::size_t kEnoughPoints = 500;  // Minimum per wall in each cloud.
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Corners of the checkerboard as both eyes of a camera see them; empty where one does not.
+// Corners of the checkerboard triangulated from both images of a stereo camera; empty if one image
+// does not show it.
 Expected<std::vector<Eigen::Vector3d>> CheckerCorners(const Scene& scene,
                                                       const StereoImages& images) {
   std::vector<Eigen::Vector3d> corners;
@@ -28,8 +30,8 @@ Expected<std::vector<Eigen::Vector3d>> CheckerCorners(const Scene& scene,
                              MakeTagDetector(fmt::format("checkerboard(columns={},rows={})",
                                                          board.board.checker->inner_columns,
                                                          board.board.checker->inner_rows)));
-    const Expected<Detections> left = (detector)->Detect(images.left);
-    const Expected<Detections> right = (detector)->Detect(images.right);
+    const Expected<Detections> left = detector->Detect(images.left);
+    const Expected<Detections> right = detector->Detect(images.right);
     if (!left || !right || left->checkers.empty() || right->checkers.empty()) continue;
     const std::vector<Eigen::Vector2d>& in_left = left->checkers[0].corners_px;
     const std::vector<Eigen::Vector2d>& in_right = right->checkers[0].corners_px;
@@ -41,7 +43,7 @@ Expected<std::vector<Eigen::Vector3d>> CheckerCorners(const Scene& scene,
   return corners;
 }
 
-// Whether the stereo camera measured this point on the wall, for all that its depth is worth there.
+// Whether the point lies on the wall within the accuracy of the stereo depth at that distance.
 bool IsOn(const SceneWall& wall, const Rigid3d& wall_from_cam, const Eigen::Vector3d& point) {
   constexpr double kMargin_m = 0.05;
   const double depth_error_m = 0.01 + 0.01 * point.z() * point.z();
@@ -51,27 +53,20 @@ bool IsOn(const SceneWall& wall, const Rigid3d& wall_from_cam, const Eigen::Vect
          std::abs(in_wall.y()) < 0.5 * wall.height_m - kMargin_m;
 }
 
-Eigen::Vector3d CentreOf(const std::vector<Eigen::Vector3d>& points) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points) mean += point;
-  return mean / static_cast<double>(points.size());
-}
-
 }  // namespace
 
-Expected<StereoPair> LookInStereo(const Scene& full_scene) {
+Expected<StereoPair> RenderStereoPair(const Scene& full_scene) {
   Scene scene = full_scene;
   std::erase_if(scene.boards, [](const SceneBoard& board) { return !board.board.checker; });
   StereoPair pair;
   pair.walls.resize(scene.walls.size());
   for (std::size_t i = 0; i < 2; ++i) {
-    const Expected<StereoImages> images =
-        RenderStereo(scene, static_cast<int>(i), kBaseline_m,
-                     UsualImageOptions(DeriveSeed(1, "stereo", i, 0), 0.0));
-    if (!images) return tl::unexpected<Error>(images.error());
-    SEXTANT_ASSIGN_OR_RETURN(PointCloud cloud, MatchStereo(*images, {}));
+    SEXTANT_ASSIGN_OR_RETURN(const StereoImages images,
+                             RenderStereo(scene, static_cast<int>(i), kBaseline_m,
+                                          UsualImageOptions(DeriveSeed(1, "stereo", i, 0), 0.0)));
+    SEXTANT_ASSIGN_OR_RETURN(PointCloud cloud, MatchStereo(images, {}));
     pair.clouds[i] = std::move(cloud);
-    SEXTANT_ASSIGN_OR_RETURN(std::vector<Eigen::Vector3d> checker, CheckerCorners(scene, *images));
+    SEXTANT_ASSIGN_OR_RETURN(std::vector<Eigen::Vector3d> checker, CheckerCorners(scene, images));
     pair.checker[i] = std::move(checker);
     for (std::size_t w = 0; w < scene.walls.size(); ++w) {
       const SceneWall& wall = scene.walls[w];
@@ -85,7 +80,8 @@ Expected<StereoPair> LookInStereo(const Scene& full_scene) {
   std::erase_if(pair.walls, [](const auto& wall) {
     return wall[0].size() < kEnoughPoints || wall[1].size() < kEnoughPoints;
   });
-  // Seen from the other side a checkerboard's corners count from the other end.
+  // Cameras on opposite sides count the corners from opposite ends, so only the means are compared;
+  // for these the number of corners must agree.
   if (pair.checker[0].size() != pair.checker[1].size()) pair.checker = {};
   return pair;
 }
@@ -93,12 +89,8 @@ Expected<StereoPair> LookInStereo(const Scene& full_scene) {
 double WallOffset(const StereoPair& pair, const Rigid3d& cam2_from_cam1) {
   double squares = 0.0;
   for (const auto& [first, second] : pair.walls) {
-    const Eigen::Vector3d middle = CentreOf(second);
-    Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-    for (const Eigen::Vector3d& point : second) {
-      scatter += (point - middle) * (point - middle).transpose();
-    }
-    const SymmetricEigen<3> eigen = EigenOf(scatter);
+    const Eigen::Vector3d middle = MeanOf(second);
+    const SymmetricEigen<3> eigen = EigenOf(ScatterAbout(middle, second));
     double mean = 0.0;
     for (const Eigen::Vector3d& point : first) {
       mean += eigen.vectors.col(0).dot(cam2_from_cam1 * point - middle);
@@ -111,7 +103,7 @@ double WallOffset(const StereoPair& pair, const Rigid3d& cam2_from_cam1) {
 
 double CheckerOffset(const StereoPair& pair, const Rigid3d& cam2_from_cam1) {
   if (pair.checker[0].empty()) return kNan;
-  return (cam2_from_cam1 * CentreOf(pair.checker[0]) - CentreOf(pair.checker[1])).norm();
+  return (cam2_from_cam1 * MeanOf(pair.checker[0]) - MeanOf(pair.checker[1])).norm();
 }
 
 }  // namespace sextant

@@ -8,12 +8,12 @@
 namespace sextant {
 namespace {
 
-// Two megabytes a column.
+// Two megabytes per column.
 constexpr std::uint64_t kMaxKeptRows = 1U << 18U;
 
 CellKey CellOf(std::uint64_t key) { return {SubjectOfKey(key), IndexOfKey(key)}; }
 
-// The place of a cell; rows of one trial mostly go through the cells in order.
+// Finds the index of a cell; fast if successive rows have successive cells, as within one trial.
 class CellFinder {
  public:
   explicit CellFinder(const std::vector<CellKey>& cells) : cells_(cells) {}
@@ -32,7 +32,7 @@ class CellFinder {
   std::size_t last_ = 0;
 };
 
-// Rows hold the wanted metrics alone.
+// The column of a metric: rows contain only the wanted metrics.
 int ColumnOf(const Experiment& experiment, int metric) {
   if (metric < 0) return -1;
   int column = 0;
@@ -89,10 +89,9 @@ Expected<ColumnPasses::Rows> ColumnPasses::Read(const RowBlockPlace& block) cons
   for (const int column : columns_) {
     rows.columns.emplace_back();
     if (column < 0) continue;
-    Expected<std::vector<double>> values =
-        rows_->reader_->ReadColumn(block, static_cast<std::size_t>(column));
-    if (!values) return tl::unexpected<Error>(std::move(values.error()));
-    rows.columns.back() = std::move(*values);
+    SEXTANT_ASSIGN_OR_RETURN(std::vector<double> values,
+                             rows_->reader_->ReadColumn(block, static_cast<std::size_t>(column)));
+    rows.columns.back() = std::move(values);
   }
   return rows;
 }

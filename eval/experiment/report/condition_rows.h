@@ -11,23 +11,24 @@
 
 namespace sextant {
 
-/// The rows of one condition that belong together: of one subject at one step.
+/// Identifies the rows of one condition that are summarised together: those of one subject at one
+/// step.
 struct CellKey {
   int subject = 0;
   int index = 0;
 
-  // NOLINTNEXTLINE(modernize-use-nullptr): what the compiler writes for <=> looks like one.
+  // NOLINTNEXTLINE(modernize-use-nullptr): false positive in the defaulted operator.
   friend auto operator<=>(const CellKey&, const CellKey&) = default;
 };
 
-/// Which rows of the file are one condition's.
+/// The rows of one condition in a row file.
 class ConditionRows {
  public:
-  /// Requires the reader's rows to be the experiment's. Both must outlive this.
+  /// Requires that the reader's rows belong to the experiment. Both must outlive this object.
   static Expected<ConditionRows> Open(const Experiment& experiment, const RowFileReader& reader,
                                       std::size_t condition);
 
-  /// Ascending.
+  /// In ascending order.
   const std::vector<CellKey>& cells() const { return cells_; }
 
  private:
@@ -41,28 +42,29 @@ class ConditionRows {
   std::vector<CellKey> cells_;
 };
 
-/// Some metrics of one condition's rows, read as often as asked: from the file, block by block, so
-/// that memory does not grow with the trials; rows that are few are kept after the first pass.
+/// Reads some metrics of one condition's rows in repeated passes over the file, block by block, so
+/// that memory does not grow with the number of trials. A small number of rows is cached in the
+/// first pass.
 class ColumnPasses {
  public:
-  /// So many rows in their order: the cell of each, and a column a metric.
+  /// Some consecutive rows: the cell of each row, and one column per metric.
   struct Rows {
     std::vector<std::uint32_t> cells;
     std::vector<std::vector<double>> columns;
   };
 
-  /// Requires wanted metrics; -1 stands for none, whose column stays empty. The rows must outlive
-  /// this.
+  /// Requires wanted metrics; -1 stands for no metric, and its column stays empty. The rows must
+  /// outlive this object.
   ColumnPasses(const ConditionRows& rows, const std::vector<int>& metrics);
 
-  /// All rows of the condition, trial by trial.
+  /// Visits all rows of the condition, trial by trial.
   Expected<void> Pass(const std::function<void(const Rows&)>& visit);
 
  private:
   Expected<Rows> Read(const RowBlockPlace& block) const;
 
   const ConditionRows* rows_;
-  std::vector<int> columns_;  // In the file; -1: none.
+  std::vector<int> columns_;  // Column numbers in the file; -1: none.
   bool keep_ = false;
   std::vector<Rows> kept_;
 };

@@ -15,7 +15,7 @@ double Square(double x) { return x * x; }
 
 bool IsNeither0NorNan(double value) { return !std::isnan(value) && value != 0.0; }
 
-// The bootstrap knows nothing beyond the sample's ends.
+// The bootstrap gives no interval for the minimum and maximum.
 bool HasInterval(double q) { return q > 0.0 && q < 1.0; }
 
 }  // namespace

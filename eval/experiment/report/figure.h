@@ -13,25 +13,25 @@
 
 namespace sextant {
 
-/// A statistic's value over the trials of one cell.
+/// The value of a statistic over the trials of one cell.
 struct Figure {
-  double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN where no trial counts.
-  std::optional<Interval> interval;  ///< 95 percent: bootstrap, for rates Wilson's.
-  std::uint64_t trials = 0;          ///< That count.
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN if no trial counts.
+  std::optional<Interval> interval;  ///< 95 percent; Wilson's for rates, else bootstrap.
+  std::uint64_t trials = 0;          ///< Number of trials that count.
 };
 
-/// Gathers a figure from trials that pass by as often as it asks, the same in the same order each
-/// time; none of them is kept. NaN values do not count, but for rates, where they count as 0.
+/// Computes a figure in several passes over the trials, which must be the same in the same order
+/// each time and are not stored. NaN values do not count, except for rates, where they count as 0.
 class FigureGatherer {
  public:
-  /// The seed is the bootstrap's.
+  /// `seed` is used by the bootstrap.
   FigureGatherer(const Statistic& statistic, std::uint64_t seed);
 
-  /// No further pass is wanted, and figure() is the figure.
+  /// True if no further pass is needed and figure() is final.
   bool done() const { return stage_ == Stage::kDone; }
   const Figure& figure() const { return figure_; }
 
-  /// One trial; `reference` and `where` are not looked at where the statistic has none.
+  /// Adds one trial; `reference` and `where` are ignored if the statistic has none.
   void Add(double value, double reference, double where);
   void EndPass();
 
@@ -47,14 +47,14 @@ class FigureGatherer {
   std::uint64_t seed_;
   Stage stage_ = Stage::kCount;
   Figure figure_;
-  std::uint64_t successes_ = 0;  // Of a rate.
-  double mean_ = 0.0;            // Of a standard deviation.
+  std::uint64_t successes_ = 0;  // Used for rates.
+  double mean_ = 0.0;            // Used for standard deviations.
   int rank_passes_ = 0;
-  std::optional<RatioSums> sums_;              // In kSums and kDeviations.
-  std::optional<QuantileGatherer> quantiles_;  // In kRanks.
+  std::optional<RatioSums> sums_;              // Set in stages kSums and kDeviations.
+  std::optional<QuantileGatherer> quantiles_;  // Set in stage kRanks.
 };
 
-/// The statistic of every cell of the condition, in the order of its cells.
+/// The statistic for every cell of the condition, in the order of the cells.
 Expected<std::vector<Figure>> ComputeFigures(const Statistic& statistic, const ConditionRows& rows,
                                              std::uint64_t seed);
 

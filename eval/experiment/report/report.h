@@ -13,15 +13,15 @@
 
 namespace sextant {
 
-/// All that a report says, each figure computed once.
+/// All figures of a report, each computed once.
 class ReportData {
  public:
-  /// Figures of every statistic that the experiment's tables and plots show. Errors: kIo;
-  /// kInvalidInput where the rows are not the experiment's.
+  /// Computes every statistic that the experiment's tables and plots show. Errors: kIo;
+  /// kInvalidInput if the rows do not belong to the experiment.
   static Expected<ReportData> Compute(const Experiment& experiment, const RowFileReader& reader);
 
   const std::vector<CellKey>& cells(std::size_t condition) const { return cells_[condition]; }
-  /// By cell of the condition. Requires a statistic of the experiment's report.
+  /// One figure per cell of the condition. Requires a statistic of the experiment's report.
   const std::vector<Figure>& figures(std::size_t condition, const Statistic& statistic) const {
     return figures_[condition].at(statistic.text);
   }
@@ -31,33 +31,34 @@ class ReportData {
   std::vector<std::map<std::string, std::vector<Figure>>> figures_;
 };
 
-/// One table of a report, with the conditions that it is of.
+/// One table of a report; the title names its conditions.
 struct ReportTable {
   std::string title;
   TextTable table;
 };
 std::vector<ReportTable> MakeTables(const Experiment& experiment, const ReportData& data);
 
-/// The page of the experiment: Markdown, for a terminal, and LaTeX (booktabs).
+/// The report as Markdown, as plain text for a terminal, and its tables in LaTeX (booktabs).
 std::string FormatMarkdown(const Experiment& experiment, const ReportData& data);
 std::string FormatPlain(const Experiment& experiment, const ReportData& data);
 std::string FormatLatex(const Experiment& experiment, const ReportData& data);
 
-/// Gnuplot's commands for a plot of the report; empty where none of its figures is finite.
+/// Gnuplot commands for a plot of the report; empty if none of its figures is finite.
 std::string PlotCommands(const Experiment& experiment, const PlotSpec& plot,
                          const ReportData& data);
 
-/// Every metric of every cell: count, mean, RMS, deviation and quantiles, the median with its
-/// interval; and the figures of the tables. JSON.
+/// JSON with every metric of every cell (count, mean, RMS, standard deviation, quantiles, and the
+/// median with its interval) and the figures of tables and plots.
 Expected<std::string> FormatSummary(const Experiment& experiment, const RowFileReader& reader,
                                     const ReportData& data);
 
-/// Every row, tidy: experiment, condition, axes, subject, trial, index, metrics. Empty where NaN.
-/// Written without holding it in memory.
+/// Writes all rows as CSV with the columns experiment, condition, axes, subject, trial, index,
+/// metrics. NaN is written as an empty field. Memory does not grow with the number of rows.
 Expected<void> WriteRowsCsv(const Experiment& experiment, const RowFileReader& reader,
                             const std::filesystem::path& path);
 
-/// "pairs=20, outliers=0.3" without one axis; what the conditions of one table or line share.
+/// The condition's values on all axes but one, such as "pairs = 20, outliers = 0.3": what the
+/// conditions of one table or line have in common.
 std::string PlaceWithout(const Experiment& experiment, const Condition& condition,
                          const std::string& axis);
 

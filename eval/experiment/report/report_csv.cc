@@ -28,7 +28,7 @@ std::string Header(const Experiment& experiment) {
   return line + "\n";
 }
 
-// What all rows of a subject begin with.
+// The fields that all rows of a subject begin with.
 std::vector<std::string> Beginnings(const Experiment& experiment, const Condition& condition) {
   std::string common = experiment.name + "," + CsvField(condition.name);
   for (const std::string& place : condition.place) common += "," + CsvField(place);
@@ -70,16 +70,15 @@ Expected<std::string> RowsText(const RowFileReader& reader, const RowBlockPlace&
 Expected<void> WriteRowsCsv(const Experiment& experiment, const RowFileReader& reader,
                             const std::filesystem::path& path) {
   SEXTANT_ASSIGN_OR_RETURN(AtomicFileWriter writer, AtomicFileWriter::Open(path));
-  if (Expected<void> ok = writer.Append(Header(experiment)); !ok) return ok;
+  SEXTANT_RETURN_IF_ERROR(writer.Append(Header(experiment)));
   const std::uint64_t per_condition = BlocksPerCondition(experiment);
   const auto block_trials = static_cast<std::uint64_t>(experiment.trials_per_block);
   for (const RowBlockPlace& block : reader.blocks()) {
     const Condition& condition = experiment.conditions[block.number / per_condition];
-    const Expected<std::string> text =
-        RowsText(reader, block, block.number % per_condition * block_trials,
-                 Beginnings(experiment, condition));
-    if (!text) return tl::unexpected<Error>(text.error());
-    if (Expected<void> ok = writer.Append(*text); !ok) return ok;
+    SEXTANT_ASSIGN_OR_RETURN(const std::string text,
+                             RowsText(reader, block, block.number % per_condition * block_trials,
+                                      Beginnings(experiment, condition)));
+    SEXTANT_RETURN_IF_ERROR(writer.Append(text));
   }
   return writer.Commit();
 }

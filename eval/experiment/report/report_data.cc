@@ -8,7 +8,7 @@
 namespace sextant {
 namespace {
 
-// Each once.
+// All distinct statistics of the report.
 std::vector<Statistic> StatisticsOf(const Experiment& experiment) {
   std::map<std::string, Statistic> by_text;
   for (const TableSpec& table : experiment.tables) {
@@ -26,7 +26,7 @@ Expected<ReportData> ReportData::Compute(const Experiment& experiment,
                                          const RowFileReader& reader) {
   if (reader.configuration() != ConfigurationOf(experiment)) {
     return MakeError(ErrorCode::kInvalidInput,
-                     "the rows are of another configuration than the experiment file's");
+                     "the rows belong to another configuration than that of the experiment file");
   }
   const std::vector<Statistic> statistics = StatisticsOf(experiment);
   ReportData data;

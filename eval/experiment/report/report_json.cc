@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/version.h"
-#include "eval/experiment/definition/description.h"
+#include "eval/experiment/report/description.h"
 #include "eval/experiment/report/report.h"
 #include "eval/experiment/run/run_trials.h"
 
@@ -40,7 +40,7 @@ Json ToJson(const Description& values) {
   return json;
 }
 
-// Of the metric, by cell.
+// The metric's description in each cell.
 Expected<std::vector<Description>> Describe(const ConditionRows& rows, int metric) {
   std::vector<Description> cells(rows.cells().size());
   ColumnPasses passes(rows, {metric});
@@ -56,7 +56,7 @@ Expected<std::vector<Description>> Describe(const ConditionRows& rows, int metri
   return cells;
 }
 
-// Of all wanted metrics; empty for the others.
+// Descriptions of all wanted metrics by cell; empty for the others.
 Expected<std::vector<std::vector<Description>>> DescribeAll(const Experiment& experiment,
                                                             const ConditionRows& rows) {
   std::vector<Expected<std::vector<Description>>> described(experiment.metrics.size());
@@ -116,13 +116,12 @@ Expected<std::string> FormatSummary(const Experiment& experiment, const RowFileR
            {"metrics", Json::object()},
            {"figures", ReportFigures(experiment, data, c, i)}});
     }
-    const Expected<std::vector<std::vector<Description>>> descriptions =
-        DescribeAll(experiment, rows);
-    if (!descriptions) return tl::unexpected<Error>(descriptions.error());
+    SEXTANT_ASSIGN_OR_RETURN(const std::vector<std::vector<Description>> descriptions,
+                             DescribeAll(experiment, rows));
     for (std::size_t m = 0; m < experiment.metrics.size(); ++m) {
       if (!experiment.wanted[m]) continue;
       for (std::size_t i = 0; i < cells.size(); ++i) {
-        cells[i]["metrics"][experiment.metrics[m].name] = ToJson((*descriptions)[m][i]);
+        cells[i]["metrics"][experiment.metrics[m].name] = ToJson(descriptions[m][i]);
       }
     }
     Json described = DescribeCondition(experiment, condition);

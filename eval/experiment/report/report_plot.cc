@@ -17,7 +17,7 @@ struct Point {
   Figure figure;
 };
 
-// A line of the plot with its points, in the order in which they come.
+// The lines of the plot with their points, in order of appearance.
 using Lines = std::vector<std::pair<std::string, std::vector<Point>>>;
 
 std::vector<Point>& LineOf(const std::string& name, Lines& lines) {
@@ -34,7 +34,7 @@ std::optional<double> NumberOf(const std::string& text) {
   return value;
 }
 
-// Places on the axis that are no numbers are counted.
+// Axis values that are not numbers are numbered in order of appearance.
 double PlaceOn(const Experiment& experiment, const Condition& condition, const std::string& axis,
                std::map<std::string, double>& named) {
   const auto at = static_cast<std::size_t>(
@@ -67,7 +67,7 @@ Lines CollectLines(const Experiment& experiment, const PlotSpec& plot, const Rep
   return lines;
 }
 
-// In gnuplot's single quotes a quote is doubled and nothing else is special.
+// In gnuplot's single-quoted strings only the quote itself is special; it is doubled.
 std::string Quote(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
@@ -89,7 +89,7 @@ std::string DataOf(const Lines& lines, bool log_y) {
   return data;
 }
 
-// From zero, where that does not press all values into a corner of the picture.
+// Whether the y axis should begin at zero: only if the values then still fill at least half of it.
 bool BeginsAtZero(const Lines& lines) {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;

@@ -40,7 +40,7 @@ std::vector<std::string> HeaderOf(const TableSpec& spec, const char* first) {
   return header;
 }
 
-// One table of all conditions where each has one row, else a table a condition.
+// One table for all conditions if each has one row, else one table per condition.
 void AddPlainTables(const Experiment& experiment, const TableSpec& spec, const ReportData& data,
                     std::vector<ReportTable>& tables) {
   const std::size_t count = experiment.conditions.size();
@@ -64,7 +64,8 @@ void AddPlainTables(const Experiment& experiment, const TableSpec& spec, const R
   }
 }
 
-// Subjects down, the places of an axis across; a table for each place on the other axes.
+// One row per subject and one column per value of an axis; one table for each combination of values
+// on the other axes.
 void AddTablesAcross(const Experiment& experiment, const TableSpec& spec, const ReportData& data,
                      std::vector<ReportTable>& tables) {
   std::vector<std::string> places;
@@ -125,8 +126,8 @@ std::string FormatMarkdown(const Experiment& experiment, const ReportData& data)
   std::string text = fmt::format("# {}\n\n", experiment.title);
   if (!experiment.text.empty()) text += experiment.text + "\n\n";
   text += fmt::format(
-      "Written by `sextant run` from the experiment `{}`: {} trials a condition, seed {}. In "
-      "brackets, 95 percent intervals.\n",
+      "Written by `sextant run` from the experiment `{}`: {} trials per condition, seed {}. In "
+      "brackets: 95 percent intervals.\n",
       experiment.name, experiment.trials, experiment.seed);
   for (const ReportTable& table : MakeTables(experiment, data)) {
     if (!table.title.empty()) text += fmt::format("\n## {}\n", table.title);

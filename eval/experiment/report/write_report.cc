@@ -14,7 +14,7 @@ Expected<void> DrawPlots(const Experiment& experiment, const ReportData& data,
     const std::string commands = PlotCommands(experiment, plot, data);
     if (commands.empty()) continue;
     for (const char* extension : {".svg", ".png"}) {
-      if (Expected<void> ok = DrawPlot(commands, folder / (plot.name + extension)); !ok) return ok;
+      SEXTANT_RETURN_IF_ERROR(DrawPlot(commands, folder / (plot.name + extension)));
     }
   }
   return {};
@@ -29,16 +29,13 @@ Expected<std::string> WriteReport(const Experiment& experiment,
   SEXTANT_ASSIGN_OR_RETURN(const RowFileReader reader, RowFileReader::Open(rows_path));
   SEXTANT_ASSIGN_OR_RETURN(const ReportData data, ReportData::Compute(experiment, reader));
   SEXTANT_ASSIGN_OR_RETURN(const std::string summary, FormatSummary(experiment, reader, data));
-  Expected<void> ok;
-  const auto write = [&](const char* name, const std::string& text) {
-    if (ok) ok = WriteFileAtomically(folder / name, text);
-  };
-  if (settings.csv) ok = WriteRowsCsv(experiment, reader, folder / "rows.csv");
-  write("summary.json", summary);
-  write("report.md", FormatMarkdown(experiment, data));
-  write("tables.tex", FormatLatex(experiment, data));
-  if (ok && settings.plots) ok = DrawPlots(experiment, data, folder);
-  if (!ok) return tl::unexpected<Error>(std::move(ok.error()));
+  if (settings.csv) SEXTANT_RETURN_IF_ERROR(WriteRowsCsv(experiment, reader, folder / "rows.csv"));
+  SEXTANT_RETURN_IF_ERROR(WriteFileAtomically(folder / "summary.json", summary));
+  SEXTANT_RETURN_IF_ERROR(
+      WriteFileAtomically(folder / "report.md", FormatMarkdown(experiment, data)));
+  SEXTANT_RETURN_IF_ERROR(
+      WriteFileAtomically(folder / "tables.tex", FormatLatex(experiment, data)));
+  if (settings.plots) SEXTANT_RETURN_IF_ERROR(DrawPlots(experiment, data, folder));
   return FormatPlain(experiment, data);
 }
 

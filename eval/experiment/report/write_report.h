@@ -14,8 +14,8 @@ struct ReportSettings {
 };
 
 /// Reads the finished rows of the experiment and writes into the folder: rows.csv, summary.json,
-/// report.md, tables.tex, and NAME.svg and NAME.png of every plot. Returns the tables for a
-/// terminal. The bytes of all but the PNG depend on the rows alone. Errors: kIo, kParse,
+/// report.md, tables.tex, and NAME.svg and NAME.png for every plot. Returns the tables as plain
+/// text. The bytes of all files except the PNGs depend only on the rows. Errors: kIo, kParse,
 /// kInvalidInput (rows of another configuration).
 Expected<std::string> WriteReport(const Experiment& experiment,
                                   const std::filesystem::path& rows_path,

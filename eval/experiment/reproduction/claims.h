@@ -11,41 +11,43 @@
 
 namespace sextant {
 
-/// How a claim is held against the trials. Each figure of ours has a 95 percent interval.
+/// How a claim is tested against our trials. Each of our figures has a 95 percent interval; P is
+/// the printed value.
 enum class ClaimRule {
-  kDraw,      ///< Printed is one measurement: reproduced within the middle 95 % of our trials.
-  kAbout,     ///< Printed is an average: reproduced where the interval meets [P/factor, P factor].
-  kAtMost,    ///< Reproduced where the whole interval is at most P, refuted where it is above.
-  kAtLeast,   ///< The same the other way round.
-  kLess,      ///< Of two figures of ours: the direction holds where their intervals are apart.
-  kSimilar,   ///< Of two figures of ours: the intervals meet when one is widened by the factor.
-  kUntested,  ///< Cannot be tested here; `why` says why.
+  kDraw,      ///< P is one measurement: reproduced if within the central 95 % of our trials.
+  kAbout,     ///< P is an average: reproduced if our interval overlaps [P/factor, P factor].
+  kAtMost,    ///< Reproduced if our whole interval is at most P, refuted if it is above.
+  kAtLeast,   ///< Reproduced if our whole interval is at least P, refuted if it is below.
+  kLess,      ///< Compares two of our figures: the direction holds if the intervals are disjoint.
+  kSimilar,   ///< Compares two of our figures: the intervals overlap after widening by the factor.
+  kUntested,  ///< Cannot be tested here; `why` gives the reason.
 };
 
 /// A figure of an experiment that a claim is about.
 struct ClaimFigure {
-  std::string experiment{};  ///< Name of the file in experiments/, without .yaml.
+  std::string experiment{};  ///< File name in experiments/ without .yaml.
   std::string condition{};
   std::string subject{};
   int index = 0;  ///< Step of a sequence.
   std::string statistic{};
 };
 
-/// One thing that the paper says.
+/// One claim of the paper.
 struct Claim {
   std::string id{};
   std::string where{};    ///< Table, figure or section of the paper.
-  std::string text{};     ///< In a sentence.
+  std::string text{};     ///< The claim in one sentence.
   std::string printed{};  ///< As the paper prints it, with its unit.
   ClaimRule rule = ClaimRule::kUntested;
-  double value =
-      0.0;  ///< P: what is printed, in the statistic's unit; unused by those that have `than`.
+  /// P, the printed value in the statistic's unit; unused by rules that have `than`.
+  double value = 0.0;
   double factor = 2.0;
-  double slack = 0.0;  ///< Of kDraw: what our truth, the paper's tape, may itself be off by.
+  /// With kDraw: possible error of the truth itself, the paper's tape measure.
+  double slack = 0.0;
   std::optional<ClaimFigure> ours{};
-  std::optional<ClaimFigure> than{};  ///< Of kLess (the larger one) and kSimilar.
+  std::optional<ClaimFigure> than{};  ///< Second figure of kLess (the larger one) and kSimilar.
   std::string unit{};
-  std::string why{};  ///< A remark, or why it cannot be tested.
+  std::string why{};  ///< A remark, or the reason why it cannot be tested.
 };
 
 /// A mistake in the paper.
@@ -57,7 +59,8 @@ struct Erratum {
 
 struct ClaimsFile {
   std::string paper{};
-  std::vector<std::string> experiments{};  ///< In the order of the page; the claims' and others.
+  /// In the order of the page; may include some without claims.
+  std::vector<std::string> experiments{};
   std::vector<Claim> claims{};
   std::vector<Erratum> errata{};
 };

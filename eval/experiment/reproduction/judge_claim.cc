@@ -12,11 +12,11 @@
 namespace sextant {
 namespace {
 
-// Of so many trials, all lie within bounds that hold a further one in 95 of 100 cases: outside the
-// middle 95 percent of fewer says nothing.
+// The range of 39 trials contains a further one with a probability of 95 percent; with fewer
+// trials, a value outside of their central 95 percent proves nothing.
 constexpr std::uint64_t kMinDraws = 39;
 
-// A figure of ours, ready to be compared.
+// One of our figures.
 struct OurFigure {
   double value = 0.0;
   Interval interval{};
@@ -65,26 +65,24 @@ Expected<OurFigure> Compute(const ClaimFigure& figure, bool is_draw, const RowsO
                            FindCondition(experiment, figure.condition));
   SEXTANT_ASSIGN_OR_RETURN(Statistic statistic,
                            ParseStatistic(figure.statistic, experiment.metrics));
-  const Expected<ConditionRows> of_condition =
-      ConditionRows::Open(experiment, *rows.reader, condition);
-  if (!of_condition) return tl::unexpected<Error>(of_condition.error());
-  const Expected<std::size_t> cell =
-      FindCell(experiment.conditions[condition], *of_condition, figure);
-  if (!cell) return tl::unexpected<Error>(cell.error());
+  SEXTANT_ASSIGN_OR_RETURN(const ConditionRows of_condition,
+                           ConditionRows::Open(experiment, *rows.reader, condition));
+  SEXTANT_ASSIGN_OR_RETURN(const std::size_t cell,
+                           FindCell(experiment.conditions[condition], of_condition, figure));
   SEXTANT_ASSIGN_OR_RETURN(const Figure middle,
-                           FigureOf(statistic, *of_condition, *cell, experiment.seed));
+                           FigureOf(statistic, of_condition, cell, experiment.seed));
   OurFigure ours{.value = middle.value,
                  .interval = middle.interval.value_or(Interval{middle.value, middle.value}),
                  .decimals = statistic.decimals,
                  .trials = middle.trials};
   if (!is_draw) return ours;
-  // Where single trials fall.
+  // The interval of single trials.
   statistic.kind = Statistic::Kind::kQuantile;
   for (const auto& [q, end] :
        {std::pair{0.025, &ours.interval.low}, {0.975, &ours.interval.high}}) {
     statistic.quantile = q;
     SEXTANT_ASSIGN_OR_RETURN(const Figure quantile,
-                             FigureOf(statistic, *of_condition, *cell, experiment.seed));
+                             FigureOf(statistic, of_condition, cell, experiment.seed));
     *end = quantile.value;
   }
   return ours;
@@ -107,7 +105,7 @@ std::string_view ToString(Verdict verdict) {
     case Verdict::kRefuted:
       return "refuted";
     case Verdict::kUndecided:
-      return "undecided at so many trials";
+      return "undecided with this number of trials";
     case Verdict::kNotTestable:
       return "not testable";
   }
@@ -150,7 +148,7 @@ Expected<JudgedClaim> JudgeClaim(const Claim& claim, const std::map<std::string,
   if (!claim.ours) return judged;
   const auto find = [&](const ClaimFigure& figure) { return rows.find(figure.experiment); };
   if (find(*claim.ours) == rows.end() || (claim.than && find(*claim.than) == rows.end())) {
-    judged.remark = "its data is not here; " + claim.why;
+    judged.remark = "the data of the experiment is missing; " + claim.why;
     return judged;
   }
   const Expected<OurFigure> ours =

@@ -14,29 +14,30 @@ namespace sextant {
 
 enum class Verdict { kReproduced, kDirection, kRefuted, kUndecided, kNotTestable };
 
-/// "reproduced" and so on, as the page says it.
+/// "reproduced" and so on, as printed on the page.
 std::string_view ToString(Verdict verdict);
 
-/// A claim beside what the trials say.
+/// A claim with the result of its test.
 struct JudgedClaim {
   Claim claim{};
-  std::string ours{};  ///< Figure with interval, or two of them.
+  std::string ours{};  ///< One or two figures with their intervals.
   Verdict verdict = Verdict::kNotTestable;
   std::string remark{};
 };
 
-/// Rows of the experiments by name.
+/// An experiment and its rows.
 struct RowsOf {
   const Experiment* experiment = nullptr;
   const RowFileReader* reader = nullptr;
 };
 
-/// By the claim's rule alone; see ClaimRule. Not testable where the experiment was not run (real
-/// data absent). Errors: kUnknownName for a condition, subject, step or statistic that the
-/// experiment does not have; those of reading rows.
+/// Tests the claim by its rule; see ClaimRule. `rows` by name of the experiment. Not testable if
+/// the experiment was not run (real data absent). Errors: kUnknownName for a condition, subject,
+/// step or statistic that the experiment does not have; those of reading rows.
 Expected<JudgedClaim> JudgeClaim(const Claim& claim, const std::map<std::string, RowsOf>& rows);
 
-/// The rule itself, on figures: `interval` is the middle 95 percent of the trials for kDraw.
+/// Applies the claim's rule to intervals; for kDraw, `ours` is the central 95 percent of the
+/// trials.
 Verdict VerdictOf(const Claim& claim, const Interval& ours, const std::optional<Interval>& than);
 
 }  // namespace sextant

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One experiment with its rows, which claims are then judged by.
+// A finished experiment with its rows.
 struct Done {
   Experiment experiment;
   RowFileReader reader;
@@ -24,31 +24,28 @@ struct Done {
 
 Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const std::string& name,
                                        const SolverRegistry& registry) {
-  Expected<Experiment> experiment =
-      ReadExperiment(settings.experiments / (name + ".yaml"), BuiltinKinds(), registry);
-  if (!experiment) return tl::unexpected<Error>(experiment.error());
-  if (settings.quick) experiment->trials = experiment->quick_trials;
+  SEXTANT_ASSIGN_OR_RETURN(
+      Experiment experiment,
+      ReadExperiment(settings.experiments / (name + ".yaml"), BuiltinKinds(), registry));
+  if (settings.quick) experiment.trials = experiment.quick_trials;
   const fs::path folder = settings.out / name;
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
-    return MakeError(ErrorCode::kIo, fmt::format("cannot make the folder '{}': {}; name another "
-                                                 "with --out",
-                                                 folder.string(), error.message()));
+    return MakeError(ErrorCode::kIo,
+                     fmt::format("cannot create the folder '{}': {}; choose another one with --out",
+                                 folder.string(), error.message()));
   }
   const fs::path rows = folder / "rows.sxtrows";
-  const Expected<RunOutcome> outcome =
-      RunTrials(*experiment, {.rows_path = rows,
-                              .threads = settings.threads,
-                              .after_block = [&](std::uint64_t done, std::uint64_t all) {
-                                settings.progress(name, done, all);
-                              }});
-  if (!outcome) return tl::unexpected<Error>(outcome.error());
-  const Expected<std::string> tables =
-      WriteReport(*experiment, rows, folder, {.csv = false, .plots = true});
-  if (!tables) return tl::unexpected<Error>(tables.error());
+  SEXTANT_RETURN_IF_ERROR(
+      RunTrials(experiment, {.rows_path = rows,
+                             .threads = settings.threads,
+                             .after_block = [&](std::uint64_t done, std::uint64_t all) {
+                               settings.progress(name, done, all);
+                             }}));
+  SEXTANT_RETURN_IF_ERROR(WriteReport(experiment, rows, folder, {.csv = false, .plots = true}));
   SEXTANT_ASSIGN_OR_RETURN(RowFileReader reader, RowFileReader::Open(rows));
-  return std::make_unique<Done>(Done{std::move(*experiment), std::move(reader)});
+  return std::make_unique<Done>(Done{std::move(experiment), std::move(reader)});
 }
 
 }  // namespace

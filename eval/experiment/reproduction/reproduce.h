@@ -17,25 +17,25 @@ struct ReproduceSettings {
   std::filesystem::path claims{"paper/claims.yaml"};
   std::filesystem::path out{"paper"};
   bool quick = false;
-  int threads = 0;  ///< 0: as many as the machine has.
-  /// Name of the experiment, trials done and trials to do.
+  int threads = 0;  ///< 0: one per hardware thread.
+  /// Called with the name of the experiment, trials done and trials to do.
   std::function<void(const std::string&, std::uint64_t, std::uint64_t)> progress =
       [](const std::string&, std::uint64_t, std::uint64_t) {};
 };
 
 struct Reproduction {
   std::vector<JudgedClaim> claims{};
-  std::vector<std::string> skipped{};  ///< Experiments whose real data is absent, and why.
-  double seconds = 0.0;                ///< Of trials and reports; not written into any file.
+  std::vector<std::string> skipped{};  ///< Experiments whose real data is absent, with the reason.
+  double seconds = 0.0;                ///< Duration of trials and reports; not written to any file.
 };
 
 /// Runs every experiment that the claims name, writes each one's report to out/NAME and the page of
-/// all claims to out/REPRODUCTION.md. Rows are kept in out/NAME/rows.sxtrows: a run that was
-/// stopped goes on. The same bytes on any number of threads, plots apart. Errors: those of reading
-/// and running experiments, of judging claims, and kIo.
+/// all claims to out/REPRODUCTION.md. Rows are stored in out/NAME/rows.sxtrows, so an interrupted
+/// run can be continued. Except for plots, the bytes do not depend on the number of threads.
+/// Errors: those of reading and running experiments and of judging claims; kIo.
 Expected<Reproduction> Reproduce(const ReproduceSettings& settings, const SolverRegistry& registry);
 
-/// The page. `command`: how it was made.
+/// The page in Markdown. `command` is the command that wrote it.
 std::string FormatReproduction(const ClaimsFile& file, const std::vector<JudgedClaim>& claims,
                                const std::vector<std::string>& skipped, const std::string& command);
 

@@ -9,7 +9,7 @@
 namespace sextant {
 namespace {
 
-// A bar would end the cell.
+// Escapes vertical bars, which would end the table cell.
 std::string Cell(const std::string& text) {
   std::string cell;
   for (const char c : text) cell += c == '|' ? std::string("\\|") : std::string(1, c);
@@ -38,7 +38,7 @@ std::string Tally(const std::vector<JudgedClaim>& claims) {
 
 std::string Rows(const std::vector<JudgedClaim>& claims) {
   std::string text =
-      "| where | claim | printed | ours [95 %] | verdict | by | remark |\n"
+      "| where | claim | printed | ours [95 %] | verdict | experiment | remark |\n"
       "|:--|:--|:--|:--|:--|:--|:--|\n";
   for (const JudgedClaim& judged : claims) {
     text += fmt::format("| {} | {} | {} | {} | **{}** | {} | {} |\n", Cell(judged.claim.where),
@@ -55,30 +55,29 @@ std::string FormatReproduction(const ClaimsFile& file, const std::vector<JudgedC
                                const std::vector<std::string>& skipped,
                                const std::string& command) {
   std::string text = fmt::format(
-      "# What of the paper can be reproduced\n\n{}\n\nWritten by `{}`; do not edit. The paper's "
-      "raw "
-      "data was never published, so its experiments are done again with known truth: the same "
-      "boards, sensors, poses and steps, simulated. Noise comes from data sheets and real "
+      "# Reproduction of the paper\n\n{}\n\nWritten by `{}`; do not edit. The paper's raw data was "
+      "never published, so its experiments are repeated in simulation with known truth: the same "
+      "boards, sensors, poses and processing steps. The noise is taken from data sheets and real "
       "recordings, is stated in each file of `experiments/`, and was not tuned. Printed values, "
-      "claims and rules stand in `paper/claims.yaml`.\n\n{} claims: {}.\n\n",
+      "claims and rules are in `paper/claims.yaml`.\n\n{} claims: {}.\n\n",
       file.paper, command, claims.size(), Tally(claims));
   text +=
-      "A verdict follows from a rule alone. One printed measurement is *reproduced* where it lies "
+      "Each verdict follows from a rule. A printed single measurement is *reproduced* if it lies "
       "in "
-      "the middle 95 % of our trials (given in brackets behind the median). A printed average is, "
-      "where our 95 % interval comes within a factor of 2 of it (3.16 for an order of magnitude). "
-      "A "
-      "bound is where our whole interval keeps it, and *refuted* where none of it does. A "
-      "comparison "
-      "without a number is *direction reproduced* where both intervals are apart in the order that "
-      "the paper claims, and refuted where they are apart in the other. What is neither is "
-      "*undecided*. `sextant run experiments/NAME.yaml` does one experiment alone.\n\n";
+      "the central 95 % of our trials (given in brackets after the median). A printed average is "
+      "reproduced if our 95 % interval comes within a factor of 2 of it (3.16 for an order of "
+      "magnitude). A bound is reproduced if our whole interval satisfies it, and *refuted* if none "
+      "of the interval does. A comparison without a number is *direction reproduced* if the two "
+      "intervals are disjoint and in the order that the paper claims, and refuted if they are in "
+      "the "
+      "opposite order. Anything else is *undecided*. `sextant run experiments/NAME.yaml` runs one "
+      "experiment alone.\n\n";
   text += Rows(claims);
   if (!skipped.empty()) {
-    text += "\n## Not run\n\n";
+    text += "\n## Experiments that were not run\n\n";
     for (const std::string& why : skipped) text += fmt::format("- {}\n", why);
   }
-  text += "\n## Errata of the paper\n\n| where | printed | is |\n|:--|:--|:--|\n";
+  text += "\n## Errata of the paper\n\n| where | printed | correct |\n|:--|:--|:--|\n";
   for (const Erratum& erratum : file.errata) {
     text += fmt::format("| {} | {} | {} |\n", Cell(erratum.where), Cell(erratum.printed),
                         Cell(erratum.is));

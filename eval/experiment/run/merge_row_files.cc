@@ -2,8 +2,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "eval/experiment/run/configuration.h"
 #include "eval/experiment/run/row_file.h"
 #include "eval/experiment/run/run_trials.h"
 
@@ -14,20 +14,6 @@ struct Piece {
   std::size_t file = 0;
   RowBlockPlace place;
 };
-
-// How many blocks the experiment of this configuration has.
-std::uint64_t ExpectedBlocks(const std::string& configuration) {
-  const auto json = nlohmann::json::parse(configuration, nullptr, /*allow_exceptions=*/false);
-  const auto number = [&json](const char* key) {
-    return json.is_object() && json.contains(key) && json[key].is_number_unsigned()
-               ? json[key].get<std::uint64_t>()
-               : 0;
-  };
-  const std::uint64_t size = std::max<std::uint64_t>(1, number("trials_per_block"));
-  const std::uint64_t conditions =
-      json.is_object() && json.contains("conditions") ? json["conditions"].size() : 0;
-  return conditions * ((number("trials") + size - 1) / size);
-}
 
 Expected<std::vector<RowFileReader>> OpenAll(const std::vector<std::filesystem::path>& shards) {
   std::vector<RowFileReader> readers;
@@ -43,7 +29,7 @@ Expected<std::vector<RowFileReader>> OpenAll(const std::vector<std::filesystem::
   return readers;
 }
 
-// By number, each block once. Errors: kInvalidInput where one is missing.
+// All distinct blocks by number. Errors: kInvalidInput if one is missing.
 Expected<std::vector<Piece>> SortPieces(const std::vector<RowFileReader>& readers) {
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i < readers.size(); ++i) {
@@ -53,13 +39,13 @@ Expected<std::vector<Piece>> SortPieces(const std::vector<RowFileReader>& reader
                    [](const Piece& a, const Piece& b) { return a.place.number < b.place.number; });
   const auto same = [](const Piece& a, const Piece& b) { return a.place.number == b.place.number; };
   pieces.erase(std::unique(pieces.begin(), pieces.end(), same), pieces.end());
-  const std::uint64_t expected = ExpectedBlocks(readers[0].configuration());
+  const std::uint64_t expected = CountBlocks(readers[0].configuration());
   if (pieces.size() == expected) return pieces;
   std::uint64_t missing = 0;
   while (missing < pieces.size() && pieces[missing].place.number == missing) ++missing;
   return MakeError(ErrorCode::kInvalidInput,
                    fmt::format("{} of {} blocks are in none of the files, the first is number {}; "
-                               "run the shards to their end, and name all of them",
+                               "finish all shards and name all of them",
                                expected - pieces.size(), expected, missing));
 }
 
@@ -77,14 +63,14 @@ Expected<void> MergeRowFiles(const std::vector<std::filesystem::path>& shards,
   }
   SEXTANT_ASSIGN_OR_RETURN(const std::vector<RowFileReader> readers, OpenAll(shards));
   SEXTANT_ASSIGN_OR_RETURN(const std::vector<Piece> pieces, SortPieces(readers));
-  Expected<RowFileWriter> writer =
-      RowFileWriter::Open(merged, readers.front().configuration(), /*fresh=*/true);
-  if (!writer) return tl::unexpected<Error>(writer.error());
+  SEXTANT_ASSIGN_OR_RETURN(
+      RowFileWriter writer,
+      RowFileWriter::Open(merged, readers.front().configuration(), /*fresh=*/true));
   for (const Piece& piece : pieces) {
     SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, readers[piece.file].ReadBytes(piece.place));
-    if (Expected<void> ok = writer->Append(bytes); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(writer.Append(bytes));
   }
-  return writer->Flush();
+  return writer.Flush();
 }
 
 }  // namespace sextant

@@ -31,7 +31,7 @@ std::vector<std::filesystem::path> AllRowFiles(const std::filesystem::path& fold
   return files;
 }
 
-// Whether a run was killed before the file had its header.
+// Whether the file contains only the beginning of a header, from a run that was killed.
 bool HoldsNothing(const std::filesystem::path& path, const std::string& configuration) {
   const std::string header = RowFileHeader(configuration);
   std::error_code error;
@@ -69,11 +69,11 @@ Expected<std::vector<std::uint64_t>> BlocksHeldBy(const std::vector<std::filesys
   for (const std::filesystem::path& path : files) {
     SEXTANT_ASSIGN_OR_RETURN(const RowFileReader reader, RowFileReader::Open(path));
     if (reader.configuration() != configuration) {
-      return MakeError(ErrorCode::kInvalidInput,
-                       fmt::format("'{}' holds the rows of another configuration of the "
-                                   "experiment; start anew with --fresh, or name another folder "
-                                   "with --out",
-                                   path.string()));
+      return MakeError(
+          ErrorCode::kInvalidInput,
+          fmt::format("'{}' holds the rows of another configuration of the experiment; start over "
+                      "with --fresh, or choose another folder with --out",
+                      path.string()));
     }
     for (const RowBlockPlace& block : reader.blocks()) blocks.push_back(block.number);
   }
@@ -96,7 +96,7 @@ Expected<void> JoinRowFiles(const std::filesystem::path& folder, const std::stri
   const std::filesystem::path whole = folder / kWholeFile;
   if (files != std::vector<std::filesystem::path>{whole}) {
     const std::filesystem::path joined = folder / "rows.sxtrows.part";
-    if (Expected<void> ok = MergeRowFiles(files, joined); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(MergeRowFiles(files, joined));
     std::error_code error;
     std::filesystem::rename(joined, whole, error);
     if (error) return Failed("write", whole, error);

@@ -8,8 +8,7 @@
 
 namespace sextant {
 
-/// Tells a damaged row file from a whole one; not meant against forgery. Requires whole words of 8
-/// bytes.
+/// Checksum that detects damaged row files; not cryptographic. Requires a multiple of 8 bytes.
 inline std::uint64_t RowChecksum(std::string_view bytes) {
   std::uint64_t state = 0x9E3779B97F4A7C15ULL;
   for (std::size_t i = 0; i + 8 <= bytes.size(); i += 8) {
@@ -23,7 +22,7 @@ inline std::uint64_t RowChecksum(std::string_view bytes) {
 inline constexpr std::string_view kRowFileMark = "sxtrows1";
 inline constexpr std::string_view kRowBlockMark = "sxtblock";
 
-/// Mark, number and rows; a block's rows follow, then 8 bytes of checksum.
+/// Bytes of a block's mark, number and row count; its rows and an 8-byte checksum follow.
 inline constexpr std::uint64_t kRowBlockHead = 24;
 
 inline std::uint64_t BytesOfBlock(std::uint64_t rows, std::uint64_t columns) {

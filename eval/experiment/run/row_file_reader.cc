@@ -5,9 +5,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "eval/experiment/run/configuration.h"
 #include "eval/experiment/run/row_checksum.h"
 #include "eval/experiment/run/row_file.h"
 #include "io/text/number_text.h"
@@ -27,15 +27,8 @@ tl::unexpected<Error> Unreadable(const std::filesystem::path& path) {
 tl::unexpected<Error> Damaged(const std::filesystem::path& path) {
   return MakeError(
       ErrorCode::kParse,
-      fmt::format("{}: expected the rows of an experiment, and its beginning is not theirs; "
-                  "was another file named?",
+      fmt::format("{}: not a row file of an experiment, or its header is damaged; check the path",
                   Printable(path.string(), 300)));
-}
-
-std::size_t CountMetrics(const std::string& configuration) {
-  const auto json = nlohmann::json::parse(configuration, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object() || !json.contains("metrics") || !json["metrics"].is_array()) return 0;
-  return json["metrics"].size();
 }
 
 }  // namespace

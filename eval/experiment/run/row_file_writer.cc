@@ -22,7 +22,9 @@ tl::unexpected<Error> Unwritable(const std::filesystem::path& path) {
       fmt::format(
           "cannot write '{}': {}{}", Printable(path.string(), 300),
           std::generic_category().message(errno),
-          full ? "; the rows so far are kept: make room and run the same command again" : ""));
+          full
+              ? "; the rows written so far are kept: free some space and run the same command again"
+              : ""));
 }
 
 bool WriteAll(int fd, std::string_view bytes, std::uint64_t offset) {
@@ -36,8 +38,8 @@ bool WriteAll(int fd, std::string_view bytes, std::uint64_t offset) {
   return true;
 }
 
-// Whether the file holds nothing but the torn beginning of a header, from a run that was killed
-// before its first block.
+// Whether the file contains only the beginning of a header, from a run that was killed before its
+// first block.
 bool IsTornHeader(int fd, std::uint64_t size, const std::string& header) {
   if (size >= header.size()) return false;
   std::string begun(size, '\0');
@@ -82,9 +84,11 @@ Expected<RowFileWriter> RowFileWriter::Open(const std::filesystem::path& path,
 
 Expected<void> RowFileWriter::Lock() {
   if (flock(fd_, LOCK_EX | LOCK_NB) == 0) return {};
-  return MakeError(ErrorCode::kIo, fmt::format("'{}' is being written by another run; wait for it, "
-                                               "or name another folder with --out",
-                                               Printable(path_.string(), 300)));
+  return MakeError(
+      ErrorCode::kIo,
+      fmt::format(
+          "'{}' is being written by another run; wait for it, or choose another folder with --out",
+          Printable(path_.string(), 300)));
 }
 
 Expected<void> RowFileWriter::Keep(const std::string& configuration) {
@@ -92,7 +96,7 @@ Expected<void> RowFileWriter::Keep(const std::string& configuration) {
   if (reader.configuration() != configuration) {
     return MakeError(ErrorCode::kInvalidInput,
                      fmt::format("'{}' holds the rows of another configuration of the experiment; "
-                                 "start anew with --fresh, or name another folder with --out",
+                                 "start over with --fresh, or choose another folder with --out",
                                  Printable(path_.string(), 300)));
   }
   bytes_ = reader.whole_bytes();
@@ -107,7 +111,7 @@ Expected<void> RowFileWriter::Append(std::string_view block) {
     return {};
   }
   const int reason = errno;
-  // Should even this fail, the next run cuts the torn block off.
+  // If this fails too, the next run cuts off the incomplete block.
   const int ignored = ftruncate(fd_, static_cast<off_t>(bytes_));
   static_cast<void>(ignored);
   errno = reason;

@@ -8,11 +8,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
-#include "base/version.h"
 #include "eval/experiment/run/row_file.h"
 
 namespace sextant {
@@ -47,7 +45,7 @@ FinishedBlock RunBlock(const Experiment& experiment, std::uint64_t block) {
   return {MakeRowBlock(block, range.first, rows).Encode(), range.end - range.first};
 }
 
-// The shard's blocks in order.
+// The blocks of the shard in ascending order.
 std::vector<std::uint64_t> BlocksOfShard(const Experiment& experiment, const Shard& shard) {
   std::vector<std::uint64_t> blocks;
   for (std::uint64_t b = shard.number; b < BlocksOf(experiment); b += shard.of) blocks.push_back(b);
@@ -64,12 +62,12 @@ Expected<void> CheckKept(const std::vector<std::uint64_t>& kept,
                                           : std::all_of(kept.begin(), kept.end(), is_of_shard);
   if (fits) return {};
   return MakeError(ErrorCode::kInvalidInput,
-                   fmt::format("'{}' holds blocks of another --shard; start anew with --fresh, or "
-                               "name another folder with --out",
+                   fmt::format("'{}' holds blocks of another --shard; start over with --fresh, or "
+                               "choose another folder with --out",
                                settings.rows_path.string()));
 }
 
-// The blocks that neither this file nor another holds.
+// The blocks that are neither in this file nor in another one.
 std::vector<std::uint64_t> Missing(std::vector<std::uint64_t> blocks,
                                    std::vector<std::uint64_t> kept,
                                    const std::vector<std::uint64_t>& held) {
@@ -81,7 +79,7 @@ std::vector<std::uint64_t> Missing(std::vector<std::uint64_t> blocks,
   return blocks;
 }
 
-// Runs blocks on all threads; they are written in order, and few wait to be.
+// Runs blocks on all threads and writes them in order; the number of blocks in flight is bounded.
 class BlockPipeline {
  public:
   BlockPipeline(const Experiment& experiment, std::vector<std::uint64_t> blocks,
@@ -159,50 +157,21 @@ std::uint64_t BlocksOf(const Experiment& experiment) {
   return experiment.conditions.size() * BlocksPerCondition(experiment);
 }
 
-std::string ConfigurationOf(const Experiment& experiment) {
-  using nlohmann::json;
-  json conditions = json::array();
-  for (const Condition& condition : experiment.conditions) {
-    json parameters = json::object();
-    for (const auto& [name, value] : condition.parameters) parameters[name] = value;
-    conditions.push_back({{"name", condition.name},
-                          {"place", condition.place},
-                          {"parameters", parameters},
-                          {"subjects", condition.trials->subjects()}});
-  }
-  json metrics = json::array();
-  for (std::size_t i = 0; i < experiment.metrics.size(); ++i) {
-    if (experiment.wanted[i]) metrics.push_back(experiment.metrics[i].name);
-  }
-  const json all = {{"sextant", Version()},
-                    {"name", experiment.name},
-                    {"kind", experiment.kind},
-                    {"seed", experiment.seed},
-                    {"trials", experiment.trials},
-                    {"trials_per_block", experiment.trials_per_block},
-                    {"same_seeds", experiment.same_seeds},
-                    {"axes", experiment.axes},
-                    {"metrics", metrics},
-                    {"conditions", conditions}};
-  return all.dump();
-}
-
 Expected<RunOutcome> RunTrials(const Experiment& experiment, const RunSettings& settings) {
-  Expected<RowFileWriter> writer =
-      RowFileWriter::Open(settings.rows_path, ConfigurationOf(experiment), settings.fresh);
-  if (!writer) return tl::unexpected<Error>(writer.error());
+  SEXTANT_ASSIGN_OR_RETURN(
+      RowFileWriter writer,
+      RowFileWriter::Open(settings.rows_path, ConfigurationOf(experiment), settings.fresh));
   std::vector<std::uint64_t> blocks = BlocksOfShard(experiment, settings.shard);
-  SEXTANT_RETURN_IF_ERROR(CheckKept(writer->kept(), blocks, settings));
+  SEXTANT_RETURN_IF_ERROR(CheckKept(writer.kept(), blocks, settings));
   RunOutcome outcome;
-  for (const std::uint64_t block : writer->kept()) {
+  for (const std::uint64_t block : writer.kept()) {
     outcome.kept_trials += TrialsOfBlock(experiment, block);
   }
-  blocks = Missing(std::move(blocks), writer->kept(), settings.held);
-  Expected<std::uint64_t> run =
-      BlockPipeline(experiment, std::move(blocks), settings, *writer).Run();
-  if (!run) return tl::unexpected<Error>(run.error());
-  outcome.run_trials = *run;
-  SEXTANT_RETURN_IF_ERROR(writer->Flush());
+  blocks = Missing(std::move(blocks), writer.kept(), settings.held);
+  SEXTANT_ASSIGN_OR_RETURN(std::uint64_t run,
+                           BlockPipeline(experiment, std::move(blocks), settings, writer).Run());
+  outcome.run_trials = run;
+  SEXTANT_RETURN_IF_ERROR(writer.Flush());
   return outcome;
 }
 

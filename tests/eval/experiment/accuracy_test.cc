@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What solvers promise of their accuracy, as experiments measure it.
+// Accuracy of the solvers, measured by experiments.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace sextant::test {
 namespace {
 
-// RMS over the bound of the only solver and condition, without gross errors.
+// RMS divided by the bound for a single solver and condition, without gross errors.
 double Efficiency(const Experiment& experiment, const ReportData& data, const std::string& of) {
   const std::string unit = of == "rotation" ? "_deg" : "_mm";
   const Statistic statistic = *ParseStatistic(
@@ -22,9 +22,9 @@ double Efficiency(const Experiment& experiment, const ReportData& data, const st
 }
 
 struct Accuracy {
-  double rotation = 0.0;  // RMS over the bound.
+  double rotation = 0.0;  // RMS divided by the bound.
   double translation = 0.0;
-  double fine = 0.0;  // Share.
+  double fine = 0.0;  // Fraction of trials without gross errors.
 };
 
 Accuracy Measure(const std::string& solver, int seed, int trials, const std::string& parameters) {
@@ -45,7 +45,7 @@ Accuracy Measure(const std::string& solver, int seed, int trials, const std::str
 }
 
 TEST(Accuracy, KabschWithIsotropicNoiseMeetsTheBound) {
-  // The maximum likelihood estimate; 1000 trials of 3 degrees of freedom each leave the ratio a
+  // The maximum likelihood estimate; with 1000 trials of 3 degrees of freedom each, the ratio has a
   // standard error of 1 / sqrt(2 * 3000) = 0.013.
   const Accuracy kabsch = Measure("kabsch", 1, 1000, "data: points, pairs: 10");
   EXPECT_EQ(kabsch.fine, 1.0);
@@ -53,7 +53,7 @@ TEST(Accuracy, KabschWithIsotropicNoiseMeetsTheBound) {
   EXPECT_NEAR(kabsch.translation, 1.0, 5 * 0.013);
 }
 
-TEST(Accuracy, OutliersRuinLeastSquaresOnly) {
+TEST(Accuracy, OutliersOnlyAffectLeastSquares) {
   const std::string parameters = "data: points, pairs: 10, outliers: 0.3";
   EXPECT_GT(Measure("kabsch", 3, 100, parameters).rotation, 5.0);
   const Accuracy robust = Measure("ransac(kabsch)", 3, 100, parameters);
@@ -63,14 +63,14 @@ TEST(Accuracy, OutliersRuinLeastSquaresOnly) {
 
 struct PixelGoal {
   const char* solver;
-  double most;  // Of the root mean square error over the bound.
+  double most;  // Maximum of the root mean square error divided by the bound.
 };
 
-// What docs/accuracy.md shows at 2000 trials. The ratio of root mean squares has a standard error
-// of sqrt(c / (2 * 3 * trials)); c is 1 where all scenes are alike. Measured over 12 seeds it is
-// about 5 for 6 pairs, some of which see the scene from where it tells little, and 2 from 8 on.
+// The figures of docs/accuracy.md with 2000 trials. The ratio of root mean squares has a standard
+// error of sqrt(c / (2 * 3 * trials)); c is 1 if all scenes are equivalent. Measured over 12 seeds
+// it is about 5 for 6 pairs, as some viewpoints determine the pose badly, and 2 from 8 pairs on.
 // Three standard errors are allowed; those 12 seeds had means of at most 1.01 and 1.09.
-TEST(Accuracy, SolversOfPixelsStayNearTheBound) {
+TEST(Accuracy, PixelSolversStayNearTheBound) {
   constexpr int kTrials = 1000;
   for (const PixelGoal& goal : {PixelGoal{"refine(epnp)", 1.05}, PixelGoal{"sqpnp", 1.15}}) {
     for (const int pairs : {6, 8, 20, 100}) {

@@ -23,7 +23,7 @@ Verdict Of(ClaimRule rule, double value, Interval ours, std::optional<Interval> 
   return VerdictOf(claim, ours, than);
 }
 
-TEST(Claims, VerdictsFollowFromIntervalsAlone) {
+TEST(Claims, VerdictsFollowFromIntervals) {
   using R = ClaimRule;
   using V = Verdict;
   EXPECT_EQ(Of(R::kDraw, 1.5, {1.0, 2.0}), V::kReproduced);
@@ -59,7 +59,7 @@ std::string Refusal(std::string text, const std::string& from, const std::string
   return file ? "nothing refused" : file.error().message;
 }
 
-TEST(Claims, ReadsWhatThePaperSays) {
+TEST(Claims, ParsesAClaimsFile) {
   const Expected<ClaimsFile> file = ParseClaims(kFile, "c.yaml");
   ASSERT_TRUE(file) << file.error().message;
   ASSERT_EQ(file->claims.size(), 2U);
@@ -75,9 +75,9 @@ TEST(Claims, ReadsWhatThePaperSays) {
   EXPECT_THAT(Refusal(kFile, "where: Table 1", "were: Table 1"), HasSubstr("where"));
 }
 
-// Every claim names a condition, a subject and a statistic that its experiment has. Experiments on
-// real data are looked at where it is.
-TEST(Claims, OfThePaperNameWhatThereIs) {
+// Every claim names an existing condition, subject and statistic of its experiment. Experiments on
+// real data are checked only if the data is available.
+TEST(Claims, ReferToExistingConditionsSubjectsAndStatistics) {
   const Expected<ClaimsFile> file = ReadClaims(SourceRoot() / "paper" / "claims.yaml");
   ASSERT_TRUE(file) << file.error().message;
   std::map<std::string, Experiment> experiments;

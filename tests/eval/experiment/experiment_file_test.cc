@@ -37,7 +37,7 @@ plots:
   - {name: growth, x: outliers, y: median(translation_mm), log_y: true}
 )";
 
-TEST(ExperimentFile, SaysConditionsByListAndGrid) {
+TEST(ExperimentFile, CombinesConditionsAndGrid) {
   const Expected<Experiment> experiment = Parse(kWhole);
   ASSERT_TRUE(experiment) << experiment.error().message;
   EXPECT_EQ(experiment->name, "try");
@@ -54,7 +54,7 @@ TEST(ExperimentFile, SaysConditionsByListAndGrid) {
   EXPECT_EQ(experiment->tables[1].across, "outliers");
 }
 
-TEST(ExperimentFile, MeasuresWhatItAsksForAndWhatItsReportShows) {
+TEST(ExperimentFile, MeasuresRequestedMetricsAndThoseOfTheReport) {
   const Expected<Experiment> experiment = Parse(kWhole);
   ASSERT_TRUE(experiment);
   std::vector<std::string> wanted;
@@ -65,7 +65,7 @@ TEST(ExperimentFile, MeasuresWhatItAsksForAndWhatItsReportShows) {
               testing::UnorderedElementsAre("fine", "success", "rotation_deg", "translation_mm"));
 }
 
-TEST(ExperimentFile, SolversThatTheDataDoesNotSuitAreLeftOut) {
+TEST(ExperimentFile, LeavesOutSolversWithoutSuitableData) {
   const Expected<Experiment> experiment = Parse(
       "{kind: random_scene, trials: 1, solvers: [kabsch, epnp], conditions: [{name: a, data: "
       "points}, {name: b, data: pixels}]}");
@@ -74,7 +74,7 @@ TEST(ExperimentFile, SolversThatTheDataDoesNotSuitAreLeftOut) {
   EXPECT_THAT(experiment->conditions[1].trials->subjects(), testing::ElementsAre("epnp"));
 }
 
-TEST(ExperimentFile, AllStandsForEverySolverThatFits) {
+TEST(ExperimentFile, AllExpandsToEverySuitableSolver) {
   const Expected<Experiment> experiment =
       Parse("{kind: random_scene, trials: 1, solvers: [all, icp], parameters: {data: points}}");
   ASSERT_TRUE(experiment) << experiment.error().message;
@@ -84,14 +84,14 @@ TEST(ExperimentFile, AllStandsForEverySolverThatFits) {
   EXPECT_THAT(subjects, testing::Not(testing::Contains("mean_offset")));
 }
 
-TEST(ExperimentFile, SolversOfTheCommandLineTakeThePlaceOfTheFiles) {
+TEST(ExperimentFile, CommandLineSolversReplaceThoseOfTheFile) {
   const std::string text =
       "{kind: random_scene, trials: 1, solvers: [kabsch], conditions: [{name: a, data: points}, "
       "{name: b, data: pixels, solvers: [p3p]}]}";
   const Expected<Experiment> experiment = ParseExperiment(
       text, "try.yaml", BuiltinKinds(), BuiltinSolvers(), "epnp,ransac(p3p,seed=2)");
   ASSERT_TRUE(experiment) << experiment.error().message;
-  ASSERT_EQ(experiment->conditions.size(), 1U) << "points are no data for them";
+  ASSERT_EQ(experiment->conditions.size(), 1U) << "the solvers cannot use points";
   EXPECT_THAT(experiment->conditions[0].trials->subjects(),
               testing::ElementsAre("epnp", "ransac(p3p,seed=2)"));
   EXPECT_FALSE(ParseExperiment(text, "try.yaml", BuiltinKinds(), BuiltinSolvers(), "epnq"));
@@ -123,9 +123,9 @@ INSTANTIATE_TEST_SUITE_P(
                 "kind: random_scene\ntrials: 1\nsolvers: ['ransac(p3p, sed=1)']\n",
                 ErrorCode::kParse, "has no option 'sed'; did you mean 'seed'?"},
         BadText{"solver_twice", "kind: random_scene\ntrials: 1\nsolvers: [kabsch, kabsch]\n",
-                ErrorCode::kParse, "'kabsch' stands here a second time"},
+                ErrorCode::kParse, "'kabsch' is listed twice"},
         BadText{"no_solvers", "kind: random_scene\ntrials: 1\n", ErrorCode::kParse,
-                "expected solvers, a list of at least one"},
+                "expected solvers, a list with at least one entry"},
         BadText{"unknown_parameter", With("parameters: {pair: 8}"), ErrorCode::kParse,
                 "try.yaml:4: parameters: unknown key 'pair'; did you mean 'pairs'?"},
         BadText{"parameter_range", With("parameters: {sigma_m: -1}"), ErrorCode::kInvalidOption,
@@ -133,13 +133,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"impossible_geometry", With("parameters: {depth_m: 1.0, extent_m: 1.0}"),
                 ErrorCode::kInvalidOption, "puts points behind the camera"},
         BadText{"condition_twice", With("conditions: [{name: a}, {name: a}]"), ErrorCode::kParse,
-                "a: a second condition of this name"},
+                "a: a second condition has this name"},
         BadText{"unnamed_condition", With("conditions: [{pairs: 8}]"), ErrorCode::kParse,
                 "name: expected this key"},
         BadText{"empty_axis", With("grid: {pairs: []}"), ErrorCode::kParse,
                 "expected 1 to 10000 conditions in all, got 0"},
         BadText{"no_fitting_solver", With("parameters: {data: pixels}"), ErrorCode::kMissingData,
-                "none of the solvers can work with this condition's data; kabsch needs 3D-3D"},
+                "none of the solvers can use this condition's data; kabsch needs 3D-3D"},
         BadText{"unknown_metric", With("metrics: [rotation_rad]"), ErrorCode::kParse,
                 "unknown metric 'rotation_rad'; did you mean 'rotation_deg'?"},
         BadText{"unknown_statistic", With("tables: [{columns: [avg(nees)]}]"), ErrorCode::kParse,
@@ -147,7 +147,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"one_metric", With("tables: [{columns: [efficiency(nees)]}]"), ErrorCode::kParse,
                 "expected two metrics in its parentheses, got 1"},
         BadText{"no_axis", With("plots: [{x: pairs, y: mean(nees)}]"), ErrorCode::kParse,
-                "'pairs' is no axis of the grid; known are index"},
+                "'pairs' is not an axis of the grid; known are index"},
         BadText{"bad_name", With("name: a/b"), ErrorCode::kParse, "got 'a/b'"},
         BadText{"not_yaml", "kind: [", ErrorCode::kParse, "not valid YAML"}),
     [](const testing::TestParamInfo<BadText>& bad) { return std::string(bad.param.name); });
@@ -166,8 +166,8 @@ TEST(TrialKinds, AreDocumented) {
   }
 }
 
-// Every experiment of the repository can be run.
-TEST(Experiments, OfTheRepositoryAreWhole) {
+// Every experiment of the repository is valid.
+TEST(Experiments, OfTheRepositoryAreValid) {
   SolverRegistry registry = BuiltinSolvers();
   AddOpenCvSolvers(registry);
   int count = 0;

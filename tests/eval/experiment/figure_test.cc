@@ -28,7 +28,7 @@ Figure Compute(const std::string& statistic, const std::vector<double>& values,
   return gatherer.figure();
 }
 
-TEST(Figure, OfEachKind) {
+TEST(Figure, ComputesEachKindOfStatistic) {
   const std::vector<double> values = {3.0, kNone, -4.0};
   EXPECT_DOUBLE_EQ(Compute("mean(error)", values).value, -0.5);
   EXPECT_DOUBLE_EQ(Compute("rms(error)", values).value, std::sqrt(12.5));
@@ -41,31 +41,31 @@ TEST(Figure, OfEachKind) {
   EXPECT_FALSE(Compute("max(error)", values).interval);
 }
 
-TEST(Figure, ARateCountsMissingTrialsAsFailures) {
+TEST(Figure, RateCountsMissingTrialsAsFailures) {
   const Figure rate = Compute("rate(fine)", {1.0, 1.0, 0.0, kNone});
   EXPECT_DOUBLE_EQ(rate.value, 0.5);
   EXPECT_EQ(rate.trials, 4U);
   EXPECT_EQ(rate.interval->low, WilsonInterval(2, 4).low);
 }
 
-TEST(Figure, AnEfficiencyIsOfTheSameTrials) {
+TEST(Figure, EfficiencyUsesTheSameTrialsForBothMetrics) {
   const Figure figure = Compute("efficiency(error, bound)", {2.0, 6.0, kNone}, {1.0, 3.0, 100.0});
   EXPECT_DOUBLE_EQ(figure.value, 2.0);
   EXPECT_DOUBLE_EQ(figure.interval->low, 2.0) << "every trial has this ratio";
   EXPECT_EQ(figure.trials, 2U);
 }
 
-TEST(Figure, WhereLeavesTrialsOut) {
+TEST(Figure, WhereSelectsTrials) {
   const Figure figure = Compute("mean(error, where=fine)", {1.0, 100.0, 3.0}, {}, {1.0, 0.0, 1.0});
   EXPECT_DOUBLE_EQ(figure.value, 2.0);
 }
 
-TEST(Figure, OfNothingIsNoNumber) {
+TEST(Figure, IsNanWithoutTrials) {
   EXPECT_TRUE(std::isnan(Compute("rms(error)", {kNone, kNone}).value));
   EXPECT_EQ(Compute("median(error)", {}).trials, 0U);
 }
 
-TEST(Statistic, WithItsOptionsIsCanonical) {
+TEST(Statistic, TextIsCanonicalWithOptions) {
   const Expected<Statistic> statistic =
       ParseStatistic("efficiency( error,bound, where = fine, decimals=1)", Metrics());
   ASSERT_TRUE(statistic) << statistic.error().message;

@@ -56,23 +56,25 @@ TEST(PaperKinds, SceneWithoutNoiseGivesTheTruth) {
   for (const double kept : TryOne(pixels, "inliers", 1, "epnp")) EXPECT_EQ(kept, 20.0);
 }
 
-// All boards are about 2 m before the camera: what is told 13 % too long is taken for farther.
-TEST(PaperKinds, WrongFocalLengthsMoveTheCameraAlongItsAxis) {
+// All boards are about 2 m in front of the camera: with an assumed focal length 13 % too long they
+// seem farther away.
+TEST(PaperKinds, WrongFocalLengthsShiftTheCameraAlongItsAxis) {
   const std::string text =
       "kind: scene\ntrials: 1\nsolvers: [epnp]\nparameters: {scene: scenes/paper_rot_data.yaml, "
-      "lidar: noise, lidar_sigma_m: 0, camera: marked, mark_sigma_px: 0, told_focal_error: 0.13}\n";
+      "lidar: noise, lidar_sigma_m: 0, camera: marked, mark_sigma_px: 0, assumed_focal_error: "
+      "0.13}\n";
   for (const double z : TryOne(text, "z_mm", 3, "epnp")) {
     EXPECT_GT(z, 150.0);
     EXPECT_LT(z, 400.0);
   }
 }
 
-TEST(PaperKinds, AveragedScansAreNearerThanOne) {
+TEST(PaperKinds, AveragedScansAreMoreAccurateThanOne) {
   const std::string text =
       "kind: scene_average\ntrials: 1\nparameters: {scene: scenes/paper_two_boards.yaml, lidar: "
       "noise, scans: 50}\n";
   const std::vector<double> mean = TryOne(text, "translation_mm", 6, "true mean");
-  constexpr std::size_t kReported = 10;  // After 1, 2, 3, 5, 7, 10, 15, 20, 30 and 50 scans.
+  constexpr std::size_t kReported = 10;  // Rows after 1, 2, 3, 5, 7, 10, 15, 20, 30 and 50 scans.
   ASSERT_EQ(mean.size(), 6 * kReported);
   double first = 0.0;
   double last = 0.0;
@@ -97,7 +99,7 @@ TEST(PaperKinds, BoardsInScansAndImagesAreFound) {
   }
 }
 
-TEST(PaperKinds, RefusesWhatCannotBe) {
+TEST(PaperKinds, RejectsInvalidParameters) {
   const auto message = [](const std::string& parameters) {
     const std::string file = (SourceRoot() / "experiments" / "try.yaml").string();
     const Expected<Experiment> experiment =

@@ -21,7 +21,7 @@ Vector6d NormalVector6(Random& random) {
   return v;
 }
 
-// Of some millimetres and hundredths of a degree, correlated.
+// A correlated covariance of some millimetres and hundredths of a degree.
 Matrix6d RandomCovariance(Random& random) {
   Matrix6d root;
   for (int i = 0; i < 6; ++i) root.col(i) = 0.001 * NormalVector6(random);
@@ -53,7 +53,7 @@ Rig MakeRig(Random& random) {
   return rig;
 }
 
-TEST(SensorGraph, TwoCamerasWithoutCommonViewAreTheChainThroughTheLidar) {
+TEST(SensorGraph, ChainsTwoCamerasThroughTheLidar) {
   Random random(1);
   const Rig rig = MakeRig(random);
   const PoseEdge first = rig.Measure(1, 0, random);
@@ -69,7 +69,7 @@ TEST(SensorGraph, TwoCamerasWithoutCommonViewAreTheChainThroughTheLidar) {
   EXPECT_LT(graph->chi_square(), 1e-12);
 }
 
-TEST(SensorGraph, ExactMeasurementsInLoopsGiveTheTruth) {
+TEST(SensorGraph, ExactLoopsGiveTheTruth) {
   Random random(2);
   const Rig rig = MakeRig(random);
   std::vector<PoseEdge> edges;
@@ -87,7 +87,7 @@ TEST(SensorGraph, ExactMeasurementsInLoopsGiveTheTruth) {
 }
 
 // Mean of e^T C^-1 e / 6 over independent trials, whose standard deviation is sqrt(2 / 6 / trials).
-TEST(SensorGraph, CovarianceAndChiSquareAreRight) {
+TEST(SensorGraph, CovarianceAndChiSquareAreConsistent) {
   constexpr int kTrials = 400;
   Random random(3);
   double nees = 0.0;
@@ -113,10 +113,10 @@ TEST(SensorGraph, CovarianceAndChiSquareAreRight) {
   }
   EXPECT_NEAR(nees, 1.0, 4.0 * std::sqrt(2.0 / 6.0 / kTrials));
   EXPECT_NEAR(chi_square, 1.0, 4.0 * std::sqrt(2.0 / 12.0 / kTrials));
-  EXPECT_LT(joint, 0.9 * chained);  // The second LiDAR's chain counts too.
+  EXPECT_LT(joint, 0.9 * chained);  // The chain through the second LiDAR contributes as well.
 }
 
-TEST(SensorGraph, RefusesWhatItCannotAnswer) {
+TEST(SensorGraph, RejectsInvalidGraphs) {
   Random random(4);
   const Rig rig = MakeRig(random);
   EXPECT_EQ(SensorGraph::Solve({}).error().code, ErrorCode::kMissingData);

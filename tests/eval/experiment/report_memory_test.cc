@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a report needs does not grow with the trials. Rows of made-up values stand for a long run.
+// The memory of a report does not grow with the number of trials. Synthetic rows replace a long
+// run.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -41,7 +42,7 @@ void WriteMadeUpRows(const Experiment& experiment, const std::filesystem::path& 
   }
 }
 
-// Kilobytes that this process has had at most, after a report of so many trials.
+// Peak memory of this process in kilobytes after a report of this many trials.
 long PeakAfterReport(int trials) {
   const Experiment experiment = LongExperiment(trials);
   const std::filesystem::path path = TestFolder() / "rows.sxtrows";
@@ -61,12 +62,12 @@ long PeakAfterReport(int trials) {
 
 TEST(ReportMemory, DoesNotGrowWithTheTrials) {
 #ifdef SEXTANT_SANITIZED
-  GTEST_SKIP() << "a sanitizer keeps what was freed";
+  GTEST_SKIP() << "sanitizers keep freed memory";
 #endif
   const long few = PeakAfterReport(300'000);
   const long many = PeakAfterReport(1'500'000);
-  // The places of the blocks, 0.3 bytes a trial, and what the allocator leaves; one column alone
-  // would be 9600.
+  // The positions of the blocks, 0.3 bytes per trial, plus allocator overhead; a single column
+  // would take 9600.
   EXPECT_LT(many - few, 3000) << "kilobytes";
 }
 

@@ -40,7 +40,7 @@ TEST(RunTrials, SameBytesOnAnyNumberOfThreadsAndInTwoRuns) {
   EXPECT_FALSE(RunTo("seed", Small("seed: 2"), 2) == one);
 }
 
-TEST(RunTrials, GoesOnWhereItWasCutToTheSameBytes) {
+TEST(RunTrials, ContinuesATruncatedFileToTheSameBytes) {
   const std::string whole = RunTo("whole", Small(), 2);
   for (std::size_t cut = 0; cut <= whole.size(); cut += whole.size() / 37 + 1) {
     WriteText(TestFolder() / "cut", whole.substr(0, cut));
@@ -58,7 +58,7 @@ TEST(RunTrials, RunsNoTrialTwice) {
   EXPECT_EQ(outcome->run_trials, 50U);
 }
 
-TEST(RunTrials, ADamagedBlockAndWhatFollowsIsRunAgain) {
+TEST(RunTrials, RunsADamagedBlockAndAllLaterOnesAgain) {
   const std::string whole = RunTo("whole", Small(), 2);
   std::string damaged = whole;
   damaged[whole.size() / 2] = static_cast<char>(damaged[whole.size() / 2] ^ 0x10);
@@ -79,13 +79,13 @@ TEST(RunTrials, ShardsMergeToTheSameBytes) {
   EXPECT_TRUE(ReadText(TestFolder() / "merged") == whole);
 }
 
-TEST(RunTrials, AShardIsNotOverwrittenByTheWhole) {
+TEST(RunTrials, AFullRunDoesNotOverwriteAShard) {
   const std::string before = RunTo("rows", Small(), 2);
   EXPECT_FALSE(MergeRowFiles({TestFolder() / "rows"}, TestFolder() / "rows"));
   EXPECT_TRUE(ReadText(TestFolder() / "rows") == before);
 }
 
-TEST(RunTrials, AMissingShardIsNamed) {
+TEST(RunTrials, MergeReportsMissingBlocks) {
   RunTo("shard0", Small(), 2, {.number = 0, .of = 3});
   const Expected<void> merged = MergeRowFiles({TestFolder() / "shard0"}, TestFolder() / "merged");
   ASSERT_FALSE(merged);
@@ -93,7 +93,7 @@ TEST(RunTrials, AMissingShardIsNamed) {
               testing::HasSubstr("4 of 6 blocks are in none of the files, the first is number 1"));
 }
 
-TEST(RunTrials, RowsOfAnotherConfigurationAreNotTouched) {
+TEST(RunTrials, DoesNotModifyRowsOfAnotherConfiguration) {
   const std::string before = RunTo("rows", Small(), 2);
   const std::filesystem::path path = TestFolder() / "rows";
   const Expected<RunOutcome> other = RunTrials(Small("seed: 2"), {.rows_path = path});
@@ -104,15 +104,15 @@ TEST(RunTrials, RowsOfAnotherConfigurationAreNotTouched) {
   EXPECT_FALSE(ReadText(path) == before);
 }
 
-TEST(RunTrials, AnotherFileIsNotTouched) {
+TEST(RunTrials, DoesNotModifyOtherFiles) {
   WriteText(TestFolder() / "letter", "Dear reader, this is a file that somebody wants to keep.");
   const Expected<RunOutcome> outcome = RunTrials(Small(), {.rows_path = TestFolder() / "letter"});
   ASSERT_FALSE(outcome);
-  EXPECT_THAT(outcome.error().message, testing::HasSubstr("expected the rows of an experiment"));
+  EXPECT_THAT(outcome.error().message, testing::HasSubstr("not a row file of an experiment"));
   EXPECT_THAT(ReadText(TestFolder() / "letter"), testing::StartsWith("Dear reader"));
 }
 
-TEST(RunTrials, AConditionKeepsItsTrialsWhateverStandsBesideIt) {
+TEST(RunTrials, TrialsOfAConditionDoNotDependOnOtherConditions) {
   const auto rotations = [](const Experiment& experiment, std::size_t block) {
     const std::filesystem::path path = TestFolder() / "rows";
     EXPECT_TRUE(RunTrials(experiment, {.rows_path = path, .fresh = true}));

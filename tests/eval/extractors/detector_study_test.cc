@@ -20,8 +20,8 @@ const std::vector<DetectorRow>& Rows() {
   return rows;
 }
 
-// Every setting of both libraries, in our pixels.
-TEST(DetectorStudy, CornersHaveNoBiasAfterNormalisation) {
+// Every setting of both libraries, converted to our pixel convention.
+TEST(DetectorStudy, CornersAreUnbiasedAfterNormalisation) {
   ASSERT_EQ(Rows().size(), 13U);
   for (const DetectorRow& row : Rows()) {
     const double most = 0.05 + 3.0 * row.bias_sigma_px;
@@ -29,7 +29,7 @@ TEST(DetectorStudy, CornersHaveNoBiasAfterNormalisation) {
     EXPECT_LT(std::abs(row.shift_px.y()), most) << row.detector;
     EXPECT_LT(std::abs(row.inward_px), most) << row.detector;
     EXPECT_GT(row.found, kTrials / 2) << row.detector;
-    // A forgotten half pixel would be seen.
+    // A missing half-pixel conversion would be detected.
     EXPECT_LT(most, 0.25) << row.detector;
   }
 }
@@ -52,7 +52,7 @@ TEST(DetectorStudy, TheSameSeedGivesTheSameTable) {
   EXPECT_EQ(table(), table());
 }
 
-TEST(DetectorStudy, FamiliesOfOneLibraryAreRefused) {
+TEST(DetectorStudy, RejectsFamiliesOfOneLibraryOnly) {
   EXPECT_FALSE(StudyDetectors({.trials = 1, .family = "tagStandard41h12"}));
 }
 

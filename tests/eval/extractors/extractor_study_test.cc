@@ -6,7 +6,7 @@
 namespace sextant::test {
 namespace {
 
-TEST(ExtractorStudy, SameSeedSameFigures) {
+TEST(ExtractorStudy, TheSameSeedGivesTheSameFigures) {
   const ExtractorStudyOptions options{
       .models = {"vlp16"}, .trials = 4, .placements = 4, .rooms = 2, .seed = 7};
   const auto first = StudyExtractors(options);
@@ -18,7 +18,7 @@ TEST(ExtractorStudy, SameSeedSameFigures) {
   EXPECT_EQ(first->front().extractors.front().boards, 8);
 }
 
-TEST(ExtractorStudy, UnknownLidarIsNamed) {
+TEST(ExtractorStudy, ReportsAnUnknownLidar) {
   const auto rows = StudyExtractors({.models = {"vlp61"}});
   ASSERT_FALSE(rows);
   EXPECT_EQ(rows.error().code, ErrorCode::kUnknownName);

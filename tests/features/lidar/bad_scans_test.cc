@@ -28,7 +28,7 @@ SeenBoard OneBoard(const std::vector<SceneCylinder>& obstacles = {}) {
   Random random(1);
   SeenBoard seen;
   seen.scene = TwoBoardsInRoom({}, random);
-  seen.scene.boards = {Hang(seen.scene.boards[0].board, {.turn_deg = 40.0, .yaw_deg = 10.0})};
+  seen.scene.boards = {PlaceBoard(seen.scene.boards[0].board, {.turn_deg = 40.0, .yaw_deg = 10.0})};
   seen.scene.cylinders = obstacles;
   seen.boards = BoardsIn(seen.scene);
   Expected<SimulatedScan> scan = SimulateScan(seen.scene, *FindLidarModel("os1_64"), {.seed = 1});

@@ -180,7 +180,7 @@ TEST(BoardsInScans, OtherAnglesThan45WhereTheRingsAllowIt) {
   for (const double turn : {20.0, 30.0, 60.0, 70.0}) {
     Random random(9);
     Scene scene = TwoBoardsInRoom({}, random);
-    scene.boards = {Hang(scene.boards[0].board, {.azimuth_deg = 10.0, .turn_deg = turn})};
+    scene.boards = {PlaceBoard(scene.boards[0].board, {.azimuth_deg = 10.0, .turn_deg = turn})};
     const std::vector<Board> boards = BoardsIn(scene);
     const BoardSearch search = SearchScan(scene, boards, model, 1);
     ASSERT_EQ(search.found.size(), 1U) << turn;
@@ -194,7 +194,7 @@ TEST(BoardsInScans, SidesAlongTheRingsAreRefusedWithTheirNumbers) {
   const LidarModel model = ModelWithSigma("os1_64", 0.01);
   Random random(10);
   Scene scene = TwoBoardsInRoom({}, random);
-  scene.boards = {Hang(scene.boards[0].board, {.azimuth_deg = 10.0, .turn_deg = 0.0})};
+  scene.boards = {PlaceBoard(scene.boards[0].board, {.azimuth_deg = 10.0, .turn_deg = 0.0})};
   const std::vector<Board> boards = BoardsIn(scene);
   const BoardSearch search = SearchScan(scene, boards, model, 1);
   ASSERT_EQ(search.found.size(), 1U);
@@ -227,7 +227,7 @@ TEST(BoardsInScans, HollowBoardGivesEightCorners) {
   board.hole = BoardHole{.width_m = 0.6, .height_m = 0.6};
   Random random(4);
   Scene scene = TwoBoardsInRoom({.distance_m = 2.0}, random);
-  scene.boards = {Hang(board, {.azimuth_deg = 5.0, .distance_m = 2.2})};
+  scene.boards = {PlaceBoard(board, {.azimuth_deg = 5.0, .distance_m = 2.2})};
   const BoardSearch search = SearchScan(scene, {board}, model, 1);
   ASSERT_EQ(search.found.size(), 1U);
   // Lines in space take the range noise along; see the test of the extractors' errors.
@@ -252,7 +252,7 @@ TEST(BoardsInScans, TooFewRingsAreSaid) {
   Random random(5);
   Scene scene = TwoBoardsInRoom({.distance_m = 2.0}, random);
   scene.walls.clear();
-  scene.boards = {Hang(board, {.distance_m = 5.5})};
+  scene.boards = {PlaceBoard(board, {.distance_m = 5.5})};
   const BoardSearch search = SearchScan(scene, {board}, model, 1);
   EXPECT_TRUE(search.found.empty());
   ASSERT_FALSE(search.rejected.empty());

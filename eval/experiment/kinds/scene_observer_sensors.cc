@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "eval/experiment/kinds/scene_sight.h"
+#include "eval/experiment/kinds/scene_observer.h"
 #include "features/camera/board_pose.h"
 #include "features/lidar/corner_extractor.h"
 #include "geometry/board_check.h"
@@ -10,7 +10,7 @@
 #include "simulator/camera/render.h"
 #include "simulator/lidar/scan.h"
 
-// What each sensor makes of a scene's boards.
+// The simulation of the two sensors of SceneObserver.
 namespace sextant {
 namespace {
 
@@ -18,8 +18,8 @@ std::uint64_t Of(int number) { return static_cast<std::uint64_t>(number); }
 
 }  // namespace
 
-std::optional<Eigen::Vector2d> SceneSight::PixelOf(const SceneBoard& board, double time_s,
-                                                   const Eigen::Vector3d& in_board) const {
+std::optional<Eigen::Vector2d> SceneObserver::PixelOf(const SceneBoard& board, double time_s,
+                                                      const Eigen::Vector3d& in_board) const {
   const Rigid3d& world_from_cam =
       scene_.cameras[static_cast<std::size_t>(camera_index_)].world_from_cam;
   const std::optional<Eigen::Vector2d> pixel =
@@ -29,23 +29,21 @@ std::optional<Eigen::Vector2d> SceneSight::PixelOf(const SceneBoard& board, doub
   return is_inside ? pixel : std::nullopt;
 }
 
-bool SceneSight::CanFind(const SceneBoard& board) const {
+bool SceneObserver::CanFind(const SceneBoard& board) const {
   const bool is_printed = !board.board.tags.empty() ||
-                          (board.board.checker && settings_.camera == CameraSight::kRendered);
-  return (is_printed || settings_.camera == CameraSight::kMarked) &&
+                          (board.board.checker && settings_.camera == CameraObservation::kRendered);
+  return (is_printed || settings_.camera == CameraObservation::kMarked) &&
          PixelOf(board, 0.0, Eigen::Vector3d::Zero()).has_value();
 }
 
-Expected<std::vector<SceneSight::SeenCorners>> SceneSight::LookWithLidar(const Scene& scene,
-                                                                         std::uint64_t unit_seed,
-                                                                         int view,
-                                                                         double time_s) const {
+Expected<std::vector<SceneObserver::SeenCorners>> SceneObserver::ObserveWithLidar(
+    const Scene& scene, std::uint64_t unit_seed, int view, double time_s) const {
   std::vector<SeenCorners> seen(scene.boards.size());
   Random random(DeriveSeed(unit_seed, "lidar corners", Of(view), 0));
-  if (settings_.lidar == LidarSight::kNoise) {
+  if (settings_.lidar == LidarObservation::kNoise) {
     const double sigma = settings_.lidar_sigma_m;
     for (std::size_t b = 0; b < seen.size(); ++b) {
-      // The camera looks in the middle of a turn.
+      // The image is taken in the middle of a LiDAR revolution.
       const Rigid3d pose = BoardPoseAt(scene.boards[b], time_s + 0.5 * lidar_.turn_period_s);
       for (const Eigen::Vector3d& corner : BoardCorners(scene.boards[b].board)) {
         seen[b].points.push_back(scene.lidar.world_from_lidar.Inverse() * (pose * corner) +
@@ -60,11 +58,10 @@ Expected<std::vector<SceneSight::SeenCorners>> SceneSight::LookWithLidar(const S
         SimulateScan(scene, lidar_,
                      {.seed = unit_seed, .scan_index = view, .start_time_s = time_s}));
     SEXTANT_ASSIGN_OR_RETURN(const ScanRings rings, ScanRings::Build(scan.cloud));
-    const std::vector<Board> boards = Boards();
-    const Expected<BoardSearch> search =
-        FindBoards(rings, boards, {.correct_edges = settings_.correct_edges});
-    if (!search) return tl::unexpected<Error>(search.error());
-    for (const BoardPatch& patch : search->found) {
+    const std::vector<Board> boards = BoardsIn(scene_);
+    SEXTANT_ASSIGN_OR_RETURN(const BoardSearch search,
+                             FindBoards(rings, boards, {.correct_edges = settings_.correct_edges}));
+    for (const BoardPatch& patch : search.found) {
       const auto b = static_cast<std::size_t>(patch.board);
       const Expected<LidarCorners> corners = ExtractCorners(settings_.extractor, patch, boards[b]);
       if (corners) seen[b] = {corners->in_lidar, corners->covariance};
@@ -81,8 +78,8 @@ Expected<std::vector<SceneSight::SeenCorners>> SceneSight::LookWithLidar(const S
   return seen;
 }
 
-SceneSight::SeenCorners SceneSight::CornersOfTags(const SceneBoard& scene_board, double time_s,
-                                                  Random& random) const {
+SceneObserver::SeenCorners SceneObserver::CornersOfTags(const SceneBoard& scene_board,
+                                                        double time_s, Random& random) const {
   const Board& board = scene_board.board;
   std::vector<BoardPoints> groups;
   const auto see = [&](const Eigen::Vector2d& in_board, BoardPoints& group) {
@@ -105,19 +102,17 @@ SceneSight::SeenCorners SceneSight::CornersOfTags(const SceneBoard& scene_board,
         settings_.tag_sigma_px * settings_.tag_sigma_px * Eigen::MatrixXd::Identity(size, size);
   }
   if (groups.empty()) return {};
-  const Expected<BoardPose> pose = EstimateBoardPose(told_, groups);
+  const Expected<BoardPose> pose = EstimateBoardPose(assumed_camera_, groups);
   if (!pose) return {};
   PointsInCam corners = ToCamera(*pose, BoardCorners(board));
   return {std::move(corners.points), std::move(corners.covariance)};
 }
 
-Expected<std::vector<SceneSight::SeenCorners>> SceneSight::CornersInImage(const Scene& scene,
-                                                                          std::uint64_t seed,
-                                                                          double time_s) const {
-  const Expected<cv::Mat> image =
-      RenderImage(scene, camera_index_, UsualImageOptions(seed, time_s));
-  if (!image) return tl::unexpected<Error>(image.error());
-  SEXTANT_ASSIGN_OR_RETURN(const SeenBoards found, finder_->Find(*image));
+Expected<std::vector<SceneObserver::SeenCorners>> SceneObserver::CornersInImage(
+    const Scene& scene, std::uint64_t seed, double time_s) const {
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat image,
+                           RenderImage(scene, camera_index_, UsualImageOptions(seed, time_s)));
+  SEXTANT_ASSIGN_OR_RETURN(const SeenBoards found, finder_->Find(image));
   std::vector<SeenCorners> seen(scene.boards.size());
   for (const SeenBoard& board : found.boards) {
     if (!board.pose || !*board.pose) continue;
@@ -126,13 +121,12 @@ Expected<std::vector<SceneSight::SeenCorners>> SceneSight::CornersInImage(const 
   return seen;
 }
 
-Expected<std::vector<SceneSight::SeenCorners>> SceneSight::LookWithCamera(const Scene& scene,
-                                                                          std::uint64_t unit_seed,
-                                                                          int view,
-                                                                          double time_s) const {
+Expected<std::vector<SceneObserver::SeenCorners>> SceneObserver::ObserveWithCamera(
+    const Scene& scene, std::uint64_t unit_seed, int view, double time_s) const {
   const std::uint64_t seed = DeriveSeed(unit_seed, "camera corners", Of(view), 0);
   const double middle_s = time_s + 0.5 * lidar_.turn_period_s;
-  if (settings_.camera == CameraSight::kRendered) return CornersInImage(scene, seed, middle_s);
+  if (settings_.camera == CameraObservation::kRendered)
+    return CornersInImage(scene, seed, middle_s);
   Random random(seed);
   std::vector<SeenCorners> seen;
   for (const SceneBoard& board : scene.boards) {
@@ -141,9 +135,9 @@ Expected<std::vector<SceneSight::SeenCorners>> SceneSight::LookWithCamera(const 
   return seen;
 }
 
-void SceneSight::MarkCorners(const Scene& scene, const std::vector<SeenCorners>& in_lidar,
-                             std::uint64_t unit_seed, int view, double time_s,
-                             CalibrationProblem& problem) const {
+void SceneObserver::MarkCorners(const Scene& scene, const std::vector<SeenCorners>& in_lidar,
+                                std::uint64_t unit_seed, int view, double time_s,
+                                CalibrationProblem& problem) const {
   Random random(DeriveSeed(unit_seed, "marked corners", Of(view), 0));
   const double middle_s = time_s + 0.5 * lidar_.turn_period_s;
   for (std::size_t b = 0; b < scene.boards.size(); ++b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/experiment/definition/description.h"
+#include "eval/experiment/report/description.h"
 
 #include <cmath>
 #include <vector>

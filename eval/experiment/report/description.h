@@ -9,8 +9,8 @@
 
 namespace sextant {
 
-/// What a summary says of the values of one metric: how many, moments and quantiles; gathered in
-/// kPasses over the values, of which none is kept. NaN is missing.
+/// Summary statistics of one metric: count, moments and quantiles, computed in kPasses passes over
+/// the values without storing them. NaN counts as missing.
 class Description {
  public:
   static constexpr int kPasses = 1 + QuantileGatherer::kPasses;
@@ -19,14 +19,16 @@ class Description {
   void Add(double value);
   void EndPass();
 
-  /// After kPasses.
+  /// Valid after kPasses passes.
   std::uint64_t count() const { return count_; }
   std::uint64_t missing() const { return missing_; }
-  /// The following require a value that is not missing.
+  /// The following require at least one value that is not missing.
   double mean() const;
   double sd() const;
   double rms() const;
-  double Quantile(double q) const { return quantiles_->Quantile(q); }  ///< One of kQuantiles.
+  double Quantile(double q) const {
+    return quantiles_->Quantile(q);
+  }  ///< `q` is one of kQuantiles.
   Interval MedianInterval() const { return quantiles_->IntervalOf(0.5); }
 
  private:
