@@ -157,11 +157,27 @@ Expected<Session> ReadSimulated(const fs::path& folder, const std::string& camer
   return session;
 }
 
+Expected<std::vector<fs::path>> ExpandAll(std::span<const std::string> patterns) {
+  std::vector<fs::path> files;
+  for (const std::string& pattern : patterns) {
+    SEXTANT_ASSIGN_OR_RETURN(const auto some, ExpandPattern(pattern));
+    files.insert(files.end(), some.begin(), some.end());
+  }
+  return files;
+}
+
 }  // namespace
 
 Expected<Session> ParseSession(std::string_view text, const std::string& file) {
   SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
   return SessionReader(file).Read(root);
+}
+
+Expected<Session> SessionOfFiles(std::span<const std::string> images,
+                                 std::span<const std::string> clouds) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<fs::path> image_files, ExpandAll(images));
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<fs::path> cloud_files, ExpandAll(clouds));
+  return Session{.files = PairFiles(image_files, cloud_files)};
 }
 
 Expected<Session> ReadSession(const fs::path& path, const std::string& camera_name) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,13 @@ struct Session {
 /// for one without a camera of that name.
 Expected<Session> ReadSession(const std::filesystem::path& path,
                               const std::string& camera_name = "");
+/// The text of a session file. `file` is its path: for messages, and for the folder that the paths
+/// in it start from.
 Expected<Session> ParseSession(std::string_view text, const std::string& file);
+
+/// A session of images and scans by their paths, of which each may be a pattern with `*`; paired by
+/// PairFiles. It names neither boards nor camera. Errors: those of ExpandPattern.
+Expected<Session> SessionOfFiles(std::span<const std::string> images,
+                                 std::span<const std::string> clouds);
 
 }  // namespace sextant
