@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# `cmake --install`, and find_package(sextant) for whoever links us: sextant::solvers and so on.
+# `cmake --install`: the program, the libraries for find_package(sextant), and the scenes,
+# experiments, examples and pages that README.md names.
 include(CMakePackageConfigHelpers)
 
 set(SEXTANT_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/sextant)
@@ -11,7 +12,10 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/sextantConfigVersion.cmak
 install(FILES ${PROJECT_BINARY_DIR}/sextantConfig.cmake ${PROJECT_BINARY_DIR}/sextantConfigVersion.cmake
   DESTINATION ${SEXTANT_CMAKE_DIR})
 install(EXPORT sextantTargets NAMESPACE sextant:: DESTINATION ${SEXTANT_CMAKE_DIR})
-if(TARGET sextant)
-  install(TARGETS sextant RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-endif()
+
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)
+# As in the source tree, so that README.md's links to pages and pictures hold.
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.cc")
+install(DIRECTORY experiments DESTINATION ${CMAKE_INSTALL_DATADIR}/sextant
+  FILES_MATCHING PATTERN "*.yaml")

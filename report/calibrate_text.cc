@@ -3,31 +3,42 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "base/units.h"
 #include "calibrate/trust/view_residuals.h"
 #include "eval/statistics/text_table.h"
 #include "io/text/number_text.h"
+#include "report/report_text.h"
 
 namespace sextant::cli {
 namespace {
 
-std::string HeldOutText(const std::vector<ResultView>& judged, int view) {
-  for (const ResultView& result : judged) {
+constexpr std::size_t kLineWidth = 100;
+
+std::string HeldOutText(const Calibration& calibration, int view) {
+  if (!calibration.result) return "-";
+  for (const ResultView& result : calibration.result->views) {
     if (result.view == view && result.held_out_m) return Fixed(1e3 * *result.held_out_m, 1);
   }
   return "-";
 }
 
-}  // namespace
-
-std::string DescribeViews(const std::vector<SessionView>& views, const Assembly& assembly,
-                          const SolveReport* report, const std::vector<ResultView>& judged) {
+// One row per board of each view, with its residuals where there is an answer.
+std::string DescribeViews(const Calibration& calibration) {
   constexpr std::size_t kLongestWhy = 150;
+  const Assembly& assembly = calibration.assembly;
   std::map<std::pair<int, int>, BoardResidual> residuals;
-  if (report != nullptr) residuals = ResidualsByBoard(assembly.problem, report->evaluation);
+  if (const SolveReport* report = calibration.report()) {
+    residuals = ResidualsByBoard(assembly.problem, report->evaluation);
+  }
   TextTable table({"view", "board", "", "range [m]", "off [mm]", "[px]", "held out [mm]", "why"},
                   TextTable::Columns::kWords);
   for (const BoardRow& row : assembly.rows) {
-    std::vector<std::string> cells = {Printable(views[row.view].name, 30),
+    std::vector<std::string> cells = {Printable(calibration.observed.views[row.view].name, 30),
                                       "-",
                                       std::string(ToString(row.fate)),
                                       "-",
@@ -43,12 +54,48 @@ std::string DescribeViews(const std::vector<SessionView>& views, const Assembly&
         cells[3] = Fixed(found->second.range_m, 2);
         cells[4] = Fixed(1e3 * found->second.rmse_m, 1);
         if (found->second.rmse_px) cells[5] = Fixed(*found->second.rmse_px, 2);
-        cells[6] = HeldOutText(judged, static_cast<int>(row.view));
+        cells[6] = HeldOutText(calibration, static_cast<int>(row.view));
       }
     }
     table.AddRow(std::move(cells));
   }
   return table.Plain();
+}
+
+std::string ErrorAgainstTruth(const ComparisonRow& row) {
+  if (!row.from_truth) return {};
+  std::string text =
+      fmt::format("  error against the truth    {:.4f} deg, {:.2f} mm",
+                  row.from_truth->rotation_rad * kDegPerRad, 1e3 * row.from_truth->translation_m);
+  if (row.report->covariance) {
+    const Vector6d variance = row.report->covariance->diagonal();
+    text += fmt::format(" (1 sigma over all axes {:.4f} deg, {:.2f} mm)",
+                        std::sqrt(variance.head<3>().sum()) * kDegPerRad,
+                        1e3 * std::sqrt(variance.tail<3>().sum()));
+  }
+  return text + "\n";
+}
+
+std::string WarningsText(const std::vector<std::string>& warnings) {
+  std::string text;
+  for (const std::string& line : warnings) text += "  " + line + "\n";
+  return text.empty() ? text : "\nData diagnostics:\n" + text;
+}
+
+}  // namespace
+
+std::string DescribeCalibration(const Calibration& calibration) {
+  if (calibration.assembly.rows.empty()) return {};
+  std::string text = DescribeViews(calibration) + "\n";
+  if (!calibration.result) return text + WarningsText(calibration.warnings);
+  const CalibrationResult& result = *calibration.result;
+  text += DescribeAnswer(*calibration.report());
+  text += ErrorAgainstTruth(calibration.comparison.front());
+  if (calibration.comparison.size() > 1) text += "\n" + DescribeComparison(calibration.comparison);
+  text += WarningsText(result.warnings);
+  text += "\n" + Wrapped(result.closing, kLineWidth);
+  if (result.trust) text += "\n" + Wrapped(result.trust->verdict, kLineWidth);
+  return text;
 }
 
 std::string Wrapped(const std::string& text, std::size_t width) {

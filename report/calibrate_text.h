@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
-#include <vector>
 
-#include "calibrate/match/assemble.h"
-#include "io/results/calibration_result.h"
-#include "solvers/core/solver.h"
+#include "calibrate/calibrate.h"
 
 namespace sextant::cli {
 
-/// What became of each board of each view, a row each; with residuals where there is an answer, and
-/// how far the view is off the answer of the others where `judged` says it.
-std::string DescribeViews(const std::vector<SessionView>& views, const Assembly& assembly,
-                          const SolveReport* report, const std::vector<ResultView>& judged);
+/// All that `sextant calibrate` prints: the boards of each view, the answer with its error against
+/// the truth where known, the other solvers' answers, the warnings, and the closing words. Without
+/// a result: what became of the boards, and the warnings.
+std::string DescribeCalibration(const Calibration& calibration);
 
 /// The text in lines of at most `width` characters, broken at blanks.
 std::string Wrapped(const std::string& text, std::size_t width);

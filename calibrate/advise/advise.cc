@@ -23,14 +23,14 @@ struct Candidate {
   Rigid3d cam_from_board;
 };
 
-// Faces the camera, then leans, turns and is hung from a corner.
+// Faces the camera, rotated by 45 degrees in its plane, then leant and turned.
 Eigen::Quaterniond Orientation(double turn_deg, double lean_deg) {
-  constexpr double kHung_deg = 45.0;
+  constexpr double kInPlane_deg = 45.0;
   const auto about = [](double deg, const Eigen::Vector3d& axis) {
     return Eigen::Quaterniond(Eigen::AngleAxisd(deg * kRadPerDeg, axis));
   };
   return about(turn_deg, Eigen::Vector3d::UnitY()) * about(lean_deg, Eigen::Vector3d::UnitX()) *
-         about(kHung_deg, Eigen::Vector3d::UnitZ());
+         about(kInPlane_deg, Eigen::Vector3d::UnitZ());
 }
 
 std::vector<Candidate> GridOf(const std::vector<Board>& boards, const Camera& camera) {
@@ -63,14 +63,14 @@ std::optional<Matrix6d> InformationAt(const SensorPair& sensors, const Board& bo
   return *information;
 }
 
-// Log of the determinant in scaled axes, so that the start may be singular; minus infinity then.
+// Log of the determinant; minus infinity for a singular matrix.
 double LogDeterminant(const Matrix6d& information) {
   const SymmetricEigen<6> eigen = EigenOf(information);
   if (!(eigen.values[0] > 0.0)) return -std::numeric_limits<double>::infinity();
   return eigen.values.array().log().sum();
 }
 
-// By image, else by scan and the answer.
+// From the image, or else from the scan and the answer.
 std::vector<Rigid3d> BoardPosesOf(const CalibrationResult& result) {
   std::vector<Rigid3d> poses;
   for (const ResultView& view : result.views) {
@@ -123,7 +123,7 @@ int RingsOn(const BoardView& view) {
   return static_cast<int>(elevations.size());
 }
 
-// What the kept views tell together; what is known after each goes into the advice.
+// The information of all kept views; the covariance after each goes into the advice.
 Matrix6d SumOfViews(const CalibrationResult& result, const SensorPair& sensors, Advice& advice) {
   Matrix6d known = Matrix6d::Zero();
   for (const ResultView& view : result.views) {

@@ -11,45 +11,47 @@
 
 namespace sextant {
 
-/// Where to hold a board next, and what that is foreseen to bring.
+/// Where to hold a board next, and the accuracy predicted from it.
 struct BoardProposal {
-  std::size_t board = 0;  ///< Into the result's boards.
+  std::size_t board = 0;  ///< Index into the result's boards.
   Rigid3d cam_from_board{};
-  int rings = 0;           ///< On the board.
-  Matrix6d covariance{};   ///< Of the pose with this view besides those there are.
-  std::string sentence{};  ///< Distance, side, height and tilt, for whoever holds it.
+  int rings = 0;           ///< Rings that would cross the board.
+  Matrix6d covariance{};   ///< Predicted for the pose with this view added.
+  std::string sentence{};  ///< Distance, side, height and tilt in words.
 };
 
-/// What was known after one of the views that there are.
+/// Predicted covariance with all views up to this one.
 struct KnownAfter {
   int view = 0;  ///< ResultView::view.
   Matrix6d covariance{};
 };
 
 struct Advice {
-  std::optional<Matrix6d> covariance{};  ///< Predicted from the views there are; none: too little.
-  int views = 0;                         ///< That it rests on.
-  std::vector<KnownAfter> after{};       ///< Of each of them from which on the pose is determined.
+  std::optional<Matrix6d>
+      covariance{};                 ///< Predicted from the present views; none: not determined.
+  int views = 0;                    ///< Number of views in it.
+  std::vector<KnownAfter> after{};  ///< From the first view on that determines the pose.
   BoardProposal proposal{};
-  int considered = 0;                   ///< Poses of the grid that both sensors would see.
-  std::vector<std::string> warnings{};  ///< Of sets of views that leave something open.
+  int considered = 0;                   ///< Number of grid poses that both sensors would see.
+  std::vector<std::string> warnings{};  ///< See DegenerateSets.
 };
 
-/// The pose of a grid that both sensors would see which makes the determinant of the foreseen
-/// covariance smallest (D-optimal: Pukelsheim 1993): 1.2 to 5 m away, over the image, turned and
-/// leant by up to 40 degrees, hung from a corner.
+/// Proposes the next board pose from a grid: the one that both sensors would see and that minimises
+/// the determinant of the predicted covariance (D-optimality: Pukelsheim 1993). The grid covers the
+/// image at ranges of 1.2 to 5 m, with the board turned and leant by up to 40 degrees and hung from
+/// a corner.
 ///
-/// The information of the views there are is taken from the result, or foreseen from the poses of
-/// their boards where the file does not have it. `sensors` are those of the result.
-/// Errors: kMissingData for a result without boards and a camera without its image size or a LiDAR
-/// without rings; kDegenerate where no pose of the grid is seen by both sensors.
+/// The information of the present views is taken from the result or, where the file does not have
+/// it, predicted from the poses of their boards. `sensors` are those of the result.
+/// Errors: kMissingData for a result without boards, a camera without its image size, or a LiDAR
+/// without rings; kDegenerate where both sensors see no pose of the grid.
 Expected<Advice> Advise(const CalibrationResult& result, const SensorPair& sensors);
 
 /// "Hold board 1 about 1.8 m in front of the camera, 0.4 m to its right ...".
 std::string DescribePlacement(const Board& board, const Rigid3d& cam_from_board);
 
-/// What a set of board poses leaves open: all boards parallel (within 10 degrees), all at one range
-/// (within a tenth), all in one direction (within 10 degrees). Empty for fewer than two.
+/// Warnings about degenerate sets of board poses: all parallel (within 10 degrees), all at one
+/// range (within a tenth), all in one direction (within 10 degrees). Empty for fewer than two.
 std::vector<std::string> DegenerateSets(const std::vector<Rigid3d>& cam_from_board);
 
 }  // namespace sextant

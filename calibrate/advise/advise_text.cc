@@ -37,7 +37,7 @@ double SpreadOf(const std::vector<Eigen::Vector3d>& directions) {
 std::string DescribePlacement(const Board& board, const Rigid3d& cam_from_board) {
   const Eigen::Vector3d& t = cam_from_board.translation;
   const Eigen::Vector3d normal = cam_from_board.rotation * Eigen::Vector3d::UnitZ();
-  // Of the normal, which points away from the camera: turned about the vertical, then leant.
+  // Angles of the normal, which points away from the camera: about the vertical, then leaning.
   const double turn_deg = std::atan2(normal.x(), normal.z()) / kRadPerDeg;
   const double lean_deg = -std::asin(std::clamp(normal.y(), -1.0, 1.0)) / kRadPerDeg;
   const std::string name = board.name.empty() ? fmt::format("board {}", board.id)
@@ -74,20 +74,20 @@ std::vector<std::string> DegenerateSets(const std::vector<Rigid3d>& cam_from_boa
   }
   if (SpreadOf(normals) < kParallel_deg) {
     sets.push_back(fmt::format(
-        "all boards are parallel to within {:.0f} deg: sliding along them is known from their "
-        "edges alone; tilt them",
+        "all boards are parallel to within {:.0f} deg: only their edges determine the translation "
+        "along them; tilt them",
         SpreadOf(normals)));
   }
   if (farthest - nearest < kOneRange * farthest) {
     sets.push_back(fmt::format(
-        "all boards are at one range, {:.1f} to {:.1f} m: an error of scale or intrinsics does not "
-        "show; hold some nearer and some farther away",
+        "all boards are at one range, {:.1f} to {:.1f} m: errors of scale or intrinsics cannot be "
+        "detected; hold some nearer and some farther away",
         nearest, farthest));
   }
   if (SpreadOf(directions) < kOneDirection_deg) {
     sets.push_back(fmt::format(
-        "all boards are in one direction to within {:.0f} deg: rotation and translation trade "
-        "against each other; spread them over the image",
+        "all boards are in one direction to within {:.0f} deg: rotation and translation are "
+        "correlated; spread them over the image",
         SpreadOf(directions)));
   }
   return sets;

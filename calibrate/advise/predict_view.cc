@@ -43,7 +43,7 @@ std::vector<std::vector<Eigen::Vector2d>> PrintsOf(const Board& board) {
 std::optional<BoardPoints> SeePrint(const SensorPair& sensors,
                                     const std::vector<Eigen::Vector2d>& print,
                                     const Rigid3d& cam_from_board) {
-  // Detectors want some of what is around a print.
+  // Detectors need some margin around a print.
   constexpr double kMargin_px = 10.0;
   const Camera& camera = sensors.camera;
   BoardPoints points;
@@ -70,7 +70,7 @@ bool SeesFront(const Eigen::Vector3d& center, const Eigen::Vector3d& normal) {
   return center.normalized().dot(normal) > std::cos(kSteepest_deg * kRadPerDeg);
 }
 
-/// The rings of a LiDAR over a board.
+// Intersects the rings of a LiDAR with a board.
 class RingCrossings {
  public:
   RingCrossings(const LidarPattern& lidar, const Board& board, const Rigid3d& lidar_from_board)
@@ -79,7 +79,7 @@ class RingCrossings {
         board_from_lidar_(lidar_from_board.Inverse()),
         center_(lidar_from_board.translation) {}
 
-  /// False where too little of the board would be seen.
+  // Adds returns and edges to the view; false where too little of the board would be seen.
   bool AddTo(BoardView& view) const {
     const double middle = std::atan2(center_.y(), center_.x());
     const double reach =
@@ -102,7 +102,7 @@ class RingCrossings {
             std::sin(elevation)};
   }
 
-  // Where a ray meets the board's plane, in the board's axes; none behind the LiDAR.
+  // Intersection of a ray with the board's plane, in board axes [m]; none behind the LiDAR.
   std::optional<Eigen::Vector2d> Meet(double elevation, double azimuth) const {
     const Eigen::Vector3d direction = board_from_lidar_.rotation * Direction(elevation, azimuth);
     const Eigen::Vector3d& origin = board_from_lidar_.translation;
@@ -132,7 +132,7 @@ class RingCrossings {
     return board_from_lidar_.Inverse() * Eigen::Vector3d(at.x(), at.y(), 0.0);
   }
 
-  // Between two azimuths of which one is on the board.
+  // Adds the edge between two azimuths of which exactly one hits the board, by bisection.
   void AddEdge(double elevation, double from, double to, BoardView& view) const {
     constexpr int kHalvings = 40;
     double on = IsOn(elevation, from) ? from : to;

@@ -11,21 +11,21 @@
 
 namespace sextant {
 
-/// The two sensors, and about how they stand to each other.
+/// The two sensors and their approximate relative pose.
 struct SensorPair {
-  Camera camera{};  ///< With its image size.
+  Camera camera{};  ///< Its image size must be set.
   LidarPattern lidar{};
   Rigid3d cam_from_lidar{};
-  double pixel_sigma_px = 0.3;  ///< Of a printed point, per axis.
+  double pixel_sigma_px = 0.3;  ///< Noise of a printed point, 1 sigma per axis.
 };
 
-/// What both sensors would measure of a board held there, without errors and with the noise to
-/// expect; none where one of them would not find it: a print that is not wholly in the image, seen
-/// at more than 65 degrees or smaller than 20 pixels; fewer than four rings on the board; fewer
-/// than two rings across a side.
+/// The measurements of both sensors to expect of a board at this pose: without errors, but with the
+/// sigmas of their noise. None where one sensor would not detect it: a print partly outside the
+/// image, seen at more than 65 degrees or smaller than 20 pixels; fewer than four rings on the
+/// board; fewer than two rings across a side.
 ///
-/// Edges: where a ring crosses a side, uniform over a step between samples, and 0.18 of the beam's
-/// spot besides, as FindEdgePoints states it.
+/// Edge points lie where a ring crosses a side. Their sigma is that of a uniform distribution over
+/// one sampling step, plus 0.18 of the beam's spot, as FindEdgePoints states it.
 std::optional<BoardView> PredictView(const SensorPair& sensors, const Board& board,
                                      const Rigid3d& cam_from_board);
 

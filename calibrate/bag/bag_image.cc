@@ -81,7 +81,7 @@ Expected<cv::Mat> ToMat(const ImageMessage& image) {
                               needed, image.width_px, image.encoding, image.row_bytes));
   }
   try {
-    std::string data = image.data;  // OpenCV wants it writable.
+    std::string data = image.data;  // OpenCV takes a pointer to writable data only.
     cv::Mat pixels =
         cv::Mat(image.height_px, image.width_px, found->type, data.data(), image.row_bytes).clone();
     if (CV_MAT_DEPTH(found->type) == CV_16U &&

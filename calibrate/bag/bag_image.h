@@ -9,13 +9,13 @@
 
 namespace sextant {
 
-/// The image as OpenCV has it. Bayer mosaics and YUV are turned into colours (BGR), all else is
-/// kept to the bit. Error: kInvalidInput for an encoding that is not known, rows shorter than it
-/// needs, and bytes that are no PNG or JPEG.
+/// Converts an image message to an OpenCV image. Bayer mosaics and YUV become BGR, other encodings
+/// are kept bit by bit. Error: kInvalidInput for an unknown encoding, for rows shorter than it
+/// needs, and for bytes that are neither PNG nor JPEG.
 Expected<cv::Mat> ToMat(const ImageMessage& image);
 Expected<cv::Mat> ToMat(const EncodedImageMessage& image);
 
-/// The same as a PNG file.
+/// The bytes of a PNG file with the same image.
 Expected<std::string> EncodePng(const ImageMessage& image);
 
 }  // namespace sextant

@@ -23,12 +23,11 @@ Expected<BagStreams> ReadStreams(const Bag& bag, std::int64_t tolerance_ns) {
     stream_of[i] = all.streams.size();
     all.streams.push_back({.topic = i, .stamps_ns = {}});
   }
-  const Expected<void> read = bag.Read(topics, [&](const BagMessage& message) -> Expected<void> {
+  SEXTANT_RETURN_IF_ERROR(bag.Read(topics, [&](const BagMessage& message) -> Expected<void> {
     SEXTANT_ASSIGN_OR_RETURN(const MessageHeader header, DecodeHeader(message));
     all.streams[stream_of[message.topic_index]].stamps_ns.push_back(header.stamp_ns);
     return {};
-  });
-  if (!read) return tl::unexpected<Error>(read.error());
+  }));
   for (std::size_t scans = 0; scans < all.streams.size(); ++scans) {
     if (bag.topics()[all.streams[scans].topic].kind != MessageKind::kPointCloud) continue;
     for (std::size_t images = 0; images < all.streams.size(); ++images) {

@@ -18,7 +18,7 @@ namespace {
 
 double Seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
-// The pairing of the topics that are asked for, or the only one.
+// The pairing of the named topics, or the only one.
 Expected<const BagPairing*> ChoosePairing(const Bag& bag, const BagStreams& all,
                                           const BagSource& source) {
   std::vector<const BagPairing*> fitting;
@@ -43,34 +43,34 @@ Expected<const BagPairing*> ChoosePairing(const Bag& bag, const BagStreams& all,
                                fitting.empty() ? "no" : "several", known));
 }
 
-// By how much the nearest image and scan are apart. Requires stamps of both.
+// The smallest difference in time between an image and a scan. Requires stamps of both.
 std::int64_t NearestGap(std::vector<std::int64_t> images, std::vector<std::int64_t> scans) {
   std::ranges::sort(images);
-  std::int64_t least = std::abs(images.front() - scans.front());
+  std::int64_t smallest = std::abs(images.front() - scans.front());
   for (const std::int64_t scan : scans) {
     const auto after = std::ranges::lower_bound(images, scan);
-    if (after != images.end()) least = std::min(least, *after - scan);
-    if (after != images.begin()) least = std::min(least, scan - *(after - 1));
+    if (after != images.end()) smallest = std::min(smallest, *after - scan);
+    if (after != images.begin()) smallest = std::min(smallest, scan - *(after - 1));
   }
-  return least;
+  return smallest;
 }
 
-tl::unexpected<Error> NeverMeet(const BagStream& images, const BagStream& scans,
-                                double tolerance_s) {
+tl::unexpected<Error> NoCommonStamps(const BagStream& images, const BagStream& scans,
+                                     double tolerance_s) {
   if (images.stamps_ns.empty() || scans.stamps_ns.empty()) {
     return MakeError(ErrorCode::kMissingData,
-                     fmt::format("the recording holds {} images and {} scans of these topics",
+                     fmt::format("the recording has {} images and {} scans of these topics",
                                  images.stamps_ns.size(), scans.stamps_ns.size()));
   }
   return MakeError(
       ErrorCode::kMissingData,
       fmt::format("the time stamps never meet: no image is within {} s of a scan, the nearest are "
                   "{:.3f} s apart. Are both sensors' clocks the same? A wider --tolerance pairs "
-                  "them, which is right only if the board hangs still",
+                  "them, which is right only if the board is still",
                   tolerance_s, Seconds(NearestGap(images.stamps_ns, scans.stamps_ns))));
 }
 
-// The CameraInfo topic in the images' own namespace, or the only one.
+// The CameraInfo topic in the namespace of the images, or the only one.
 std::optional<std::size_t> InfoTopic(const Bag& bag, const std::string& images) {
   const std::string home = images.substr(0, images.rfind('/') + 1);
   std::vector<std::size_t> infos;
@@ -87,19 +87,18 @@ Expected<std::optional<Camera>> CameraIn(const Bag& bag, const std::string& imag
   const std::optional<std::size_t> topic = InfoTopic(bag, images);
   if (!topic) return std::optional<Camera>();
   std::optional<Camera> camera;
-  const Expected<void> read =
+  SEXTANT_RETURN_IF_ERROR(
       bag.Read({*topic}, [&camera](const BagMessage& message) -> Expected<void> {
         if (camera) return {};
         SEXTANT_ASSIGN_OR_RETURN(const CameraInfoMessage info, DecodeCameraInfo(message));
         camera = info.camera;
         return {};
-      });
-  if (!read) return tl::unexpected<Error>(read.error());
+      }));
   return camera;
 }
 
-// A message that outlives its visit.
-struct KeptMessage {
+// A copy of a message that stays valid after Bag::Read moves on.
+struct MessageCopy {
   BagMessage message{};
   std::string data{};
 
@@ -110,10 +109,10 @@ struct KeptMessage {
   }
 };
 
-struct KeptMoment {
+struct PendingMoment {
   std::size_t view = 0;
-  std::optional<KeptMessage> image{};
-  std::optional<KeptMessage> cloud{};
+  std::optional<MessageCopy> image{};
+  std::optional<MessageCopy> cloud{};
 };
 
 Expected<cv::Mat> DecodeAny(const BagMessage& message) {
@@ -125,14 +124,13 @@ Expected<cv::Mat> DecodeAny(const BagMessage& message) {
   return ToMat(image);
 }
 
-Expected<Observation> Examine(const Observer& observer, const KeptMoment& moment) {
+Expected<Observation> Examine(const Observer& observer, const PendingMoment& moment) {
   SEXTANT_ASSIGN_OR_RETURN(const cv::Mat image, DecodeAny(moment.image->Get()));
-  const Expected<CloudMessage> cloud = DecodePointCloud(moment.cloud->Get());
-  if (!cloud) return tl::unexpected<Error>(cloud.error());
-  return observer.Observe(image, cloud->cloud);
+  SEXTANT_ASSIGN_OR_RETURN(const CloudMessage cloud, DecodePointCloud(moment.cloud->Get()));
+  return observer.Observe(image, cloud.cloud);
 }
 
-// Gathers messages until a batch of moments is whole, then examines these on all cores.
+// Collects messages until a batch of moments is complete, then observes the batch on all cores.
 class Batches {
  public:
   Batches(const BagPlan& plan, const Observer& observer, const std::function<void()>& step)
@@ -154,7 +152,7 @@ class Batches {
     const auto& views = is_image ? view_of_image_ : view_of_cloud_;
     const auto found = views.find(number);
     if (found == views.end()) return;
-    KeptMoment& moment = waiting_[found->second];
+    PendingMoment& moment = waiting_[found->second];
     moment.view = found->second;
     (is_image ? moment.image : moment.cloud) = {message, std::string(message.data)};
     if (!moment.image || !moment.cloud) return;
@@ -185,9 +183,9 @@ class Batches {
   std::vector<SessionView> views_;
   std::map<std::size_t, std::size_t> view_of_image_;
   std::map<std::size_t, std::size_t> view_of_cloud_;
-  std::map<std::size_t, KeptMoment> waiting_;
-  std::vector<KeptMoment> whole_;
-  std::size_t images_ = 0;  // Numbers of the next messages.
+  std::map<std::size_t, PendingMoment> waiting_;
+  std::vector<PendingMoment> whole_;
+  std::size_t images_ = 0;  // Number of the next image, and below of the next scan.
   std::size_t clouds_ = 0;
 };
 
@@ -196,13 +194,13 @@ class Batches {
 Expected<BagPlan> PlanBag(const Bag& bag, const BagSource& source) {
   const auto tolerance_ns = static_cast<std::int64_t>(1e9 * source.tolerance_s);
   SEXTANT_ASSIGN_OR_RETURN(const BagStreams all, ReadStreams(bag, tolerance_ns));
-  SEXTANT_ASSIGN_OR_RETURN(const const BagPairing* pairing, ChoosePairing(bag, all, source));
-  const BagStream& images = all.streams[(pairing)->images];
-  const BagStream& scans = all.streams[(pairing)->scans];
-  const std::vector<StampPair>& pairs = (pairing)->pairs.pairs;
-  if (pairs.empty()) return NeverMeet(images, scans, source.tolerance_s);
+  SEXTANT_ASSIGN_OR_RETURN(const BagPairing* pairing, ChoosePairing(bag, all, source));
+  const BagStream& images = all.streams[pairing->images];
+  const BagStream& scans = all.streams[pairing->scans];
+  const std::vector<StampPair>& pairs = pairing->pairs.pairs;
+  if (pairs.empty()) return NoCommonStamps(images, scans, source.tolerance_s);
   BagPlan plan{.image_topic = images.topic, .cloud_topic = scans.topic};
-  const std::size_t count = std::min(pairs.size(), source.most_views);
+  const std::size_t count = std::min(pairs.size(), source.max_views);
   for (std::size_t k = 0; k < count; ++k) {
     const StampPair& pair = pairs[k * pairs.size() / count];
     plan.moments.push_back({.image = pair.second,
@@ -220,12 +218,11 @@ Expected<std::vector<SessionView>> ObserveBag(const Bag& bag, const BagPlan& pla
                                               const Observer& observer,
                                               const std::function<void()>& step) {
   Batches batches(plan, observer, step);
-  const Expected<void> read = bag.Read({plan.image_topic, plan.cloud_topic},
-                                       [&batches](const BagMessage& message) -> Expected<void> {
-                                         batches.Take(message);
-                                         return {};
-                                       });
-  if (!read) return tl::unexpected<Error>(read.error());
+  SEXTANT_RETURN_IF_ERROR(bag.Read({plan.image_topic, plan.cloud_topic},
+                                   [&batches](const BagMessage& message) -> Expected<void> {
+                                     batches.Take(message);
+                                     return {};
+                                   }));
   std::vector<SessionView> views = batches.Finish();
   std::vector<double> times_s;
   for (const BagMoment& moment : plan.moments) times_s.push_back(Seconds(moment.stamp_ns));

@@ -16,36 +16,37 @@
 namespace sextant {
 
 struct BagSource {
-  std::string image_topic{};  ///< Empty: the only one.
-  std::string cloud_topic{};
-  double tolerance_s = 0.05;     ///< Between an image and its scan.
-  std::size_t most_views = 400;  ///< Of more pairs, as many are taken evenly.
+  std::string image_topic{};    ///< Empty: the only topic of images.
+  std::string cloud_topic{};    ///< Empty: the only topic of scans.
+  double tolerance_s = 0.05;    ///< Largest difference in time between an image and its scan.
+  std::size_t max_views = 400;  ///< Of more pairs, this many are selected evenly.
 };
 
-/// An image and a scan of a recording that belong together.
+/// An image and a scan of a recording that form a view.
 struct BagMoment {
-  std::size_t image = 0;  ///< Number of the message within its topic.
-  std::size_t cloud = 0;
-  std::int64_t stamp_ns = 0;       ///< Of the scan.
-  std::int64_t difference_ns = 0;  ///< Image less scan.
+  std::size_t image = 0;           ///< Number of the message within its topic.
+  std::size_t cloud = 0;           ///< Number of the message within its topic.
+  std::int64_t stamp_ns = 0;       ///< Stamp of the scan.
+  std::int64_t difference_ns = 0;  ///< Stamp of the image minus stamp of the scan.
 };
 
-/// What of a recording is looked at.
+/// Which messages of a recording are observed.
 struct BagPlan {
-  std::size_t image_topic = 0;  ///< Into Bag::topics().
+  std::size_t image_topic = 0;  ///< Index into Bag::topics(), as is cloud_topic.
   std::size_t cloud_topic = 0;
-  std::vector<BagMoment> moments{};  ///< By ascending stamp of the scan.
-  std::optional<Camera> camera{};    ///< Of the CameraInfo beside the images, where there is one.
+  std::vector<BagMoment> moments{};  ///< In ascending order of the scans' stamps.
+  std::optional<Camera> camera{};    ///< From CameraInfo messages beside the images, where present.
 };
 
-/// Errors: kMissingData where there are no images or no scans, several topics of them and none
-/// named, none of that name, or no image within the tolerance of a scan (with how far apart the
-/// nearest are); those of the messages.
+/// Chooses topics and pairs their messages. Errors: kMissingData without images or scans, with
+/// several topics of them and none named, with no topic of the given name, and where no image is
+/// within the tolerance of a scan (with the smallest difference in time); those of the messages.
 Expected<BagPlan> PlanBag(const Bag& bag, const BagSource& source);
 
-/// Examines every moment, on all cores, in their order; motion is left out (LeaveOutMotion).
-/// `step` is called after each. Memory: what the messages of some moments take.
-/// Errors: those of Bag::Read; a message that cannot be decoded is a view with that error.
+/// Observes every moment, on all cores, and excludes boards in motion (LeaveOutMotion). The views
+/// are in the order of the plan. `step` is called after each, from any thread, and may be empty.
+/// Only the messages of one batch (64 moments) are in memory at a time. Errors: those of Bag::Read;
+/// a message that cannot be decoded gives a view with that error.
 Expected<std::vector<SessionView>> ObserveBag(const Bag& bag, const BagPlan& plan,
                                               const Observer& observer,
                                               const std::function<void()>& step);

@@ -11,12 +11,12 @@
 namespace sextant {
 namespace {
 
-// What the image lacks of a board, or the scan of any.
+// Why a board was not found in the image, or in the scan.
 std::string WhyMissing(const Observation& seen, int board, bool image) {
   for (const MissingBoard& missing : seen.missing) {
     if (missing.image == image && (missing.board == board || missing.board < 0)) return missing.why;
   }
-  return image ? "not seen" : "every board-like patch belongs to another board";
+  return image ? "not found" : "every board-like patch belongs to another board";
 }
 
 class Rows {
@@ -30,8 +30,8 @@ class Rows {
       fates_[{Index(dropped.match.view), BoardOf(dropped.match)}] = {
           .fate = BoardFate::kDisagrees,
           .why = fmt::format(
-              "its corners are {:.0f} mm and its face {:.1f} deg off the other views' pose: image "
-              "and scan of different moments, or not this board",
+              "its corners are {:.0f} mm and its face {:.1f} deg off the pose of the other views: "
+              "image and scan of different moments, or not this board",
               1e3 * dropped.off_m, dropped.off_rad * 180.0 / std::numbers::pi)};
     }
   }
@@ -82,7 +82,7 @@ class Rows {
   std::map<std::pair<std::size_t, int>, BoardRow> fates_;
 };
 
-std::string WhyNothing(std::span<const SessionView> views, std::span<const Board> boards) {
+std::string DescribeMissing(std::span<const SessionView> views, std::span<const Board> boards) {
   std::string text = fmt::format(
       "no board was seen by both sensors in any of {} views, so there is nothing to "
       "calibrate from",
@@ -122,14 +122,15 @@ std::string_view ToString(BoardFate fate) {
 
 Expected<Assembly> Assemble(std::span<const SessionView> views, std::span<const Board> boards,
                             const Camera& camera, const MatchSettings& settings) {
-  // Views that could not be read take part as empty ones, so that places stay those of the session.
+  // Views that could not be read take part as empty ones, so that indices stay those of the
+  // session.
   std::vector<Observation> observations(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (views[i].seen) observations[i] = *views[i].seen;
   }
   Expected<Matching> matching = MatchViews(observations, settings);
   if (!matching && matching.error().code == ErrorCode::kTooFewPairs) {
-    return MakeError(ErrorCode::kMissingData, WhyNothing(views, boards));
+    return MakeError(ErrorCode::kMissingData, DescribeMissing(views, boards));
   }
   if (!matching) return tl::unexpected<Error>(matching.error());
   Assembly assembly;

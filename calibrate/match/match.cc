@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kNumbersPerBoard = 3.0 * kCornersPerBoard;
 constexpr double kMaxSigmas = 4.0;
-constexpr double kAsLikely = 9.2;  // -2 ln of 1 %.
+constexpr double kEquallyLikely = 9.2;  // -2 ln(0.01): likelihood ratio of 1 %.
 
-// A view as the matcher takes it, and what each of its pairings stands for.
+// The candidate pairings of one view for the matcher, and the match that each of them means.
 struct ViewPairings {
   MatchView view;
   std::vector<MatchedBoard> meanings;
@@ -78,13 +78,14 @@ ViewPairings PairingsOf(const Observation& observation, int view, double floor_m
   return pairings;
 }
 
-// Of the corners that fit, in their stated variance; at least 1.
+// Median chi-square per number of the corners that fit: their variance over the stated one; at
+// least 1.
 double NoiseScale(const MatchExplanation& explanation) {
   std::vector<double> costs;
   for (const TakenPairing& taken : explanation.taken) {
     if (taken.fits) costs.push_back(taken.cost / kNumbersPerBoard);
   }
-  // Two boards fit each other; their median says little of the noise.
+  // Two boards nearly always fit each other, so their median is no measure of the noise.
   if (costs.size() < 3) return 1.0;
   return std::max(1.0, UpperMedian(costs));
 }
@@ -108,13 +109,13 @@ DroppedBoard Dropped(const Observation& observation, const MatchedBoard& match,
   return dropped;
 }
 
-// The first explanation and those that are as likely; moves the one nearest to `rotation` to the
-// front.
-std::size_t CountAsLikely(std::vector<MatchExplanation>& explanations, double scale,
-                          const Eigen::Quaterniond& rotation) {
+// Number of explanations that are as likely as the first; moves the one whose rotation is nearest
+// to `rotation` to the front.
+std::size_t CountEquallyLikely(std::vector<MatchExplanation>& explanations, double scale,
+                               const Eigen::Quaterniond& rotation) {
   std::size_t count = 1;
   while (count < explanations.size() &&
-         (explanations[count].cost - explanations[0].cost) / scale < kAsLikely) {
+         (explanations[count].cost - explanations[0].cost) / scale < kEquallyLikely) {
     ++count;
   }
   const auto nearest = std::min_element(explanations.begin(),
@@ -154,10 +155,11 @@ Expected<Matching> MatchViews(std::span<const Observation> views, const MatchSet
   if (found->size() > 1) matching.margin = ((*found)[1].cost - (*found)[0].cost) / scale;
   const Eigen::Quaterniond initial =
       settings.initial ? settings.initial->rotation : AxesCamFromLidar().rotation;
-  const std::size_t as_likely = CountAsLikely(*found, scale, initial);
+  const std::size_t alternatives = CountEquallyLikely(*found, scale, initial);
   const MatchExplanation& best = found->front();
   matching.cam_from_lidar = best.b_from_a;
-  for (std::size_t i = 1; i < as_likely; ++i) matching.as_likely.push_back((*found)[i].b_from_a);
+  for (std::size_t i = 1; i < alternatives; ++i)
+    matching.alternatives.push_back((*found)[i].b_from_a);
   for (const TakenPairing& taken : best.taken) {
     const MatchedBoard& match = pairings[taken.view].meanings[taken.pairing];
     if (taken.fits) {
@@ -173,26 +175,27 @@ Expected<Matching> MatchViews(std::span<const Observation> views, const MatchSet
 
 std::vector<std::string> DescribeAmbiguity(const Matching& matching,
                                            const MatchSettings& settings) {
-  if (matching.as_likely.empty()) return {};
+  if (matching.alternatives.empty()) return {};
   const Eigen::Quaterniond initial =
       settings.initial ? settings.initial->rotation : AxesCamFromLidar().rotation;
   double next = std::numbers::pi;
-  for (const Rigid3d& other : matching.as_likely) {
+  for (const Rigid3d& other : matching.alternatives) {
     next = std::min(next, RotationDistance(other.rotation, initial));
   }
   const double taken = RotationDistance(matching.cam_from_lidar.rotation, initial);
-  std::vector<std::string> lines = {fmt::format(
-      "ambiguous: {} poses explain the views equally well, for boards of one shape look alike and "
-      "a square one looks the same after each quarter turn",
-      matching.as_likely.size() + 1)};
+  std::vector<std::string> lines = {
+      fmt::format("ambiguous: {} poses explain the views equally well, because a scan does not "
+                  "distinguish boards "
+                  "of one shape or the quarter turns of a square one",
+                  matching.alternatives.size() + 1)};
   lines.push_back(fmt::format(
-      "assumed: {}, from which the pose taken is {:.0f} deg away and the next {:.0f} deg. {}",
+      "assumed: {}; the chosen pose is {:.0f} deg away from it, the next one {:.0f} deg. {}",
       settings.initial ? "the rotation of --initial"
                        : "a camera that looks along the LiDAR's x axis, upright",
       taken * kDegPerRad, next * kDegPerRad,
-      settings.initial ? "More views with the board elsewhere settle it"
-                       : "If it is mounted otherwise, say so with --initial; more views with the "
-                         "board elsewhere settle it without"));
+      settings.initial ? "More views with the board elsewhere resolve it"
+                       : "If it is mounted otherwise, give a rough pose with --initial; more views "
+                         "with the board elsewhere resolve it, too"));
   return lines;
 }
 

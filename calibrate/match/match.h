@@ -14,47 +14,47 @@
 namespace sextant {
 
 struct MatchSettings {
-  /// A rough cam_from_lidar. Only its rotation is looked at, and only where the views leave several
-  /// poses; none: AxesCamFromLidar().
+  /// A rough cam_from_lidar. Only its rotation is used, and only to choose where the views allow
+  /// several poses. None: AxesCamFromLidar().
   std::optional<Rigid3d> initial{};
-  /// What corners of a board are off besides their stated noise, per axis [m]: edges that the
-  /// beam's spot widens, bent boards, lens models.
+  /// Error of a board's corners besides their stated noise, 1 sigma per axis [m]: edges widened by
+  /// the beam's spot, bent boards, errors of the lens model.
   double floor_m = 0.01;
 };
 
-/// A board that is left out because its pose is not that of the other views.
+/// A board that is dropped because its pose contradicts the other views.
 struct DroppedBoard {
-  MatchedBoard match{};  ///< The way that comes nearest.
+  MatchedBoard match{};  ///< The association that fits best.
   double off_m = 0.0;    ///< RMS distance of its corners between the sensors.
   double off_rad = 0.0;  ///< Angle between its two orientations.
 };
 
-/// What belongs together in all views.
+/// Which board is which in all views, under one pose.
 struct Matching {
-  Rigid3d cam_from_lidar{};          ///< Which the kept boards' corners gave.
-  std::vector<MatchedBoard> kept{};  ///< By view.
+  Rigid3d cam_from_lidar{};          ///< From the corners of the kept boards.
+  std::vector<MatchedBoard> kept{};  ///< In the order of the views.
   std::vector<DroppedBoard> dropped{};
-  /// By how much the next distinct pose explains the views worse: chi-square, in units in which
-  /// the corners of this one have their stated noise. None where there is no other.
+  /// How much worse the next distinct pose explains the views: difference in chi-square, in units
+  /// in which the corners have their stated noise under this pose. None where there is no other.
   std::optional<double> margin{};
-  /// Poses that explain the views as well as this one (margin under 9.2: 1 % by a likelihood-ratio
-  /// test). This one is nearest to the initial rotation; nothing else speaks for it.
-  std::vector<Rigid3d> as_likely{};
+  /// Other poses that explain the views as well (margin under 9.2: 1 % by a likelihood-ratio test).
+  /// cam_from_lidar was chosen among them only because it is nearest to the initial rotation.
+  std::vector<Rigid3d> alternatives{};
 };
 
-/// Which patch of each scan is which board of its image, and how it lies there.
+/// Associates the patches of each scan with the boards of its image, and their corners.
 ///
-/// Nothing is taken from ids of boards in scans, from their order or from a corner's place: every
-/// placement that an outline allows and every pose that an image leaves is tried against one
-/// cam_from_lidar for all views (solvers/matching/object_match.h). What is more than four sigmas
-/// off that pose, in root mean square over its corners, is dropped. `view` of the matches is the
-/// place within `views`. Errors: kTooFewPairs where no view has a board that both sensors saw;
+/// No identity is assumed in scans, neither by order nor by position: every placement that an
+/// outline allows and every pose that an image leaves ambiguous is tested against one
+/// cam_from_lidar for all views (solvers/matching/object_match.h). A board that is more than four
+/// sigmas off that pose, in root mean square over its corners, is dropped. MatchedBoard::view is
+/// the index into `views`. Errors: kTooFewPairs where no view has a board that both sensors saw;
 /// kDegenerate.
 Expected<Matching> MatchViews(std::span<const Observation> views,
                               const MatchSettings& settings = {});
 
-/// What has to be said of it: that poses are equally likely and which was taken, a line each; empty
-/// where there is nothing.
+/// Warnings about poses that are equally likely, and how one of them was chosen; empty where the
+/// pose is unique.
 std::vector<std::string> DescribeAmbiguity(const Matching& matching, const MatchSettings& settings);
 
 }  // namespace sextant

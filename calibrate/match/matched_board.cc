@@ -19,7 +19,7 @@ Parts PartsOf(const Observation& observation, const MatchedBoard& match) {
           patch.placements[static_cast<std::size_t>(match.placement)]};
 }
 
-// Of the distance between the corner's pixel and its image under the true pose, per axis.
+// Standard deviation per axis of the corner's pixel, from the covariance of its position in 3D.
 double PixelSigma(const ProjectionWithJacobian& image, const Eigen::Matrix3d& covariance_in_cam) {
   const Eigen::Matrix2d in_pixels =
       image.pixel_by_point * covariance_in_cam * image.pixel_by_point.transpose();

@@ -15,10 +15,10 @@ CameraSighting* Find(SessionView& view, int board) {
   return found == view.seen->in_image.end() ? nullptr : &*found;
 }
 
-// Speed [m/s] between two views; none where they do not tell.
+// Speed [m/s] between two views; none where it is unknown.
 std::optional<double> Speed(const CameraSighting* a, const CameraSighting* b, double gap_s,
-                            const Camera& camera, double longest_gap_s) {
-  if (a == nullptr || b == nullptr || gap_s > longest_gap_s || gap_s <= 0.0) return std::nullopt;
+                            const Camera& camera, double max_gap_s) {
+  if (a == nullptr || b == nullptr || gap_s > max_gap_s || gap_s <= 0.0) return std::nullopt;
   const std::optional<double> moved = MovedBetween(*a, *b, camera);
   if (!moved) return std::nullopt;
   return *moved / gap_s;
@@ -36,7 +36,7 @@ class BoardOverTime {
     std::vector<std::optional<double>> speeds;  // From view i to i + 1.
     for (std::size_t i = 0; i + 1 < sightings_.size(); ++i) {
       speeds.push_back(Speed(sightings_[i], sightings_[i + 1], times_s_[i + 1] - times_s_[i],
-                             camera_, options_.longest_gap_s));
+                             camera_, options_.max_gap_s));
     }
     for (std::size_t i = 0; i < sightings_.size(); ++i) {
       if (sightings_[i] == nullptr) continue;
@@ -46,8 +46,8 @@ class BoardOverTime {
         slowest = speeds[i];
       }
       if (!slowest || *slowest <= options_.still_m_s) continue;
-      sightings_[i]->left_out =
-          fmt::format("it moves, by {:.2f} m/s and more against its neighbours", *slowest);
+      sightings_[i]->left_out = fmt::format(
+          "it moves, by {:.2f} m/s or more relative to the neighbouring images", *slowest);
     }
   }
 
@@ -70,21 +70,21 @@ class BoardOverTime {
  private:
   void Thin(const std::vector<CameraSighting*>& place) const {
     const std::size_t count = place.size();
-    const auto most = static_cast<std::size_t>(options_.most_per_place);
+    const auto most = static_cast<std::size_t>(options_.max_per_place);
     if (count <= most) return;
     std::vector<bool> is_kept(count, false);
     for (std::size_t k = 0; k < most; ++k) is_kept[k * count / most] = true;
     for (std::size_t i = 0; i < count; ++i) {
       if (is_kept[i]) continue;
       place[i]->left_out =
-          fmt::format("it hangs where it hung: {} of {} such views are used", most, count);
+          fmt::format("it has not moved since: {} of {} views of this place are used", most, count);
     }
   }
 
   std::span<const double> times_s_;
   const Camera& camera_;
   const MotionOptions& options_;
-  std::vector<CameraSighting*> sightings_;  // One a view; null where it was not seen.
+  std::vector<CameraSighting*> sightings_;  // One per view; null where the board was not seen.
 };
 
 }  // namespace

@@ -11,9 +11,11 @@ namespace sextant {
 namespace {
 
 constexpr double kRefused = 100.0;
-constexpr double kOtherSize = 0.12;  // Of a side; some sensors stretch boards by 7 percent.
+constexpr double kOtherSize =
+    0.12;  // Relative to a side; some sensors stretch boards by 7 percent.
 constexpr double kMaxMisfit = 25.0;
-constexpr double kOutlier = 16.0;  // What an edge point on no side adds: FitRectangle's 4 sigma.
+constexpr double kOutlier =
+    16.0;  // Chi-square of an edge point on no side: FitRectangle's 4 sigma.
 
 double ChiSquare(const RectangleFit& fit) {
   double sum = 0.0;
@@ -21,14 +23,15 @@ double ChiSquare(const RectangleFit& fit) {
   return sum;
 }
 
-// Of something numbered by fours, as a board turned by `turns` has it, in the board's own numbers.
-int OwnNumber(int number, int turns) { return number / 4 * 4 + (number + 4 - turns) % 4; }
+// Converts a corner or side number (in groups of four) of the board turned by `turns` quarter turns
+// into the number on the board itself.
+int BoardNumber(int number, int turns) { return number / 4 * 4 + (number + 4 - turns) % 4; }
 
-LidarCorners OwnOrder(const LidarCorners& turned, int turns) {
+LidarCorners InBoardOrder(const LidarCorners& turned, int turns) {
   LidarCorners own = turned;
   const auto count = static_cast<int>(turned.in_lidar.size());
   for (int i = 0; i < count; ++i) {
-    const int to = OwnNumber(i, turns);
+    const int to = BoardNumber(i, turns);
     const auto k = static_cast<std::size_t>(i);
     const auto k_to = static_cast<std::size_t>(to);
     own.in_lidar[k_to] = turned.in_lidar[k];
@@ -36,18 +39,19 @@ LidarCorners OwnOrder(const LidarCorners& turned, int turns) {
     own.checks.edge_lengths_m[k_to] = turned.checks.edge_lengths_m[k];
     own.checks.line_gaps_m[k_to] = turned.checks.line_gaps_m[k];
     for (int j = 0; j < count; ++j) {
-      own.covariance.block<3, 3>(3 * to, 3 * OwnNumber(j, turns)) =
+      own.covariance.block<3, 3>(3 * to, 3 * BoardNumber(j, turns)) =
           turned.covariance.block<3, 3>(3 * i, 3 * j);
     }
   }
   return own;
 }
 
-// The fit of the turned board is that of the board itself, its x axis a quarter further round.
+// The fit of the turned board is the fit of the board itself with its x axis rotated by a quarter
+// turn per turn.
 BoardPlacement Place(const LidarPlane& plane, const RectangleFit& turned, int board, int turns) {
   BoardPlacement placement{.board = board, .turn = turns, .fit = turned};
   placement.fit.angle_rad += turns * 0.5 * std::numbers::pi;
-  for (int& side : placement.fit.sides) side = side < 0 ? side : OwnNumber(side, turns);
+  for (int& side : placement.fit.sides) side = side < 0 ? side : BoardNumber(side, turns);
   Eigen::Matrix3d lidar_from_plane;
   lidar_from_plane << plane.x_axis, plane.y_axis, plane.normal;
   const Eigen::AngleAxisd in_plane(placement.fit.angle_rad, Eigen::Vector3d::UnitZ());
@@ -57,12 +61,12 @@ BoardPlacement Place(const LidarPlane& plane, const RectangleFit& turned, int bo
   return placement;
 }
 
-// The outline as the scan has it.
-Board LookOf(const BoardPlacement& placement, std::span<const Board> boards) {
+// The outline as it appears in the scan.
+Board OutlineOf(const BoardPlacement& placement, std::span<const Board> boards) {
   return Turned(boards[static_cast<std::size_t>(placement.board)], placement.turn);
 }
 
-bool AreAlike(const Board& a, const Board& b) {
+bool AreSimilar(const Board& a, const Board& b) {
   const auto alike = [](double x, double y) {
     return std::abs(x - y) < kOtherSize * std::max(x, y);
   };
@@ -106,7 +110,7 @@ Expected<std::vector<BoardPlacement>> PlaceBoards(const BoardPatch& patch,
         continue;
       }
       placements.push_back(Place(patch.plane, *fit, fitted.board, turns));
-      placements.back().corners = OwnOrder(*corners, turns);
+      placements.back().corners = InBoardOrder(*corners, turns);
       placements.back().misfit = ChiSquare(*fit);
     }
   }
@@ -114,10 +118,10 @@ Expected<std::vector<BoardPlacement>> PlaceBoards(const BoardPatch& patch,
   std::ranges::stable_sort(placements, {}, &BoardPlacement::misfit);
   const double best = placements.front().misfit;
   const double unit = std::max(1.0, best / static_cast<double>(patch.edges.size()));
-  const Board likeliest = LookOf(placements.front(), boards);
+  const Board likeliest = OutlineOf(placements.front(), boards);
   for (BoardPlacement& placement : placements) placement.misfit = (placement.misfit - best) / unit;
   std::erase_if(placements, [&](const BoardPlacement& placement) {
-    return placement.misfit > kRefused && !AreAlike(LookOf(placement, boards), likeliest);
+    return placement.misfit > kRefused && !AreSimilar(OutlineOf(placement, boards), likeliest);
   });
   for (BoardPlacement& placement : placements) {
     placement.misfit = std::min(placement.misfit, kMaxMisfit);

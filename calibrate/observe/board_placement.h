@@ -14,30 +14,30 @@
 
 namespace sextant {
 
-/// One way in which a board may lie on a patch of a scan. Scans do not show prints, so a square
-/// board may be there in four ways and a rectangular one in two.
+/// One hypothesis of which board a patch of a scan is, and how it is turned. Scans do not show
+/// prints, so a square board has four hypotheses and a rectangular one two.
 struct BoardPlacement {
-  int board = 0;  ///< Place within the boards.
-  int turn = 0;   ///< Quarter turns, clockwise as seen, from corner 0 at the top.
+  int board = 0;  ///< Index into the boards.
+  int turn = 0;   ///< Quarter turns clockwise, as seen by the sensor, from corner 0 at the top.
   Rigid3d lidar_from_board{};
-  RectangleFit fit{};      ///< Sides numbered as the board's own.
-  LidarCorners corners{};  ///< Numbered as the board's own.
-  /// What the outline itself says against this way: chi-square of its edge points above that of
-  /// the patch's best placement, in units in which that one has one a point; 25 at most, for what
-  /// a sensor does to an outline is not all in the points' sigmas.
+  RectangleFit fit{};      ///< Sides in the board's own numbering.
+  LidarCorners corners{};  ///< In the board's own numbering.
+  /// How much worse the outline fits than in the patch's best placement: difference in chi-square
+  /// of the edge points, in units in which the best placement has 1 per point. At most 25, because
+  /// the points' sigmas do not cover every distortion of an outline by the sensor.
   double misfit = 0.0;
 };
 
-/// Every way in which the patch may be one of the boards, by ascending misfit, without those of a
-/// clearly other size than the best (by an eighth) that the outline refuses. Empty where no corners
-/// can be extracted from it; `why` then says the reason. Errors: kUnknownName for an extractor that
-/// does not exist.
+/// Every placement of a board on the patch, by ascending misfit. Placements that differ from the
+/// best in size by more than an eighth and whose chi-square is too large are omitted. Empty where
+/// no corners can be extracted; `why` is then the reason. Errors: kUnknownName for an extractor
+/// that does not exist.
 Expected<std::vector<BoardPlacement>> PlaceBoards(const BoardPatch& patch,
                                                   std::span<const Board> boards,
                                                   const std::string& extractor, std::string& why);
 
-/// The board as it looks after quarter turns clockwise about its centre, for what only its outline
-/// and opening matter: prints are left out.
+/// The board after quarter turns clockwise about its centre: outline and opening only, without its
+/// prints.
 Board Turned(const Board& board, int quarter_turns);
 
 }  // namespace sextant

@@ -10,11 +10,12 @@
 
 namespace sextant {
 
-/// Returns of the patch from within the outline that was found [m].
+/// The patch's returns inside the fitted outline, in the LiDAR frame [m].
 std::vector<Eigen::Vector3d> FaceReturns(const ScanRings& scan, const BoardPatch& patch,
                                          std::span<const Board> boards);
 
-/// Standard deviation of the returns' ranges about those at which their rays meet the plane. [m]
+/// Standard deviation of the returns' ranges about the ranges at which their rays meet the plane
+/// [m]. The plane's own sigma for fewer than four returns.
 double RangeSigma(std::span<const Eigen::Vector3d> face, const LidarPlane& plane);
 
 }  // namespace sextant

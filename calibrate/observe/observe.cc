@@ -13,11 +13,11 @@
 namespace sextant {
 namespace {
 
-// Why a board that has no pose has none.
+// The reason why a board has no pose in the image.
 std::string WhyUnseen(const Board& board, const SeenBoard& seen) {
   if (seen.pose) return seen.pose->error().message;
   if (!seen.duplicate_tags.empty()) {
-    return fmt::format("its tag {} is there more than once, so it is not used",
+    return fmt::format("its tag {} appears more than once in the image, so it is not used",
                        board.tags[seen.duplicate_tags.front()].id);
   }
   if (!board.tags.empty()) {
@@ -28,7 +28,7 @@ std::string WhyUnseen(const Board& board, const SeenBoard& seen) {
                      board.checker->inner_columns, board.checker->inner_rows);
 }
 
-CameraSighting SightingOf(const Board& board, const SeenBoard& seen) {
+CameraSighting MakeSighting(const Board& board, const SeenBoard& seen) {
   CameraSighting sighting{.board = static_cast<int>(seen.index),
                           .printed = seen.printed,
                           .pose = **seen.pose,
@@ -59,7 +59,7 @@ LidarPattern PatternOf(const ScanRings& rings, const LidarBeam& beam) {
   return pattern;
 }
 
-// Of the placement, by lines through its edge points; empty where they do not suffice.
+// Lengths of the placement's sides by lines through its edge points; empty where these are too few.
 std::vector<double> MeasuredSides(const BoardPatch& patch, const BoardPlacement& placement,
                                   const Board& board) {
   BoardPatch placed = patch;
@@ -70,13 +70,13 @@ std::vector<double> MeasuredSides(const BoardPatch& patch, const BoardPlacement&
   return {lengths.begin(), lengths.begin() + kCornersPerBoard};
 }
 
-// The rejected patches that come nearest to a board: those with most points.
+// The rejected patches that are most like a board: those with the most points.
 std::string WhyNotInScan(const BoardSearch& search) {
-  constexpr std::size_t kNamed = 2;
+  constexpr std::size_t kMaxNamed = 2;
   std::string text;
-  for (std::size_t i = 0; i < std::min(kNamed, search.rejected.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kMaxNamed, search.rejected.size()); ++i) {
     const RejectedPatch& patch = search.rejected[i];
-    text += fmt::format("; what is flat at ({:.2f}, {:.2f}, {:.2f}) m, {} points on {} rings: {}",
+    text += fmt::format("; flat patch at ({:.2f}, {:.2f}, {:.2f}) m with {} points on {} rings: {}",
                         patch.center_in_lidar.x(), patch.center_in_lidar.y(),
                         patch.center_in_lidar.z(), patch.points, patch.rings, patch.why);
   }
@@ -88,7 +88,8 @@ std::string WhyNotInScan(const BoardSearch& search) {
 Expected<Observer> Observer::Make(std::vector<Board> boards, const Camera& camera,
                                   const ObserveOptions& options) {
   if (boards.empty()) {
-    return MakeError(ErrorCode::kInvalidInput, "no board to look for: one at least must be known");
+    return MakeError(ErrorCode::kInvalidInput,
+                     "expected at least one known board to look for, got none");
   }
   if (const auto known = ExtractCorners(options.extractor, {}, {});
       !known && known.error().code == ErrorCode::kUnknownName) {
@@ -107,20 +108,20 @@ Expected<Observer> Observer::Make(std::vector<Board> boards, const Camera& camer
 
 Expected<Observation> Observer::Observe(const cv::Mat& image, const PointCloud& cloud) const {
   Observation observation;
-  if (Expected<void> ok = LookInImage(image, observation); !ok) {
+  if (Expected<void> ok = ObserveImage(image, observation); !ok) {
     return MakeError(ok.error().code, "image: " + ok.error().message);
   }
-  if (Expected<void> ok = LookInScan(cloud, observation); !ok) {
+  if (Expected<void> ok = ObserveScan(cloud, observation); !ok) {
     return MakeError(ok.error().code, "scan: " + ok.error().message);
   }
   return observation;
 }
 
-Expected<void> Observer::LookInImage(const cv::Mat& image, Observation& observation) const {
+Expected<void> Observer::ObserveImage(const cv::Mat& image, Observation& observation) const {
   SEXTANT_ASSIGN_OR_RETURN(const SeenBoards seen, finder_.Find(image));
   for (const SeenBoard& board : seen.boards) {
     if (board.pose && *board.pose) {
-      observation.in_image.push_back(SightingOf(boards()[board.index], board));
+      observation.in_image.push_back(MakeSighting(boards()[board.index], board));
     } else {
       observation.missing.push_back({.board = static_cast<int>(board.index),
                                      .image = true,
@@ -130,20 +131,19 @@ Expected<void> Observer::LookInImage(const cv::Mat& image, Observation& observat
   return {};
 }
 
-Expected<void> Observer::LookInScan(const PointCloud& cloud, Observation& observation) const {
+Expected<void> Observer::ObserveScan(const PointCloud& cloud, Observation& observation) const {
   SEXTANT_ASSIGN_OR_RETURN(const ScanRings rings, ScanRings::Build(cloud));
   observation.lidar = PatternOf(rings, options_.search.beam);
   SEXTANT_ASSIGN_OR_RETURN(const BoardSearch search, FindBoards(rings, boards(), options_.search));
   for (const BoardPatch& patch : search.found) {
     std::string why;
-    Expected<std::vector<BoardPlacement>> placements =
-        PlaceBoards(patch, boards(), options_.extractor, why);
-    if (!placements) return tl::unexpected<Error>(placements.error());
-    if (placements->empty()) {
+    SEXTANT_ASSIGN_OR_RETURN(std::vector<BoardPlacement> placements,
+                             PlaceBoards(patch, boards(), options_.extractor, why));
+    if (placements.empty()) {
       observation.missing.push_back({.why = why});
       continue;
     }
-    LidarSighting sighting{.placements = std::move(*placements),
+    LidarSighting sighting{.placements = std::move(placements),
                            .plane = patch.plane,
                            .edges = patch.edges,
                            .face = FaceReturns(rings, patch, boards())};

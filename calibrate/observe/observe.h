@@ -19,50 +19,50 @@ namespace sextant {
 
 /// A board in an image, with its pose.
 struct CameraSighting {
-  int board = 0;  ///< Place within the boards that were looked for.
+  int board = 0;  ///< Index into Observer::boards().
   std::vector<BoardPoints> printed{};
   BoardPose pose{};
-  /// Outer corners in the camera frame: those of `pose`, and of pose.ambiguous_with where there is
-  /// one, with the same covariance.
+  /// Outer corners in the camera frame by `pose`, and by pose.ambiguous_with where there is one;
+  /// both have the same covariance.
   PointsInCam corners{};
   std::vector<Eigen::Vector3d> other_corners{};
-  std::string left_out{};  ///< Why it is not to be used although it was seen; empty: it is.
+  std::string left_out{};  ///< Why this sighting is excluded; empty: it is used.
 };
 
-/// Something in a scan that may be one of the boards.
+/// A patch of a scan that may be one of the boards.
 struct LidarSighting {
   std::vector<BoardPlacement> placements{};  ///< Best first; at least one.
   LidarPlane plane{};
   std::vector<EdgePoint> edges{};
-  std::vector<Eigen::Vector3d> face{};  ///< Returns from within the outline [m].
-  double range_sigma_m = 0.0;           ///< Of the face's returns, along their rays.
-  /// Lengths of its sides 0 to 3 as the best placement numbers them, by edge lines that do not know
-  /// its size; empty where a side has too few edge points.
+  std::vector<Eigen::Vector3d> face{};  ///< Returns inside the outline [m].
+  double range_sigma_m = 0.0;           ///< Standard deviation of the face's ranges.
+  /// Lengths of sides 0 to 3 in the numbering of the best placement, by lines fitted without the
+  /// known size; empty where a side has too few edge points.
   std::vector<double> measured_sides_m{};
 };
 
-/// A board that a sensor does not show, and why.
+/// A board that was not found in the image or in the scan, and why.
 struct MissingBoard {
-  int board = -1;      ///< Place within the boards; -1: the scan does not tell which.
-  bool image = false;  ///< It is the image that lacks it; else the scan.
+  int board = -1;      ///< Index into the boards; -1: unknown, as scans do not identify boards.
+  bool image = false;  ///< Missing in the image; false: in the scan.
   std::string why{};   ///< One line.
 };
 
-/// What the two sensors saw at one moment.
+/// The boards in an image and a scan of one moment.
 struct Observation {
   std::vector<CameraSighting> in_image{};
   std::vector<LidarSighting> in_scan{};
   std::vector<MissingBoard> missing{};
-  LidarPattern lidar{};  ///< As the scan shows it.
+  LidarPattern lidar{};  ///< Rings and sampling, estimated from the scan.
 };
 
 struct ObserveOptions {
-  std::string detector{};               ///< As BoardFinder takes it; empty: the usual ones.
-  std::string extractor = "rectangle";  ///< Of CornerExtractors().
+  std::string detector{};  ///< A name for BoardFinder; empty: the default of each tag family.
+  std::string extractor = "rectangle";  ///< One of CornerExtractors().
   BoardSearchOptions search{};
 };
 
-/// Looks for the same boards in images and scans. Immutable and thread-safe.
+/// Finds known boards in images and scans. Immutable and thread-safe.
 class Observer {
  public:
   /// Errors: those of BoardFinder::Make; kUnknownName for the extractor; kInvalidInput for no board
@@ -74,15 +74,15 @@ class Observer {
   const Camera& camera() const { return *finder_.camera(); }
   const ObserveOptions& options() const { return options_; }
 
-  /// Errors: those of BoardFinder::Find and ScanRings::Build. A board that is not seen is none: it
-  /// is in `missing`.
+  /// Errors: those of BoardFinder::Find and ScanRings::Build. A board that is not found is no
+  /// error; it is listed in Observation::missing.
   Expected<Observation> Observe(const cv::Mat& image, const PointCloud& cloud) const;
 
  private:
   Observer(BoardFinder finder, ObserveOptions options)
       : finder_(std::move(finder)), options_(std::move(options)) {}
-  Expected<void> LookInImage(const cv::Mat& image, Observation& observation) const;
-  Expected<void> LookInScan(const PointCloud& cloud, Observation& observation) const;
+  Expected<void> ObserveImage(const cv::Mat& image, Observation& observation) const;
+  Expected<void> ObserveScan(const PointCloud& cloud, Observation& observation) const;
 
   BoardFinder finder_;
   ObserveOptions options_;

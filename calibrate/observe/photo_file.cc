@@ -14,17 +14,18 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// What a format begins and ends with. Some bytes may follow the end.
-struct Ends {
+// The first and last bytes of an image format. Other bytes may follow the last ones.
+struct Signature {
   std::string_view begin;
   std::string_view end;
 };
-constexpr Ends kEnds[] = {{"\xFF\xD8\xFF"sv, "\xFF\xD9"sv}, {"\x89PNG"sv, "IEND"sv}};
-constexpr std::size_t kTail = 4096;
+constexpr Signature kEnds[] = {{"\xFF\xD8\xFF"sv, "\xFF\xD9"sv}, {"\x89PNG"sv, "IEND"sv}};
+constexpr std::size_t kTailBytes = 4096;
 
 bool IsTruncated(std::string_view bytes) {
-  const std::string_view tail = bytes.substr(bytes.size() > kTail ? bytes.size() - kTail : 0);
-  for (const Ends& ends : kEnds) {
+  const std::string_view tail =
+      bytes.substr(bytes.size() > kTailBytes ? bytes.size() - kTailBytes : 0);
+  for (const Signature& ends : kEnds) {
     if (bytes.starts_with(ends.begin)) return tail.find(ends.end) == std::string_view::npos;
   }
   return false;

@@ -11,8 +11,8 @@
 namespace sextant {
 namespace {
 
-constexpr double kStep = 1.07;  // The search takes boards that are a few percent off.
-constexpr int kSteps = 10;
+constexpr double kStep = 1.07;  // The search tolerates a size that is a few percent off.
+constexpr int kStepsEachWay = 10;
 
 Board Scaled(const Board& board, double factor) {
   Board scaled{.id = board.id,
@@ -26,7 +26,7 @@ Board Scaled(const Board& board, double factor) {
   return scaled;
 }
 
-// By lines that do not know the size; else the size that was looked for.
+// Measured by lines fitted without a known size; where that fails, the size of the search.
 std::string SizeOf(const BoardPatch& patch, const Board& board) {
   double width = board.top_right_m;
   double height = board.right_bottom_m;
@@ -48,7 +48,7 @@ std::vector<std::string> ProbeSizes(const PointCloud& cloud, std::span<const Boa
   for (const Board& board : boards) {
     std::optional<BoardPatch> best;
     Board best_board;
-    for (int i = -kSteps; i <= kSteps; ++i) {
+    for (int i = -kStepsEachWay; i <= kStepsEachWay; ++i) {
       const std::vector<Board> scaled = {Scaled(board, std::pow(kStep, i))};
       const Expected<BoardSearch> search = FindBoards(*rings, scaled, options);
       if (!search || search->found.empty()) continue;

@@ -11,9 +11,9 @@
 
 namespace sextant {
 
-/// For a scan that shows none of the boards: boards of their shape and of half to twice their size
-/// that it shows, with what these measure, a line each. Slow (about 20 searches a board), for when
-/// it is needed. Empty where there are none, and for a scan without returns.
+/// For a scan in which no board was found: searches for boards of the same shapes and of half to
+/// twice the size, and describes each one found with its measured size, one line per board. Slow
+/// (about 20 searches per board). Empty where there are none, and for a scan without returns.
 std::vector<std::string> ProbeSizes(const PointCloud& cloud, std::span<const Board> boards,
                                     const BoardSearchOptions& options);
 

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-// Numbers without leading zeros behind their own length, so that they sort and compare by value.
+// Prefixes each number with its length, without leading zeros, so that keys compare by value.
 std::string NaturalKey(std::string_view text) {
   std::string key;
   for (std::size_t i = 0; i < text.size();) {
@@ -31,7 +31,7 @@ std::string NaturalKey(std::string_view text) {
   return key;
 }
 
-// Whether the name matches a pattern whose `*` stand for any text.
+// Whether the name matches a pattern in which each `*` stands for any text.
 bool Matches(std::string_view name, std::string_view pattern) {
   const std::size_t star = pattern.find('*');
   if (star == std::string_view::npos) return name == pattern;
@@ -43,8 +43,8 @@ bool Matches(std::string_view name, std::string_view pattern) {
   return false;
 }
 
-// What each file's name has between the beginning and the end that all share.
-std::vector<std::string> OwnParts(const std::vector<fs::path>& files) {
+// The distinguishing part of each file name: without the beginning and the end that all share.
+std::vector<std::string> DistinguishingParts(const std::vector<fs::path>& files) {
   std::vector<std::string> names;
   for (const fs::path& file : files) names.push_back(file.stem().string());
   std::size_t begin = names.front().size();
@@ -56,7 +56,7 @@ std::vector<std::string> OwnParts(const std::vector<fs::path>& files) {
     begin = std::min(begin, static_cast<std::size_t>(ahead.first - name.begin()));
     end = std::min(end, static_cast<std::size_t>(behind.first - name.rbegin()));
   }
-  // A number is not cut in two: 10 and 11 share a 1 that is their own.
+  // A number is not split: the 1 that 10 and 11 share is part of the number.
   while (begin > 0 && IsDigit(names[0][begin - 1])) --begin;
   while (end > 0 && IsDigit(names[0][names[0].size() - end])) --end;
   std::vector<std::string> parts;
@@ -102,7 +102,7 @@ FilePairs PairFiles(const std::vector<fs::path>& images, const std::vector<fs::p
   }
   std::map<std::string, FilePair> by_key;
   if (!images.empty()) {
-    const std::vector<std::string> parts = OwnParts(images);
+    const std::vector<std::string> parts = DistinguishingParts(images);
     for (std::size_t i = 0; i < images.size(); ++i) {
       FilePair& pair = by_key[NaturalKey(parts[i])];
       if (!pair.image.empty()) result.without_partner.push_back(pair.image);
@@ -111,7 +111,7 @@ FilePairs PairFiles(const std::vector<fs::path>& images, const std::vector<fs::p
     }
   }
   if (!clouds.empty()) {
-    const std::vector<std::string> parts = OwnParts(clouds);
+    const std::vector<std::string> parts = DistinguishingParts(clouds);
     for (std::size_t i = 0; i < clouds.size(); ++i) {
       FilePair& pair = by_key[NaturalKey(parts[i])];
       if (!pair.cloud.empty()) result.without_partner.push_back(pair.cloud);

@@ -11,8 +11,9 @@
 
 namespace sextant {
 
-/// Reads and examines every pair, on all cores, in their order; `step` is called after each, from
-/// any thread. A pair that cannot be read is a view with that error.
+/// Reads and observes every pair, on all cores; the views are in the order of the pairs. `step` is
+/// called after each, from any thread, and may be empty. A pair that cannot be read gives a view
+/// with that error.
 std::vector<SessionView> ObserveFiles(const Observer& observer, std::span<const FilePair> pairs,
                                       const std::function<void()>& step);
 

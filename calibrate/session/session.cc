@@ -25,7 +25,7 @@ bool Exists(const fs::path& path) {
   return fs::exists(path, error);
 }
 
-// Takes the keys of a session file; paths are relative to its folder.
+// Reads a session file; paths in it are relative to its folder.
 class SessionReader {
  public:
   explicit SessionReader(const std::string& file)
@@ -100,7 +100,7 @@ class SessionReader {
   Session session_;
 };
 
-// cam_from_lidar of a camera in truth.yaml, which carries much else.
+// cam_from_lidar of one camera in truth.yaml; everything else in the file is ignored.
 Expected<std::optional<Rigid3d>> TruthOf(const fs::path& path, const std::string& camera) {
   if (!Exists(path)) return std::optional<Rigid3d>();
   SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
@@ -119,7 +119,7 @@ Expected<std::optional<Rigid3d>> TruthOf(const fs::path& path, const std::string
   return std::optional<Rigid3d>();
 }
 
-// The cameras that have an info file, by name.
+// The names of the cameras that have an info file.
 Expected<std::vector<std::string>> CamerasIn(const fs::path& folder) {
   SEXTANT_ASSIGN_OR_RETURN(const std::vector<fs::path> infos,
                            ExpandPattern(folder / "*_info.yaml"));
@@ -143,7 +143,7 @@ Expected<Session> ReadSimulated(const fs::path& folder, const std::string& camer
   Session session{.boards = folder / "boards.yaml", .camera = folder / (camera + "_info.yaml")};
   SEXTANT_ASSIGN_OR_RETURN(const auto images, ExpandPattern(folder / (camera + "_*.png")));
   SEXTANT_ASSIGN_OR_RETURN(const auto clouds, ExpandPattern(folder / "scan_*.pcd"));
-  // Of the cameras cam and cam_right, cam_*.png takes the other's images too.
+  // With cameras cam and cam_right, cam_*.png also matches the images of cam_right.
   std::vector<fs::path> own;
   const auto is_number = [](char c) { return c >= '0' && c <= '9'; };
   for (const fs::path& image : images) {
@@ -157,11 +157,27 @@ Expected<Session> ReadSimulated(const fs::path& folder, const std::string& camer
   return session;
 }
 
+Expected<std::vector<fs::path>> ExpandAll(std::span<const std::string> patterns) {
+  std::vector<fs::path> files;
+  for (const std::string& pattern : patterns) {
+    SEXTANT_ASSIGN_OR_RETURN(const auto some, ExpandPattern(pattern));
+    files.insert(files.end(), some.begin(), some.end());
+  }
+  return files;
+}
+
 }  // namespace
 
 Expected<Session> ParseSession(std::string_view text, const std::string& file) {
   SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
   return SessionReader(file).Read(root);
+}
+
+Expected<Session> SessionOfFiles(std::span<const std::string> images,
+                                 std::span<const std::string> clouds) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<fs::path> image_files, ExpandAll(images));
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<fs::path> cloud_files, ExpandAll(clouds));
+  return Session{.files = PairFiles(image_files, cloud_files)};
 }
 
 Expected<Session> ReadSession(const fs::path& path, const std::string& camera_name) {

@@ -14,10 +14,11 @@ namespace sextant {
 namespace {
 
 constexpr int kEnoughViews = 8;
-constexpr double kTooParallel_rad = 15.0 / kDegPerRad;
-constexpr double kTooLevel = 1.3;  // Farthest range over nearest.
+constexpr double kMinNormalSpread_rad = 15.0 / kDegPerRad;
+constexpr double kMinRangeRatio =
+    1.3;  // Smallest useful ratio of the farthest range to the nearest.
 
-// How the boards are spread: what the answer can be sure of depends on it.
+// How the boards are spread over orientations and ranges, which determines the uncertainty.
 struct Spread {
   double normals_rad = 0.0;  ///< Largest angle between two boards' normals.
   double nearest_m = 0.0;
@@ -43,17 +44,17 @@ std::string AxisText(const Eigen::Vector3d& axis) {
   return fmt::format("({:.2f}, {:.2f}, {:.2f})", axis.x(), axis.y(), axis.z());
 }
 
-std::string Doubt(const Matching& matching) {
-  if (matching.as_likely.empty()) return {};
+std::string AmbiguityText(const Matching& matching) {
+  if (matching.alternatives.empty()) return {};
   return fmt::format(
-      "It is one of {} poses that explain the views equally well, and was taken for "
-      "the way the sensors are assumed to be mounted. ",
-      matching.as_likely.size() + 1);
+      "It is one of {} poses that explain the views equally well, and was chosen by "
+      "the assumed mounting of the sensors. ",
+      matching.alternatives.size() + 1);
 }
 
-std::string Certainty(const SolveReport& report) {
+std::string UncertaintyText(const SolveReport& report) {
   if (!report.covariance) {
-    return "How sure it is cannot be told: no residual is left to judge by.";
+    return "Its uncertainty is unavailable: the data is not redundant.";
   }
   const Matrix6d& covariance = *report.covariance;
   const SymmetricEigen<3> turn = EigenOf<3>(covariance.topLeftCorner<3, 3>());
@@ -61,14 +62,13 @@ std::string Certainty(const SolveReport& report) {
   return fmt::format(
       "One standard deviation is {:.2f} deg and {:.1f} mm over all axes together; weakest are the "
       "rotation about {} with {:.2f} deg and the translation along {} with {:.1f} mm, in the "
-      "camera "
-      "frame.",
+      "camera frame.",
       kDegPerRad * std::sqrt(turn.values.sum()), 1e3 * std::sqrt(shift.values.sum()),
       AxisText(turn.vectors.col(2)), kDegPerRad * std::sqrt(turn.values(2)),
       AxisText(shift.vectors.col(2)), 1e3 * std::sqrt(shift.values(2)));
 }
 
-// What limits it, and what to do, in the order of what helps most.
+// What limits the accuracy and what to do about it, most effective first.
 std::string ClosingAdvice(const Assembly& assembly, int views) {
   const Spread spread = SpreadOf(assembly.problem.board_views);
   std::string limits;
@@ -82,21 +82,22 @@ std::string ClosingAdvice(const Assembly& assembly, int views) {
                             kEnoughViews - views == 1 ? "" : "s"));
   }
   const bool has_spread = assembly.problem.board_views.size() > 1;
-  if (has_spread && spread.normals_rad < kTooParallel_rad) {
+  if (has_spread && spread.normals_rad < kMinNormalSpread_rad) {
     add(limits, fmt::format("all boards within {:.0f} deg of parallel",
                             std::ceil(kDegPerRad * spread.normals_rad)));
-    add(advice, "lean and turn the board by 30 deg and more, both ways");
+    add(advice, "tilt and turn the board by 30 deg or more, both ways");
   }
-  if (has_spread && spread.farthest_m < kTooLevel * spread.nearest_m) {
+  if (has_spread && spread.farthest_m < kMinRangeRatio * spread.nearest_m) {
     add(limits, fmt::format("all boards between {:.1f} and {:.1f} m away", spread.nearest_m,
                             spread.farthest_m));
     add(advice, "hold it both nearer and farther");
   }
   if (limits.empty()) {
-    return "The views are many and spread well: what limits it now is the sensors' noise and what "
-           "both models leave out; only more views help, with the square root of their number.";
+    return "The views are many and well spread: the sensors' noise and errors of their models "
+           "limit it "
+           "now; only more views help, with the square root of their number.";
   }
-  return fmt::format("What limits it: {}. To make it better: {}.", limits, advice);
+  return fmt::format("What limits it: {}. To improve it: {}.", limits, advice);
 }
 
 }  // namespace
@@ -112,7 +113,7 @@ std::string ClosingParagraph(const Assembly& assembly, const SolveReport& report
       "frame (x right, y down, z forward): point_in_cam = cam_from_lidar * point_in_lidar. It "
       "rests on {} board{} in {} of {} view{}. {}{} {}",
       boards, boards == 1 ? "" : "s", views.size(), all.size(), all.size() == 1 ? "" : "s",
-      Doubt(assembly.matching), Certainty(report),
+      AmbiguityText(assembly.matching), UncertaintyText(report),
       ClosingAdvice(assembly, static_cast<int>(views.size())));
 }
 

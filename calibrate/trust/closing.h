@@ -8,8 +8,8 @@
 
 namespace sextant {
 
-/// The answer in words, a paragraph: which frame is mapped to which, what it rests on, how sure it
-/// is, what limits it, and what would make it better.
+/// Summary of the answer as one paragraph: direction of the transform, data it is based on,
+/// uncertainty, what limits the accuracy, and what would improve it.
 std::string ClosingParagraph(const Assembly& assembly, const SolveReport& report);
 
 }  // namespace sextant

@@ -22,15 +22,15 @@ namespace {
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
-constexpr double kNoticeable = 0.02;  // Of a distance.
+constexpr double kMinExcess = 0.02;  // Relative to a distance.
 constexpr double kSigmas = 4.0;
-constexpr double kOtherPrintSize = 0.05;  // Of a side.
-constexpr double kPoorPrint_px = 1.0;     // A good lens model leaves a third of it.
-constexpr double kPoorPrint = 3.0;        // Over the stated noise.
+constexpr double kOtherPrintSize = 0.05;  // Relative to a side.
+constexpr double kPoorPrint_px = 1.0;     // RMS; a good lens model leaves a third of it.
+constexpr double kPoorPrint = 3.0;        // RMS over the stated noise.
 constexpr double kSamePlace_m = 0.05;
 constexpr double kSameTurn_rad = 5.0 * std::numbers::pi / 180.0;
 
-// Where the camera has the middle of each board.
+// The centre of each board in the camera frame, by (view, board).
 std::map<std::pair<int, int>, Eigen::Vector3d> CentersInCam(const CalibrationProblem& problem) {
   std::map<std::pair<int, int>, Eigen::Vector3d> centers;
   for (const BoardView& view : problem.board_views) {
@@ -39,7 +39,7 @@ std::map<std::pair<int, int>, Eigen::Vector3d> CentersInCam(const CalibrationPro
   return centers;
 }
 
-// `share` is what one unit of the share moves a board by.
+// `share` maps the centre of a board to its displacement per unit of the estimated share.
 template <class Share>
 std::optional<ScaleFit> FitScale(const CalibrationProblem& problem, const Rigid3d& pose,
                                  const std::map<std::pair<int, int>, Eigen::Vector3d>& centers,
@@ -65,7 +65,8 @@ std::optional<ScaleFit> FitScale(const CalibrationProblem& problem, const Rigid3
   if (boards < 2 || !inverse) return std::nullopt;
   const Vector7d step = *inverse * gradient;
   ScaleFit fit{.excess = step(6), .sum_squares = squares - step.dot(gradient)};
-  // The four corners of a board share its pose: six of their twelve numbers are its own.
+  // The four corners of a board share its pose, so only six of their twelve numbers are
+  // independent.
   const double variance = 2.0 * fit.sum_squares / (12.0 * boards - 7.0);
   fit.sigma = std::sqrt(variance * (*inverse)(6, 6));
   return fit;
@@ -77,16 +78,16 @@ void DiagnoseScale(const CalibrationProblem& problem, const Rigid3d& pose,
   if (!fits) return;
   const bool is_print = fits->print.sum_squares <= fits->focal.sum_squares;
   const ScaleFit& fit = is_print ? fits->print : fits->focal;
-  if (std::abs(fit.excess) < std::max(kNoticeable, kSigmas * fit.sigma)) return;
+  if (std::abs(fit.excess) < std::max(kMinExcess, kSigmas * fit.sigma)) return;
   const double percent = 100.0 * std::abs(fit.excess);
   const char* sign = fit.excess > 0.0 ? "longer" : "shorter";
-  // A print of 0.9 of its size in the file looks 1 / 0.9 times as far away.
+  // A print of 0.9 times its stated size appears 1 / 0.9 times as far away.
   const char* size = fit.excess > 0.0 ? "smaller" : "larger";
   const char* focal = fit.excess > 0.0 ? "long" : "short";
   lines.push_back(
       is_print
           ? fmt::format("board file: distances in the images are {:.1f} percent {} than in the "
-                        "scans, to all sides alike (1 sigma {:.1f}): the print is {} than the "
+                        "scans, in all directions (1 sigma {:.1f}): the print is {} than the "
                         "board file says, or the focal length is wrong; measure the print",
                         percent, sign, 100.0 * fit.sigma, size)
           : fmt::format("intrinsics: boards are {:.1f} percent {} away in the images than in the "
@@ -143,7 +144,7 @@ void DiagnosePrints(std::span<const SessionView> views, const Assembly& assembly
   if (median_px < kPoorPrint_px || median_over < kPoorPrint) return;
   lines.push_back(
       fmt::format("intrinsics: the prints fit the camera model only to {:.1f} px, {:.0f} times "
-                  "their noise: the lens is not as the intrinsics say, or a print is not flat",
+                  "their noise: the intrinsics do not describe the lens, or a print is not flat",
                   median_px, median_over));
 }
 
@@ -153,7 +154,8 @@ void DiagnoseSession(const Assembly& assembly, std::vector<std::string>& lines) 
   for (const BoardView& board : boards) views.insert(board.view);
   if (views.size() == 1) {
     lines.emplace_back(
-        "one view only: nothing holds it against another, so a wrong one would not be noticed");
+        "one view only: it cannot be compared with another, so an error in it would not be "
+        "noticed");
     return;
   }
   std::map<int, const BoardView*> first;
@@ -164,8 +166,8 @@ void DiagnoseSession(const Assembly& assembly, std::vector<std::string>& lines) 
     if (moved.translation_m > kSamePlace_m || moved.rotation_rad > kSameTurn_rad) return;
   }
   lines.push_back(
-      fmt::format("all {} views are the same: every board hangs within {:.0f} cm and {:.0f} deg of "
-                  "where it hung; together they say little more than one of them. Move the boards",
+      fmt::format("all {} views are the same: every board stays within {:.0f} cm and {:.0f} deg of "
+                  "one place; together they contribute little more than one view. Move the boards",
                   views.size(), 100.0 * kSamePlace_m, kSameTurn_rad * 180.0 / std::numbers::pi));
 }
 

@@ -64,7 +64,7 @@ std::string DescribeWeakest(const WeakestDirections& weakest) {
 }
 
 std::optional<Matrix6d> CovarianceOf(const Matrix6d& information) {
-  // Radians and metres are brought to one scale before anything is called singular.
+  // Radians and metres are scaled alike before singularity is tested.
   constexpr double kSmallestEigenvalue = 1e-9;
   if (!(information.diagonal().minCoeff() > 0.0)) return std::nullopt;
   const Vector6d scale = information.diagonal().cwiseSqrt().cwiseInverse();

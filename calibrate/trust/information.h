@@ -10,8 +10,8 @@
 
 namespace sextant {
 
-/// The direction of the pose that is known worst, of each kind, by the eigenvectors of the two 3x3
-/// blocks of a covariance.
+/// The least certain directions of rotation and of translation: eigenvectors of the largest
+/// eigenvalues of the two 3x3 blocks of a covariance.
 struct WeakestDirections {
   Eigen::Vector3d translation_axis_in_cam = Eigen::Vector3d::UnitX();  ///< Unit.
   double translation_sigma_m = 0.0;
@@ -20,19 +20,19 @@ struct WeakestDirections {
 };
 WeakestDirections WeakestOf(const Matrix6d& covariance);
 
-/// "right-left", "down-up", "forward" where an axis is one of the camera's within 25 degrees, else
+/// "right-left", "down-up" or "forward" for an axis within 25 degrees of one of the camera's, else
 /// its three numbers.
 std::string AxisName(const Eigen::Vector3d& axis_in_cam);
 
 /// "translation right-left 8.2 mm, rotation about forward 0.12 deg".
 std::string DescribeWeakest(const WeakestDirections& weakest);
 
-/// The covariance that goes with an information; none where a direction is not determined.
+/// The inverse of an information matrix; none where a direction is not determined.
 std::optional<Matrix6d> CovarianceOf(const Matrix6d& information);
 
-/// Writes what each kept view of the result tells of its answer, from the problem's board views
-/// (solvers/joint/board_view_information.h), and the predicted sigma after each. Views without
-/// board views, and those that the answer does not fit at all, stay without.
+/// Sets the information matrix of each kept view of the result, from the problem's board views
+/// (solvers/joint/board_view_information.h), and the predicted sigma with all views up to it. Views
+/// without board views, and views that the pose does not fit at all, get none.
 void AddInformation(const CalibrationProblem& problem, CalibrationResult& result);
 
 }  // namespace sextant

@@ -12,7 +12,7 @@
 namespace sextant {
 namespace {
 
-// The pairs of one kind that belong to a board in a view, at their corners.
+// The residuals of one kind of pairs that belong to a board in a view.
 template <class Pair>
 std::vector<double> ResidualsOf(const std::vector<Pair>& pairs,
                                 const std::vector<double>& residuals, int view, int board) {
@@ -53,7 +53,7 @@ std::vector<ResultBoardView> BoardsOf(const CalibrationProblem& problem,
   return boards;
 }
 
-// Why nothing of the view was kept.
+// Why no board of the view was kept.
 std::string ReasonOf(const Assembly& assembly, std::size_t view) {
   std::string reason;
   for (const BoardRow& row : assembly.rows) {

@@ -12,15 +12,15 @@
 
 namespace sextant {
 
-/// What shaped the answer besides the measurements.
+/// Settings that are recorded with the result.
 struct ResultSettings {
   std::uint64_t seed = 0;
-  std::vector<std::string> configuration{};  ///< "name: value" each.
+  std::vector<std::string> configuration{};  ///< "name: value" lines.
   std::vector<std::string> warnings{};
 };
 
-/// The answer with its views, residuals, boards and camera, as it is written to a file: all but
-/// `trust`. A view is kept where one of its boards is; else `reason` says why it was not.
+/// The result as it is written to a file, with views, residuals, boards and camera, but without
+/// `trust`. A view counts as kept if one of its boards is; else `reason` has the cause.
 CalibrationResult MakeResult(std::span<const SessionView> views, const Assembly& assembly,
                              const SolveReport& report, const ResultSettings& settings);
 

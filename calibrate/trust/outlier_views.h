@@ -6,8 +6,8 @@
 
 namespace sextant {
 
-/// Which of the views' errors are over twice the median and over four scaled median absolute
-/// deviations (1.4826) beyond it; none of fewer than four, which have no majority to speak of.
+/// Marks errors that are over twice the median and more than four scaled median absolute deviations
+/// (1.4826) above it. Fewer than four views have no clear majority, so none of them is marked.
 std::vector<bool> OutlyingViews(std::span<const double> errors);
 
 }  // namespace sextant

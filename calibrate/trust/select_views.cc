@@ -7,7 +7,7 @@
 namespace sextant {
 namespace {
 
-// What is known besides the views' data.
+// The problem without the data of its views.
 CalibrationProblem WithoutData(const CalibrationProblem& problem) {
   CalibrationProblem bare;
   bare.camera = problem.camera;
@@ -16,7 +16,7 @@ CalibrationProblem WithoutData(const CalibrationProblem& problem) {
   return bare;
 }
 
-// Appends what a view holds, under another number.
+// Appends the data of a view under another number.
 void Append(const CalibrationProblem& from, int view, int number, CalibrationProblem& to) {
   for (Pair3d3d pair : from.pairs_3d3d) {
     if (pair.id.view != view) continue;
@@ -52,7 +52,7 @@ CalibrationProblem SelectViews(const CalibrationProblem& problem, std::span<cons
   return selected;
 }
 
-CalibrationProblem DrawViews(const CalibrationProblem& problem, std::span<const int> drawn) {
+CalibrationProblem ResampleViews(const CalibrationProblem& problem, std::span<const int> drawn) {
   CalibrationProblem selected = WithoutData(problem);
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     Append(problem, drawn[i], static_cast<int>(i), selected);

@@ -8,14 +8,14 @@
 
 namespace sextant {
 
-/// The views that pairs and board views name, ascending.
+/// The numbers of all views in pairs and board views, ascending.
 std::vector<int> ViewsOf(const CalibrationProblem& problem);
 
-/// The problem with the data of these views alone.
+/// The problem with the data of these views only.
 CalibrationProblem SelectViews(const CalibrationProblem& problem, std::span<const int> views);
 
-/// The problem with the data of views drawn with replacement: the i-th of `drawn` becomes view i,
-/// so that a view that was drawn twice counts as two.
-CalibrationProblem DrawViews(const CalibrationProblem& problem, std::span<const int> drawn);
+/// A bootstrap sample: the problem with views drawn with replacement. The i-th of `drawn` becomes
+/// view i, so that a view that was drawn twice counts as two.
+CalibrationProblem ResampleViews(const CalibrationProblem& problem, std::span<const int> drawn);
 
 }  // namespace sextant

@@ -23,7 +23,7 @@ std::optional<Rigid3d> PoseOf(const CalibrationProblem& problem, const Solver& s
   return report->cam_from_lidar;
 }
 
-// The answers of all folds but one; none where the solver finds no pose in them.
+// The pose without each fold; none where the solver finds none.
 Poses SolveFolds(const CalibrationProblem& problem, const Solver& solver,
                  const std::vector<int>& views, std::size_t folds) {
   Poses answers(folds);
@@ -37,8 +37,8 @@ Poses SolveFolds(const CalibrationProblem& problem, const Solver& solver,
   return answers;
 }
 
-Poses SolveDraws(const CalibrationProblem& problem, const Solver& solver,
-                 const std::vector<int>& views, const TrustOptions& options) {
+Poses SolveResamples(const CalibrationProblem& problem, const Solver& solver,
+                     const std::vector<int>& views, const TrustOptions& options) {
   Poses answers(static_cast<std::size_t>(options.bootstrap_samples));
   tbb::parallel_for(std::size_t{0}, answers.size(), [&](std::size_t draw) {
     Random random(DeriveSeed(options.seed, "bootstrap of views", 0, draw));
@@ -47,7 +47,7 @@ Poses SolveDraws(const CalibrationProblem& problem, const Solver& solver,
       const std::uint64_t place = random.Below(views.size());
       drawn.push_back(views[place]);
     }
-    answers[draw] = PoseOf(DrawViews(problem, drawn), solver);
+    answers[draw] = PoseOf(ResampleViews(problem, drawn), solver);
   });
   return answers;
 }
@@ -60,7 +60,7 @@ std::vector<Vector6d> DifferencesFrom(const Rigid3d& reference, const Poses& pos
   return differences;
 }
 
-// Sum over the differences of their squared distance to the mean, each axis for itself.
+// Sum of squared deviations from the mean, per axis.
 Vector6d ScatterOf(const std::vector<Vector6d>& differences) {
   Vector6d mean = Vector6d::Zero();
   for (const Vector6d& d : differences) mean += d / static_cast<double>(differences.size());
@@ -69,7 +69,7 @@ Vector6d ScatterOf(const std::vector<Vector6d>& differences) {
   return scatter;
 }
 
-// Linear between the order statistics.
+// Linear interpolation between the order statistics.
 double Quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   const double place = share * static_cast<double>(values.size() - 1);
@@ -95,14 +95,14 @@ void AddBootstrap(const std::vector<Vector6d>& differences, const TrustOptions& 
       (ScatterOf(differences) / static_cast<double>(differences.size() - 1)).cwiseSqrt();
 }
 
-// The geometric mean over the axes of a / b; none where an axis is known exactly.
+// Geometric mean of a / b over the axes; none where an axis has zero sigma.
 std::optional<double> MeanRatio(const std::optional<Vector6d>& a,
                                 const std::optional<Vector6d>& b) {
   if (!a || !b || !(a->minCoeff() > 0.0) || !(b->minCoeff() > 0.0)) return std::nullopt;
   return std::exp((a->array().log() - b->array().log()).mean());
 }
 
-// Root mean square over the finite ones of residuals that belong to a view.
+// Root mean square of the finite residuals of a view.
 class ViewRms {
  public:
   void Add(double residual) {
@@ -129,7 +129,7 @@ struct ViewFit {
   ViewRms pixels;
 };
 
-// Of one view under a pose.
+// The residuals of one view under a pose.
 ViewFit FitOf(const CalibrationProblem& problem, int view, const Rigid3d& pose) {
   ViewFit fit;
   const Evaluation evaluation = Evaluate(SelectViews(problem, {&view, 1}), pose);
@@ -138,7 +138,7 @@ ViewFit FitOf(const CalibrationProblem& problem, int view, const Rigid3d& pose) 
   return fit;
 }
 
-// How every view fits, under the answer and under that of the other folds.
+// The residuals of every view under the answer and under the pose of the other folds.
 void AddFits(const CalibrationProblem& problem, const std::vector<int>& views,
              const SolveReport& answer, const Poses& folds, Trust& trust) {
   ViewFit all;
@@ -182,7 +182,7 @@ std::vector<double> ErrorsUnder(const CalibrationProblem& problem, const std::ve
   return errors;
 }
 
-// The rest answers again without the views that were marked, and all are judged under that.
+// Solves again without the marked views and tests all views under that pose, until nothing changes.
 std::vector<bool> MarkOutliers(const CalibrationProblem& problem, const Solver& solver,
                                const std::vector<int>& views, const Trust& trust) {
   std::vector<bool> marked = OutlyingViews(HeldOutErrors(trust));
@@ -209,7 +209,7 @@ Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& sol
   const std::vector<int> views = ViewsOf(problem);
   if (views.empty()) {
     return MakeError(ErrorCode::kMissingData,
-                     "expected pairs or board views that can be held against each other, got none");
+                     "expected pairs or board views to compare with each other, got none");
   }
   Trust trust;
   TrustFigures& figures = trust.figures;
@@ -229,7 +229,7 @@ Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& sol
   }
   if (views.size() > 2 && options.bootstrap_samples > 1) {
     const std::vector<Vector6d> draws =
-        DifferencesFrom(answer.cam_from_lidar, SolveDraws(problem, solver, views, options));
+        DifferencesFrom(answer.cam_from_lidar, SolveResamples(problem, solver, views, options));
     if (draws.size() > 1) AddBootstrap(draws, options, figures);
   }
   figures.bootstrap_over_covariance = MeanRatio(figures.bootstrap_sigma, figures.covariance_sigma);

@@ -24,7 +24,7 @@ std::string ErrorText(const std::optional<double>& metres, const std::optional<d
 
 std::string CrossValidationText(const TrustFigures& figures) {
   if (!figures.held_out_rmse_m && !figures.held_out_rmse_px) return "";
-  return fmt::format("Corners of views held out are off by {}, those fitted by {}. ",
+  return fmt::format("The RMS error of held-out corners is {}, of fitted ones {}. ",
                      ErrorText(figures.held_out_rmse_m, figures.held_out_rmse_px),
                      ErrorText(figures.fit_rmse_m, figures.fit_rmse_px));
 }
@@ -35,11 +35,12 @@ std::string SigmasText(const TrustFigures& figures) {
     text += "The covariance states " + SigmaText(*figures.covariance_sigma);
   }
   if (figures.bootstrap_sigma) {
-    text += (text.empty() ? "Views drawn anew give " : ", views drawn anew give ") +
-            SigmaText(*figures.bootstrap_sigma);
+    text +=
+        (text.empty() ? "The bootstrap over views gives " : ", the bootstrap over views gives ") +
+        SigmaText(*figures.bootstrap_sigma);
   }
   if (figures.jackknife_sigma) {
-    text += (text.empty() ? "Views left out give " : ", views left out give ") +
+    text += (text.empty() ? "The jackknife gives " : ", the jackknife gives ") +
             SigmaText(*figures.jackknife_sigma);
   }
   return text.empty() ? text : text + " (1 sigma). ";
@@ -63,16 +64,16 @@ std::string ComparisonText(const TrustFigures& figures, int views) {
   if (least < 1.0 / band) {
     return fmt::format(
         "The views agree {:.1f} times better than their stated noise: the covariance is cautious, "
-        "or the views are too alike to show an error that they share.",
+        "or the views are too similar to show an error that they share.",
         1.0 / least);
   }
-  return "They agree within what so many views can tell.";
+  return "They agree within the statistical uncertainty of so many views.";
 }
 
 }  // namespace
 
 std::string TrustVerdict(const TrustFigures& figures, int views) {
-  if (views < 2) return "One view alone: nothing holds its answer against anything.";
+  if (views < 2) return "One view alone: its answer cannot be compared with any other.";
   std::string text = CrossValidationText(figures) + SigmasText(figures);
   if (views == 2) text += "Two views are too few for a bootstrap.";
   text += ComparisonText(figures, views);

@@ -8,12 +8,11 @@
 
 namespace sextant {
 
-/// How covariance, bootstrap and cross-validation compare, in sentences, with what follows from it.
-/// A ratio is taken for agreement within what so few views can tell: 1 + 2 / sqrt(2 (n - 1)), two
-/// standard errors of a standard deviation.
+/// Compares covariance, bootstrap and cross-validation in a few sentences, with advice. Ratios up
+/// to 1 + 2 / sqrt(2 (n - 1)), two standard errors of a standard deviation, count as agreement.
 std::string TrustVerdict(const TrustFigures& figures, int views);
 
-/// That the view of that name does not belong to the others, with by how much.
+/// The warning for an outlying view, with its error.
 std::string OutlierText(const std::string& name, const ViewTrust& view,
                         const TrustFigures& figures);
 

@@ -10,14 +10,14 @@
 
 namespace sextant {
 
-/// How a board's corners fit an answer, in root mean square.
+/// RMS residuals of a board's corners.
 struct BoardResidual {
   double rmse_m = 0.0;
   std::optional<double> rmse_px{};  ///< None where a corner does not project.
-  double range_m = 0.0;             ///< Of its middle from the camera.
+  double range_m = 0.0;             ///< From the camera to its centre.
 };
 
-/// Of every board of every view, by (view, Board::id).
+/// The residuals of every board in every view, by (view, Board::id).
 std::map<std::pair<int, int>, BoardResidual> ResidualsByBoard(const CalibrationProblem& problem,
                                                               const Evaluation& evaluation);
 

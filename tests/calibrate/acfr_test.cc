@@ -98,7 +98,7 @@ TEST(AcfrPairs, TheBoardOfEveryPairIsMatchedAndThePoseIsThePublishedOne) {
   for (const BoardRow& row : assembly->rows) {
     EXPECT_EQ(row.fate, BoardFate::kKept) << views[row.view].name << ": " << row.why;
   }
-  EXPECT_TRUE(assembly->matching.as_likely.empty());
+  EXPECT_TRUE(assembly->matching.alternatives.empty());
   const Rigid3d published = PublishedCamFromLidar(folder / "calibration_quickstart.csv");
   double start_m = 1.0;
   for (const char* spec : {"kabsch", "gnc(kabsch)", "joint(gnc(kabsch),board_size=scale)"}) {

@@ -62,7 +62,7 @@ TEST(Match, EveryBoardOfManyViewsWhateverItsPlaceAndTurn) {
     ASSERT_TRUE(matching) << matching.error().message;
     EXPECT_EQ(matching->kept.size(), 8U) << seed;
     ExpectTrueMatches(faked, *matching);
-    EXPECT_TRUE(matching->as_likely.empty());
+    EXPECT_TRUE(matching->alternatives.empty());
     const PoseDistance off = DistanceBetween(matching->cam_from_lidar, kFakeCamFromLidar);
     // Eight boards of 28 mrad each: one sigma of 10 mrad, and 20 mm at 2 m.
     EXPECT_LT(off.rotation_rad, 0.05);
@@ -92,7 +92,7 @@ TEST(Match, OneSquareBoardOnceIsAmbiguousAndTheAxesDecide) {
   const Faked faked = Fake(1, 1, 7);
   const Expected<Matching> matching = MatchViews(faked.views);
   ASSERT_TRUE(matching) << matching.error().message;
-  EXPECT_EQ(matching->as_likely.size(), 3U);
+  EXPECT_EQ(matching->alternatives.size(), 3U);
   EXPECT_LT(RotationDistance(matching->cam_from_lidar.rotation, kFakeCamFromLidar.rotation), 0.1);
   const std::vector<std::string> lines = DescribeAmbiguity(*matching, {});
   ASSERT_EQ(lines.size(), 2U);
@@ -123,7 +123,7 @@ TEST(Match, TwoEqualBoardsInOnePlaneAreAmbiguous) {
       FakeObservation(boards, poses, kFakeCamFromLidar, random)};
   const Expected<Matching> matching = MatchViews(views);
   ASSERT_TRUE(matching) << matching.error().message;
-  EXPECT_FALSE(matching->as_likely.empty());
+  EXPECT_FALSE(matching->alternatives.empty());
   EXPECT_LT(RotationDistance(matching->cam_from_lidar.rotation, kFakeCamFromLidar.rotation), 0.1);
 }
 
@@ -137,7 +137,7 @@ TEST(Match, ARectangleLeavesHalfATurnOnly) {
       FakeObservation(boards, poses, kFakeCamFromLidar, random)};
   const Expected<Matching> matching = MatchViews(views);
   ASSERT_TRUE(matching) << matching.error().message;
-  EXPECT_EQ(matching->as_likely.size(), 1U);
+  EXPECT_EQ(matching->alternatives.size(), 1U);
 }
 
 TEST(Match, ATagThatMayLeanEitherWayIsSettledByTheOtherViews) {
@@ -173,7 +173,7 @@ TEST(Match, TwoViewsThatContradictEachOtherLeaveOneOut) {
   ASSERT_TRUE(matching) << matching.error().message;
   EXPECT_EQ(matching->kept.size(), 1U);
   EXPECT_EQ(matching->dropped.size(), 1U);
-  EXPECT_FALSE(matching->as_likely.empty());
+  EXPECT_FALSE(matching->alternatives.empty());
 }
 
 TEST(Match, NothingInCommonIsAnError) {

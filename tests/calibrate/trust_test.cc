@@ -204,7 +204,7 @@ TEST(SelectViews, TakesOrDrawsWholeViews) {
   EXPECT_EQ(selected.board_views.size(), 1U);
   EXPECT_EQ(selected.boards.size(), 1U);
   const std::vector<int> drawn = {3, 1, 3};
-  const CalibrationProblem twice = DrawViews(problem, drawn);
+  const CalibrationProblem twice = ResampleViews(problem, drawn);
   EXPECT_THAT(ViewsOf(twice), ElementsAre(0, 1, 2));
   EXPECT_EQ(twice.pairs_3d3d[0].point_in_cam, twice.pairs_3d3d[8].point_in_cam);
   EXPECT_EQ(twice.board_views.size(), 3U);

@@ -136,7 +136,7 @@ TEST_F(Recording, OfSeveralTopicsOneMustBeNamed) {
 TEST_F(Recording, OfManyPairsSomeAreTakenEvenly) {
   Record({0.0});
   const auto bag = Write(TenthsOfASecond(std::vector<std::size_t>(9, 0)));
-  const Expected<BagPlan> plan = PlanBag(*bag, {.most_views = 3});
+  const Expected<BagPlan> plan = PlanBag(*bag, {.max_views = 3});
   ASSERT_TRUE(plan) << plan.error().message;
   ASSERT_EQ(plan->moments.size(), 3U);
   EXPECT_EQ(plan->moments[0].cloud, 0U);

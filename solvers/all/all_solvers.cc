@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/catalogue.h"
+#include "solvers/all/all_solvers.h"
 
-#ifdef SEXTANT_WITH_OPENCV_SOLVERS
 #include "solvers/builtin_solvers.h"
+#ifdef SEXTANT_WITH_OPENCV_SOLVERS
 #include "solvers/opencv/opencv_solvers.h"
 #endif
 
-namespace sextant::cli {
+namespace sextant {
 
 SolverRegistry AllSolvers() {
   SolverRegistry registry = BuiltinSolvers();
@@ -16,4 +16,4 @@ SolverRegistry AllSolvers() {
   return registry;
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/bag/observe_recording.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+namespace sextant {
+
+Expected<RecordedViews> ObserveRecording(const std::filesystem::path& path,
+                                         const RecordingOptions& options,
+                                         const ProgressCallback& progress) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::unique_ptr<Bag> bag, OpenBag(path));
+  const Expected<BagPlan> plan = PlanBag(*bag, options.source);
+  if (!plan) {
+    return MakeError(plan.error().code, fmt::format("{}: {}", path.string(), plan.error().message));
+  }
+  if (!options.camera && !plan->camera) {
+    return MakeError(ErrorCode::kMissingData,
+                     fmt::format("{}: no CameraInfo beside {}: give the intrinsics with --camera",
+                                 path.string(), bag->topics()[plan->image_topic].name));
+  }
+  RecordedViews recorded{.camera = options.camera ? *options.camera : *plan->camera};
+  SEXTANT_ASSIGN_OR_RETURN(const Observer observer,
+                           Observer::Make(options.boards, recorded.camera, options.observe));
+  ProgressCounter counter(progress, plan->moments.size());
+  SEXTANT_ASSIGN_OR_RETURN(std::vector<SessionView> views,
+                           ObserveBag(*bag, *plan, observer, [&counter] { counter.Step(); }));
+  counter.Finish();
+  recorded.views = std::move(views);
+  return recorded;
+}
+
+}  // namespace sextant

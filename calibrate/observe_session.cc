@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/observe_session.h"
+
+#include <fmt/core.h>
+#include <tbb/parallel_for.h>
+
+#include "calibrate/session/observe_files.h"
+#include "io/boards/board_file.h"
+#include "io/cameras/camera_file.h"
+#ifdef SEXTANT_WITH_BAG
+#include "calibrate/bag/observe_recording.h"
+#endif
+
+namespace sextant {
+namespace {
+
+Expected<std::vector<Board>> BoardsFor(const Session& session, const CalibrateOptions& options) {
+  if (!options.boards.empty()) return options.boards;
+  if (!session.boards.empty()) return ReadBoards(session.boards);
+  return MakeError(ErrorCode::kMissingData,
+                   "the boards are missing: the session does not name a board file");
+}
+
+// None where a recording may have the camera.
+Expected<std::optional<Camera>> CameraFor(const Session& session, const CalibrateOptions& options) {
+  if (options.camera) return options.camera;
+  if (!session.camera.empty()) {
+    SEXTANT_ASSIGN_OR_RETURN(const Camera camera, ReadCamera(session.camera));
+    return std::optional<Camera>(camera);
+  }
+  if (!session.bag.empty()) return std::optional<Camera>();
+  return MakeError(ErrorCode::kMissingData,
+                   "the camera is missing: the session does not name a camera file");
+}
+
+#ifdef SEXTANT_WITH_BAG
+Expected<void> ObserveBagOf(const CalibrateOptions& options, const std::optional<Camera>& camera,
+                            ObservedSession& observed) {
+  const Session& session = observed.session;
+  SEXTANT_ASSIGN_OR_RETURN(RecordedViews recorded,
+                           ObserveRecording(session.bag,
+                                            {.source = {.image_topic = session.image_topic,
+                                                        .cloud_topic = session.cloud_topic,
+                                                        .tolerance_s = options.tolerance_s},
+                                             .boards = observed.boards,
+                                             .camera = camera,
+                                             .observe = options.observe},
+                                            options.progress));
+  observed.camera = recorded.camera;
+  observed.views = std::move(recorded.views);
+  return {};
+}
+#else
+Expected<void> ObserveBagOf(const CalibrateOptions&, const std::optional<Camera>&,
+                            ObservedSession& observed) {
+  return MakeError(ErrorCode::kMissingData,
+                   fmt::format("cannot read '{}': this build has no recordings of ROS. Install "
+                               "libbz2-dev, liblz4-dev, libzstd-dev and libsqlite3-dev, configure "
+                               "with -DSEXTANT_BAG=ON and build again",
+                               observed.session.bag.string()));
+}
+#endif
+
+}  // namespace
+
+Expected<ObservedSession> ObserveSession(const Session& session, const CalibrateOptions& options) {
+  ObservedSession observed{.session = session};
+  SEXTANT_ASSIGN_OR_RETURN(std::vector<Board> boards, BoardsFor(session, options));
+  observed.boards = std::move(boards);
+  SEXTANT_ASSIGN_OR_RETURN(const std::optional<Camera> camera, CameraFor(session, options));
+  if (!session.bag.empty()) {
+    SEXTANT_RETURN_IF_ERROR(ObserveBagOf(options, camera, observed));
+    return observed;
+  }
+  observed.camera = *camera;
+  SEXTANT_ASSIGN_OR_RETURN(const Observer observer,
+                           Observer::Make(observed.boards, observed.camera, options.observe));
+  const std::vector<FilePair>& pairs = session.files.pairs;
+  if (pairs.empty()) {
+    return MakeError(ErrorCode::kMissingData,
+                     fmt::format("no image has a scan: {} files have no partner; files are paired "
+                                 "by the distinguishing part of their names",
+                                 session.files.without_partner.size()));
+  }
+  ProgressCounter counter(options.progress, pairs.size());
+  observed.views = ObserveFiles(observer, pairs, [&counter] { counter.Step(); });
+  counter.Finish();
+  return observed;
+}
+
+Expected<ObservedSession> ObserveFrames(std::span<const Frame> frames,
+                                        const CalibrateOptions& options) {
+  if (options.boards.empty() || !options.camera || frames.empty()) {
+    return MakeError(ErrorCode::kMissingData,
+                     fmt::format("expected frames, boards and a camera, got {} frames, {} boards "
+                                 "and {} camera",
+                                 frames.size(), options.boards.size(), options.camera ? 1 : 0));
+  }
+  ObservedSession observed{.boards = options.boards, .camera = *options.camera};
+  SEXTANT_ASSIGN_OR_RETURN(const Observer observer,
+                           Observer::Make(observed.boards, observed.camera, options.observe));
+  observed.views.resize(frames.size());
+  ProgressCounter counter(options.progress, frames.size());
+  tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
+    observed.views[i].name = frames[i].name;
+    observed.views[i].seen = observer.Observe(frames[i].image, frames[i].cloud);
+    counter.Step();
+  });
+  counter.Finish();
+  return observed;
+}
+
+}  // namespace sextant
