@@ -57,7 +57,7 @@ const std::vector<Metric>& BoardScanMetrics() {
 const ParameterSet<BoardScanSettings>& BoardScanParameters() {
   static const ParameterSet<BoardScanSettings> set =
       ParameterSet<BoardScanSettings>()
-          .Text("lidar_model", &BoardScanSettings::lidar_model, "name", "see sextant lidars")
+          .Text("lidar_model", &BoardScanSettings::lidar_model, "name", "see sextant list lidars")
           .Text("extractor", &BoardScanSettings::extractor, "name", "only this one; empty: all")
           .Real("distance_m", &BoardScanSettings::distance_m, "m", 0.5, 100.0,
                 "from the LiDAR to the board's middle")
