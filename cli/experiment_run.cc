@@ -6,12 +6,12 @@
 #include <memory>
 #include <system_error>
 
-#include "cli/catalogue.h"
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "eval/experiment/definition/timing.h"
 #include "eval/experiment/report/write_report.h"
 #include "io/text/text_file.h"
+#include "solvers/all/all_solvers.h"
 
 namespace sextant::cli {
 namespace {

@@ -14,10 +14,10 @@ namespace sextant::cli {
 
 struct ExperimentOptions {
   std::string experiment_path{};
-  std::string out{};        ///< Folder; empty: results/NAME.
-  std::string solvers{};    ///< Empty: the file's.
-  int threads = 0;          ///< 0: all.
-  std::uint64_t trials = 0; ///< 0: the number in the file.
+  std::string out{};         ///< Folder; empty: results/NAME.
+  std::string solvers{};     ///< Empty: the file's.
+  int threads = 0;           ///< 0: all.
+  std::uint64_t trials = 0;  ///< 0: the number in the file.
   std::optional<std::uint64_t> seed{};
   bool quick = false;
   bool fresh = false;

@@ -25,25 +25,24 @@ constexpr const char* kFooter =
     "Exit codes: 0 answered, 1 no answer (with the reason), 2 wrong usage or unreadable input.";
 
 Program Sextant() {
-  return {
-      .name = "sextant",
-      .introduction = kIntroduction,
-      .footer = kFooter,
-      .groups = {{"Calibrate",
-                  {CalibrateCommand(), AdviseCommand(), ProjectCommand(), ExportCommand()}},
-                 {"Look at images, scans and recordings",
-                  {DetectCommand(), BoardsCommand(), MarkCommand(), BagCommand()}},
-                 {"Make and convert data",
-                  {SimulateCommand(), PrintBoardCommand(), ConvertCommand(), FuseCommand()}},
-                 {"Solvers, on correspondences of your own",
-                  {SolveCommand(), CompareCommand(), AverageCommand(), ListCommand()}},
-                 {"Experiments", {RunCommand(), MergeCommand(), ReproduceCommand()}}},
-      .renamed = {{"board", "print-board"},
-                  {"solvers", "list solvers"},
-                  {"detectors", "list detectors"},
-                  {"extractors", "list extractors"},
-                  {"lidars", "list lidars"},
-                  {"kinds", "list kinds"}}};
+  return {.name = "sextant",
+          .introduction = kIntroduction,
+          .footer = kFooter,
+          .groups = {{"Calibrate",
+                      {CalibrateCommand(), AdviseCommand(), ProjectCommand(), ExportCommand()}},
+                     {"Look at images, scans and recordings",
+                      {DetectCommand(), BoardsCommand(), MarkCommand(), BagCommand()}},
+                     {"Make and convert data",
+                      {SimulateCommand(), PrintBoardCommand(), ConvertCommand(), FuseCommand()}},
+                     {"Solvers, on correspondences of your own",
+                      {SolveCommand(), CompareCommand(), AverageCommand(), ListCommand()}},
+                     {"Experiments", {RunCommand(), MergeCommand(), ReproduceCommand()}}},
+          .renamed = {{"board", "print-board"},
+                      {"solvers", "list solvers"},
+                      {"detectors", "list detectors"},
+                      {"extractors", "list extractors"},
+                      {"lidars", "list lidars"},
+                      {"kinds", "list kinds"}}};
 }
 
 }  // namespace

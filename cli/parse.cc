@@ -149,7 +149,8 @@ ParsedLine ParseLine(const Program& program, int argc, const char* const* argv) 
             .out = out.str(),
             .err = err.str()};
   }
-  return {.run = ChosenRun(app, AllCommands(program)), .exit_code = kAnswered, .out = {}, .err = {}};
+  return {
+      .run = ChosenRun(app, AllCommands(program)), .exit_code = kAnswered, .out = {}, .err = {}};
 }
 
 int RunProgram(const Program& program, int argc, const char* const* argv) {

@@ -15,7 +15,8 @@
 namespace sextant::cli {
 namespace {
 
-// Only the sizes of the boards matter here, so a marker_coordinates.txt may have any number of them.
+// Only the sizes of the boards matter here, so a marker_coordinates.txt may have any number of
+// them.
 Expected<std::vector<Board>> ReadNamedBoards(const std::filesystem::path& path) {
   if (path.extension() == ".yaml" || path.extension() == ".yml") return ReadBoards(path);
   return ReadMarkerCoordinates(path).map(BoardsOf);

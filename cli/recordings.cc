@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "cli/recordings.h"
+
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -9,7 +11,6 @@
 #include "calibrate/bag/bag_image.h"
 #include "calibrate/bag/bag_streams.h"
 #include "cli/recording_summary.h"
-#include "cli/recordings.h"
 #include "io/cameras/camera_file.h"
 #include "io/clouds/pcd_file.h"
 #include "io/text/text_file.h"
@@ -91,7 +92,7 @@ class Extractor {
           return std::optional<Extracted>({"." + ExtensionOf(image), image.data});
         });
       case MessageKind::kImage:
-        return DecodeImage(message).and_then(sextant::EncodePng).map([](std::string png) {
+        return DecodeImage(message).and_then(EncodePng).map([](std::string png) {
           return std::optional<Extracted>({".png", std::move(png)});
         });
       case MessageKind::kCameraInfo:
@@ -160,11 +161,10 @@ Expected<OpenedRecording> OpenRecording(const std::string& path, double toleranc
   const std::shared_ptr<Bag> bag = std::move(opened);
   const auto tolerance_ns = static_cast<std::int64_t>(1e9 * tolerance_s);
   SEXTANT_ASSIGN_OR_RETURN(const BagStreams streams, ReadStreams(*bag, tolerance_ns));
-  return OpenedRecording{
-      .summary = DescribeRecording(*bag, streams, path, tolerance_s),
-      .extract = [bag, streams](const std::string& folder) {
-        return ExtractBag(*bag, streams, folder);
-      }};
+  return OpenedRecording{.summary = DescribeRecording(*bag, streams, path, tolerance_s),
+                         .extract = [bag, streams](const std::string& folder) {
+                           return ExtractBag(*bag, streams, folder);
+                         }};
 }
 
 }  // namespace sextant::cli

@@ -24,8 +24,8 @@ struct OpenedRecording {
   std::function<Expected<int>(const std::string& folder)> extract{};
 };
 
-/// `tolerance_s`: how far apart the stamps of a scan and an image of a pair may be. Errors: those of
-/// OpenBag and ReadStreams.
+/// `tolerance_s`: how far apart the stamps of a scan and an image of a pair may be. Errors: those
+/// of OpenBag and ReadStreams.
 Expected<OpenedRecording> OpenRecording(const std::string& path, double tolerance_s);
 
 /// Whether a session with these options can be written as a recording. Errors: kInvalidOption for a

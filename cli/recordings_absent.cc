@@ -2,7 +2,6 @@
 // Replaces the sources for recordings if their libraries were not found.
 #include <fmt/core.h>
 
-#include "cli/calibrate_source.h"
 #include "cli/recordings.h"
 
 namespace sextant::cli {
@@ -12,23 +11,14 @@ constexpr const char* kAbsent =
     "this build cannot read or write recordings of ROS. Install libbz2-dev, liblz4-dev, "
     "libzstd-dev and libsqlite3-dev, configure with -DSEXTANT_BAG=ON and build again";
 
-tl::unexpected<Error> CannotRead(const std::string& path) {
-  return MakeError(ErrorCode::kMissingData, fmt::format("cannot read '{}': {}", path, kAbsent));
-}
-
 tl::unexpected<Error> CannotWrite() {
-  return MakeError(ErrorCode::kMissingData,
-                   fmt::format("--bag: {}; or leave --bag out", kAbsent));
+  return MakeError(ErrorCode::kMissingData, fmt::format("--bag: {}; or leave --bag out", kAbsent));
 }
 
 }  // namespace
 
 Expected<OpenedRecording> OpenRecording(const std::string& path, double /*tolerance_s*/) {
-  return CannotRead(path);
-}
-
-Expected<RecordedViews> LookAtRecording(const Session& session, const ObserveRecording&) {
-  return CannotRead(session.bag.string());
+  return MakeError(ErrorCode::kMissingData, fmt::format("cannot read '{}': {}", path, kAbsent));
 }
 
 Expected<void> CheckSessionBag(const SessionOptions&) { return CannotWrite(); }

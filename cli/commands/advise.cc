@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "calibrate/advise/advise.h"
+
 #include <fmt/core.h>
 
 #include <filesystem>
 #include <numbers>
 
 #include "base/units.h"
-#include "calibrate/advise/advise.h"
 #include "calibrate/observe/photo_file.h"
 #include "calibrate/trust/information.h"
 #include "cli/commands/commands.h"
@@ -16,11 +17,6 @@
 
 namespace sextant::cli {
 namespace {
-
-constexpr const char* kFooter =
-    "The proposed place is the one of a grid, visible to both sensors, for which the predicted\n"
-    "covariance is smallest (D-optimal).\n"
-    "Example:\n  sextant advise result.yaml --picture next.png";
 
 struct AdviseCommandOptions {
   std::string result_path{};
@@ -53,8 +49,9 @@ Expected<LidarPattern> PatternNamed(const std::string& name) {
       .divergence_rad = model.divergence_h_rad};
   for (const LidarRing& ring : model.rings) pattern.elevations_rad.push_back(ring.elevation_rad);
   if (!pattern.elevations_rad.empty()) return pattern;
-  return MakeError(ErrorCode::kInvalidOption,
-                   fmt::format("--lidar: {} has no rings, and the prediction of a board needs rings", name));
+  return MakeError(
+      ErrorCode::kInvalidOption,
+      fmt::format("--lidar: {} has no rings, and the prediction of a board needs rings", name));
 }
 
 Expected<SensorPair> SensorsOf(const AdviseCommandOptions& options,
@@ -122,9 +119,9 @@ int Run(const AdviseCommandOptions& options) {
   if (std::filesystem::is_directory(path)) path /= "result.yaml";
   const Expected<CalibrationResult> result = ReadCalibrationResult(path);
   if (!result) {
-    return Refuse("advise",
-                  {result.error().code, fmt::format("{}; for a session, run sextant calibrate first",
-                                                    result.error().message)});
+    return Refuse("advise", {result.error().code,
+                             fmt::format("{}; for a session, run sextant calibrate first",
+                                         result.error().message)});
   }
   const Expected<SensorPair> sensors = SensorsOf(options, *result);
   if (!sensors) return Refuse("advise", sensors.error());
@@ -134,8 +131,9 @@ int Run(const AdviseCommandOptions& options) {
     const Expected<Advice> advice = Advise(growing, *sensors);
     if (!advice) return Refuse("advise", advice.error(), kNoAnswer);
     if (i == 0) fmt::print("{}", ViewsText(*result, *advice));
-    fmt::print("{}\n  {} rings would cross it; predicted 1 sigma then {}\n", advice->proposal.sentence,
-               advice->proposal.rings, SigmaText(advice->proposal.covariance));
+    fmt::print("{}\n  {} rings would cross it; predicted 1 sigma then {}\n",
+               advice->proposal.sentence, advice->proposal.rings,
+               SigmaText(advice->proposal.covariance));
     proposals.push_back(advice->proposal);
     growing.views.push_back(AsView(growing, *advice));
   }
@@ -150,6 +148,10 @@ int Run(const AdviseCommandOptions& options) {
 }  // namespace
 
 Command AdviseCommand() {
+  constexpr const char* kFooter =
+      "The proposed place is the one of a grid, visible to both sensors, for which the predicted\n"
+      "covariance is smallest (D-optimal).\n"
+      "Example:\n  sextant advise result.yaml --picture next.png";
   return MakeCommand<AdviseCommandOptions>(
       "advise", "How well the views determine the answer, and where to hold a board next", kFooter,
       Declare, Run);

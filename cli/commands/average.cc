@@ -15,11 +15,6 @@
 namespace sextant::cli {
 namespace {
 
-constexpr const char* kFooter =
-    "The original package renormalises its quaternion sum at every scan, so that its newest scan\n"
-    "always has the weight one half. This recovers the single scans and shows their true mean.\n"
-    "Example:\n  sextant average conf/avg_values.txt";
-
 struct AverageOptions {
   std::string log_path{};
   std::string json_path{};  ///< See Deliver.
@@ -77,7 +72,8 @@ std::string Text(const RunningAverageAnalysis& analysis) {
          Spread("1 sigma of a scan", analysis.standard_deviation) +
          Spread("1 sigma of the mean", analysis.standard_error) +
          fmt::format("{:<24}  {:.8f} m\n", "last RMSE in the log", analysis.last_rmse_m) +
-         "\nThe rotation in the log is no mean: its newest scan has the weight one half. The spread\n"
+         "\nThe rotation in the log is no mean: its newest scan has the weight one half. The "
+         "spread\n"
          "is over the distinct scans, about x y z and along x y z; a repeated scan adds nothing.\n";
 }
 
@@ -127,6 +123,11 @@ int Run(const AverageOptions& options) {
 }  // namespace
 
 Command AverageCommand() {
+  constexpr const char* kFooter =
+      "The original package renormalises its quaternion sum at every scan, so that its newest "
+      "scan\n"
+      "always has the weight one half. This recovers the single scans and shows their true mean.\n"
+      "Example:\n  sextant average conf/avg_values.txt";
   return MakeCommand<AverageOptions>(
       "average", "The single scans and the true mean of an avg_values.txt", kFooter, Declare, Run);
 }

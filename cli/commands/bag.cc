@@ -9,11 +9,6 @@
 namespace sextant::cli {
 namespace {
 
-constexpr const char* kFooter =
-    "A scan and an image are a pair if no other two unused ones are closer in time; each is used\n"
-    "once.\n"
-    "Examples:\n  sextant bag session.bag\n  sextant bag session.bag --extract session";
-
 struct BagOptions {
   std::string path{};
   std::string extract_folder{};  ///< Empty: nothing is written.
@@ -48,6 +43,11 @@ int Run(const BagOptions& options) {
 }  // namespace
 
 Command BagCommand() {
+  constexpr const char* kFooter =
+      "A scan and an image are a pair if no other two unused ones are closer in time; each is "
+      "used\n"
+      "once.\n"
+      "Examples:\n  sextant bag session.bag\n  sextant bag session.bag --extract session";
   return MakeCommand<BagOptions>("bag", "The topics of a recording, and its scans and images",
                                  kFooter, Declare, Run);
 }

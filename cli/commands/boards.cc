@@ -19,11 +19,6 @@
 namespace sextant::cli {
 namespace {
 
-constexpr const char* kFooter =
-    "Examples:\n"
-    "  sextant boards scan.pcd --board boards.yaml\n"
-    "  sextant boards scans/*.pcd --board boards.yaml --extractor lines3d --json corners.json";
-
 struct BoardsOptions {
   std::vector<std::string> scans{};
   std::string boards_path{};
@@ -146,6 +141,10 @@ int Run(const BoardsOptions& options) {
 }  // namespace
 
 Command BoardsCommand() {
+  constexpr const char* kFooter =
+      "Examples:\n"
+      "  sextant boards scan.pcd --board boards.yaml\n"
+      "  sextant boards scans/*.pcd --board boards.yaml --extractor lines3d --json corners.json";
   return MakeCommand<BoardsOptions>("boards", "Boards in LiDAR scans, and their corners", kFooter,
                                     Declare, Run);
 }

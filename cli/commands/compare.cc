@@ -5,24 +5,16 @@
 
 #include <algorithm>
 
-#include "cli/catalogue.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/problem_input.h"
 #include "eval/metrics/default_specs.h"
 #include "report/plot.h"
 #include "report/report_text.h"
+#include "solvers/all/all_solvers.h"
 
 namespace sextant::cli {
 namespace {
-
-constexpr const char* kFooter =
-    "The table has the distance of each answer to the first one, and to the truth if the file "
-    "holds it.\n"
-    "Examples:\n"
-    "  sextant compare points.txt\n"
-    "  sextant compare points.txt --solvers "
-    "'kabsch,icp(init=centroid),drop_worst(kabsch,keep=6)'";
 
 struct CompareOptions {
   ProblemInputOptions input{};
@@ -87,6 +79,13 @@ int Run(const CompareOptions& options) {
 }  // namespace
 
 Command CompareCommand() {
+  constexpr const char* kFooter =
+      "The table has the distance of each answer to the first one, and to the truth if the file "
+      "holds it.\n"
+      "Examples:\n"
+      "  sextant compare points.txt\n"
+      "  sextant compare points.txt --solvers "
+      "'kabsch,icp(init=centroid),drop_worst(kabsch,keep=6)'";
   return MakeCommand<CompareOptions>("compare", "Many solvers on the same data, as a table",
                                      kFooter, Declare, Run);
 }

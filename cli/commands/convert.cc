@@ -11,8 +11,6 @@
 namespace sextant::cli {
 namespace {
 
-constexpr const char* kFooter = "Example:\n  sextant convert points.txt session.yaml";
-
 struct ConvertOptions {
   std::string from{};
   std::string to{};
@@ -51,9 +49,9 @@ int Run(const ConvertOptions& options) {
 }  // namespace
 
 Command ConvertCommand() {
-  return MakeCommand<ConvertOptions>("convert",
-                                     "From one format of correspondences to another", kFooter,
-                                     Declare, Run);
+  constexpr const char* kFooter = "Example:\n  sextant convert points.txt session.yaml";
+  return MakeCommand<ConvertOptions>("convert", "From one format of correspondences to another",
+                                     kFooter, Declare, Run);
 }
 
 }  // namespace sextant::cli

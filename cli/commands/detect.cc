@@ -17,10 +17,6 @@
 namespace sextant::cli {
 namespace {
 
-constexpr const char* kFooter =
-    "Examples:\n"
-    "  sextant detect photo.jpg --board board.yaml --camera camera.yaml --overlay out.png\n"
-    "  sextant detect *.png --detector 'aruco(dictionary=6x6_250)' --json -";
 constexpr const char* kDefaultDetector = "apriltag(family=tag36h11)";
 
 struct DetectOptions {
@@ -177,6 +173,10 @@ int Run(const DetectOptions& options) {
 }  // namespace
 
 Command DetectCommand() {
+  constexpr const char* kFooter =
+      "Examples:\n"
+      "  sextant detect photo.jpg --board board.yaml --camera camera.yaml --overlay out.png\n"
+      "  sextant detect *.png --detector 'aruco(dictionary=6x6_250)' --json -";
   return MakeCommand<DetectOptions>(
       "detect", "Tags and boards in images: corners, poses, and why a tag is missing", kFooter,
       Declare, Run);

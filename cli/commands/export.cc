@@ -11,15 +11,6 @@
 namespace sextant::cli {
 namespace {
 
-constexpr const char* kFooter =
-    "ROS and URDF state the pose of the child in its parent: with the LiDAR as the parent that is\n"
-    "lidar_from_camera, the inverse of cam_from_lidar. The other formats hold cam_from_lidar. Each\n"
-    "file states which.\n"
-    "Examples:\n"
-    "  sextant export result.yaml --to ros2 --lidar-frame velodyne --camera-frame "
-    "cam0_optical_frame --out extrinsic.launch.py\n"
-    "  sextant export result.yaml --to kitti --out calib.txt";
-
 struct ExportCommandOptions {
   std::string result_path{};
   std::string format{};
@@ -44,9 +35,10 @@ void Declare(ExportCommandOptions& options, Arguments& arguments) {
   arguments.Add("--out", options.out, "File to write; - for standard output",
                 {.shows_default = true});
   arguments.Add("--lidar-frame", options.lidar_frame, "Default: the name in the result");
-  arguments.Add("--camera-frame", options.camera_frame,
-                "The camera's optical frame (x right, y down); default: the name in the result, or\n"
-                "camera_optical_frame");
+  arguments.Add(
+      "--camera-frame", options.camera_frame,
+      "The camera's optical frame (x right, y down); default: the name in the result, or\n"
+      "camera_optical_frame");
   arguments.Add("--parent", options.parent,
                 "lidar or camera: the frame in which the pose of the other is stated; default:\n"
                 "lidar",
@@ -100,6 +92,16 @@ int Run(const ExportCommandOptions& options) {
 }  // namespace
 
 Command ExportCommand() {
+  constexpr const char* kFooter =
+      "ROS and URDF state the pose of the child in its parent: with the LiDAR as the parent that "
+      "is\n"
+      "lidar_from_camera, the inverse of cam_from_lidar. The other formats hold cam_from_lidar. "
+      "Each\n"
+      "file states which.\n"
+      "Examples:\n"
+      "  sextant export result.yaml --to ros2 --lidar-frame velodyne --camera-frame "
+      "cam0_optical_frame --out extrinsic.launch.py\n"
+      "  sextant export result.yaml --to kitti --out calib.txt";
   return MakeCommand<ExportCommandOptions>(
       "export", "A result in the format of another program: ROS, URDF, OpenCV, KITTI", kFooter,
       Declare, Run);

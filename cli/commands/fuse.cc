@@ -19,13 +19,6 @@
 namespace sextant::cli {
 namespace {
 
-constexpr const char* kFooter =
-    "The cameras need not see the same scene: the LiDAR connects them.\n"
-    "last_from_cloud = T_last * inverse(T).\n"
-    "Examples:\n"
-    "  sextant fuse front.pcd side.pcd --from front.yaml --to side.yaml --out both.ply\n"
-    "  sextant fuse cam1.pcd cam2.pcd --rts conf/rts.txt";
-
 struct FuseOptions {
   std::vector<std::string> clouds{};
   std::vector<std::string> from{};  ///< A file with cam_from_lidar for each cloud but the last.
@@ -145,6 +138,12 @@ int Run(const FuseOptions& options) {
 }  // namespace
 
 Command FuseCommand() {
+  constexpr const char* kFooter =
+      "The cameras need not see the same scene: the LiDAR connects them.\n"
+      "last_from_cloud = T_last * inverse(T).\n"
+      "Examples:\n"
+      "  sextant fuse front.pcd side.pcd --from front.yaml --to side.yaml --out both.ply\n"
+      "  sextant fuse cam1.pcd cam2.pcd --rts conf/rts.txt";
   return MakeCommand<FuseOptions>("fuse", "Point clouds of calibrated sensors in one frame",
                                   kFooter, Declare, Run);
 }

@@ -2,10 +2,10 @@
 #include <fmt/core.h>
 
 #include "base/nearest_name.h"
-#include "cli/catalogue.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "eval/statistics/text_table.h"
+#include "solvers/all/all_solvers.h"
 
 namespace sextant::cli {
 namespace {

@@ -9,10 +9,6 @@
 namespace sextant::cli {
 namespace {
 
-constexpr const char* kFooter =
-    "Gives the same bytes as one run on one machine.\n"
-    "Example:\n  sextant merge experiments/accuracy.yaml results/accuracy/shard_*.sxtrows";
-
 struct MergeOptions {
   ExperimentOptions experiment{};
   std::vector<std::string> row_files{};
@@ -46,6 +42,9 @@ int Run(const MergeOptions& options) {
 }  // namespace
 
 Command MergeCommand() {
+  constexpr const char* kFooter =
+      "Gives the same bytes as one run on one machine.\n"
+      "Example:\n  sextant merge experiments/accuracy.yaml results/accuracy/shard_*.sxtrows";
   return MakeCommand<MergeOptions>("merge", "The shards of an experiment, to one report", kFooter,
                                    Declare, Run);
 }

@@ -13,11 +13,6 @@
 namespace sextant::cli {
 namespace {
 
-constexpr const char* kCommand = "print-board";
-constexpr const char* kFooter =
-    "Print at 100 %, without fitting to the page, and measure the ruler.\n"
-    "Example:\n  sextant print-board board.yaml --out target.pdf";
-
 struct PrintBoardOptions {
   std::string board_path{};
   std::string out{};
@@ -46,21 +41,22 @@ Expected<DrawingFormat> FormatOf(const std::string& out) {
 
 int Run(const PrintBoardOptions& options) {
   const Expected<DrawingFormat> format = FormatOf(options.out);
-  if (!format) return Refuse(kCommand, format.error());
+  if (!format) return Refuse("print-board", format.error());
   Expected<std::vector<Board>> boards = ReadBoards(options.board_path);
-  if (!boards) return Refuse(kCommand, boards.error());
+  if (!boards) return Refuse("print-board", boards.error());
   if (options.id) {
     std::erase_if(*boards, [&](const Board& board) { return board.id != *options.id; });
     if (boards->empty()) {
-      return Refuse(kCommand, {ErrorCode::kInvalidOption,
+      return Refuse("print-board",
+                    {ErrorCode::kInvalidOption,
                      fmt::format("{}: there is no board {}", options.board_path, *options.id)});
     }
   }
   const std::string source = std::filesystem::path(options.board_path).filename().string();
   const Expected<std::string> drawn = DrawBoards(*boards, source, *format, options.dpi);
-  if (!drawn) return Refuse(kCommand, drawn.error());
+  if (!drawn) return Refuse("print-board", drawn.error());
   if (const Expected<void> ok = WriteFileAtomically(options.out, *drawn); !ok) {
-    return Refuse(kCommand, ok.error());
+    return Refuse("print-board", ok.error());
   }
   return kAnswered;
 }
@@ -68,8 +64,12 @@ int Run(const PrintBoardOptions& options) {
 }  // namespace
 
 Command PrintBoardCommand() {
-  return MakeCommand<PrintBoardOptions>(
-      kCommand, "Boards to print at true scale, with a ruler and cut lines", kFooter, Declare, Run);
+  constexpr const char* kFooter =
+      "Print at 100 %, without fitting to the page, and measure the ruler.\n"
+      "Example:\n  sextant print-board board.yaml --out target.pdf";
+  return MakeCommand<PrintBoardOptions>("print-board",
+                                        "Boards to print at true scale, with a ruler and cut lines",
+                                        kFooter, Declare, Run);
 }
 
 }  // namespace sextant::cli

@@ -17,12 +17,6 @@
 namespace sextant::cli {
 namespace {
 
-constexpr const char* kFooter =
-    "Returns are coloured by range. If the answer is right, their colour changes at the edges in\n"
-    "the image, and the two outlines of a board coincide.\n"
-    "Example:\n  sextant project --image photo.png --cloud scan.pcd --result result.yaml --out "
-    "projected.png";
-
 struct ProjectOptions {
   std::string image_path{};
   std::string cloud_path{};
@@ -45,7 +39,8 @@ void Declare(ProjectOptions& options, Arguments& arguments) {
   arguments.Add("--board", options.boards_path,
                 "Boards to outline, by the image and by the scan; default: the result's");
   arguments.Add("--point-size", options.point_px,
-                "Diameter of a return [px]; 0: by the size of the image", {.range = {{0.0, 100.0}}});
+                "Diameter of a return [px]; 0: by the size of the image",
+                {.range = {{0.0, 100.0}}});
   arguments.Add("--all", options.all_returns,
                 "Draw also the returns that something nearer hides from the camera");
 }
@@ -201,6 +196,12 @@ int Run(const ProjectOptions& options) {
 }  // namespace
 
 Command ProjectCommand() {
+  constexpr const char* kFooter =
+      "Returns are coloured by range. If the answer is right, their colour changes at the edges "
+      "in\n"
+      "the image, and the two outlines of a board coincide.\n"
+      "Example:\n  sextant project --image photo.png --cloud scan.pcd --result result.yaml --out "
+      "projected.png";
   return MakeCommand<ProjectOptions>("project", "A scan drawn on its image with a result", kFooter,
                                      Declare, Run);
 }

@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "eval/experiment/reproduction/reproduce.h"
+
 #include <fmt/core.h>
 
 #include <memory>
 
-#include "cli/catalogue.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/progress.h"
-#include "eval/experiment/reproduction/reproduce.h"
 #include "eval/statistics/text_table.h"
+#include "solvers/all/all_solvers.h"
 
 namespace sextant::cli {
 namespace {
-
-constexpr const char* kFooter =
-    "Run it in the project's folder. Real logs are searched for in SEXTANT_DATA, else in\n"
-    "../shared/data; without them, claims that need them are not testable.\n"
-    "Examples:\n"
-    "  sextant reproduce --quick\n"
-    "  sextant reproduce";
 
 struct ReproduceOptions {
   std::string experiments = "experiments";
@@ -77,6 +71,12 @@ int Run(const ReproduceOptions& options) {
 }  // namespace
 
 Command ReproduceCommand() {
+  constexpr const char* kFooter =
+      "Run it in the project's folder. Real logs are searched for in SEXTANT_DATA, else in\n"
+      "../shared/data; without them, claims that need them are not testable.\n"
+      "Examples:\n"
+      "  sextant reproduce --quick\n"
+      "  sextant reproduce";
   return MakeCommand<ReproduceOptions>(
       "reproduce", "The paper's experiments repeated with known truth, and a verdict on each claim",
       kFooter, Declare, Run);

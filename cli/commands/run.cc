@@ -13,14 +13,6 @@
 namespace sextant::cli {
 namespace {
 
-constexpr const char* kFooter =
-    "Writes rows.sxtrows (all measurements), rows.csv, summary.json, report.md, tables.tex and\n"
-    "the plots. The same file and seed give the same bytes on any number of threads.\n"
-    "Examples:\n"
-    "  sextant run experiments/leaderboard.yaml --quick\n"
-    "  sextant run experiments/leaderboard.yaml --solvers 'kabsch,my_solver' --out mine\n"
-    "  sextant run experiments/accuracy.yaml --shard 2/8 --out /tmp/accuracy";
-
 struct RunOptions {
   ExperimentOptions experiment{};
   std::string shard{};  ///< "2/8"; empty: all.
@@ -79,6 +71,13 @@ int Run(const RunOptions& all) {
 }  // namespace
 
 Command RunCommand() {
+  constexpr const char* kFooter =
+      "Writes rows.sxtrows (all measurements), rows.csv, summary.json, report.md, tables.tex and\n"
+      "the plots. The same file and seed give the same bytes on any number of threads.\n"
+      "Examples:\n"
+      "  sextant run experiments/leaderboard.yaml --quick\n"
+      "  sextant run experiments/leaderboard.yaml --solvers 'kabsch,my_solver' --out mine\n"
+      "  sextant run experiments/accuracy.yaml --shard 2/8 --out /tmp/accuracy";
   return MakeCommand<RunOptions>(
       "run", "An experiment: solvers, conditions and trials of a file, to tables and plots",
       kFooter, Declare, Run);

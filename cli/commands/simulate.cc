@@ -8,20 +8,14 @@
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/recordings.h"
+#include "io/images/image_codec.h"
 #include "io/text/text_file.h"
-#include "report/image_file.h"
 #include "simulator/scene/scene_file.h"
 #include "simulator/session/contact_sheet.h"
 #include "simulator/session/session.h"
 
 namespace sextant::cli {
 namespace {
-
-constexpr const char* kCommand = "simulate";
-constexpr const char* kFooter =
-    "Examples:\n"
-    "  sextant simulate experiments/scenes/paper_two_boards.yaml --out session --scans 5\n"
-    "  sextant simulate pairs --views 5 --seed 7 --out session.yaml";
 
 struct SimulateOptions {
   std::string scene_path{};
@@ -54,8 +48,7 @@ void Declare(SimulateOptions& options, Arguments& arguments) {
                 {.shows_default = true});
   arguments.Add("--interval", options.interval_s, "From one scan to the next [s]",
                 {.shows_default = true});
-  arguments.Add("--bag", options.bag,
-                "Write also session.bag (ROS 1), with the scans and images");
+  arguments.Add("--bag", options.bag, "Write also session.bag (ROS 1), with the scans and images");
   arguments.Add("--ideal", options.ideal,
                 "Sensors without noise, without blur and with a beam of no width");
   arguments.Add("--pcd", options.pcd, "ascii, binary or binary_compressed",
@@ -86,13 +79,13 @@ Expected<SessionOptions> SessionOptionsOf(const SimulateOptions& options) {
   const bool is_marked = level == SessionLevel::kPairs;
   session.noise.pixel_sigma_px =
       options.pixel_sigma_px.value_or(is_marked ? kMarkedByAPerson_px : kFoundInTheImage_px);
-  session.encode_image = EncodePng;
+  session.encode_image = [](const cv::Mat& image) { return EncodeImage(".png", image); };
   return session;
 }
 
 Expected<void> WriteSheet(const Scene& scene, const SimulateOptions& options) {
   SEXTANT_ASSIGN_OR_RETURN(const cv::Mat sheet, DrawContactSheet(scene, options.seed));
-  SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, EncodePng(sheet));
+  SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, EncodeImage(".png", sheet));
   return WriteFileAtomically(options.sheet_path, bytes);
 }
 
@@ -106,19 +99,19 @@ Expected<void> WriteExtras(const Scene& scene, const std::vector<ScanTruth>& sca
 
 int Run(const SimulateOptions& options) {
   if (options.scene_path.empty()) {
-    return Refuse(kCommand, {ErrorCode::kInvalidOption,
-                             "expected a scene file, or the subcommand pairs; scenes are in "
-                             "experiments/scenes"});
+    return Refuse("simulate", {ErrorCode::kInvalidOption,
+                               "expected a scene file, or the subcommand pairs; scenes are in "
+                               "experiments/scenes"});
   }
   const Expected<std::string> text = ReadTextFile(options.scene_path);
-  if (!text) return Refuse(kCommand, text.error());
+  if (!text) return Refuse("simulate", text.error());
   const Expected<Scene> scene = ParseScene(*text, options.scene_path);
-  if (!scene) return Refuse(kCommand, scene.error());
+  if (!scene) return Refuse("simulate", scene.error());
   Expected<SessionOptions> session = SessionOptionsOf(options);
-  if (!session) return Refuse(kCommand, session.error());
+  if (!session) return Refuse("simulate", session.error());
   if (options.bag) {
     if (const Expected<void> ok = CheckSessionBag(*session); !ok) {
-      return Refuse(kCommand, ok.error());
+      return Refuse("simulate", ok.error());
     }
   }
   auto progress = std::make_unique<Progress>("simulating", CountSessionFiles(*scene, *session));
@@ -126,13 +119,13 @@ int Run(const SimulateOptions& options) {
   const Expected<SessionReport> report = SimulateSession(*scene, *text, *session);
   progress.reset();
   if (!report) {
-    return Refuse(kCommand,
+    return Refuse("simulate",
                   {report.error().code, report.error().code == ErrorCode::kIo
                                             ? report.error().message
                                             : options.scene_path + ": " + report.error().message});
   }
   if (const Expected<void> ok = WriteExtras(*scene, report->scans, options); !ok) {
-    return Refuse(kCommand, ok.error());
+    return Refuse("simulate", ok.error());
   }
   fmt::print("{}: scene {}, scans: {}, files written: {}, kept: {}; the truth is in truth.yaml{}\n",
              options.out, scene->name, options.scans, report->written, report->kept,
@@ -143,8 +136,12 @@ int Run(const SimulateOptions& options) {
 }  // namespace
 
 Command SimulateCommand() {
+  constexpr const char* kFooter =
+      "Examples:\n"
+      "  sextant simulate experiments/scenes/paper_two_boards.yaml --out session --scans 5\n"
+      "  sextant simulate pairs --views 5 --seed 7 --out session.yaml";
   Command command = MakeCommand<SimulateOptions>(
-      kCommand, "Scans and images of a scene, with their truth", kFooter, Declare, Run);
+      "simulate", "Scans and images of a scene, with their truth", kFooter, Declare, Run);
   command.subcommands = {SimulatePairsCommand()};
   return command;
 }

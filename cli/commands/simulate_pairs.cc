@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "eval/synthetic/simulate_pairs.h"
+
 #include <fmt/core.h>
 
 #include "cli/commands/commands.h"
 #include "cli/output.h"
-#include "eval/synthetic/simulate_pairs.h"
 #include "io/problems/problem_yaml.h"
 #include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {
-
-constexpr const char* kCommand = "simulate pairs";
 
 struct SimulatePairsOptions {
   PairSimulation simulation{};
@@ -41,14 +40,14 @@ void Declare(SimulatePairsOptions& options, Arguments& arguments) {
 int Run(const SimulatePairsOptions& options) {
   const PairSimulation& simulation = options.simulation;
   const Expected<SimulatedSession> session = SimulatePairs(simulation);
-  if (!session) return Refuse(kCommand, session.error());
+  if (!session) return Refuse("simulate pairs", session.error());
   const ProblemFile file{
       .problem = session->problem,
       .true_cam_from_lidar = session->true_cam_from_lidar,
       .comment = fmt::format("simulated: the paper's two boards, seed {}, {} views, {} outliers",
                              simulation.seed, simulation.views, simulation.outliers)};
   if (const Expected<void> ok = WriteFileAtomically(options.out, FormatProblemYaml(file)); !ok) {
-    return Refuse(kCommand, ok.error());
+    return Refuse("simulate pairs", ok.error());
   }
   fmt::print("{}: {} pairs of corners, {} of them displaced; the truth is in the file\n",
              options.out, session->problem.pairs_3d3d.size(), simulation.outliers);

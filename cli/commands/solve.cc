@@ -2,22 +2,16 @@
 #include <fmt/core.h>
 
 #include "base/units.h"
-#include "cli/catalogue.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/problem_input.h"
 #include "eval/metrics/compare.h"
 #include "report/overlay.h"
 #include "report/report_text.h"
+#include "solvers/all/all_solvers.h"
 
 namespace sextant::cli {
 namespace {
-
-constexpr const char* kFooter =
-    "Examples:\n"
-    "  sextant solve points.txt\n"
-    "  sextant solve points.txt --solver 'refine(ransac(kabsch, seed=7), loss=huber)'\n"
-    "  sextant solve pairs.csv --camera camera.yaml --solver 'refine(epnp)' --json result.json";
 
 struct SolveOptions {
   ProblemInputOptions input{};
@@ -38,9 +32,9 @@ std::string TextOf(const CalibrationProblem& problem, const Solver& solver,
                    const ComparisonRow& row) {
   std::string text = DescribeReport(problem, solver.spec(), *row.report);
   if (row.from_truth) {
-    text += fmt::format("  error against the truth    {:.2f} mm, {:.4f} deg\n",
-                        row.from_truth->translation_m * 1e3,
-                        row.from_truth->rotation_rad * kDegPerRad);
+    text +=
+        fmt::format("  error against the truth    {:.2f} mm, {:.4f} deg\n",
+                    row.from_truth->translation_m * 1e3, row.from_truth->rotation_rad * kDegPerRad);
   }
   return text;
 }
@@ -69,6 +63,11 @@ int Run(const SolveOptions& options) {
 }  // namespace
 
 Command SolveCommand() {
+  constexpr const char* kFooter =
+      "Examples:\n"
+      "  sextant solve points.txt\n"
+      "  sextant solve points.txt --solver 'refine(ransac(kabsch, seed=7), loss=huber)'\n"
+      "  sextant solve pairs.csv --camera camera.yaml --solver 'refine(epnp)' --json result.json";
   return MakeCommand<SolveOptions>("solve", "The answer of one solver, with its uncertainty",
                                    kFooter, Declare, Run);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sextant board`: what it prints is found again by `sextant detect`, at true scale.
+// `sextant print-board`: what it prints is found again by `sextant detect`, at true scale.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -27,12 +27,11 @@ constexpr const char* kHollow =
     "  - {family: aruco_5x5_100, id: 9, edge_m: 0.06, center_in_board_m: [0.1, 0.07], "
     "rotation_deg: 90}\n";
 
-ProgramRun PrintBoard(const std::string& yaml, const std::string& out,
-                      const std::string& more = "") {
+ProgramRun Print(const std::string& yaml, const std::string& out, const std::string& more = "") {
   const auto path = TestFolder() / "board.yaml";
   WriteText(path, yaml);
-  return test::RunSextant("board " + path.string() + " --out " + (TestFolder() / out).string() +
-                          " " + more);
+  return test::RunSextant("print-board " + path.string() + " --out " +
+                          (TestFolder() / out).string() + " " + more);
 }
 
 json DetectBoard(const std::string& image) {
@@ -43,9 +42,9 @@ json DetectBoard(const std::string& image) {
   return json::parse(run.out).at("images").at(0).at("boards").at(0);
 }
 
-TEST(Board, PictureIsFoundAgainAtTrueScale) {
+TEST(PrintBoard, PictureIsFoundAgainAtTrueScale) {
   constexpr double kDpi = 120.0;
-  const ProgramRun run = PrintBoard(kHollow, "target.png", "--dpi 120");
+  const ProgramRun run = Print(kHollow, "target.png", "--dpi 120");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json board = DetectBoard("target.png");
   ASSERT_EQ(board.at("tags").size(), 2U);
@@ -63,8 +62,8 @@ TEST(Board, PictureIsFoundAgainAtTrueScale) {
   }
 }
 
-TEST(Board, CheckerboardIsFoundAgain) {
-  const ProgramRun run = PrintBoard(
+TEST(PrintBoard, CheckerboardIsFoundAgain) {
+  const ProgramRun run = Print(
       "id: 0\ntop_right_m: 0.3\nright_bottom_m: 0.3\n"
       "checker: {inner_columns: 5, inner_rows: 4, square_m: 0.03}\n",
       "target.png", "--dpi 100");
@@ -76,36 +75,36 @@ TEST(Board, CheckerboardIsFoundAgain) {
   EXPECT_NEAR(corners.at(0).at(1).get<double>(), (0.17 - 0.045) * 100.0 / 0.0254 - 0.5, 0.1);
 }
 
-TEST(Board, PagesHaveTheBoardsSizeAndName) {
-  ASSERT_EQ(PrintBoard(kHollow, "target.svg").exit_code, 0);
+TEST(PrintBoard, PagesHaveTheBoardsSizeAndName) {
+  ASSERT_EQ(Print(kHollow, "target.svg").exit_code, 0);
   const std::string svg = ReadText(TestFolder() / "target.svg");
   std::smatch match;
   ASSERT_TRUE(std::regex_search(svg, match, std::regex("width=\"([0-9.]+)(pt)?\"")));
   EXPECT_NEAR(std::stod(match[1]), 0.34 * 72.0 / 0.0254, 0.1);
-  ASSERT_EQ(PrintBoard(kHollow, "target.pdf").exit_code, 0);
+  ASSERT_EQ(Print(kHollow, "target.pdf").exit_code, 0);
   const std::string pdf = ReadText(TestFolder() / "target.pdf");
   EXPECT_THAT(pdf, StartsWith("%PDF"));
   ASSERT_TRUE(std::regex_search(pdf, match, std::regex("MediaBox \\[ 0 0 ([0-9.]+) ([0-9.]+)")));
   EXPECT_NEAR(std::stod(match[1]), 0.34 * 72.0 / 0.0254, 0.1);
   EXPECT_NEAR(std::stod(match[2]), 0.29 * 72.0 / 0.0254, 0.1);
-  ASSERT_EQ(PrintBoard(kHollow, "again.pdf").exit_code, 0);
+  ASSERT_EQ(Print(kHollow, "again.pdf").exit_code, 0);
   EXPECT_EQ(pdf, ReadText(TestFolder() / "again.pdf"));
 }
 
-TEST(Board, RefusesWhatItCannotPrint) {
+TEST(PrintBoard, RefusesWhatItCannotPrint) {
   const std::string two =
       "boards:\n  - {id: 0, top_right_m: 0.2, right_bottom_m: 0.2}\n"
       "  - {id: 1, top_right_m: 0.2, right_bottom_m: 0.2}\n";
-  EXPECT_EQ(PrintBoard(two, "two.pdf").exit_code, 0);
-  const ProgramRun several = PrintBoard(two, "two.png");
+  EXPECT_EQ(Print(two, "two.pdf").exit_code, 0);
+  const ProgramRun several = Print(two, "two.png");
   EXPECT_EQ(several.exit_code, 2);
   EXPECT_THAT(several.err, HasSubstr("--id"));
-  EXPECT_EQ(PrintBoard(two, "two.png", "--id 1").exit_code, 0);
-  EXPECT_EQ(PrintBoard(two, "two.png", "--id 5").exit_code, 2);
-  EXPECT_EQ(PrintBoard(kHollow, "target.bmp").exit_code, 2);
-  EXPECT_THAT(PrintBoard("id: 0\ntop_right_m: 90\nright_bottom_m: 90\n", "huge.png").err,
+  EXPECT_EQ(Print(two, "two.png", "--id 1").exit_code, 0);
+  EXPECT_EQ(Print(two, "two.png", "--id 5").exit_code, 2);
+  EXPECT_EQ(Print(kHollow, "target.bmp").exit_code, 2);
+  EXPECT_THAT(Print("id: 0\ntop_right_m: 90\nright_bottom_m: 90\n", "huge.png").err,
               HasSubstr("lower --dpi"));
-  EXPECT_EQ(PrintBoard("id: 0\ntop_right_m: 0\nright_bottom_m: 1\n", "zero.pdf").exit_code, 2);
+  EXPECT_EQ(Print("id: 0\ntop_right_m: 0\nright_bottom_m: 1\n", "zero.pdf").exit_code, 2);
 }
 
 }  // namespace
