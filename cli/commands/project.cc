@@ -73,7 +73,7 @@ Expected<Inputs> ReadInputs(const ProjectOptions& options) {
                      fmt::format("{} has no camera; expected its key 'camera', or --camera",
                                  options.result_path));
   }
-  inputs.camera = result.camera;
+  inputs.camera = *result.camera;
   if (!options.boards_path.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(std::vector<Board> boards, ReadBoards(options.boards_path));
     result.boards = std::move(boards);
