@@ -6,12 +6,12 @@
 #include <memory>
 #include <system_error>
 
-#include "cli/catalogue.h"
-#include "cli/load.h"
+#include "cli/output.h"
 #include "cli/progress.h"
 #include "eval/experiment/definition/timing.h"
 #include "eval/experiment/report/write_report.h"
 #include "io/text/text_file.h"
+#include "solvers/all/all_solvers.h"
 
 namespace sextant::cli {
 namespace {
@@ -29,6 +29,25 @@ Expected<void> WriteTiming(const Experiment& experiment, const std::filesystem::
 }
 
 }  // namespace
+
+void DeclareRun(ExperimentOptions& options, Arguments& arguments) {
+  arguments.Add("EXPERIMENT", options.experiment_path, "Experiment file (YAML)",
+                {.required = true});
+  arguments.Add("--out", options.out,
+                "Folder to write; a run that was stopped continues where it was.\n"
+                "Default: results/NAME");
+  arguments.Add("--solvers", options.solvers,
+                "Instead of the file's, separated by commas; conditions without data for them are\n"
+                "skipped");
+  arguments.Add("--threads", options.threads,
+                "Default: as many as the machine has; an MPI rank takes its share of them",
+                {.range = {{1, 1024}}});
+  arguments.Add("--trials", options.trials, "Instead of the file's", {.range = {{1, 1e9}}});
+  arguments.Add("--seed", options.seed, "Instead of the file's");
+  arguments.Add("--quick", options.quick, "The file's quick_trials instead of its trials");
+  arguments.Add("--fresh", options.fresh, "Delete existing rows first");
+  arguments.Add("--no-csv", options.no_csv, "Without rows.csv, which is large for many trials");
+}
 
 Expected<Experiment> LoadExperiment(const ExperimentOptions& options) {
   Expected<Experiment> experiment =

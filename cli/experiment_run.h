@@ -1,27 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
 
-#include "cli/commands.h"
+#include "cli/command.h"
 #include "eval/experiment/run/run_trials.h"
 
+// What `run`, `merge` and `sextant-mpi run` share.
 namespace sextant::cli {
 
-/// What `run`, `merge` and sextant-mpi share.
+struct ExperimentOptions {
+  std::string experiment_path{};
+  std::string out{};         ///< Folder; empty: results/NAME.
+  std::string solvers{};     ///< Empty: the file's.
+  int threads = 0;           ///< 0: all.
+  std::uint64_t trials = 0;  ///< 0: the number in the file.
+  std::optional<std::uint64_t> seed{};
+  bool quick = false;
+  bool fresh = false;
+  bool no_csv = false;
+};
 
-/// The experiment of the file, as the options change it.
+/// The arguments of a run, of one process or of one MPI rank.
+void DeclareRun(ExperimentOptions& options, Arguments& arguments);
+
+/// The experiment of the file, modified by the options. Errors: those of ReadExperiment.
 Expected<Experiment> LoadExperiment(const ExperimentOptions& options);
 
 /// The folder that the options name, else results/NAME.
 std::filesystem::path FolderOf(const ExperimentOptions& options, const Experiment& experiment);
+
+/// Error: kIo.
 Expected<void> MakeFolder(const std::filesystem::path& folder);
 
-/// RunTrials with a bar.
+/// RunTrials with a progress bar.
 Expected<RunOutcome> RunWithProgress(const Experiment& experiment, RunSettings settings);
 
-/// All that is made from the folder's finished rows: the timing, where the experiment asks for it,
-/// the report, and its tables on standard output. Returns the exit code.
+/// Everything that is made from the finished rows in the folder: the timing, if the experiment has
+/// one, the report, and its tables on standard output. Returns the exit code.
 int WriteAll(const char* command, const ExperimentOptions& options, const Experiment& experiment,
              const std::filesystem::path& folder);
 /// The same without the timing.

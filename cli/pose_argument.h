@@ -9,8 +9,8 @@
 
 namespace sextant::cli {
 
-/// A pose as the value of an option: a file that ReadPoseFile takes, or the seven values X Y Z QW
-/// QX QY QZ. Errors: kInvalidOption, with the option's name; those of the files' readers.
+/// A pose given as an option: a file for ReadPoseFile, or the seven values X Y Z QW QX QY QZ.
+/// Errors: kInvalidOption, with the option's name; those of the files' readers.
 Expected<Rigid3d> PoseFromArgument(const std::string& option,
                                    const std::vector<std::string>& values);
 

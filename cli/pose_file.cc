@@ -22,7 +22,7 @@ Expected<Rigid3d> FromResults(const std::string& path) {
   return MakeError(ErrorCode::kMissingData, path + ": expected a result with an answer");
 }
 
-// Whatever else the file says, now or in a later version, is none of our business.
+// Other keys, of this or a later version, are ignored.
 Expected<Rigid3d> ParsePoseYaml(std::string_view text, const std::string& file) {
   SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
   const YamlNode* node = root.Find("cam_from_lidar");

@@ -8,10 +8,9 @@
 
 namespace sextant::cli {
 
-/// cam_from_lidar from whatever file holds one: results of `sextant solve` (.json, the first
-/// answer), a YAML file with the key cam_from_lidar, or else a 4x4 matrix, a row a line (of
-/// several, as rts.txt of the original package has them, the first). Errors: kIo; kParse;
-/// kMissingData.
+/// Reads cam_from_lidar from results of `sextant solve` (.json, the first answer), from a YAML file
+/// with the key cam_from_lidar, or else from a 4x4 matrix with one row per line (the first matrix,
+/// if there are several as in rts.txt of the original package). Errors: kIo; kParse; kMissingData.
 Expected<Rigid3d> ReadPoseFile(const std::string& path);
 
 }  // namespace sextant::cli

@@ -8,7 +8,7 @@
 
 namespace sextant::cli {
 
-/// A bar with the time left on standard error, where that is a terminal; silent elsewhere.
+/// A progress bar with the time left, on standard error if that is a terminal; else silent.
 class Progress {
  public:
   Progress(std::string what, long total);
@@ -16,9 +16,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// One step is done. Thread-safe.
+  /// Counts one more step as done. Thread-safe.
   void Step() { Set(++done_); }
-  /// So many steps are done. Thread-safe.
+  /// Sets the number of steps done. Thread-safe.
   void Set(long done);
 
  private:

@@ -20,6 +20,24 @@ Expected<LidarBeam> BeamOf(const SearchArguments& arguments) {
 
 }  // namespace
 
+void DeclareSearch(SearchArguments& search, Arguments& arguments) {
+  arguments.Add("--region", search.region, "Search only in x y z x y z [m], LiDAR frame",
+                {.min_values = 6});
+  arguments.Add("--raw-edges", search.raw_edges,
+                "Put edges at the last return, uncorrected for sample steps and beam width");
+  arguments.Add("--lidar", search.lidar,
+                "Sensor, for the width of its beam: vlp16, os1_64, ... of sextant list lidars",
+                {.shows_default = true});
+  arguments.Add("--beam-aperture", search.aperture_m,
+                "For another sensor: width of the beam at the sensor [m]");
+  arguments.Add("--beam-divergence", search.divergence_rad,
+                "For another sensor: full divergence angle [rad]");
+  arguments.Add("--edge-growth", search.growth,
+                "How far beyond an edge the board still gives returns, as a share of the beam's\n"
+                "width");
+  arguments.Add("--seed", search.seed, "Seed of the search for planes", {.shows_default = true});
+}
+
 Expected<BoardSearchOptions> SearchOptionsFrom(const SearchArguments& arguments) {
   SEXTANT_ASSIGN_OR_RETURN(const LidarBeam beam, BeamOf(arguments));
   BoardSearchOptions search{

@@ -7,26 +7,29 @@
 #include <vector>
 
 #include "base/error.h"
+#include "cli/command.h"
 #include "features/lidar/board_finder.h"
 
 namespace sextant::cli {
 
-/// How a user restricts and tunes the search for boards in scans.
+/// The options of every command that searches scans for boards.
 struct SearchArguments {
   std::vector<double> region{};  ///< Low and high corner in the LiDAR frame [m]; empty: everywhere.
   bool raw_edges = false;
-  std::string lidar = "vlp16";         ///< Whose beam.
-  std::optional<double> aperture_m{};  ///< Both ways, where the sensor is not among them...
+  std::string lidar = "vlp16";         ///< Sensor that determines the width of the beam...
+  std::optional<double> aperture_m{};  ///< ...or these, for another sensor.
   std::optional<double> divergence_rad{};
   std::optional<double> growth{};
   std::uint64_t seed = 1;
 };
 
-/// Errors: kInvalidOption for a region whose corners are the wrong way round; kUnknownName for the
-/// sensor.
+void DeclareSearch(SearchArguments& search, Arguments& arguments);
+
+/// Errors: kInvalidOption for a region whose low corner is not below its high corner; kUnknownName
+/// for the sensor.
 Expected<BoardSearchOptions> SearchOptionsFrom(const SearchArguments& arguments);
 
-/// "name: value" of each, as a result's configuration lists them.
+/// One line "name: value" per option, for the configuration in a result.
 std::vector<std::string> ConfigurationOf(const SearchArguments& arguments);
 
 }  // namespace sextant::cli

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/session_bag.h"
-
 #include <fmt/core.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <string>
 
 #include "calibrate/observe/photo_file.h"
+#include "cli/recordings.h"
 #include "io/bag/rosbag1_writer.h"
 #include "io/cameras/camera_file.h"
 #include "io/clouds/pcd_file.h"
@@ -16,7 +15,7 @@
 namespace sextant::cli {
 namespace {
 
-// ROS takes time zero for no time at all, and its tools pass over messages of it.
+// In ROS, time zero means no time, and its tools skip messages with it.
 constexpr double kSessionStart_s = 1.0;
 // ROS 1 counts seconds in 32 bits.
 constexpr double kLongestSession_s = 4e9;
@@ -58,9 +57,9 @@ class SessionRecorder {
 
   Expected<void> Record(const std::vector<ScanTruth>& scans) {
     for (const SceneCamera& camera : scene_.cameras) {
-      SEXTANT_ASSIGN_OR_RETURN(const Camera told,
+      SEXTANT_ASSIGN_OR_RETURN(const Camera camera_info,
                                ReadCamera(folder_ / (camera.name + "_info.yaml")));
-      cameras_.push_back(told);
+      cameras_.push_back(camera_info);
     }
     for (const ScanTruth& scan : scans) {
       if (Expected<void> ok = RecordScan(scan); !ok) return ok;

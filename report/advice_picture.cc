@@ -10,7 +10,7 @@
 
 #include "geometry/board_check.h"
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
 constexpr int kHeight_px = 620;
@@ -211,4 +211,4 @@ cv::Mat DrawAdvice(const CalibrationResult& result, const SensorPair& sensors,
   return canvas;
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

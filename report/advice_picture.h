@@ -6,11 +6,11 @@
 
 #include "calibrate/advise/advise.h"
 
-namespace sextant::cli {
+namespace sextant {
 
-/// The proposals, numbered, and the boards of the views there are: from above on the left, in the
-/// camera's image on the right with the LiDAR's returns that are foreseen on them.
+/// Draws the proposals, numbered, and the boards of the existing views: from above on the left, and
+/// in the camera's image on the right, with the predicted LiDAR returns on the proposals.
 cv::Mat DrawAdvice(const CalibrationResult& result, const SensorPair& sensors,
                    const std::vector<BoardProposal>& proposals);
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -11,10 +11,10 @@
 
 #include "features/camera/tag_pattern.h"
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
-constexpr double kPoints_a_m = 72.0 / 0.0254;
+constexpr double kPointsPerMetre = 72.0 / 0.0254;
 constexpr double kBorder_m = 0.02;
 constexpr double kLine_m = 0.0003;
 constexpr double kRuler_m = 0.1;
@@ -36,7 +36,7 @@ void StrokeRectangle(cairo_t* cr, const Eigen::Vector2d& centre, double width, d
   cairo_stroke(cr);
 }
 
-// One path for all cells: filled together, neighbours leave no seam.
+// One path for all cells, so that neighbouring cells have no seam between them.
 Expected<void> DrawTag(cairo_t* cr, const BoardTag& tag) {
   SEXTANT_ASSIGN_OR_RETURN(const TagPattern pattern, MakeTagPattern(tag.family, tag.id));
   const double cell_m = tag.edge_m / pattern.edge_cells;
@@ -74,7 +74,7 @@ void DrawText(cairo_t* cr, double x, double y, const std::string& text) {
   cairo_show_text(cr, text.c_str());
 }
 
-// Below the board, outside the cut: a ruler, and what this is.
+// A ruler and a label, below the board and outside the cut line.
 void DrawLegend(cairo_t* cr, const Board& board, const std::string& source) {
   const double left = -0.5 * board.top_right_m;
   const double top = 0.5 * board.right_bottom_m + 0.006;
@@ -88,16 +88,16 @@ void DrawLegend(cairo_t* cr, const Board& board, const std::string& source) {
   cairo_stroke(cr);
   cairo_set_font_size(cr, 0.003);
   DrawText(cr, left, top + 0.0065,
-           fmt::format("0 to {:.0f} mm: measure it. {}, board {}{}, {:.1f} x {:.1f} mm, corner 0 "
+           fmt::format("0 to {:.0f} mm: measure this. {}, board {}{}, {:.1f} x {:.1f} mm, corner 0 "
                        "at the top left",
                        ruler_m * 1e3, source, board.id, board.name.empty() ? "" : " " + board.name,
                        board.top_right_m * 1e3, board.right_bottom_m * 1e3));
 }
 
 Expected<void> DrawBoard(cairo_t* cr, const Board& board, const std::string& source,
-                         double units_a_m) {
+                         double units_per_m) {
   cairo_save(cr);
-  cairo_scale(cr, units_a_m, units_a_m);
+  cairo_scale(cr, units_per_m, units_per_m);
   cairo_set_source_rgb(cr, 1.0, 1.0, 1.0);
   cairo_paint(cr);
   cairo_set_source_rgb(cr, 0.0, 0.0, 0.0);
@@ -116,13 +116,14 @@ Expected<void> DrawBoard(cairo_t* cr, const Board& board, const std::string& sou
   return {};
 }
 
-Surface MakeSurface(const Board& first, DrawingFormat format, double units_a_m, std::string* text) {
-  const double width = PageWidth(first) * units_a_m;
-  const double height = PageHeight(first) * units_a_m;
+Surface MakeSurface(const Board& first, DrawingFormat format, double units_per_m,
+                    std::string* text) {
+  const double width = PageWidth(first) * units_per_m;
+  const double height = PageHeight(first) * units_per_m;
   cairo_surface_t* surface = nullptr;
   if (format == DrawingFormat::kPdf) {
     surface = cairo_pdf_surface_create_for_stream(Append, text, width, height);
-    // The same board gives the same bytes.
+    // A fixed date, so that the same board gives the same bytes.
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
   } else if (format == DrawingFormat::kSvg) {
     surface = cairo_svg_surface_create_for_stream(Append, text, width, height);
@@ -140,27 +141,27 @@ Expected<std::string> DrawBoards(const std::vector<Board>& boards, const std::st
   if (boards.empty() || (format != DrawingFormat::kPdf && boards.size() > 1)) {
     return MakeError(
         ErrorCode::kInvalidInput,
-        fmt::format("{}: {} boards; a picture holds one: choose it by --id, or write a "
+        fmt::format("{}: {} boards, but a picture holds one: choose it with --id, or write a "
                     ".pdf",
                     source, boards.size()));
   }
-  const double units_a_m = format == DrawingFormat::kPng ? png_dpi / 0.0254 : kPoints_a_m;
+  const double units_per_m = format == DrawingFormat::kPng ? png_dpi / 0.0254 : kPointsPerMetre;
   if (format == DrawingFormat::kPng &&
-      PageWidth(boards[0]) * PageHeight(boards[0]) * units_a_m * units_a_m > kMaxPngPixels) {
+      PageWidth(boards[0]) * PageHeight(boards[0]) * units_per_m * units_per_m > kMaxPngPixels) {
     return MakeError(
         ErrorCode::kInvalidInput,
         fmt::format("{}: the board has too many pixels at {:g} dpi; lower --dpi", source, png_dpi));
   }
   std::string text;
-  const Surface surface = MakeSurface(boards[0], format, units_a_m, &text);
+  const Surface surface = MakeSurface(boards[0], format, units_per_m, &text);
   {
     const Context context(cairo_create(surface.get()), cairo_destroy);
     for (const Board& board : boards) {
       if (format == DrawingFormat::kPdf) {
-        cairo_pdf_surface_set_size(surface.get(), PageWidth(board) * units_a_m,
-                                   PageHeight(board) * units_a_m);
+        cairo_pdf_surface_set_size(surface.get(), PageWidth(board) * units_per_m,
+                                   PageHeight(board) * units_per_m);
       }
-      SEXTANT_RETURN_IF_ERROR(DrawBoard(context.get(), board, source, units_a_m));
+      SEXTANT_RETURN_IF_ERROR(DrawBoard(context.get(), board, source, units_per_m));
       if (format == DrawingFormat::kPdf) cairo_show_page(context.get());
     }
   }
@@ -176,4 +177,4 @@ Expected<std::string> DrawBoards(const std::vector<Board>& boards, const std::st
   return text;
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

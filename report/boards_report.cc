@@ -11,12 +11,12 @@
 #include "base/version.h"
 #include "eval/statistics/text_table.h"
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMaxRejected = 3;  // In text; JSON has them all.
+constexpr std::size_t kMaxRejected = 3;  // In the text; the JSON has all.
 
 std::string NameOf(const Board& board) {
   return board.name.empty() ? fmt::format("board {}", board.id)
@@ -81,9 +81,9 @@ std::string DescribeMissing(const ScanReport& report, const std::vector<Board>& 
   }
   if (text.empty()) return text;
   if (report.search.rejected.empty()) {
-    return text + "  nothing flat of about its size stands free in the scan\n";
+    return text + "  the scan has no free-standing plane of about its size\n";
   }
-  text += "  what is flat and nearest to it in size, and why it is none:\n";
+  text += "  the planes nearest to it in size, and why they are not the board:\n";
   for (std::size_t i = 0; i < std::min(kMaxRejected, report.search.rejected.size()); ++i) {
     const RejectedPatch& patch = report.search.rejected[i];
     text += fmt::format("    at ({:.2f}, {:.2f}, {:.2f}) m, {} returns on {} rings: {}\n",
@@ -177,4 +177,4 @@ std::string ScansJson(const std::vector<ScanReport>& reports, const std::vector<
   return json.dump(2) + "\n";
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -7,24 +7,24 @@
 
 #include "features/lidar/corner_extractor.h"
 
-namespace sextant::cli {
+namespace sextant {
 
-/// What was found in one scan.
+/// The result of the search in one scan.
 struct ScanReport {
   std::string path{};
-  std::optional<Error> failure{};  ///< Why it could not be read; then the rest is empty.
+  std::optional<Error> failure{};  ///< Set if the scan could not be read; then the rest is empty.
   int returns = 0;
   int rings = 0;
   BoardSearch search{};
   std::vector<Expected<LidarCorners>> corners{};  ///< One for each board found.
 };
 
-/// For people: every board with its corners and checks, and what was not found and why.
+/// For people: every board with its corners and checks, and the reason for each that was not found.
 std::string DescribeScans(const std::vector<ScanReport>& reports, const std::vector<Board>& boards,
                           const std::string& extractor);
 
-/// For tools; docs/formats.md.
+/// For programs; see docs/formats.md.
 std::string ScansJson(const std::vector<ScanReport>& reports, const std::vector<Board>& boards,
                       const std::string& extractor);
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -14,7 +14,7 @@
 #include "io/text/number_text.h"
 #include "report/report_text.h"
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
 constexpr std::size_t kLineWidth = 100;
@@ -118,4 +118,4 @@ std::string Wrapped(const std::string& text, std::size_t width) {
   return wrapped + "\n";
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -6,7 +6,7 @@
 
 #include "calibrate/calibrate.h"
 
-namespace sextant::cli {
+namespace sextant {
 
 /// All that `sextant calibrate` prints: the boards of each view, the answer with its error against
 /// the truth where known, the other solvers' answers, the warnings, and the closing words. Without
@@ -16,4 +16,4 @@ std::string DescribeCalibration(const Calibration& calibration);
 /// The text in lines of at most `width` characters, broken at blanks.
 std::string Wrapped(const std::string& text, std::size_t width);
 
-}  // namespace sextant::cli
+}  // namespace sextant

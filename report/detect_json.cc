@@ -5,7 +5,7 @@
 #include "io/blocks/json_blocks.h"
 #include "report/detect_report.h"
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
 using nlohmann::ordered_json;
@@ -134,4 +134,4 @@ std::string FormatDetections(const std::vector<std::string>& paths,
   return document.dump(2) + "\n";
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

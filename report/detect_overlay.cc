@@ -7,13 +7,14 @@
 #include "report/detect_report.h"
 #include "report/fixed_point.h"
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
 const cv::Scalar kTag(0, 200, 0);
 const cv::Scalar kStranger(160, 160, 160);
 const cv::Scalar kBoardOutline(0, 160, 255);
 const cv::Scalar kFirstCorner(0, 0, 255);
+
 void DrawLine(cv::Mat& canvas, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
               const cv::Scalar& colour) {
   cv::line(canvas, FixedPoint(a), FixedPoint(b), colour, 2, cv::LINE_AA, kFixedPointShift);
@@ -29,7 +30,7 @@ void DrawTag(cv::Mat& canvas, const Quad& corners, const std::string& label,
               0.7, kFirstCorner, 2, cv::LINE_AA);
 }
 
-// A straight edge of the board bends in a distorted image: drawn in pieces.
+// Drawn in pieces, because a straight edge of the board is curved in a distorted image.
 void DrawEdge(cv::Mat& canvas, const Camera& camera, const Eigen::Vector3d& a,
               const Eigen::Vector3d& b) {
   constexpr int kPieces = 16;
@@ -82,4 +83,4 @@ cv::Mat DrawDetection(const cv::Mat& image, const ImageReport& report,
   return canvas;
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -10,12 +10,12 @@
 #include "features/camera/explain_missing.h"
 #include "features/camera/find_boards.h"
 
-namespace sextant::cli {
+namespace sextant {
 
 /// A tag of a board that was not found, and why.
 struct ExplainedTag {
-  std::size_t board = 0;  ///< Into the boards that were looked for.
-  std::size_t tag = 0;    ///< Into Board::tags.
+  std::size_t board = 0;  ///< Index into the boards that were searched for.
+  std::size_t tag = 0;    ///< Index into Board::tags.
   MissingTag why{};
 };
 
@@ -23,19 +23,20 @@ struct ExplainedTag {
 struct ImageReport {
   std::string path{};
   cv::Size size{};
-  SeenBoards seen{};  ///< Its other_tags are all tags where no board is given.
+  SeenBoards seen{};  ///< Without a board, `other_tags` has all tags.
   std::vector<ExplainedTag> missing{};
-  std::vector<CheckerDetection> checkers{};   ///< Where no board is given.
-  std::vector<FamilyMatch> other_families{};  ///< Where no board is given and no tag was found.
-  bool sought_checkers = false;  ///< Where no board is given: checkerboards instead of tags.
+  std::vector<CheckerDetection> checkers{};   ///< Without a board.
+  std::vector<FamilyMatch> other_families{};  ///< Without a board, if no tag was found.
+  bool sought_checkers = false;  ///< Without a board: the detector finds checkerboards.
 };
 
-/// An image's report, or why there is none; the error's message names the file.
+/// The report of an image, or an error whose message names the file.
 using ImageResult = Expected<ImageReport>;
 
+/// For people.
 std::string DescribeDetection(const ImageReport& report, const std::vector<Board>& boards);
 
-/// {"sextant", "images": [...]}, see docs/formats.md.
+/// For programs: {"sextant", "images": [...]}; see docs/formats.md.
 std::string FormatDetections(const std::vector<std::string>& paths,
                              const std::vector<ImageResult>& results,
                              const std::vector<Board>& boards);
@@ -44,4 +45,4 @@ std::string FormatDetections(const std::vector<std::string>& paths,
 cv::Mat DrawDetection(const cv::Mat& image, const ImageReport& report,
                       const std::vector<Board>& boards, const std::optional<Camera>& camera);
 
-}  // namespace sextant::cli
+}  // namespace sextant

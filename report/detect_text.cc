@@ -8,7 +8,7 @@
 #include "base/units.h"
 #include "report/detect_report.h"
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
 double MeanSide(const Quad& quad) {
@@ -22,7 +22,7 @@ std::string DescribeTag(const TagDetection& tag, const Quad& corners) {
   for (const Eigen::Vector2d& corner : corners) {
     text += fmt::format(" ({:.2f}, {:.2f})", corner.x(), corner.y());
   }
-  return text + fmt::format(", {:.0f} px a side, margin {:.0f}, {} wrong bits", MeanSide(corners),
+  return text + fmt::format(", {:.0f} px per side, margin {:.0f}, {} wrong bits", MeanSide(corners),
                             tag.decision_margin, tag.hamming);
 }
 
@@ -38,12 +38,13 @@ std::string DescribeSeenTag(const SeenTag& seen) {
                      seen.refined->blur_px);
 }
 
-constexpr std::string_view kTakenUp = ", taken the way round that has its corner 0 up";
+// Of the orientations that are possible.
+constexpr std::string_view kAssumedUpright = ", in the orientation with its corner 0 at the top";
 
 std::string DescribeChecker(const CheckerDetection& checker) {
   std::string text =
       fmt::format("  checkerboard of {} x {} inner corners{}:", checker.inner_columns,
-                  checker.inner_rows, checker.is_turn_known ? "" : kTakenUp);
+                  checker.inner_rows, checker.is_turn_known ? "" : kAssumedUpright);
   const auto columns = static_cast<std::size_t>(checker.inner_columns);
   for (std::size_t i = 0; i < checker.corners_px.size(); ++i) {
     const Eigen::Vector2d& corner = checker.corners_px[i];
@@ -72,8 +73,8 @@ std::string DescribePose(const SeenBoard& board) {
   }
   if (pose.ambiguous_with) {
     text += fmt::format(
-        "    ambiguous: leaning the other way, {:.1f} deg from this, fits about as well "
-        "(chi-square +{:.1f}); another tag on the board or a nearer view decides\n",
+        "    ambiguous: the opposite tilt, {:.1f} deg from this, fits about as well "
+        "(chi-square +{:.1f}); add a tag to the board or move it nearer\n",
         kDegPerRad * DistanceBetween(pose.cam_from_board, *pose.ambiguous_with).rotation_rad,
         pose.ambiguity_chi_square);
   }
@@ -89,13 +90,13 @@ std::string DescribeBoard(const ImageReport& report, const SeenBoard& seen, cons
     text += fmt::format(": checkerboard of {} x {} inner corners {}", board.checker->inner_columns,
                         board.checker->inner_rows, seen.checker ? "found" : "not found");
     if (seen.checker && !seen.checker->is_turn_known) {
-      text += kTakenUp;
+      text += kAssumedUpright;
     }
   }
   text += "\n";
   for (const SeenTag& tag : seen.tags) text += DescribeSeenTag(tag);
   for (const std::size_t tag : seen.duplicate_tags) {
-    text += fmt::format("    tag {} of {}: there more than once, so not used\n", board.tags[tag].id,
+    text += fmt::format("    tag {} of {}: found more than once, so not used\n", board.tags[tag].id,
                         board.tags[tag].family);
   }
   for (const ExplainedTag& missing : report.missing) {
@@ -130,4 +131,4 @@ std::string DescribeDetection(const ImageReport& report, const std::vector<Board
   return text;
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -4,15 +4,16 @@
 #include <Eigen/Core>
 #include <opencv2/core/types.hpp>
 
-namespace sextant::cli {
+namespace sextant {
 
-/// OpenCV's fixed point, for positions between pixels; it counts from pixel centres as we do.
+/// OpenCV's fixed-point coordinates, for positions between pixels; as ours, they are relative to
+/// pixel centres.
 inline constexpr int kFixedPointShift = 4;
 
 inline cv::Point FixedPoint(const Eigen::Vector2d& pixel) {
-  constexpr double kFar = 1e6;  // Beyond, the fixed point would overflow; it is off the image.
+  constexpr double kFar = 1e6;  // Farther positions are outside any image and would overflow.
   const Eigen::Vector2d p = pixel.cwiseMax(-kFar).cwiseMin(kFar) * (1 << kFixedPointShift);
   return {cvRound(p.x()), cvRound(p.y())};
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -7,10 +7,10 @@
 #include <map>
 #include <utility>
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
-// The returns by cells as large as the window, so that nine of them hold all neighbours.
+// The returns in a grid of cells of the window's size, so that nine cells contain all neighbours.
 class Neighbourhood {
  public:
   Neighbourhood(const std::vector<ProjectedReturn>& returns, const Eigen::Vector2d& window)
@@ -67,4 +67,4 @@ std::vector<bool> HiddenReturns(const std::vector<ProjectedReturn>& returns,
   return hidden;
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

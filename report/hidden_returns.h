@@ -5,19 +5,19 @@
 
 #include "report/projected_scan.h"
 
-namespace sextant::cli {
+namespace sextant {
 
-/// How far apart the samples of a scan are in the picture.
+/// Distance between neighbouring samples of a scan in the picture.
 struct SampleSpacing {
   double across_px = 1.0;
   double down_px = 1.0;
 };
 
-/// Which of the returns something nearer hides from the camera, though the LiDAR saw them: the
-/// sensors stand apart. A return counts as hidden where others, nearer to the camera by a tenth and
-/// 0.2 m, surround it: in three of its four quadrants within two samples. One beside an edge is
-/// not.
+/// Returns that are visible to the LiDAR and hidden from the camera by something nearer, because
+/// the sensors are in different places. A return is hidden if returns that are nearer to the camera
+/// by a tenth and 0.2 m surround it: in at least three of its four quadrants, within two samples. A
+/// return beside an edge is not hidden.
 std::vector<bool> HiddenReturns(const std::vector<ProjectedReturn>& returns,
                                 const SampleSpacing& spacing);
 
-}  // namespace sextant::cli
+}  // namespace sextant

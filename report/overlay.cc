@@ -10,7 +10,7 @@
 #include "calibrate/observe/photo_file.h"
 #include "report/fixed_point.h"
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
 constexpr double kMagnification = 10.0;
@@ -99,4 +99,4 @@ Expected<void> DrawOverlay(const CalibrationProblem& problem, const SolveReport&
   return WriteImage(canvas, out);
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

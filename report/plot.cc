@@ -19,7 +19,7 @@ Expected<std::string> TerminalFor(const std::filesystem::path& path) {
                    fmt::format("{}: expected a plot that ends in .svg or .png", path.string()));
 }
 
-// In gnuplot's single quotes a quote is doubled and nothing else is special.
+// Inside gnuplot's single quotes a quote is doubled; nothing else is special.
 std::string Quote(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
@@ -84,8 +84,8 @@ Expected<void> DrawPlot(const std::string& commands, const std::filesystem::path
     return MakeError(ErrorCode::kIo, "plots need gnuplot: install the package gnuplot-nox");
   }
   return MakeError(ErrorCode::kIo,
-                   fmt::format("{}: gnuplot could not write the plot; is the folder "
-                               "there and writable?",
+                   fmt::format("{}: gnuplot could not write the plot; does the folder "
+                               "exist, and is it writable?",
                                path.string()));
 }
 
@@ -101,7 +101,7 @@ std::string ResidualPlot(const CalibrationProblem& problem,
   for (std::size_t k = 0; k < answers.size(); ++k) {
     data += fmt::format("$answer{} << EOD\n", k);
     const std::vector<double>& of_answer = residuals.Of(*answers[k]);
-    // Side by side within each pair's unit of the axis, so that equal residuals stay visible.
+    // The solvers have different positions within each pair, so that equal residuals stay visible.
     const double offset =
         0.7 * ((static_cast<double>(k) + 0.5) / static_cast<double>(answers.size()) - 0.5);
     for (std::size_t i = 0; i < of_answer.size(); ++i) {

@@ -10,12 +10,14 @@
 
 namespace sextant {
 
-/// Draws gnuplot commands into a file, .svg or .png by its extension; the file appears whole or not
-/// at all. Errors: kInvalidOption (another extension), kIo (gnuplot missing or refusing).
+/// Runs gnuplot commands that draw into a file, .svg or .png by its extension; the file is written
+/// whole or not at all. Errors: kInvalidOption (another extension), kIo (gnuplot is missing or
+/// fails).
 Expected<void> DrawPlot(const std::string& commands, const std::filesystem::path& path);
 
-/// Commands that plot the residual of every pair under every solver that answered: millimetres of
-/// the 3D-3D pairs, else pixels of the 2D-3D pairs; pairs are grouped by view and board.
+/// Commands that plot the residual of every pair for every solver with an answer: of the 3D-3D
+/// pairs in millimetres, or else of the 2D-3D pairs in pixels; pairs are labelled
+/// view.board.corner.
 std::string ResidualPlot(const CalibrationProblem& problem, const std::vector<ComparisonRow>& rows);
 
 }  // namespace sextant

@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-namespace sextant::cli {
+namespace sextant {
 
 std::vector<ProjectedReturn> ProjectScan(const PointCloud& scan, const Camera& camera,
                                          const Rigid3d& cam_from_lidar) {
@@ -42,4 +42,4 @@ ReturnCount CountReturns(const std::vector<ProjectedReturn>& returns,
   return count;
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

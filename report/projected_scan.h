@@ -7,27 +7,27 @@
 #include "geometry/point_cloud.h"
 #include "geometry/scan_marks.h"
 
-namespace sextant::cli {
+namespace sextant {
 
-/// A return where the scan, projected, shows it.
+/// A return of a scan with its position in the picture.
 struct ProjectedReturn {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  double range_m = 0.0;     ///< From the LiDAR.
-  double distance_m = 0.0;  ///< From the camera.
-  int ring = -1;            ///< -1 where the scan does not tell it.
+  double range_m = 0.0;     ///< Distance from the LiDAR.
+  double distance_m = 0.0;  ///< Distance from the camera.
+  int ring = -1;            ///< -1 if the scan has no rings.
 };
 
-/// The returns in front of the camera and within one picture's size of it, the farthest first, so
-/// that nearer ones are drawn over them.
+/// The returns in front of the camera and in the picture or a margin of its size around it; sorted
+/// from far to near, so that nearer ones are drawn over farther ones.
 std::vector<ProjectedReturn> ProjectScan(const PointCloud& scan, const Camera& camera,
                                          const Rigid3d& cam_from_lidar);
 
-/// What a quadrilateral holds.
+/// The returns inside a quadrilateral.
 struct ReturnCount {
   int returns = 0;
-  int rings = 0;  ///< 0 where the scan does not tell them.
+  int rings = 0;  ///< 0 if the scan has no rings.
 };
 ReturnCount CountReturns(const std::vector<ProjectedReturn>& returns,
                          const Quadrilateral& quadrilateral);
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -9,10 +9,10 @@
 #include "base/units.h"
 #include "eval/statistics/text_table.h"
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
-// More residuals than a screen shows go to the JSON only.
+// If there are more residuals than fit on a screen, only the JSON has them.
 constexpr std::size_t kMaxResiduals = 64;
 
 std::string DescribePose(const Rigid3d& pose) {
@@ -36,7 +36,7 @@ std::string DescribePose(const Rigid3d& pose) {
 
 std::string DescribeUncertainty(const SolveReport& report) {
   if (!report.covariance) {
-    return "  1 sigma                    not known: no residual is left to judge by\n";
+    return "  1 sigma                    uncertainty unavailable: no redundant data\n";
   }
   const Vector6d sigma = report.covariance->diagonal().cwiseMax(0.0).cwiseSqrt();
   return fmt::format(
@@ -68,7 +68,7 @@ std::string DescribeBoardViews(const std::vector<BoardViewFit>& fits) {
   return table.Plain();
 }
 
-// `inliers` is null where the solver does not say which pairs of this kind it used.
+// `inliers` is null if the solver does not report which pairs of this kind it used.
 template <class Pair>
 std::string DescribeResiduals(const std::vector<Pair>& pairs, const std::vector<double>& residuals,
                               const std::vector<int>* inliers, const char* unit, double scale) {
@@ -123,8 +123,8 @@ std::string DescribeAnswer(const SolveReport& report) {
                         *evaluation.rmse_px, evaluation.per_pair_px.size());
   }
   text += DescribeUncertainty(report);
-  if (report.camera) text += DescribeNumbers("camera, estimated too", report.camera->estimated);
-  if (!report.extras.empty()) text += DescribeNumbers("estimated too", report.extras);
+  if (report.camera) text += DescribeNumbers("camera, also estimated", report.camera->estimated);
+  if (!report.extras.empty()) text += DescribeNumbers("also estimated", report.extras);
   for (const std::string& warning : report.warnings) {
     text += fmt::format("  note: {}\n", warning);
   }
@@ -148,7 +148,7 @@ std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& 
   const Evaluation& evaluation = report.evaluation;
   std::string text = DescribeAnswer(report);
   if (!report.board_views.empty()) text += DescribeBoardViews(report.board_views);
-  // The inliers are of one kind only; see Estimate.
+  // The inliers are indices into pairs of one kind only; see Estimate.
   const bool of_points = spec.needs.pairs_3d3d > 0;
   const std::vector<int>* point_inliers = of_points ? &report.inliers : nullptr;
   const std::vector<int>* pixel_inliers =
@@ -203,4 +203,4 @@ std::string DescribeComparison(const std::vector<ComparisonRow>& rows) {
   return table.Plain() + failures;
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -7,16 +7,17 @@
 #include "eval/metrics/compare.h"
 #include "solvers/core/solver.h"
 
-namespace sextant::cli {
+namespace sextant {
 
-/// An answer with its uncertainty and how well it fits in all.
+/// An answer with its uncertainty and its overall residuals.
 std::string DescribeAnswer(const SolveReport& report);
 
-/// Everything that `sextant solve` says of one answer: the same, and every residual.
+/// Everything that `sextant solve` prints about an answer: the same, and every residual.
 std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& spec,
                            const SolveReport& report);
 
-/// The table of `sextant compare`, a row a solver, and the reasons of those that did not answer.
+/// The table of `sextant compare`, one row per solver, and the reasons of solvers without an
+/// answer.
 std::string DescribeComparison(const std::vector<ComparisonRow>& rows);
 
-}  // namespace sextant::cli
+}  // namespace sextant

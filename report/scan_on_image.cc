@@ -12,7 +12,7 @@
 #include "report/hidden_returns.h"
 #include "report/projected_scan.h"
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
 bool IsWithin(const Eigen::Vector2d& pixel, const cv::Mat& canvas) {
@@ -20,7 +20,7 @@ bool IsWithin(const Eigen::Vector2d& pixel, const cv::Mat& canvas) {
          pixel.y() < canvas.rows - 0.5;
 }
 
-// Grey and half as bright, so that colours stand out.
+// Grey and darker, so that colours stand out.
 void MakePale(cv::Mat& canvas) {
   cv::Mat grey;
   cv::cvtColor(canvas, grey, cv::COLOR_BGR2GRAY);
@@ -35,7 +35,7 @@ SampleSpacing SpacingOf(const PointCloud& scan, const Camera& camera) {
           .down_px = camera.fy_px * rings->elevation_step_rad()};
 }
 
-// Of a share of the way from near to far, blue to red.
+// The colour for a range; share 0 is near and blue, 1 is far and red.
 cv::Vec3b ColourOf(double share) {
   static const cv::Mat table = [] {
     cv::Mat levels(1, 256, CV_8U);
@@ -59,12 +59,12 @@ void SetColourRange(const std::vector<ProjectedReturn>& returns, ScanOnImage& dr
 }
 
 double ShareOf(double range_m, const ScanOnImage& drawn) {
-  // By ratio: a metre at two metres tells more than one at twenty.
+  // Logarithmic, because a metre matters more at two metres than at twenty.
   return std::log(range_m / drawn.nearest_m) /
          std::log(std::max(1.001, drawn.farthest_m / drawn.nearest_m));
 }
 
-// A bar of the colours in the lower left corner, with the ranges of its ends.
+// A colour bar in the lower left corner, with the ranges at its ends and in its middle.
 void DrawScale(const ScanOnImage& drawn, cv::Mat& canvas) {
   const double unit = std::max(12.0, canvas.rows / 40.0);
   const int width = cvRound(12.0 * unit);
@@ -135,7 +135,7 @@ void DrawOutline(const std::vector<Eigen::Vector3d>& corners_in_cam, const Camer
 
 void DrawLabel(const std::string& text, const cv::Point& at, double height_px,
                const cv::Scalar& colour, cv::Mat& canvas) {
-  // Its capitals are 22 pixels high at scale 1.
+  // The font's capitals are 22 pixels high at scale 1.
   const double scale = height_px / 22.0;
   const int thickness = std::max(1, cvRound(1.6 * scale));
   cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, scale, cv::Scalar(0, 0, 0),
@@ -143,4 +143,4 @@ void DrawLabel(const std::string& text, const cv::Point& at, double height_px,
   cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, scale, colour, thickness, cv::LINE_AA);
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -9,33 +9,35 @@
 #include "geometry/point_cloud.h"
 #include "geometry/rigid3d.h"
 
-namespace sextant::cli {
+namespace sextant {
 
 struct ScanStyle {
   double point_px = 0.0;     ///< Diameter of a return; 0: by the image's size.
-  bool all_returns = false;  ///< Also those that something nearer hides.
+  bool all_returns = false;  ///< Also those that are hidden by something nearer.
 };
 
 /// What was drawn.
 struct ScanOnImage {
-  int returns = 0;  ///< Of the scan.
-  int in_view = 0;  ///< Within the image, hidden ones too.
+  int returns = 0;  ///< Number in the scan.
+  int in_view = 0;  ///< Number in the image, including hidden ones.
   int hidden = 0;
-  double nearest_m = 0.0;  ///< The colours' ends: 2 and 98 percent of the ranges in view.
+  double nearest_m =
+      0.0;  ///< Ends of the colour scale: 2nd and 98th percentile of the drawn ranges.
   double farthest_m = 0.0;
 };
 
-/// Draws the returns onto the image, which is made paler, coloured by range from blue to red, the
-/// farthest first, with a scale.
+/// Makes the image paler and draws the returns on it, coloured by range from blue (near) to red
+/// (far), with a scale.
 ScanOnImage DrawScanOnImage(const PointCloud& scan, const Camera& camera,
                             const Rigid3d& cam_from_lidar, const ScanStyle& style, cv::Mat& canvas);
 
-/// A closed outline of straight edges in the camera frame, bent as the lens bends it.
+/// Draws the outline of a board from its corners in the camera frame, with the distortion of the
+/// lens.
 void DrawOutline(const std::vector<Eigen::Vector3d>& corners_in_cam, const Camera& camera,
                  const cv::Scalar& colour, cv::Mat& canvas);
 
-/// Words with a dark rim, to be read on any image.
+/// Draws text with a dark rim, which is legible on any image.
 void DrawLabel(const std::string& text, const cv::Point& at, double height_px,
                const cv::Scalar& colour, cv::Mat& canvas);
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -10,10 +10,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "io/clouds/cloud_file.h"
+#include "io/images/image_codec.h"
 #include "io/text/text_file.h"
-#include "report/image_file.h"
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
 constexpr int kWidth_px = 1400;
@@ -24,7 +24,7 @@ constexpr double kMargin_rad = 6.0 * std::numbers::pi / 180.0;
 const cv::Scalar kOutline = {255, 255, 255};
 const cv::Scalar kCorner = {80, 80, 255};
 
-// Azimuth across, to the right as the sensor sees it, and elevation up.
+// Azimuth to the right, as seen from the sensor, and elevation up.
 class Panorama {
  public:
   Panorama(const Eigen::Vector2d& low, const Eigen::Vector2d& high) : low_(low), high_(high) {
@@ -58,7 +58,7 @@ class Panorama {
   cv::Mat canvas_;
 };
 
-// What is drawn: the boards with a margin, or the whole scan where none was found.
+// The part to draw: the boards with a margin, or the whole scan if no board was found.
 Panorama FrameOf(const ScanReport& report, const PointCloud& cloud) {
   std::vector<Eigen::Vector3d> points;
   for (const Expected<LidarCorners>& corners : report.corners) {
@@ -128,10 +128,10 @@ Expected<void> DrawScan(const std::string& scan, const ScanReport& report,
     if (corners) DrawBoard(*corners, boards[static_cast<std::size_t>(corners->board)], panorama);
   }
   cv::putText(panorama.canvas(),
-              fmt::format("{}: as the LiDAR sees it, near blue to far red", scan), {12, 28},
+              fmt::format("{}: as seen from the LiDAR, near blue to far red", scan), {12, 28},
               cv::FONT_HERSHEY_SIMPLEX, 0.6, {255, 255, 255}, 1, cv::LINE_AA);
-  SEXTANT_ASSIGN_OR_RETURN(const std::string png, EncodePng(panorama.canvas()));
+  SEXTANT_ASSIGN_OR_RETURN(const std::string png, EncodeImage(".png", panorama.canvas()));
   return WriteFileAtomically(out, png);
 }
 
-}  // namespace sextant::cli
+}  // namespace sextant

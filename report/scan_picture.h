@@ -7,12 +7,13 @@
 
 #include "report/boards_report.h"
 
-namespace sextant::cli {
+namespace sextant {
 
-/// Draws the scan as the sensor sees it, around its boards: azimuth across, elevation up, returns
-/// coloured by range, the outlines and corners found. The file (.png) appears whole or not at all.
+/// Draws the scan around its boards as seen from the sensor: azimuth to the right, elevation up,
+/// returns coloured by range, with the outlines and corners found. The file (.png) is written whole
+/// or not at all.
 /// Errors: kIo, and those of ReadCloud.
 Expected<void> DrawScan(const std::string& scan, const ScanReport& report,
                         const std::vector<Board>& boards, const std::filesystem::path& out);
 
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -5,11 +5,11 @@
 
 #include <array>
 #include <bit>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string_view>
 #include <vector>
 
+#include "io/images/image_codec.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
@@ -96,26 +96,16 @@ Expected<cv::Mat> ToMat(const ImageMessage& image) {
 }
 
 Expected<cv::Mat> ToMat(const EncodedImageMessage& image) {
-  try {
-    const std::vector<unsigned char> raw(image.data.begin(), image.data.end());
-    cv::Mat pixels;
-    if (!raw.empty()) pixels = cv::imdecode(raw, cv::IMREAD_ANYDEPTH | cv::IMREAD_ANYCOLOR);
-    if (!pixels.empty()) return pixels;
-    return Refuse("expected a PNG or JPEG");
-  } catch (const cv::Exception& error) {
-    return Refuse(fmt::format("expected an image: {}", Printable(error.err, 100)));
-  }
+  Expected<cv::Mat> pixels = DecodeImage(image.data, DecodedColor::kUnchanged);
+  if (pixels) return pixels;
+  return Refuse(Printable(pixels.error().message, 120));
 }
 
 Expected<std::string> EncodePng(const ImageMessage& image) {
   SEXTANT_ASSIGN_OR_RETURN(const cv::Mat pixels, ToMat(image));
-  try {
-    std::vector<unsigned char> png;
-    cv::imencode(".png", pixels, png);
-    return std::string(png.begin(), png.end());
-  } catch (const cv::Exception& error) {
-    return Refuse(fmt::format("OpenCV cannot encode it: {}", Printable(error.err, 100)));
-  }
+  Expected<std::string> png = EncodeImage(".png", pixels);
+  if (png) return png;
+  return Refuse(Printable(png.error().message, 120));
 }
 
 }  // namespace sextant

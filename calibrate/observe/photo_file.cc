@@ -3,10 +3,9 @@
 
 #include <fmt/core.h>
 
-#include <opencv2/imgcodecs.hpp>
 #include <string_view>
-#include <vector>
 
+#include "io/images/image_codec.h"
 #include "io/text/text_file.h"
 
 namespace sextant {
@@ -31,50 +30,33 @@ bool IsTruncated(std::string_view bytes) {
   return false;
 }
 
-Expected<cv::Mat> ReadAs(const std::filesystem::path& path, int mode) {
+Expected<cv::Mat> ReadAs(const std::filesystem::path& path, DecodedColor color) {
   SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, ReadTextFile(path));
   if (IsTruncated(bytes)) {
     return MakeError(ErrorCode::kParse,
                      fmt::format("{}: the image is cut off: its end is missing", path.string()));
   }
-  cv::Mat image;
-  try {
-    const std::vector<unsigned char> raw(bytes.begin(), bytes.end());
-    if (!raw.empty()) image = cv::imdecode(raw, mode);
-  } catch (const cv::Exception& error) {
-    return MakeError(ErrorCode::kParse,
-                     fmt::format("{}: expected an image: {}", path.string(), error.err));
-  }
-  if (image.empty()) {
-    return MakeError(ErrorCode::kParse,
-                     fmt::format("{}: expected an image, such as PNG or JPEG", path.string()));
-  }
-  return image;
+  Expected<cv::Mat> image = DecodeImage(bytes, color);
+  if (image) return image;
+  return MakeError(image.error().code, fmt::format("{}: {}", path.string(), image.error().message));
 }
 
 }  // namespace
 
 Expected<cv::Mat> ReadImage(const std::filesystem::path& path) {
-  return ReadAs(path, cv::IMREAD_ANYDEPTH | cv::IMREAD_ANYCOLOR);
+  return ReadAs(path, DecodedColor::kUnchanged);
 }
 
 Expected<cv::Mat> ReadColourImage(const std::filesystem::path& path) {
-  return ReadAs(path, cv::IMREAD_COLOR);
+  return ReadAs(path, DecodedColor::kBgr);
 }
 
 Expected<void> WriteImage(const cv::Mat& image, const std::filesystem::path& path) {
-  std::vector<unsigned char> bytes;
-  bool encoded = false;
-  try {
-    encoded = cv::imencode(path.extension().string(), image, bytes);
-  } catch (const cv::Exception&) {
-    encoded = false;
-  }
-  if (!encoded) {
-    return MakeError(ErrorCode::kInvalidOption,
-                     path.string() + ": expected an image that ends in .png or .jpg");
-  }
-  return WriteFileAtomically(path, std::string(bytes.begin(), bytes.end()));
+  const Expected<std::string> bytes = EncodeImage(path.extension().string(), image);
+  if (bytes) return WriteFileAtomically(path, *bytes);
+  if (bytes.error().code == ErrorCode::kIo) return tl::unexpected<Error>(bytes.error());
+  return MakeError(ErrorCode::kInvalidOption,
+                   path.string() + ": expected an image that ends in .png or .jpg");
 }
 
 }  // namespace sextant

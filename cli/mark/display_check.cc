@@ -22,9 +22,9 @@ std::string Variable(const char* name) {
   return value != nullptr ? value : "";
 }
 
-// Whether somebody listens on the socket of that name in the file system, or (first byte zero)
-// beside it.
-bool Answers(const std::string& name) {
+// Whether a process listens on the socket of that name, in the file system or, if the first byte is
+// zero, in the abstract namespace.
+bool HasListener(const std::string& name) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (name.size() >= sizeof(address.sun_path)) return false;
@@ -37,12 +37,13 @@ bool Answers(const std::string& name) {
   return ok;
 }
 
-// Displays of this machine are named ":0" or ":0.0"; of others ("host:10.0") the library finds out.
+// Displays of this machine are named ":0" or ":0.0". Whether others ("host:10.0") are reachable is
+// left to the library.
 bool IsUnreachable(const std::string& display) {
   if (!display.starts_with(':')) return false;
   const std::string number = display.substr(1, display.find('.') - 1);
   const std::string path = "/tmp/.X11-unix/X" + number;
-  return !Answers(path + '\0') && !Answers('\0' + path);
+  return !HasListener(path + '\0') && !HasListener('\0' + path);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 
 namespace sextant::cli {
 
-/// Whether a window can be opened. Window libraries end the whole process where they cannot, so
-/// this asks first. Error: kIo, with what to do.
+/// Whether a window can be opened. Window libraries end the whole process if they cannot open one,
+/// so this is checked first. Error: kIo, with advice.
 Expected<void> CheckDisplay();
 
 }  // namespace sextant::cli

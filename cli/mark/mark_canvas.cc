@@ -40,7 +40,7 @@ bool IsOn(const cv::Mat& canvas, const Eigen::Vector2d& at) {
   return at.x() > -8.0 && at.y() > -8.0 && at.x() < canvas.cols + 8.0 && at.y() < canvas.rows + 8.0;
 }
 
-// Larger dots where the picture is larger, as far as they do not hide each other.
+// Dots grow with the scale of the picture, but not so far that they hide each other.
 double DotRadius(double scale) { return std::clamp(0.9 + 0.5 * scale, 1.0, 3.5); }
 
 void DrawPhoto(const cv::Mat& photo, const MarkViewport& view, double brightness, cv::Mat& canvas) {
@@ -74,7 +74,7 @@ void DrawQuadrilateral(const Quadrilateral& quadrilateral, const MarkViewport& v
   cv::polylines(canvas, corners, true, color, 1, cv::LINE_AA, kFixedPointShift);
 }
 
-// Those that an area holds, with a rim of white; rims first, for neighbours touch.
+// The returns inside an area, with a white rim. The rims are drawn first, because neighbours touch.
 void DrawReturnsIn(const Quadrilateral& area, const MarkSession& session, const MarkViewport& view,
                    cv::Mat& canvas) {
   std::vector<ProjectedReturn> inside;
@@ -134,7 +134,7 @@ void DrawCorners(const MarkSession& session, const MarkViewport& view, cv::Mat& 
   }
 }
 
-// Thin lines through the pointer, so that it can be placed to a pixel.
+// Thin lines through the pointer, to place it to a pixel.
 void DrawCrosshair(const MarkController& controller, cv::Mat& canvas) {
   if (!controller.cursor()) return;
   const Eigen::Vector2d& at = *controller.cursor();

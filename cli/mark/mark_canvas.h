@@ -7,14 +7,14 @@
 
 namespace sextant::cli {
 
-/// Height of the bars above and below the picture, where the prompt and the keys stand.
+/// Height of the bars above and below the picture, with the prompt and the keys.
 inline constexpr int kMarkBar_px = 34;
 
-/// Draws what the window of `sextant mark` shows. Keeps what lies beneath the marks, which changes
-/// only with the view.
+/// Draws the contents of the window of `sextant mark`. Caches the layers beneath the marks, which
+/// change only with the view.
 class MarkCanvas {
  public:
-  /// `photo`: BGR, in the pixels of the scan's projection; empty where there is none.
+  /// `photo`: BGR, in the pixels of the scan's projection; empty if there is none.
   explicit MarkCanvas(cv::Mat photo) : photo_(std::move(photo)) {}
 
   /// BGR, of the viewport's canvas size.
@@ -25,7 +25,8 @@ class MarkCanvas {
 
   cv::Mat photo_;
   cv::Mat base_;
-  Eigen::Vector3d base_view_ = Eigen::Vector3d::Zero();  ///< Scale and offset it was drawn with.
+  Eigen::Vector3d base_view_ =
+      Eigen::Vector3d::Zero();  ///< Scale and offset with which it was drawn.
   MarkLayers base_layers_ = MarkLayers::kBoth;
 };
 

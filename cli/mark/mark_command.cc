@@ -2,22 +2,46 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 
-#include "cli/commands.h"
-#include "cli/load.h"
+#include "calibrate/observe/photo_file.h"
+#include "cli/commands/commands.h"
 #include "cli/mark/display_check.h"
 #include "cli/mark/mark_canvas.h"
 #include "cli/mark/mark_input.h"
 #include "cli/mark/mark_window.h"
+#include "cli/output.h"
 #include "io/boards/polygon_file.h"
 #include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {
 
-// Keeps the files beside the window: --out on demand, the autosave whenever the marks differ from
-// what is saved.
+void Declare(MarkOptions& options, Arguments& arguments) {
+  arguments.Add("--cloud", options.cloud_path, "The scan: PCD, PLY, KITTI .bin or CSV",
+                {.required = true});
+  arguments.Add("--image", options.image_path, "Its photo");
+  arguments.Add("--camera", options.camera_path,
+                "Intrinsics; default: an assumed camera with a view of 90 degrees");
+  arguments.Add("--cam-from-lidar", options.cam_from_lidar,
+                "Rough pose: results (JSON), rts.txt, or X Y Z QW QX QY QZ; default: the camera\n"
+                "looks along the LiDAR's x axis",
+                {.min_values = 1, .max_values = 7});
+  arguments.Add(
+      "--yaw", options.yaw_deg,
+      "Without a pose: turn the assumed camera to the left by this angle [deg]",
+      {.shows_default = true, .range = {{-360.0, 360.0}}, .excludes = "--cam-from-lidar"});
+  arguments.Add("--ids", options.ids, "Ids of the boards from left to right; default: 0, 1, ...");
+  arguments.Add("--out", options.out_path, "Polygon file to write, or to continue with",
+                {.shows_default = true});
+  arguments.Add("--render", options.render_path,
+                "Write a picture (PNG) of the window instead of opening it");
+  arguments.Add("--width", options.width_px, "Width of the window [px]",
+                {.shows_default = true, .range = {{320, 8192}}});
+  arguments.Add("--height", options.height_px, "Height of the window [px]",
+                {.shows_default = true, .range = {{240, 8192}}});
+}
+
+// Writes --out on request, and the autosave file whenever the marks differ from what is saved.
 class Keeper {
  public:
   Keeper(const MarkOptions& options, MarkController& controller, bool is_saved)
@@ -26,10 +50,10 @@ class Keeper {
   void Save() {
     const std::string text = FormatPolygons(controller_.session().marks());
     if (const Expected<void> ok = WriteFileAtomically(options_.out_path, text); !ok) {
-      controller_.Say(ok.error().message, false);
+      controller_.ShowMessage(ok.error().message, false);
       return;
     }
-    controller_.Say("saved " + options_.out_path, true);
+    controller_.ShowMessage("saved " + options_.out_path, true);
     out_is_current_ = true;
     RemoveAutosave();
   }
@@ -44,10 +68,10 @@ class Keeper {
     }
     const Expected<void> ok =
         WriteFileAtomically(AutosavePath(options_), FormatPolygons(session.marks()));
-    if (!ok) controller_.Say(ok.error().message, false);
+    if (!ok) controller_.ShowMessage(ok.error().message, false);
   }
 
-  /// Whether --out holds the marks; until the first save that is known only of those it began with.
+  /// Whether --out holds the marks. Before the first save, only the initial marks can be in it.
   bool IsSaved() const { return out_is_current_ && controller_.session().IsSaved(); }
 
  private:
@@ -74,17 +98,14 @@ std::string SummaryOf(const ScanMarks& marks) {
 }
 
 int Render(const std::string& path, const MarkController& controller, MarkCanvas& canvas) {
-  std::vector<unsigned char> bytes;
-  if (!path.ends_with(".png") || !cv::imencode(".png", canvas.Draw(controller), bytes)) {
+  if (!path.ends_with(".png")) {
     return Refuse("mark", {ErrorCode::kInvalidOption, path + ": expected a name in .png"});
   }
-  const Expected<void> ok = WriteFileAtomically(path, std::string(bytes.begin(), bytes.end()));
+  const Expected<void> ok = WriteImage(canvas.Draw(controller), path);
   return ok ? kAnswered : Refuse("mark", ok.error());
 }
 
-}  // namespace
-
-int RunMark(const MarkOptions& options) {
+int Run(const MarkOptions& options) {
   const bool renders = !options.render_path.empty();
   if (const Expected<void> ok = CheckDisplay(); !renders && !ok) return Refuse("mark", ok.error());
   Expected<MarkInput> input = LoadMarkInput(options);
@@ -93,7 +114,7 @@ int RunMark(const MarkOptions& options) {
                               input->marks.camera.width_px, input->marks.camera.height_px);
   MarkController controller(MarkSession(std::move(input->returns), input->marks, options.ids),
                             viewport, !input->photo.empty());
-  controller.Say(input->note, false);
+  controller.ShowMessage(input->note, false);
   MarkCanvas canvas(input->photo);
   if (renders) return Render(options.render_path, controller, canvas);
 
@@ -104,7 +125,8 @@ int RunMark(const MarkOptions& options) {
   if (!shown) return Refuse("mark", shown.error());
   const std::string summary = SummaryOf(controller.session().marks());
   if (!keeper.IsSaved()) {
-    fmt::print(stderr, "sextant mark: not saved: {}; kept in {}, the next start goes on with it\n",
+    fmt::print(stderr,
+               "sextant mark: not saved: {}; kept in {}, with which the next start continues\n",
                summary, AutosavePath(options).string());
     return kNoAnswer;
   }
@@ -115,6 +137,22 @@ int RunMark(const MarkOptions& options) {
   }
   fmt::print("{}: {}\n", options.out_path, summary);
   return kAnswered;
+}
+
+}  // namespace
+
+Command MarkCommand() {
+  constexpr const char* kFooter =
+      "Draw an area of four clicks around each edge of a board, where the rings leave the board: "
+      "the\n"
+      "top-left edge first, then clockwise, boards from left to right. h shows the keys. Unsaved "
+      "marks\n"
+      "are kept beside --out, and the next start continues with them.\n"
+      "Examples:\n"
+      "  sextant mark --cloud scan.pcd --yaw 90\n"
+      "  sextant mark --cloud scan.pcd --image photo.png --camera camera.yaml --out session.yaml";
+  return MakeCommand<MarkOptions>("mark", "Mark edges in a scan and corners in its photo by hand",
+                                  kFooter, Declare, Run);
 }
 
 }  // namespace sextant::cli

@@ -7,7 +7,7 @@ namespace {
 constexpr double kWheelStep = 1.25;
 constexpr double kKeyStep = 1.5;
 constexpr double kPanStep_px = 80.0;
-constexpr double kClickSlack_px = 4.0;  // A hand that clicks moves no farther.
+constexpr double kClickSlack_px = 4.0;  // Maximum movement during a click.
 
 }  // namespace
 
@@ -23,7 +23,7 @@ void MarkController::LeftUp(const Eigen::Vector2d& canvas) {
   pressed_at_.reset();
   if ((canvas - at).norm() > kClickSlack_px) return;
   message_.clear();
-  asked_to_quit_ = false;
+  quit_requested_ = false;
   session_.Click(viewport_.ToPixel(at));
 }
 
@@ -45,7 +45,7 @@ void MarkController::Wheel(const Eigen::Vector2d& canvas, bool nearer) {
 MarkRequest MarkController::Press(int key) {
   constexpr int kEscape = 27;
   const bool quits = key == 'q' || key == kEscape;
-  if (!quits) asked_to_quit_ = false;
+  if (!quits) quit_requested_ = false;
   message_.clear();
   if (quits) return Quit();
   if (key == 's') return MarkRequest::kSave;
@@ -79,7 +79,7 @@ bool MarkController::PressForMarks(int key) {
       if (has_photo_) {
         session_.SetMode(MarkMode::kCorners);
       } else {
-        message_ = "corners are clicked in a photo: give --image";
+        message_ = "corners are marked in a photo: give --image";
       }
       return true;
     default:
@@ -126,8 +126,8 @@ bool MarkController::PressForView(int key) {
 }
 
 MarkRequest MarkController::Quit() {
-  if (session_.IsSaved() || asked_to_quit_) return MarkRequest::kQuit;
-  asked_to_quit_ = true;
+  if (session_.IsSaved() || quit_requested_) return MarkRequest::kQuit;
+  quit_requested_ = true;
   message_ = "Not saved: s saves; q again quits, and the marks are kept for the next start";
   return MarkRequest::kNone;
 }
@@ -142,7 +142,7 @@ void MarkController::ShowNextLayers() {
                                            : MarkLayers::kBoth;
 }
 
-void MarkController::Say(std::string message, bool saved) {
+void MarkController::ShowMessage(std::string message, bool saved) {
   message_ = std::move(message);
   if (saved) session_.MarkSaved();
 }

@@ -13,18 +13,19 @@ namespace sextant::cli {
 /// What the window shows beneath the marks.
 enum class MarkLayers { kBoth, kScan, kPhoto };
 
-/// What the window has to do after a key.
+/// What a key requires of the window.
 enum class MarkRequest { kNone, kSave, kQuit };
 
 /// Keys that have no character.
 enum class MarkKey : int { kLeft = 0x10000, kUp, kRight, kDown };
 
-/// Mouse and keys of `sextant mark`, turned into what they do. Positions are on the canvas.
+/// Translates mouse and keys of `sextant mark` into changes of the session and of the view.
+/// Positions are in pixels of the canvas.
 class MarkController {
  public:
   MarkController(MarkSession session, const MarkViewport& viewport, bool has_photo);
 
-  /// A left click marks, if it does not move meanwhile; else it drags the picture.
+  /// A left click marks, unless the pointer moves meanwhile; then it drags the picture.
   void LeftDown(const Eigen::Vector2d& canvas);
   void LeftUp(const Eigen::Vector2d& canvas);
   void MiddleDown(const Eigen::Vector2d& canvas) { dragged_from_ = canvas; }
@@ -35,8 +36,8 @@ class MarkController {
   /// A character or a MarkKey.
   MarkRequest Press(int key);
 
-  /// What the window did, to be told; `saved` marks the session as saved.
-  void Say(std::string message, bool saved);
+  /// Shows a message to the user; `saved` marks the session as saved.
+  void ShowMessage(std::string message, bool saved);
 
   const MarkSession& session() const { return session_; }
   const MarkViewport& viewport() const { return viewport_; }
@@ -48,7 +49,7 @@ class MarkController {
 
  private:
   MarkRequest Quit();
-  /// Each: whether the key is one of its kind.
+  /// Both return whether they handle the key.
   bool PressForMarks(int key);
   bool PressForView(int key);
   void ShowNextLayers();
@@ -58,7 +59,7 @@ class MarkController {
   bool has_photo_;
   MarkLayers layers_ = MarkLayers::kBoth;
   bool shows_help_ = false;
-  bool asked_to_quit_ = false;
+  bool quit_requested_ = false;
   std::string message_;
   std::optional<Eigen::Vector2d> cursor_;
   std::optional<Eigen::Vector2d> pressed_at_;

@@ -54,24 +54,23 @@ bool SameProjection(const ScanMarks& a, const ScanMarks& b) {
   return text(a) == text(b);
 }
 
-// The marks of `path` take the place of the empty ones, if their projection is the one asked for
-// or none was.
-Expected<void> GoOnWith(const std::filesystem::path& path, const MarkOptions& options,
-                        MarkInput& input) {
+// Replaces the empty marks by those of `path`, unless the options require another projection.
+Expected<void> ContinueWith(const std::filesystem::path& path, const MarkOptions& options,
+                            MarkInput& input) {
   SEXTANT_ASSIGN_OR_RETURN(const ScanMarks kept, ReadPolygons(path));
-  const bool asked =
+  const bool projection_given =
       !options.camera_path.empty() || !options.cam_from_lidar.empty() || options.yaw_deg != 0.0;
   const bool fits_photo = input.photo.empty() || (kept.camera.width_px == input.photo.cols &&
                                                   kept.camera.height_px == input.photo.rows);
-  if ((asked && !SameProjection(kept, input.marks)) || !fits_photo) {
+  if ((projection_given && !SameProjection(kept, input.marks)) || !fits_photo) {
     return MakeError(ErrorCode::kInvalidInput,
-                     fmt::format("{}: was drawn in another projection of a scan; go on with its "
+                     fmt::format("{}: was drawn in another projection of a scan; continue with its "
                                  "own --camera, --cam-from-lidar and --image, write to another "
                                  "--out, or remove it",
                                  path.string()));
   }
   input.marks = kept;
-  input.note = "goes on with " + path.filename().string();
+  input.note = "continues with " + path.filename().string();
   return {};
 }
 
@@ -96,7 +95,7 @@ Expected<MarkInput> LoadMarkInput(const MarkOptions& options) {
   if (!input.is_saved || std::filesystem::exists(options.out_path, ignored)) {
     const std::filesystem::path from =
         input.is_saved ? std::filesystem::path(options.out_path) : AutosavePath(options);
-    SEXTANT_RETURN_IF_ERROR(GoOnWith(from, options, input));
+    SEXTANT_RETURN_IF_ERROR(ContinueWith(from, options, input));
   }
   input.returns = ProjectScan(scan, input.marks.camera, input.marks.cam_from_lidar);
   if (input.returns.empty()) {

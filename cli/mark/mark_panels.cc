@@ -19,20 +19,20 @@ const cv::Scalar kWarning(90, 150, 255);
 const cv::Scalar kBar(45, 40, 38);
 constexpr double kTextSize = 0.5;
 
-// Keys and what they do; without keys, what stands over both columns.
+// Keys and their effect; a line without keys spans both columns.
 struct HelpLine {
   const char* keys;
   const char* text;
 };
 constexpr std::array kHelp = {
-    HelpLine{"", "Draw an area of four clicks round each edge of a board, so that"},
-    HelpLine{"", "it holds where the rings leave the board: top-left edge first,"},
+    HelpLine{"", "Draw an area of four clicks around each edge of a board, so that"},
+    HelpLine{"", "it contains the ends of the rings on it: top-left edge first,"},
     HelpLine{"", "then clockwise; boards from left to right."},
     HelpLine{"", ""},
     HelpLine{"left click", "mark"},
     HelpLine{"right click, u", "undo"},
     HelpLine{"r", "redo"},
-    HelpLine{"n, b", "next board, board before"},
+    HelpLine{"n, b", "next board, previous board"},
     HelpLine{"d", "delete board"},
     HelpLine{"e, c", "edges in the scan, corners in the photo"},
     HelpLine{"wheel, + -", "zoom"},
@@ -128,7 +128,7 @@ RangeColors::RangeColors(const std::vector<ProjectedReturn>& returns) {
 }
 
 cv::Scalar RangeColors::Of(double range_m) const {
-  // By the logarithm: a board's surroundings are nearer to it than the far wall is.
+  // Logarithmic, to spend more colours on the near ranges, where the boards are.
   const double share = std::log(std::max(range_m, 0.01) / near_m_) / std::log(far_m_ / near_m_);
   const double level = 245.0 - 225.0 * std::clamp(near_m_ > 0.0 ? share : 0.0, 0.0, 1.0);
   const cv::Vec3b& color = Turbo()[static_cast<std::size_t>(level)];

@@ -9,7 +9,7 @@
 
 namespace sextant::cli {
 
-/// Colours of ranges: from the 2nd to the 98th percentile of a scan, near red, far blue.
+/// Colours for ranges from the 2nd to the 98th percentile of a scan: near red, far blue.
 class RangeColors {
  public:
   explicit RangeColors(const std::vector<ProjectedReturn>& returns);
@@ -23,8 +23,8 @@ class RangeColors {
   double far_m_ = 1.0;
 };
 
-/// The bars with what to do next and the keys, the legend of ranges, warnings, and where asked for
-/// the help.
+/// Draws the bars with the prompt and the keys, the legend of ranges, the warnings, and the help if
+/// it is on.
 void DrawMarkPanels(const MarkController& controller, bool has_photo, int bar_px, cv::Mat& canvas);
 
 }  // namespace sextant::cli

@@ -14,8 +14,8 @@ namespace sextant::cli {
 namespace {
 
 constexpr std::size_t kMaxUndo = 1000;
-constexpr int kMinRings = 2;           // A line needs two.
-constexpr double kThinnest_px2 = 4.0;  // Less is a slip of the mouse.
+constexpr int kMinRings = 2;          // A line needs two.
+constexpr double kMinArea_px2 = 4.0;  // A smaller area is an accidental click.
 constexpr std::array<const char*, 4> kEdgeNames = {"top-left", "top-right", "bottom-right",
                                                    "bottom-left"};
 constexpr std::array<const char*, 4> kCornerNames = {"top", "right", "bottom", "left"};
@@ -26,7 +26,7 @@ double AreaOf(const Quadrilateral& q) {
   return 0.5 * std::abs(a.x() * b.y() - a.y() * b.x());
 }
 
-// The same corners in an order that goes round.
+// The same corners in an order in which the outline does not cross itself.
 Quadrilateral Uncrossed(const Quadrilateral& q) {
   for (const Quadrilateral& candidate :
        {q, Quadrilateral{q[0], q[1], q[3], q[2]}, Quadrilateral{q[0], q[2], q[1], q[3]}}) {
@@ -55,7 +55,7 @@ MarkSession::MarkSession(std::vector<ProjectedReturn> returns, ScanMarks marks,
   for (const ClickedCorner& corner : state_.marks.corners) {
     if (SlotOf(corner.board) < 0) ids_.push_back(corner.board);
   }
-  // To where drawing stopped.
+  // Select the first incomplete board.
   while (EdgesIn(state_.slot) == kCornersPerBoard) ++state_.slot;
 }
 
@@ -131,7 +131,7 @@ bool MarkSession::Redo() {
 }
 
 void MarkSession::Click(const Eigen::Vector2d& clicked) {
-  // No hand is steadier, and the file is for people too.
+  // No hand is steadier than that, and people read the file too.
   const Eigen::Vector2d pixel = (clicked * 100.0).array().round() / 100.0;
   if (state_.mode == MarkMode::kEdges) {
     ClickEdge(pixel);
@@ -152,8 +152,8 @@ void MarkSession::ClickEdge(const Eigen::Vector2d& pixel) {
   if (drawn.size() < 4) return;
   const Quadrilateral quadrilateral = Uncrossed({drawn[0], drawn[1], drawn[2], drawn[3]});
   drawn.clear();
-  if (AreaOf(quadrilateral) < kThinnest_px2 || CrossesItself(quadrilateral)) {
-    note_ = "these four clicks enclose nothing: draw the quadrilateral again";
+  if (AreaOf(quadrilateral) < kMinArea_px2 || CrossesItself(quadrilateral)) {
+    note_ = "these four clicks enclose no area: draw the quadrilateral again";
     return;
   }
   AddEdge(quadrilateral);
@@ -164,7 +164,7 @@ void MarkSession::AddEdge(const Quadrilateral& quadrilateral) {
   const int id = selected_id();
   auto board = std::ranges::find(boards, id, &MarkedBoard::id);
   if (board == boards.end()) {
-    // Slots that have none yet are filled later: the file lists boards from left to right.
+    // The file lists boards from left to right, so insert before the boards of later slots.
     if (SlotOf(id) < 0) ids_.push_back(id);
     const auto after = [&](const MarkedBoard& other) { return SlotOf(other.id) > state_.slot; };
     board = boards.insert(std::ranges::find_if(boards, after), {.id = id, .edges = {}});
@@ -250,7 +250,7 @@ std::string MarkSession::Prompt() const {
   const int id = selected_id();
   if (state_.mode == MarkMode::kCorners) {
     const int corners = CornersIn(state_.slot);
-    if (corners >= kCornersPerBoard) return fmt::format("Board {}: all corners clicked", id);
+    if (corners >= kCornersPerBoard) return fmt::format("Board {}: all corners marked", id);
     return fmt::format("Board {}: click its {} corner in the photo ({} of 4)", id,
                        kCornerNames[Index(corners)], corners + 1);
   }
@@ -260,7 +260,7 @@ std::string MarkSession::Prompt() const {
   if (edges == 0 && clicks == 0 && state_.slot > 0) {
     return fmt::format("Next board to the right ({}): its top-left edge, or s to save", id);
   }
-  return fmt::format("Board {}, {} edge ({} of 4): click corner {} of 4 of an area round it", id,
+  return fmt::format("Board {}, {} edge ({} of 4): click corner {} of 4 of an area around it", id,
                      kEdgeNames[Index(edges)], edges + 1, clicks + 1);
 }
 
@@ -273,13 +273,13 @@ std::vector<std::string> MarkSession::Warnings() const {
       const bool few_rings = count.rings > 0 && count.rings < kMinRings;
       if (count.returns >= kMinRings && !few_rings) continue;
       warnings.push_back(
-          fmt::format("board {}: its {} edge holds returns of {} of the 2 rings that a line needs",
-                      board.id, kEdgeNames[i], few_rings ? count.rings : count.returns));
+          fmt::format("board {}: its {} edge has returns of {} rings, and a line needs 2", board.id,
+                      kEdgeNames[i], few_rings ? count.rings : count.returns));
     }
     if (board.edges.empty()) continue;
     const double middle = MiddleOf(board);
     if (middle < last) {
-      warnings.push_back(fmt::format("board {} lies left of the one before it", board.id));
+      warnings.push_back(fmt::format("board {} is to the left of the one before it", board.id));
     }
     last = middle;
   }

@@ -16,36 +16,36 @@ enum class MarkMode {
   kCorners,  ///< Corners of the boards, in the photo.
 };
 
-/// What `sextant mark` knows and what a person's doings change of it; no window.
+/// The state of `sextant mark` and the actions that change it, without a window.
 ///
-/// Boards stand in slots from left to right. Clicks fill the selected one: four clicks make a
-/// quadrilateral, four quadrilaterals (top-left edge first, clockwise) or four corners (from the
-/// top, clockwise) make a board, and the next slot follows.
+/// Boards have slots from left to right. Clicks fill the selected one: four clicks make a
+/// quadrilateral; four quadrilaterals (top-left edge first, clockwise) or four corners (from the
+/// top, clockwise) make a board, and the next slot is selected.
 class MarkSession {
  public:
-  /// Goes on with `marks`, which hold the projection of `returns`. `ids` of the boards from left to
-  /// right; beyond them, and for none, they are counted on.
+  /// Continues with `marks`, which contain the projection of `returns`. `ids`: of the boards from
+  /// left to right; further boards get the numbers that follow.
   MarkSession(std::vector<ProjectedReturn> returns, ScanMarks marks, std::vector<int> ids = {});
 
   const ScanMarks& marks() const { return state_.marks; }
   const std::vector<ProjectedReturn>& returns() const { return returns_; }
   MarkMode mode() const { return state_.mode; }
   int selected_id() const { return IdOf(state_.slot); }
-  /// What the last doing led to, where that needs to be said.
+  /// A message about the last action; may be empty.
   const std::string& note() const { return note_; }
 
   /// Rounded to 0.01 pixels.
   void Click(const Eigen::Vector2d& clicked);
-  /// The last change that is not undone, whatever it was; false where there is none.
+  /// Undoes the last change of any kind; false if there is none.
   bool Undo();
   bool Redo();
-  /// What this mode has of the selected board, or of the one before where it has nothing.
+  /// Deletes the marks of this mode on the selected board, or on the previous one if it has none.
   void DeleteBoard();
-  /// By so many slots to the right; at most to the first empty one.
+  /// Moves the selection by `by` slots to the right, at most to the first empty slot.
   void SelectBoard(int by);
   void SetMode(MarkMode mode);
 
-  /// Whether there is nothing that the last MarkSaved() does not cover.
+  /// Whether nothing has changed since the last MarkSaved().
   bool IsSaved() const { return revision_ == saved_revision_; }
   void MarkSaved() { saved_revision_ = revision_; }
   /// Differs after each change of the marks.
@@ -53,7 +53,7 @@ class MarkSession {
 
   /// What to click next.
   std::string Prompt() const;
-  /// What is wrong with the marks so far: boards out of order, edges that hold too little.
+  /// Problems of the marks so far: boards out of order, edges with too few returns.
   std::vector<std::string> Warnings() const;
 
  private:
@@ -70,8 +70,7 @@ class MarkSession {
   int EdgesIn(int slot) const;
   int CornersIn(int slot) const;
   bool IsEmpty(int slot) const;
-  /// To be called before a change; the change is then made on state_. What is selected changes
-  /// without the marks.
+  /// To be called before each change of state_. `of_marks` is false if only the selection changes.
   void BeginChange(bool of_marks = true);
   void ClickEdge(const Eigen::Vector2d& pixel);
   void ClickCorner(const Eigen::Vector2d& pixel);

@@ -24,14 +24,14 @@ void MarkViewport::Fit() {
 
 void MarkViewport::ZoomAt(const Eigen::Vector2d& canvas, double factor) {
   const Eigen::Vector2d pixel = ToPixel(canvas);
-  const double most = std::max(64.0, FitScale());
-  scale_ = std::clamp(scale_ * factor, 0.25 * FitScale(), most);
+  const double max_scale = std::max(64.0, FitScale());
+  scale_ = std::clamp(scale_ * factor, 0.25 * FitScale(), max_scale);
   offset_ = canvas - scale_ * pixel;
   Pan(Eigen::Vector2d::Zero());
 }
 
 void MarkViewport::Pan(const Eigen::Vector2d& by) {
-  const Eigen::Vector2d inset = 0.1 * canvas_;  // So much of the picture stays in view.
+  const Eigen::Vector2d inset = 0.1 * canvas_;  // This much of the picture stays in view.
   const Eigen::Vector2d low = inset - scale_ * picture_;
   offset_ = (offset_ + by).cwiseMax(low).cwiseMin(canvas_ - inset);
 }

@@ -5,18 +5,18 @@
 
 namespace sextant::cli {
 
-/// Which part of the picture a canvas shows: canvas = scale * pixel + offset. In both, (0, 0) is
-/// the centre of the top-left pixel.
+/// Maps the picture to the canvas: canvas = scale * pixel + offset. In both, (0, 0) is the centre
+/// of the top-left pixel.
 class MarkViewport {
  public:
-  /// The whole picture, centred; above and below it `bar` canvas pixels are left free.
+  /// Shows the whole picture, centred; `bar` canvas pixels above and below it stay free.
   MarkViewport(int canvas_width, int canvas_height, int bar, int picture_width, int picture_height);
 
   void Fit();
-  /// Keeps what is under `canvas` where it is. Between a quarter of the fit and 64 canvas pixels a
-  /// pixel.
+  /// The point at `canvas` keeps its position. The scale stays between a quarter of the fit and 64
+  /// canvas pixels per pixel.
   void ZoomAt(const Eigen::Vector2d& canvas, double factor);
-  /// Moves the picture by that many canvas pixels; some of it stays in view.
+  /// Moves the picture by `by` canvas pixels; a part of it stays in view.
   void Pan(const Eigen::Vector2d& by);
 
   Eigen::Vector2d ToCanvas(const Eigen::Vector2d& pixel) const { return scale_ * pixel + offset_; }

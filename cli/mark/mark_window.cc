@@ -15,7 +15,7 @@ constexpr const char* kTitle = "sextant mark";
 constexpr int kWait_ms = 15;
 constexpr auto kWheelRest = std::chrono::milliseconds(150);
 
-// The cursor keys of X11; others arrive as characters.
+// X11 has codes of its own for the cursor keys; other keys are characters.
 int KeyOf(int code) {
   constexpr int kFirst = 0xff51;  // left, up, right, down
   const int key = code & 0xffff;
@@ -23,7 +23,7 @@ int KeyOf(int code) {
   return key & 0xff;
 }
 
-// OpenCV says what draws its windows in what it prints of its build alone ("QT: YES ...").
+// Only OpenCV's build information tells which library draws its windows ("QT: YES ...").
 bool HasQtWindows() {
   const std::string information = cv::getBuildInformation();
   const std::size_t line = information.find(" QT:");
@@ -32,9 +32,8 @@ bool HasQtWindows() {
              std::string::npos;
 }
 
-// OpenCV's window over the controller. Its Qt kind magnifies its picture by itself when the wheel
-// turns, and has no call that takes this back; so a new window takes the place of the old one when
-// the wheel has come to rest.
+// OpenCV's window for the controller. Its Qt window magnifies the picture itself when the wheel
+// turns, and no call undoes that; so a new window replaces the old one when the wheel is at rest.
 class Window {
  public:
   Window(MarkController& controller, MarkCanvas& canvas, const MarkWindowCalls& calls)
@@ -112,7 +111,7 @@ class Window {
         controller_.RightDown();
         break;
       case cv::EVENT_MOUSEWHEEL:
-        if (!magnified_) wheel_anchor_ = at;  // The magnified picture reports others.
+        if (!magnified_) wheel_anchor_ = at;  // The magnified picture reports other positions.
         controller_.Wheel(wheel_anchor_, cv::getMouseWheelDelta(flags) > 0);
         magnified_ = is_qt_;
         wheel_at_ = Clock::now();

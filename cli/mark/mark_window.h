@@ -9,13 +9,13 @@
 
 namespace sextant::cli {
 
-/// What the window asks of the command that opened it.
+/// The functions by which the window reports to the command that opened it.
 struct MarkWindowCalls {
-  std::function<void()> save;     ///< The user asks to save.
-  std::function<void()> changed;  ///< The marks may have changed.
+  std::function<void()> save;     ///< On a request to save.
+  std::function<void()> changed;  ///< After each change of the marks, and perhaps without one.
 };
 
-/// Shows the window until the user closes it. Error: kIo where it cannot be opened.
+/// Shows the window until the user closes it. Error: kIo if it cannot be opened.
 Expected<void> RunMarkWindow(MarkController& controller, MarkCanvas& canvas,
                              const MarkWindowCalls& calls);
 

@@ -1,28 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
-#include "base/version.h"
 #include "cli/mpi/run_on_ranks.h"
-#include "cli/study_arguments.h"
+#include "cli/parse.h"
 
 namespace sextant::cli {
 namespace {
 
+constexpr const char* kFooter =
+    "Each rank runs its share of the trials into a row file of its own; the first joins them to "
+    "the\n"
+    "bytes of sextant run and writes the report. All ranks must share the folder of --out. "
+    "Existing\n"
+    "rows, of any number of ranks or of --shard, are not run again.\n"
+    "Examples:\n"
+    "  mpirun -n 4 sextant-mpi run experiments/leaderboard.yaml\n"
+    "  mpirun --hostfile machines --map-by ppr:1:node --bind-to none sextant-mpi run x.yaml";
+
 int Main(int argc, char** argv) {
   const Ranks ranks(&argc, &argv);
-  CLI::App app("Experiments on many machines: each process that mpirun starts runs its share.",
-               "sextant-mpi");
-  app.set_version_flag("--version", std::string(Version()));
-  app.require_subcommand(1);
   ExperimentOptions options;
-  AddRunOnRanks(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (ranks.is_first()) app.exit(error);
-    return error.get_exit_code() == 0 ? kAnswered : kWrongUse;
+  const Program program{
+      .name = "sextant-mpi",
+      .introduction =
+          "Experiments on many machines: each process that mpirun starts runs its share.",
+      .footer = {},
+      .groups = {{"Commands",
+                  {{.name = "run",
+                    .summary = "sextant run, distributed over the ranks",
+                    .footer = kFooter,
+                    .declare = [&](Arguments& arguments) { DeclareRun(options, arguments); },
+                    .run = [&] { return RunOnRanks(ranks, options); }}}}}};
+  const ParsedLine line = ParseLine(program, argc, argv);
+  if (ranks.is_first()) {
+    fmt::print("{}", line.out);
+    fmt::print(stderr, "{}", line.err);
   }
-  return RunOnRanks(ranks, options);
+  return line.run ? line.run() : line.exit_code;
 }
 
 }  // namespace

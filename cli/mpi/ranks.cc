@@ -12,14 +12,14 @@
 namespace sextant::cli {
 namespace {
 
-constexpr auto kBetweenLooks = std::chrono::milliseconds(2);
+constexpr auto kPollInterval = std::chrono::milliseconds(2);
 
-// MPI's own waiting burns a core.
+// Waiting inside MPI keeps a core busy.
 void WaitFor(MPI_Request request) {
   for (int done = 0;;) {
     MPI_Test(&request, &done, MPI_STATUS_IGNORE);
     if (done != 0) return;
-    std::this_thread::sleep_for(kBetweenLooks);
+    std::this_thread::sleep_for(kPollInterval);
   }
 }
 

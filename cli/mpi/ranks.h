@@ -9,8 +9,8 @@
 
 namespace sextant::cli {
 
-/// The processes that mpirun started. One object a process, for as long as it uses MPI. Whoever
-/// waits for the others sleeps, so that a rank that is done takes no core from those that are not.
+/// The processes that mpirun started. One object per process, for as long as it uses MPI. A rank
+/// that waits for others sleeps, so that it takes no core from those that still run.
 class Ranks {
  public:
   Ranks(int* argc, char*** argv);
@@ -21,21 +21,21 @@ class Ranks {
   int rank() const { return rank_; }
   int count() const { return count_; }
   bool is_first() const { return rank_ == 0; }
-  /// How many of them share this machine, this one among them.
+  /// The number of ranks on this machine, including this one.
   int on_this_machine() const { return on_this_machine_; }
 
-  /// Returns on every rank once all have called it, and the same on all: nothing where all
-  /// succeeded, otherwise what failed on which of them.
+  /// Returns on every rank once all have called it, with the same value on all: no error if all
+  /// succeeded, otherwise the errors with their ranks.
   Expected<void> Agree(const Expected<void>& own) const;
 
-  /// Those of the first rank, on all. All must call it.
+  /// Returns the words of the first rank on all ranks. All must call it.
   std::vector<std::uint64_t> FromFirst(std::vector<std::uint64_t> words) const;
 
  private:
   int rank_ = 0;
   int count_ = 1;
   int on_this_machine_ = 1;
-  std::vector<std::string> machines_;  ///< By rank.
+  std::vector<std::string> machines_;  ///< Indexed by rank.
 };
 
 }  // namespace sextant::cli

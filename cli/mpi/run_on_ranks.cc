@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "cli/experiment_run.h"
-#include "cli/load.h"
+#include "cli/output.h"
 #include "eval/experiment/run/part_files.h"
 
 namespace sextant::cli {
@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kCommand = "run";
 
-// What is asked of all ranks before the first trial.
+// What all ranks share before the first trial.
 struct Plan {
   Experiment experiment;
   std::filesystem::path folder;
@@ -34,10 +34,11 @@ Expected<void> WithoutValue(const Expected<T>& value) {
 Expected<void> CheckSeen(const std::filesystem::path& folder) {
   std::error_code error;
   if (std::filesystem::is_directory(folder, error)) return {};
-  return MakeError(ErrorCode::kIo,
-                   fmt::format("'{}', which the first rank made, is not here; name one with --out "
-                               "on a file system that all ranks share",
-                               folder.string()));
+  return MakeError(
+      ErrorCode::kIo,
+      fmt::format("'{}', which the first rank made, is not visible here; name one with --out "
+                  "on a file system that all ranks share",
+                  folder.string()));
 }
 
 Expected<std::vector<std::uint64_t>> FindHeld(const Plan& plan, bool fresh) {
@@ -65,14 +66,14 @@ Expected<Plan> MakePlan(const Ranks& ranks, const ExperimentOptions& options) {
   return plan;
 }
 
-// Its share of the machine; fewer where mpirun has bound the rank to fewer cores.
+// The rank's share of the machine; fewer if mpirun has bound the rank to fewer cores.
 int ThreadsOf(const Ranks& ranks, const ExperimentOptions& options) {
   if (options.threads > 0) return options.threads;
   const int share = static_cast<int>(std::thread::hardware_concurrency()) / ranks.on_this_machine();
   return std::max(1, std::min(share, tbb::info::default_concurrency()));
 }
 
-void TellPlan(const Plan& plan, const Ranks& ranks, int threads) {
+void PrintPlan(const Plan& plan, const Ranks& ranks, int threads) {
   std::uint64_t held = 0;
   for (const std::uint64_t block : plan.held) held += TrialsOfBlock(plan.experiment, block);
   fmt::print(stderr, "sextant-mpi run: {} rank{}, {} thread{} on the first", ranks.count(),
@@ -80,7 +81,7 @@ void TellPlan(const Plan& plan, const Ranks& ranks, int threads) {
   if (held > 0) {
     fmt::print(stderr, "; {} of {} trials were already in {}{}", held,
                plan.experiment.trials * plan.experiment.conditions.size(), plan.folder.string(),
-               plan.held.size() == BlocksOf(plan.experiment) ? ", --fresh runs them anew" : "");
+               plan.held.size() == BlocksOf(plan.experiment) ? ", --fresh runs them again" : "");
   }
   fmt::print(stderr, "\n");
 }
@@ -114,7 +115,7 @@ int RunOnRanks(const Ranks& ranks, const ExperimentOptions& options) {
   const Expected<Plan> plan = MakePlan(ranks, options);
   if (!plan) return End(ranks, plan.error());
   const int threads = ThreadsOf(ranks, options);
-  if (ranks.is_first()) TellPlan(*plan, ranks, threads);
+  if (ranks.is_first()) PrintPlan(*plan, ranks, threads);
   const Expected<void> ok = ranks.Agree(RunShare(*plan, ranks, threads));
   if (!ok) return End(ranks, ok.error());
   return ranks.is_first() ? Finish(*plan, options) : kAnswered;

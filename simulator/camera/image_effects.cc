@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/camera/image_effects.h"
 
-#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 #include <vector>
 
 #include "base/random.h"
+#include "io/images/image_codec.h"
 
 namespace sextant {
 namespace {
@@ -114,14 +114,8 @@ cv::Mat Expose(const cv::Mat& image, double grey_per_unit, const SensorNoise& no
 }
 
 Expected<cv::Mat> ThroughJpeg(const cv::Mat& image, int quality) {
-  try {
-    std::vector<std::uint8_t> bytes;
-    cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
-    return cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
-  } catch (const cv::Exception& error) {
-    return MakeError(ErrorCode::kIo,
-                     fmt::format("the image cannot be coded as JPEG: {}", error.err));
-  }
+  SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, EncodeImage(".jpg", image, quality));
+  return DecodeImage(bytes, DecodedColor::kGrey);
 }
 
 }  // namespace sextant

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace sextant::cli {
+namespace sextant {
 namespace {
 
 // A near plate of returns, 10 pixels apart across and 20 down, from (200, 200) to (400, 400).
@@ -42,4 +42,4 @@ TEST(HiddenReturns, NoneOfAPlateHidesAnother) {
 }
 
 }  // namespace
-}  // namespace sextant::cli
+}  // namespace sextant

@@ -117,7 +117,7 @@ TEST(MarkController, QuittingWithoutSavingAsksOnce) {
   EXPECT_EQ(controller.Press('q'), MarkRequest::kNone);
   EXPECT_EQ(controller.Press('q'), MarkRequest::kQuit);
   EXPECT_EQ(controller.Press('s'), MarkRequest::kSave);
-  controller.Say("saved", true);
+  controller.ShowMessage("saved", true);
   EXPECT_EQ(controller.message(), "saved");
   EXPECT_EQ(controller.Press(27), MarkRequest::kQuit);
 }

@@ -84,7 +84,7 @@ TEST(MarkSession, ClicksThatCrossAreSortedAndClicksOnALineRefused) {
   EXPECT_TRUE(Contains(edge, {2, 100}));
   for (int i = 0; i < 4; ++i) session.Click({10.0 * i, 100.0});
   EXPECT_EQ(session.marks().boards[0].edges.size(), 1U);
-  EXPECT_THAT(session.note(), HasSubstr("enclose nothing"));
+  EXPECT_THAT(session.note(), HasSubstr("enclose no area"));
   EXPECT_TRUE(session.marks().unfinished.empty());
 }
 
@@ -207,13 +207,15 @@ TEST(MarkSession, WarnsOfBoardsOutOfOrderAndOfEdgesWithoutRings) {
   MarkSession session = NewSession();
   DrawBoard(session, 300.0);
   DrawBoard(session, 10.0);
-  EXPECT_THAT(session.Warnings(), ElementsAre(HasSubstr("board 1 lies left of the one before")));
+  EXPECT_THAT(session.Warnings(),
+              ElementsAre(HasSubstr("board 1 is to the left of the one before")));
   DrawSquare(session, 500.0, 200.0);
   DrawSquare(session, 530.0, 82.0);  // One ring, at 100.
   EXPECT_THAT(
       session.Warnings(),
-      ElementsAre(testing::_, HasSubstr("board 2: its top-left edge holds returns of 0 of the 2"),
-                  HasSubstr("board 2: its top-right edge holds returns of 1 of the 2 rings")));
+      ElementsAre(
+          testing::_, HasSubstr("board 2: its top-left edge has returns of 0 rings"),
+          HasSubstr("board 2: its top-right edge has returns of 1 rings, and a line needs 2")));
 }
 
 }  // namespace

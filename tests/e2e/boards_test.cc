@@ -3,10 +3,10 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 
 #include "e2e/run_sextant.h"
+#include "support/pictures.h"
 #include "support/run_program.h"
 
 namespace sextant {
@@ -70,7 +70,7 @@ TEST(Boards, FindsThemInManyScansAndDrawsOne) {
   EXPECT_NEAR(found[0]["center_in_lidar_m"][1].get<double>(), 0.5, 0.03);
   EXPECT_EQ(found[0]["corners"]["in_lidar_m"].size(), 4U);
   EXPECT_EQ(found[0]["corners"]["covariance_m2"].size(), 12U);
-  EXPECT_FALSE(cv::imread(picture.string()).empty());
+  EXPECT_FALSE(test::ReadPicture(picture.string()).empty());
 }
 
 TEST(Boards, WhatIsMissingIsSaidAndEndsInOne) {

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 #include <sstream>
 
 #include "e2e/run_sextant.h"
 #include "eval/synthetic/simulate_views.h"
 #include "io/problems/problem_yaml.h"
+#include "support/pictures.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 
@@ -42,8 +43,8 @@ TEST(Cli, NamesTheCommandThatIsMeant) {
 TEST(Cli, HelpTeachesEveryCommand) {
   const ProgramRun top = RunSextant("--help");
   EXPECT_EQ(top.exit_code, 0);
-  for (const char* command : {"solve", "compare", "average", "solvers", "convert", "run", "merge",
-                              "kinds", "simulate", "mark", "bag"}) {
+  for (const char* command : {"solve", "compare", "average", "list", "convert", "run", "merge",
+                              "simulate", "mark", "bag", "print-board"}) {
     EXPECT_THAT(top.out, HasSubstr(command));
     const ProgramRun help = RunSextant(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0);
@@ -161,15 +162,15 @@ TEST(Cli, OverlayMarksThePairsOnTheImage) {
   const std::string session = SimulatedSession();
   const std::string image = (TestFolder() / "image.png").string();
   const std::string out = (TestFolder() / "overlay.png").string();
-  ASSERT_TRUE(cv::imwrite(image, cv::Mat(720, 1280, CV_8UC3, cv::Scalar(90, 90, 90))));
+  ASSERT_TRUE(test::WritePicture(image, cv::Mat(720, 1280, CV_8UC3, cv::Scalar(90, 90, 90))));
   const ProgramRun run =
       RunSextant("solve " + session + " --solver 'gnc(kabsch)' --overlay " + image + " " + out);
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const cv::Mat drawn = cv::imread(out);
+  const cv::Mat drawn = test::ReadPicture(out);
   ASSERT_EQ(drawn.size(), cv::Size(1280, 720));
-  EXPECT_GT(cv::norm(drawn, cv::imread(image), cv::NORM_L1), 1e5);
+  EXPECT_GT(cv::norm(drawn, test::ReadPicture(image), cv::NORM_L1), 1e5);
 
-  ASSERT_TRUE(cv::imwrite(image, cv::Mat(10, 10, CV_8UC3, cv::Scalar(90, 90, 90))));
+  ASSERT_TRUE(test::WritePicture(image, cv::Mat(10, 10, CV_8UC3, cv::Scalar(90, 90, 90))));
   const ProgramRun small = RunSextant("solve " + session + " --overlay " + image + " " + out);
   EXPECT_EQ(small.exit_code, 2);
   EXPECT_THAT(small.err, HasSubstr("10 x 10"));
@@ -226,11 +227,11 @@ TEST(Cli, ConvertRoundTripsThroughEveryFormat) {
 }
 
 TEST(Cli, CatalogueDescribesEachSolver) {
-  const ProgramRun list = RunSextant("solvers");
+  const ProgramRun list = RunSextant("list solvers");
   EXPECT_THAT(list.out, AllOf(HasSubstr("kabsch"), HasSubstr("ransac(solver)")));
-  EXPECT_THAT(RunSextant("solvers ransac").out,
+  EXPECT_THAT(RunSextant("list solvers ransac").out,
               AllOf(HasSubstr("sample_size"), HasSubstr("default"), HasSubstr("reference")));
-  EXPECT_EQ(RunSextant("solvers ransax").exit_code, 2);
+  EXPECT_EQ(RunSextant("list solvers ransax").exit_code, 2);
 }
 
 struct BadInput {

@@ -3,11 +3,12 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 
 #include "e2e/run_sextant.h"
 #include "io/boards/board_file.h"
 #include "simulator/camera/tag_picture.h"
+#include "support/pictures.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 
@@ -32,7 +33,7 @@ TagPicture MakePhoto() {
                         .tilt_rad = 0.6,
                         .image = {.blur_sigma_px = 0.7, .noise_sigma_grey = 3.0}});
   EXPECT_TRUE(picture) << picture.error().message;
-  EXPECT_TRUE(cv::imwrite(TestPath("photo.png"), picture->image));
+  EXPECT_TRUE(test::WritePicture(TestPath("photo.png"), picture->image));
   WriteText(TestPath("board.yaml"), FormatBoards({&picture->board, 1}));
   const Camera& camera = picture->camera;
   std::string text = "distortion_model: " +
@@ -56,7 +57,7 @@ TEST(Detect, BoardPoseCornersAndOverlay) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out,
               AllOf(HasSubstr("1 of 1 tags"), HasSubstr("cam_from_board"), HasSubstr("corner 3")));
-  const cv::Mat overlay = cv::imread(TestPath("overlay.png"));
+  const cv::Mat overlay = test::ReadPicture(TestPath("overlay.png"));
   EXPECT_EQ(overlay.size(), picture.image.size());
 
   const ProgramRun machine = Detect(arguments + " --json -");
@@ -96,7 +97,7 @@ TEST(Detect, WithoutABoardListsTheCornersOfACheckerboard) {
   EXPECT_EQ(people.exit_code, 0) << people.err;
   EXPECT_THAT(people.out,
               AllOf(HasSubstr("checkerboard of 7 x 5 inner corners"), Not(HasSubstr("no tag"))));
-  ASSERT_TRUE(cv::imwrite(TestPath("none.png"), cv::Mat(60, 80, CV_8U, cv::Scalar(90))));
+  ASSERT_TRUE(test::WritePicture(TestPath("none.png"), cv::Mat(60, 80, CV_8U, cv::Scalar(90))));
   const ProgramRun none = Detect(TestPath("none.png") + " --quick --detector checkerboard");
   EXPECT_EQ(none.exit_code, 1);
   EXPECT_THAT(none.out, HasSubstr("no checkerboard"));
@@ -104,19 +105,19 @@ TEST(Detect, WithoutABoardListsTheCornersOfACheckerboard) {
 
 TEST(Detect, BadImagesAreNamedAndTheOthersStillRead) {
   MakePhoto();
-  const cv::Mat photo = cv::imread(TestPath("photo.png"), cv::IMREAD_GRAYSCALE);
+  const cv::Mat photo = test::ReadPicture(TestPath("photo.png"), DecodedColor::kGrey);
   const std::string whole = ReadText(TestPath("photo.png"));
   WriteText(TestPath("cut.png"), whole.substr(0, whole.size() / 2));
   WriteText(TestPath("empty.png"), "");
   WriteText(TestPath("words.png"), "this is not an image");
-  ASSERT_TRUE(cv::imwrite(TestPath("one.png"), cv::Mat(1, 1, CV_8U, cv::Scalar(0))));
+  ASSERT_TRUE(test::WritePicture(TestPath("one.png"), cv::Mat(1, 1, CV_8U, cv::Scalar(0))));
   cv::Mat deep;
   photo.convertTo(deep, CV_16U, 257.0);
-  ASSERT_TRUE(cv::imwrite(TestPath("deep.png"), deep));
+  ASSERT_TRUE(test::WritePicture(TestPath("deep.png"), deep));
   cv::Mat layers[] = {photo, photo, photo, cv::Mat(photo.size(), CV_8U, cv::Scalar(9))};
   cv::Mat alpha;
   cv::merge(layers, 4, alpha);
-  ASSERT_TRUE(cv::imwrite(TestPath("alpha.png"), alpha));
+  ASSERT_TRUE(test::WritePicture(TestPath("alpha.png"), alpha));
   const std::string detector = " --detector 'aruco(dictionary=original)'";
   for (const char* good : {"deep.png", "alpha.png"}) {
     EXPECT_EQ(Detect(TestPath(good) + detector).exit_code, 0) << good;

@@ -156,7 +156,7 @@ TEST(Merge, OfShardsIsTheWhole) {
 }
 
 TEST(Kinds, AreListed) {
-  const ProgramRun run = RunSextant("kinds");
+  const ProgramRun run = RunSextant("list kinds");
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_THAT(run.out, HasSubstr("### random_scene"));
   EXPECT_THAT(run.out, HasSubstr("| `sigma_px` | 1 | px | noise of pixels, per axis |"));

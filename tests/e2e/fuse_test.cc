@@ -104,7 +104,7 @@ TEST(Fuse, RealScansAgreeUnderTheirPublishedPose) {
       const std::size_t at = run.out.find(text);
       return at == std::string::npos ? -1.0 : std::stod(run.out.substr(at + text.size()));
     };
-    return Said{number_after("sees too ("), number_after("rms ")};
+    return Said{number_after("source.ply: "), number_after("rms ")};
   };
   const Said published = fuse((folder / "T_target_source.txt").string());
   const Said none = fuse(TestPath("same.txt"));

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 
 #include "cli/mark/mark_canvas.h"
 #include "cli/mark/mark_viewport.h"
@@ -16,6 +16,7 @@
 #include "io/clouds/pcd_file.h"
 #include "io/results/results_json.h"
 #include "support/drawn_board.h"
+#include "support/pictures.h"
 #include "support/run_program.h"
 #include "support/virtual_display.h"
 
@@ -181,7 +182,7 @@ TEST(Mark, WhatIsNotSavedIsThereAtTheNextStart) {
   if (!VirtualDisplay::IsInstalled()) GTEST_SKIP() << VirtualDisplay::kAbsent;
   const Drawing drawing;
   WriteScan(drawing.scene);
-  cv::imwrite(TestPath("photo.png"), cv::Mat(720, 1280, CV_8UC3, cv::Scalar(90, 120, 90)));
+  test::WritePicture(TestPath("photo.png"), cv::Mat(720, 1280, CV_8UC3, cv::Scalar(90, 120, 90)));
   const VirtualDisplay display(TestFolder().string());
   {
     OpenWindow window(display);
@@ -236,7 +237,7 @@ TEST(Mark, ItsPictureCanBeHadWithoutADisplay) {
       "--cloud " + TestPath("scan.pcd") + " --out " + TestPath("polygons.yaml");
   const test::ProgramRun run = Mark(files + " --render " + TestPath("window.png"));
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  const cv::Mat picture = cv::imread(TestPath("window.png"));
+  const cv::Mat picture = test::ReadPicture(TestPath("window.png"));
   EXPECT_EQ(picture.size(), cv::Size(kWidth, kHeight));
   EXPECT_EQ(Mark(files + " --render window.bmp").exit_code, 2);
 }
@@ -248,7 +249,7 @@ int DifferingPixels(const std::string& a, const std::string& b) {
   for (const std::string& options : {a, b}) {
     const test::ProgramRun run = Mark(files + " --render " + TestPath("w.png") + " " + options);
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    pictures.push_back(cv::imread(TestPath("w.png"), cv::IMREAD_GRAYSCALE));
+    pictures.push_back(test::ReadPicture(TestPath("w.png"), DecodedColor::kGrey));
   }
   return cv::countNonZero(pictures[0] != pictures[1]);
 }

@@ -102,7 +102,7 @@ TEST(Pixels, IntrinsicsStandInTheAnswerWhereTheyAreEstimated) {
   }
   const std::string command = "solve " + pairs + " --camera " + InFolder("wrong.yaml", wrong) +
                               " --solver 'refine(epnp, intrinsics=focal)'";
-  EXPECT_THAT(RunSextant(command).out, HasSubstr("camera, estimated too"));
+  EXPECT_THAT(RunSextant(command).out, HasSubstr("camera, also estimated"));
   const ProgramRun run = RunSextant(command + " --json -");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json document = json::parse(run.out);

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 
 #include "e2e/run_sextant.h"
+#include "support/pictures.h"
 #include "support/run_program.h"
 
 namespace sextant {
@@ -63,7 +64,7 @@ TEST(Simulate, WritesWhatAUserWouldHaveAndTheTruthApart) {
               UnorderedElementsAre(Key("scene.yaml"), Key("simulation.yaml"), Key("boards.yaml"),
                                    Key("cam_info.yaml"), Key("scan_000.pcd"), Key("cam_000.png"),
                                    Key("truth.yaml")));
-  const cv::Mat image = cv::imread((out / "cam_000.png").string(), cv::IMREAD_UNCHANGED);
+  const cv::Mat image = test::ReadPicture((out / "cam_000.png").string(), DecodedColor::kUnchanged);
   EXPECT_EQ(image.size(), cv::Size(160, 120));
   EXPECT_THAT(files.at("scan_000.pcd"), HasSubstr("FIELDS x y z intensity ring time\n"));
   EXPECT_THAT(files.at("truth.yaml"), HasSubstr("cam_from_lidar"));
@@ -179,7 +180,7 @@ TEST(Simulate, DrawsAContactSheet) {
   const ProgramRun run = RunSextant("simulate " + SceneFile() + " --sheet " + sheet + " --out " +
                                     (TestFolder() / "session").string());
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const cv::Mat drawn = cv::imread(sheet);
+  const cv::Mat drawn = test::ReadPicture(sheet);
   EXPECT_EQ(drawn.size(), cv::Size(3 * 640, 480));
 }
 

@@ -4,7 +4,6 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "features/camera/find_boards.h"
 #include "geometry/board_check.h"
@@ -13,6 +12,7 @@
 #include "io/cameras/camera_file.h"
 #include "io/problems/acfr_poses.h"
 #include "io/problems/points_file.h"
+#include "support/pictures.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 
@@ -122,7 +122,7 @@ TEST(Fiducials, PoseOfTheFirstPhoto) {
   Board board{.id = 0, .top_right_m = 0.2, .right_bottom_m = 0.2};
   board.tags = {{.family = "aruco_5x5_1000", .id = 1, .edge_m = gold.at("marker_m")}};
   const BoardFinder finder = *BoardFinder::Make({board}, camera);
-  const auto seen = finder.Find(cv::imread((folder / "tag_01_d7_14cm.png").string()));
+  const auto seen = finder.Find(test::ReadPicture((folder / "tag_01_d7_14cm.png").string()));
   ASSERT_TRUE(seen) << seen.error().message;
   const SeenBoard& found = seen->boards[0];
   ASSERT_TRUE(found.pose && *found.pose);
@@ -159,7 +159,7 @@ TEST(AcfrImages, BoardCentreAsPublished) {
   for (const auto& [id, is_turned] : std::map<int, bool>{
            {2, false}, {5, false}, {9, false}, {16, true}, {20, false}, {26, false}, {30, true}}) {
     const auto image = folder / "images" / ("pose" + std::to_string(id) + ".png");
-    const auto seen = finder.Find(cv::imread(image.string()));
+    const auto seen = finder.Find(test::ReadPicture(image.string()));
     ASSERT_TRUE(seen) << seen.error().message;
     ASSERT_TRUE(seen->boards[0].pose && *seen->boards[0].pose) << image;
     const BoardPose& pose = **seen->boards[0].pose;

@@ -5,12 +5,12 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <set>
 #include <sstream>
 
 #include "features/camera/quad.h"
 #include "features/camera/tag_detector.h"
+#include "support/pictures.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 
@@ -25,7 +25,7 @@ std::vector<TagDetection> TagsIn(const std::filesystem::path& image, const std::
     ADD_FAILURE() << made.error().message;
     return {};
   }
-  const Expected<Detections> found = (*made)->Detect(cv::imread(image.string()));
+  const Expected<Detections> found = (*made)->Detect(test::ReadPicture(image.string()));
   if (!found) ADD_FAILURE() << found.error().message;
   return found ? found->tags : std::vector<TagDetection>();
 }
@@ -175,7 +175,7 @@ TEST(AcfrImages, CheckerboardsAreFound) {
   const TagDetectorPtr detector = *MakeTagDetector("checkerboard(columns=7,rows=5)");
   for (const int pose : {2, 5, 30}) {
     const auto image = folder / ("pose" + std::to_string(pose) + ".png");
-    const Expected<Detections> found = detector->Detect(cv::imread(image.string()));
+    const Expected<Detections> found = detector->Detect(test::ReadPicture(image.string()));
     ASSERT_TRUE(found) << found.error().message;
     ASSERT_EQ(found->checkers.size(), 1U) << image;
     EXPECT_EQ(found->checkers[0].corners_px.size(), 35U);

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+// How a command states its options, its help and its run, without the library that parses them.
+namespace sextant::cli {
+
+/// The variable that an argument sets. A bool makes a flag; a vector takes any number of values,
+/// unless the rules limit them.
+using ArgumentTarget =
+    std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::optional<int>*,
+                 std::optional<std::uint64_t>*, std::optional<double>*, std::vector<int>*,
+                 std::vector<double>*, std::vector<std::string>*>;
+
+struct ArgumentRange {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+struct ArgumentRules {
+  bool required = false;
+  bool shows_default = false;            ///< The help shows the variable's initial value.
+  std::optional<ArgumentRange> range{};  ///< Of a number, both ends included.
+  int min_values = 0;                    ///< Of a vector; 0: as many as there are.
+  int max_values = 0;                    ///< The same as min_values if 0.
+  char separator = '\0';                 ///< Splits one value into several.
+  std::vector<std::string> choices{};    ///< The only values allowed, in any case.
+  std::string excludes{};                ///< Name of an option that may not be given as well.
+};
+
+/// An option ("--json") or a positional argument ("FILE").
+struct Argument {
+  std::string name;
+  ArgumentTarget target;
+  std::string help;
+  ArgumentRules rules;
+};
+
+/// The arguments of one command, in the order of its help.
+class Arguments {
+ public:
+  template <class Value>
+  void Add(std::string name, Value& value, std::string help, ArgumentRules rules = {}) {
+    all_.push_back({std::move(name), &value, std::move(help), std::move(rules)});
+  }
+
+  const std::vector<Argument>& all() const { return all_; }
+
+ private:
+  std::vector<Argument> all_;
+};
+
+struct Command {
+  std::string name;
+  std::string summary;  ///< One line for the list of commands.
+  std::string footer;   ///< Notes and examples, below the options.
+  std::function<void(Arguments&)> declare{};
+  std::function<int()> run{};  ///< Returns the exit code. Empty if a subcommand is required.
+  std::vector<Command> subcommands{};
+};
+
+/// A command whose options are members of `Options`: `declare` binds them, `run` reads them.
+template <class Options>
+Command MakeCommand(std::string name, std::string summary, std::string footer,
+                    void (*declare)(Options&, Arguments&), int (*run)(const Options&)) {
+  // The parser writes to the options after this function has returned.
+  const auto options = std::make_shared<Options>();
+  return {.name = std::move(name),
+          .summary = std::move(summary),
+          .footer = std::move(footer),
+          .declare = [options, declare](Arguments& arguments) { declare(*options, arguments); },
+          .run = [options, run] { return run(*options); }};
+}
+
+/// Commands under one title of the program's help.
+struct CommandGroup {
+  std::string title;
+  std::vector<Command> commands;
+};
+
+struct Program {
+  std::string name;
+  std::string introduction;
+  std::string footer;
+  std::vector<CommandGroup> groups;
+  /// Names that commands had in earlier versions, with their present names.
+  std::vector<std::pair<std::string, std::string>> renamed{};
+};
+
+}  // namespace sextant::cli

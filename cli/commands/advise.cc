@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/advise/advise.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <numbers>
+
+#include "base/units.h"
+#include "calibrate/observe/photo_file.h"
+#include "calibrate/trust/information.h"
+#include "cli/commands/commands.h"
+#include "cli/output.h"
+#include "eval/metrics/bounds.h"
+#include "report/advice_picture.h"
+#include "simulator/lidar/lidar_model.h"
+
+namespace sextant::cli {
+namespace {
+
+struct AdviseCommandOptions {
+  std::string result_path{};
+  std::string picture_path{};  ///< Empty: none.
+  std::string lidar{};         ///< A model of the simulator; empty: the result's, else vlp16.
+  double pixel_sigma_px = 0.3;
+  int count = 1;
+};
+
+void Declare(AdviseCommandOptions& options, Arguments& arguments) {
+  arguments.Add("RESULT", options.result_path,
+                "result.yaml of sextant calibrate, its JSON, or a folder that contains result.yaml",
+                {.required = true});
+  arguments.Add("--picture", options.picture_path,
+                "Draw the place from above and as the camera would see it (.png)");
+  arguments.Add("--count", options.count, "How many places, each after those before it",
+                {.shows_default = true, .range = {{1, 20}}});
+  arguments.Add("--lidar", options.lidar,
+                "A LiDAR of sextant list lidars; default: the result's own rings, else vlp16");
+  arguments.Add("--pixel-sigma", options.pixel_sigma_px, "Noise of a printed corner [px]",
+                {.shows_default = true, .range = {{0.001, 100.0}}});
+}
+
+Expected<LidarPattern> PatternNamed(const std::string& name) {
+  SEXTANT_ASSIGN_OR_RETURN(const LidarModel model, FindLidarModel(name));
+  LidarPattern pattern{
+      .azimuth_step_rad = 2.0 * std::numbers::pi * model.column_period_s / model.turn_period_s,
+      .range_sigma_m = model.range_sigma_m,
+      .aperture_m = model.aperture_h_m,
+      .divergence_rad = model.divergence_h_rad};
+  for (const LidarRing& ring : model.rings) pattern.elevations_rad.push_back(ring.elevation_rad);
+  if (!pattern.elevations_rad.empty()) return pattern;
+  return MakeError(
+      ErrorCode::kInvalidOption,
+      fmt::format("--lidar: {} has no rings, and the prediction of a board needs rings", name));
+}
+
+Expected<SensorPair> SensorsOf(const AdviseCommandOptions& options,
+                               const CalibrationResult& result) {
+  if (!result.camera) {
+    return MakeError(
+        ErrorCode::kMissingData,
+        fmt::format("{} has no camera; expected its key 'camera'", options.result_path));
+  }
+  SensorPair sensors{.camera = *result.camera,
+                     .lidar = {},
+                     .cam_from_lidar = result.cam_from_lidar,
+                     .pixel_sigma_px = options.pixel_sigma_px};
+  if (options.lidar.empty() && result.lidar) {
+    sensors.lidar = *result.lidar;
+    return sensors;
+  }
+  const Expected<LidarPattern> pattern =
+      PatternNamed(options.lidar.empty() ? "vlp16" : options.lidar);
+  if (!pattern) return tl::unexpected<Error>(pattern.error());
+  sensors.lidar = *pattern;
+  return sensors;
+}
+
+std::string SigmaText(const Matrix6d& covariance) {
+  const RmsError rms = RmsOf(covariance);
+  return fmt::format("{:.2g} mm and {:.2g} deg; weakest {}", rms.translation_m * 1e3,
+                     rms.rotation_rad / kRadPerDeg, DescribeWeakest(WeakestOf(covariance)));
+}
+
+std::string NameOf(const CalibrationResult& result, int view) {
+  for (const ResultView& one : result.views) {
+    if (one.view == view && !one.name.empty()) return one.name;
+  }
+  return fmt::format("view {}", view);
+}
+
+// What the existing views determine, from the first advice.
+std::string ViewsText(const CalibrationResult& result, const Advice& advice) {
+  std::string text =
+      fmt::format("cam_from_lidar after the {} views, predicted 1 sigma:\n", advice.views);
+  for (const KnownAfter& after : advice.after) {
+    text +=
+        fmt::format("  after {:<12} {}\n", NameOf(result, after.view), SigmaText(after.covariance));
+  }
+  if (advice.after.empty()) text += "  the pose is not determined yet\n";
+  for (const std::string& warning : advice.warnings) text += "  note: " + warning + "\n";
+  return text;
+}
+
+// The proposal as a view of the result, so that the next proposal takes it into account.
+ResultView AsView(const CalibrationResult& result, const Advice& advice) {
+  ResultView view;
+  view.view = -1;
+  Matrix6d before = Matrix6d::Zero();
+  if (advice.covariance) before = advice.covariance->inverse();
+  view.information = advice.proposal.covariance.inverse() - before;
+  view.boards.push_back({.board = result.boards[advice.proposal.board].id,
+                         .cam_from_board = advice.proposal.cam_from_board});
+  return view;
+}
+
+int Run(const AdviseCommandOptions& options) {
+  std::filesystem::path path = options.result_path;
+  if (std::filesystem::is_directory(path)) path /= "result.yaml";
+  const Expected<CalibrationResult> result = ReadCalibrationResult(path);
+  if (!result) {
+    return Refuse("advise", {result.error().code,
+                             fmt::format("{}; for a session, run sextant calibrate first",
+                                         result.error().message)});
+  }
+  const Expected<SensorPair> sensors = SensorsOf(options, *result);
+  if (!sensors) return Refuse("advise", sensors.error());
+  CalibrationResult growing = *result;
+  std::vector<BoardProposal> proposals;
+  for (int i = 0; i < options.count; ++i) {
+    const Expected<Advice> advice = Advise(growing, *sensors);
+    if (!advice) return Refuse("advise", advice.error(), kNoAnswer);
+    if (i == 0) fmt::print("{}", ViewsText(*result, *advice));
+    fmt::print("{}\n  {} rings would cross it; predicted 1 sigma then {}\n",
+               advice->proposal.sentence, advice->proposal.rings,
+               SigmaText(advice->proposal.covariance));
+    proposals.push_back(advice->proposal);
+    growing.views.push_back(AsView(growing, *advice));
+  }
+  if (options.picture_path.empty()) return kAnswered;
+  const Expected<void> written =
+      WriteImage(DrawAdvice(*result, *sensors, proposals), options.picture_path);
+  if (!written) return Refuse("advise", written.error());
+  fmt::print("{}: the place from above and in the camera's image\n", options.picture_path);
+  return kAnswered;
+}
+
+}  // namespace
+
+Command AdviseCommand() {
+  constexpr const char* kFooter =
+      "The proposed place is the one of a grid, visible to both sensors, for which the predicted\n"
+      "covariance is smallest (D-optimal).\n"
+      "Example:\n  sextant advise result.yaml --picture next.png";
+  return MakeCommand<AdviseCommandOptions>(
+      "advise", "How well the views determine the answer, and where to hold a board next", kFooter,
+      Declare, Run);
+}
+
+}  // namespace sextant::cli

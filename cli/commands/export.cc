@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "cli/commands/commands.h"
+#include "cli/output.h"
+#include "io/export/export_transform.h"
+#include "io/text/text_file.h"
+
+namespace sextant::cli {
+namespace {
+
+struct ExportCommandOptions {
+  std::string result_path{};
+  std::string format{};
+  std::string out = "-";
+  std::string camera_frame{};  ///< Empty: the result's.
+  std::string lidar_frame{};
+  std::string parent{};  ///< "lidar" or "camera"; empty: the LiDAR, if the format has a parent.
+};
+
+std::string FormatsHelp() {
+  std::string help;
+  for (const ExportFormat& format : ExportFormats()) {
+    help += fmt::format("{}{}: {}", help.empty() ? "" : "\n", format.name, format.summary);
+  }
+  return help;
+}
+
+void Declare(ExportCommandOptions& options, Arguments& arguments) {
+  arguments.Add("RESULT", options.result_path, "result.yaml of sextant calibrate, or its JSON",
+                {.required = true});
+  arguments.Add("--to", options.format, FormatsHelp(), {.required = true});
+  arguments.Add("--out", options.out, "File to write; - for standard output",
+                {.shows_default = true});
+  arguments.Add("--lidar-frame", options.lidar_frame, "Default: the name in the result");
+  arguments.Add(
+      "--camera-frame", options.camera_frame,
+      "The camera's optical frame (x right, y down); default: the name in the result, or\n"
+      "camera_optical_frame");
+  arguments.Add("--parent", options.parent,
+                "lidar or camera: the frame in which the pose of the other is stated; default:\n"
+                "lidar",
+                {.choices = {"lidar", "camera"}});
+}
+
+// By the conventions of ROS a frame of this name has x forward; ours has x to the right.
+constexpr const char* kUnnamedCamera = "camera";
+
+ExportOptions FramesOf(const ExportCommandOptions& options, const CalibrationResult& result) {
+  ExportOptions frames;
+  if (result.camera_frame != kUnnamedCamera) frames.camera_frame = result.camera_frame;
+  if (!options.camera_frame.empty()) frames.camera_frame = options.camera_frame;
+  frames.lidar_frame = options.lidar_frame.empty() ? result.lidar_frame : options.lidar_frame;
+  frames.lidar_is_parent = options.parent != "camera";
+  return frames;
+}
+
+// A parent that a format cannot express would be silently ignored.
+Expected<void> CheckParent(const ExportCommandOptions& options) {
+  const auto& formats = ExportFormats();
+  const auto format = std::find_if(formats.begin(), formats.end(),
+                                   [&](const auto& one) { return options.format == one.name; });
+  if (format == formats.end() || format->has_parent || options.parent.empty()) return {};
+  return MakeError(
+      ErrorCode::kInvalidOption,
+      fmt::format("--parent: {} always holds cam_from_lidar; leave the option out", format->name));
+}
+
+int Run(const ExportCommandOptions& options) {
+  if (const Expected<void> ok = CheckParent(options); !ok) return Refuse("export", ok.error());
+  const Expected<CalibrationResult> result = ReadCalibrationResult(options.result_path);
+  if (!result) return Refuse("export", result.error());
+  const ExportOptions frames = FramesOf(options, *result);
+  const Expected<std::string> text = ExportTransform(options.format, *result, frames);
+  if (!text) {
+    return Refuse("export", {text.error().code,
+                             fmt::format("{}: {}", options.result_path, text.error().message)});
+  }
+  if (options.out == "-") {
+    fmt::print("{}", *text);
+    return kAnswered;
+  }
+  if (const Expected<void> ok = WriteFileAtomically(options.out, *text); !ok) {
+    return Refuse("export", ok.error());
+  }
+  fmt::print("{}: {} of {}\n", options.out, options.format, options.result_path);
+  return kAnswered;
+}
+
+}  // namespace
+
+Command ExportCommand() {
+  constexpr const char* kFooter =
+      "ROS and URDF state the pose of the child in its parent: with the LiDAR as the parent that "
+      "is\n"
+      "lidar_from_camera, the inverse of cam_from_lidar. The other formats hold cam_from_lidar. "
+      "Each\n"
+      "file states which.\n"
+      "Examples:\n"
+      "  sextant export result.yaml --to ros2 --lidar-frame velodyne --camera-frame "
+      "cam0_optical_frame --out extrinsic.launch.py\n"
+      "  sextant export result.yaml --to kitti --out calib.txt";
+  return MakeCommand<ExportCommandOptions>(
+      "export", "A result in the format of another program: ROS, URDF, OpenCV, KITTI", kFooter,
+      Declare, Run);
+}
+
+}  // namespace sextant::cli

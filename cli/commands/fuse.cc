@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <vector>
+
+#include "cli/commands/commands.h"
+#include "cli/output.h"
+#include "cli/pose_file.h"
+#include "eval/metrics/cloud_fusion.h"
+#include "io/clouds/cloud_file.h"
+#include "io/clouds/pcd_file.h"
+#include "io/clouds/ply_file.h"
+#include "io/problems/transform_list.h"
+#include "io/text/text_file.h"
+
+namespace sextant::cli {
+namespace {
+
+struct FuseOptions {
+  std::vector<std::string> clouds{};
+  std::vector<std::string> from{};  ///< A file with cam_from_lidar for each cloud but the last.
+  std::string to{};                 ///< The file for the last cloud.
+  std::string rts_path{};           ///< Replaces both.
+  std::string out = "fused.ply";
+};
+
+void Declare(FuseOptions& options, Arguments& arguments) {
+  arguments.Add("CLOUD", options.clouds,
+                "Clouds, each in the frame of its own camera: PCD, PLY, KITTI .bin or CSV",
+                {.required = true});
+  arguments.Add("--from", options.from,
+                "cam_from_lidar of the camera of each cloud but the last: result.yaml, JSON\n"
+                "of sextant solve, or a 4x4 matrix in rows");
+  arguments.Add("--to", options.to,
+                "cam_from_lidar of the camera of the last cloud, into whose frame all clouds go");
+  arguments.Add("--rts", options.rts_path,
+                "Instead: rts.txt of the original package, one 4x4 matrix per cloud");
+  arguments.Add("--out", options.out,
+                "Cloud to write: .ply (each input cloud in its own colour) or .pcd",
+                {.shows_default = true});
+}
+
+// Distinguishable for the colour-blind too (Okabe and Ito 2008); the last cloud is grey.
+constexpr std::array<PlyColor, 6> kColors = {
+    {{230, 159, 0}, {86, 180, 233}, {0, 158, 115}, {240, 228, 66}, {213, 94, 0}, {204, 121, 167}}};
+constexpr PlyColor kLastColor = {150, 150, 150};
+
+Expected<std::vector<Rigid3d>> SensorsFromLidar(const FuseOptions& options) {
+  const std::size_t clouds = options.clouds.size();
+  std::vector<Rigid3d> poses;
+  if (!options.rts_path.empty()) {
+    if (!options.from.empty() || !options.to.empty()) {
+      return MakeError(ErrorCode::kInvalidOption,
+                       "--rts already has the transform of every cloud: leave out --from and --to");
+    }
+    SEXTANT_ASSIGN_OR_RETURN(const std::vector<Rigid3d> list, ReadTransformList(options.rts_path));
+    poses = list;
+  } else {
+    std::vector<std::string> paths = options.from;
+    if (!options.to.empty()) paths.push_back(options.to);
+    for (const std::string& path : paths) {
+      SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, ReadPoseFile(path));
+      poses.push_back(pose);
+    }
+  }
+  if (poses.size() == clouds && (options.rts_path.empty() ? !options.to.empty() : true)) {
+    return poses;
+  }
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("expected a transform for each of the {} clouds, in their order: "
+                               "--from for each but the last and --to for that, or --rts with all; "
+                               "got {}",
+                               clouds, poses.size()));
+}
+
+std::string Merged(const FuseOptions& options, const std::vector<PointCloud>& clouds,
+                   const PointCloud& fused) {
+  if (options.out.ends_with(".pcd")) return FormatPcd(fused);
+  std::vector<PlyColor> colors;
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    const PlyColor color = i + 1 == clouds.size() ? kLastColor : kColors[i % kColors.size()];
+    const auto finite =
+        std::ranges::count_if(clouds[i].points, [](const auto& p) { return p.allFinite(); });
+    colors.insert(colors.end(), static_cast<std::size_t>(finite), color);
+  }
+  return FormatPly(fused, colors);
+}
+
+std::string Describe(const FuseOptions& options, const std::vector<PointCloud>& clouds,
+                     const std::vector<Rigid3d>& last_from_cloud) {
+  std::string text;
+  for (std::size_t i = 0; i + 1 < clouds.size(); ++i) {
+    const CloudAgreement agreement = CompareClouds(clouds[i], last_from_cloud[i], clouds.back());
+    text += fmt::format("{}: ", options.clouds[i]);
+    text += agreement.compared == 0
+                ? std::string("has no surface in common with the last cloud\n")
+                : fmt::format(
+                      "{:.0f} % of it is on surfaces of the last cloud, "
+                      "{:.1f} mm off (median; rms {:.1f} mm)\n",
+                      100.0 * agreement.Overlap(), 1e3 * agreement.median_m, 1e3 * agreement.rms_m);
+  }
+  return text;
+}
+
+int Run(const FuseOptions& options) {
+  if (options.clouds.size() < 2) {
+    return Refuse("fuse", {ErrorCode::kInvalidOption, "expected two clouds or more"});
+  }
+  if (!options.out.ends_with(".pcd") && !options.out.ends_with(".ply")) {
+    return Refuse("fuse",
+                  {ErrorCode::kInvalidOption, options.out + ": expected a name in .ply or .pcd"});
+  }
+  const Expected<std::vector<Rigid3d>> sensors = SensorsFromLidar(options);
+  if (!sensors) return Refuse("fuse", sensors.error());
+  std::vector<PointCloud> clouds;
+  std::vector<Rigid3d> last_from_cloud;
+  for (std::size_t i = 0; i < options.clouds.size(); ++i) {
+    Expected<PointCloud> cloud = ReadCloud(options.clouds[i]);
+    if (!cloud) return Refuse("fuse", cloud.error());
+    clouds.push_back(std::move(*cloud));
+    last_from_cloud.push_back(sensors->back() * (*sensors)[i].Inverse());
+  }
+  last_from_cloud.back() = Rigid3d{};  // Its points stay as they are, to the bit.
+  const PointCloud fused = FuseClouds(clouds, last_from_cloud);
+  if (const Expected<void> ok = WriteFileAtomically(options.out, Merged(options, clouds, fused));
+      !ok) {
+    return Refuse("fuse", ok.error());
+  }
+  fmt::print("{}{}: {} points of {} clouds in the frame of {}\n",
+             Describe(options, clouds, last_from_cloud), options.out, fused.points.size(),
+             clouds.size(), options.clouds.back());
+  return kAnswered;
+}
+
+}  // namespace
+
+Command FuseCommand() {
+  constexpr const char* kFooter =
+      "The cameras need not see the same scene: the LiDAR connects them.\n"
+      "last_from_cloud = T_last * inverse(T).\n"
+      "Examples:\n"
+      "  sextant fuse front.pcd side.pcd --from front.yaml --to side.yaml --out both.ply\n"
+      "  sextant fuse cam1.pcd cam2.pcd --rts conf/rts.txt";
+  return MakeCommand<FuseOptions>("fuse", "Point clouds of calibrated sensors in one frame",
+                                  kFooter, Declare, Run);
+}
+
+}  // namespace sextant::cli

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/experiment/reproduction/reproduce.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "cli/commands/commands.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "eval/statistics/text_table.h"
+#include "solvers/all/all_solvers.h"
+
+namespace sextant::cli {
+namespace {
+
+struct ReproduceOptions {
+  std::string experiments = "experiments";
+  std::string claims = "paper/claims.yaml";
+  std::string out{};  ///< Empty: paper, or build/paper-quick.
+  int threads = 0;    ///< 0: all.
+  bool quick = false;
+};
+
+void Declare(ReproduceOptions& options, Arguments& arguments) {
+  arguments.Add("--quick", options.quick, "Few trials: a minute instead of ten or more");
+  arguments.Add("--out", options.out,
+                "Folder to write; default: paper, or build/paper-quick with --quick. A run that\n"
+                "was stopped continues where it was");
+  arguments.Add("--experiments", options.experiments, "Folder of the experiment files",
+                {.shows_default = true});
+  arguments.Add("--claims", options.claims, "The paper's claims, and the rule for each",
+                {.shows_default = true});
+  arguments.Add("--threads", options.threads, "0: as many as the machine has",
+                {.shows_default = true, .range = {{0, 1024}}});
+}
+
+int Run(const ReproduceOptions& options) {
+  std::unique_ptr<Progress> progress;
+  std::string running;
+  ReproduceSettings settings{.experiments = options.experiments,
+                             .claims = options.claims,
+                             .out = options.out,
+                             .quick = options.quick,
+                             .threads = options.threads};
+  if (settings.out.empty()) settings.out = options.quick ? "build/paper-quick" : "paper";
+  settings.progress = [&](const std::string& name, std::uint64_t done, std::uint64_t all) {
+    if (name != running) {
+      progress = std::make_unique<Progress>(name, static_cast<long>(all));
+      running = name;
+    }
+    if (done > 0) progress->Set(static_cast<long>(done));
+  };
+  const Expected<Reproduction> reproduction = Reproduce(settings, AllSolvers());
+  progress.reset();
+  if (!reproduction) return Refuse("reproduce", reproduction.error());
+  TextTable table({"claim", "printed", "ours [95 %]", "verdict"}, TextTable::Columns::kWords);
+  for (const JudgedClaim& judged : reproduction->claims) {
+    table.AddRow({judged.claim.id, judged.claim.printed, judged.ours.empty() ? "-" : judged.ours,
+                  std::string(ToString(judged.verdict))});
+  }
+  for (const std::string& why : reproduction->skipped) {
+    fmt::print(stderr, "sextant reproduce: not run: {}\n", why);
+  }
+  fmt::print("{}\n{} claims in {:.0f} s; the page is {}\n", table.Plain(),
+             reproduction->claims.size(), reproduction->seconds,
+             (settings.out / "REPRODUCTION.md").string());
+  return kAnswered;
+}
+
+}  // namespace
+
+Command ReproduceCommand() {
+  constexpr const char* kFooter =
+      "Run it in the project's folder. Real logs are searched for in SEXTANT_DATA, else in\n"
+      "../shared/data; without them, claims that need them are not testable.\n"
+      "Examples:\n"
+      "  sextant reproduce --quick\n"
+      "  sextant reproduce";
+  return MakeCommand<ReproduceOptions>(
+      "reproduce", "The paper's experiments repeated with known truth, and a verdict on each claim",
+      kFooter, Declare, Run);
+}
+
+}  // namespace sextant::cli

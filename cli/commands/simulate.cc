@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <memory>
+#include <vector>
+
+#include "cli/commands/commands.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "cli/recordings.h"
+#include "io/images/image_codec.h"
+#include "io/text/text_file.h"
+#include "simulator/scene/scene_file.h"
+#include "simulator/session/contact_sheet.h"
+#include "simulator/session/session.h"
+
+namespace sextant::cli {
+namespace {
+
+struct SimulateOptions {
+  std::string scene_path{};
+  std::string out = "session";
+  std::string level = "full";
+  std::string pcd = "binary";
+  std::string sheet_path{};  ///< Empty: none.
+  std::uint64_t seed = 1;
+  int scans = 1;
+  double interval_s = 1.0;
+  bool ideal = false;
+  bool bag = false;
+  double lidar_sigma_m = 0.0068;
+  std::optional<double> pixel_sigma_px{};  ///< None: the default of the level.
+};
+
+void Declare(SimulateOptions& options, Arguments& arguments) {
+  arguments.Add("SCENE", options.scene_path,
+                "Scene file (YAML); experiments/scenes has a set of them");
+  arguments.Add("--out", options.out,
+                "Folder to write; a run that was stopped continues where it was",
+                {.shows_default = true});
+  arguments.Add("--scans", options.scans, "Number of scans, with their images",
+                {.shows_default = true});
+  arguments.Add("--seed", options.seed, "The same seed gives the same bytes",
+                {.shows_default = true});
+  arguments.Add("--level", options.level,
+                "full: points and images; corners: as extractors find them; pairs: pixels marked\n"
+                "by a person",
+                {.shows_default = true});
+  arguments.Add("--interval", options.interval_s, "From one scan to the next [s]",
+                {.shows_default = true});
+  arguments.Add("--bag", options.bag, "Write also session.bag (ROS 1), with the scans and images");
+  arguments.Add("--ideal", options.ideal,
+                "Sensors without noise, without blur and with a beam of no width");
+  arguments.Add("--pcd", options.pcd, "ascii, binary or binary_compressed",
+                {.shows_default = true});
+  arguments.Add("--lidar-sigma", options.lidar_sigma_m,
+                "Levels corners and pairs: LiDAR corner noise per axis [m]",
+                {.shows_default = true});
+  arguments.Add("--pixel-sigma", options.pixel_sigma_px,
+                "Levels corners and pairs: corner noise in the image [px]; default 1 and 3.5");
+  arguments.Add("--sheet", options.sheet_path,
+                "Draw image, scan and edges of the first scan (.png)");
+}
+
+Expected<SessionOptions> SessionOptionsOf(const SimulateOptions& options) {
+  SEXTANT_ASSIGN_OR_RETURN(const SessionLevel level, FindSessionLevel(options.level));
+  SEXTANT_ASSIGN_OR_RETURN(const PcdEncoding encoding, FindPcdEncoding(options.pcd));
+  SessionOptions session;
+  session.folder = options.out;
+  session.level = level;
+  session.seed = options.seed;
+  session.scans = options.scans;
+  session.interval_s = options.interval_s;
+  session.ideal = options.ideal;
+  session.encoding = encoding;
+  session.noise.lidar_sigma_m = options.lidar_sigma_m;
+  constexpr double kMarkedByAPerson_px = 3.5;
+  constexpr double kFoundInTheImage_px = 1.0;
+  const bool is_marked = level == SessionLevel::kPairs;
+  session.noise.pixel_sigma_px =
+      options.pixel_sigma_px.value_or(is_marked ? kMarkedByAPerson_px : kFoundInTheImage_px);
+  session.encode_image = [](const cv::Mat& image) { return EncodeImage(".png", image); };
+  return session;
+}
+
+Expected<void> WriteSheet(const Scene& scene, const SimulateOptions& options) {
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat sheet, DrawContactSheet(scene, options.seed));
+  SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, EncodeImage(".png", sheet));
+  return WriteFileAtomically(options.sheet_path, bytes);
+}
+
+Expected<void> WriteExtras(const Scene& scene, const std::vector<ScanTruth>& scans,
+                           const SimulateOptions& options) {
+  if (options.bag) {
+    if (Expected<void> ok = WriteSessionBag(options.out, scene, scans); !ok) return ok;
+  }
+  return options.sheet_path.empty() ? Expected<void>() : WriteSheet(scene, options);
+}
+
+int Run(const SimulateOptions& options) {
+  if (options.scene_path.empty()) {
+    return Refuse("simulate", {ErrorCode::kInvalidOption,
+                               "expected a scene file, or the subcommand pairs; scenes are in "
+                               "experiments/scenes"});
+  }
+  const Expected<std::string> text = ReadTextFile(options.scene_path);
+  if (!text) return Refuse("simulate", text.error());
+  const Expected<Scene> scene = ParseScene(*text, options.scene_path);
+  if (!scene) return Refuse("simulate", scene.error());
+  Expected<SessionOptions> session = SessionOptionsOf(options);
+  if (!session) return Refuse("simulate", session.error());
+  if (options.bag) {
+    if (const Expected<void> ok = CheckSessionBag(*session); !ok) {
+      return Refuse("simulate", ok.error());
+    }
+  }
+  auto progress = std::make_unique<Progress>("simulating", CountSessionFiles(*scene, *session));
+  session->step = [&] { progress->Step(); };
+  const Expected<SessionReport> report = SimulateSession(*scene, *text, *session);
+  progress.reset();
+  if (!report) {
+    return Refuse("simulate",
+                  {report.error().code, report.error().code == ErrorCode::kIo
+                                            ? report.error().message
+                                            : options.scene_path + ": " + report.error().message});
+  }
+  if (const Expected<void> ok = WriteExtras(*scene, report->scans, options); !ok) {
+    return Refuse("simulate", ok.error());
+  }
+  fmt::print("{}: scene {}, scans: {}, files written: {}, kept: {}; the truth is in truth.yaml{}\n",
+             options.out, scene->name, options.scans, report->written, report->kept,
+             options.bag ? ", scans and images also in session.bag" : "");
+  return kAnswered;
+}
+
+}  // namespace
+
+Command SimulateCommand() {
+  constexpr const char* kFooter =
+      "Examples:\n"
+      "  sextant simulate experiments/scenes/paper_two_boards.yaml --out session --scans 5\n"
+      "  sextant simulate pairs --views 5 --seed 7 --out session.yaml";
+  Command command = MakeCommand<SimulateOptions>(
+      "simulate", "Scans and images of a scene, with their truth", kFooter, Declare, Run);
+  command.subcommands = {SimulatePairsCommand()};
+  return command;
+}
+
+}  // namespace sextant::cli

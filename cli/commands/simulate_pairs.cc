@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/synthetic/simulate_pairs.h"
+
+#include <fmt/core.h>
+
+#include "cli/commands/commands.h"
+#include "cli/output.h"
+#include "io/problems/problem_yaml.h"
+#include "io/text/text_file.h"
+
+namespace sextant::cli {
+namespace {
+
+struct SimulatePairsOptions {
+  PairSimulation simulation{};
+  std::string out = "session.yaml";
+};
+
+void Declare(SimulatePairsOptions& options, Arguments& arguments) {
+  PairSimulation& simulation = options.simulation;
+  arguments.Add("--out", options.out, "Problem file to write", {.shows_default = true});
+  arguments.Add("--seed", simulation.seed, "The same seed gives the same bytes",
+                {.shows_default = true});
+  arguments.Add("--views", simulation.views, "Views, each with the boards in new places",
+                {.shows_default = true});
+  arguments.Add("--outliers", simulation.outliers, "Corners that are displaced",
+                {.shows_default = true});
+  arguments.Add("--outlier-shift", simulation.outlier_shift_m, "Size of the displacement [m]",
+                {.shows_default = true});
+  arguments.Add("--lidar-sigma", simulation.lidar_sigma_m, "LiDAR corner noise per axis [m]",
+                {.shows_default = true});
+  arguments.Add("--camera-sigma", simulation.camera_lateral_sigma_m,
+                "Camera corner noise across the ray [m]", {.shows_default = true});
+  arguments.Add("--depth-sigma", simulation.camera_depth_sigma_m,
+                "Camera corner noise along the ray [m]", {.shows_default = true});
+  arguments.Add("--pixel-sigma", simulation.pixel_sigma_px, "Corner noise in the image [px]",
+                {.shows_default = true});
+}
+
+int Run(const SimulatePairsOptions& options) {
+  const PairSimulation& simulation = options.simulation;
+  const Expected<SimulatedSession> session = SimulatePairs(simulation);
+  if (!session) return Refuse("simulate pairs", session.error());
+  const ProblemFile file{
+      .problem = session->problem,
+      .true_cam_from_lidar = session->true_cam_from_lidar,
+      .comment = fmt::format("simulated: the paper's two boards, seed {}, {} views, {} outliers",
+                             simulation.seed, simulation.views, simulation.outliers)};
+  if (const Expected<void> ok = WriteFileAtomically(options.out, FormatProblemYaml(file)); !ok) {
+    return Refuse("simulate pairs", ok.error());
+  }
+  fmt::print("{}: {} pairs of corners, {} of them displaced; the truth is in the file\n",
+             options.out, session->problem.pairs_3d3d.size(), simulation.outliers);
+  return kAnswered;
+}
+
+}  // namespace
+
+Command SimulatePairsCommand() {
+  return MakeCommand<SimulatePairsOptions>(
+      "pairs", "Corners of the paper's two boards, in new places in each view",
+      "Example:\n  sextant simulate pairs --views 5 --seed 7 --out session.yaml", Declare, Run);
+}
+
+}  // namespace sextant::cli

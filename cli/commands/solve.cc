@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include "base/units.h"
+#include "cli/commands/commands.h"
+#include "cli/output.h"
+#include "cli/problem_input.h"
+#include "eval/metrics/compare.h"
+#include "report/overlay.h"
+#include "report/report_text.h"
+#include "solvers/all/all_solvers.h"
+
+namespace sextant::cli {
+namespace {
+
+struct SolveOptions {
+  ProblemInputOptions input{};
+  std::string solver = "kabsch";
+  std::vector<std::string> overlay{};  ///< Image to draw on and file to write; empty: none.
+};
+
+void Declare(SolveOptions& options, Arguments& arguments) {
+  DeclareProblemInput(options.input, arguments);
+  arguments.Add("--solver", options.solver, "A solver, possibly composed; see sextant list solvers",
+                {.shows_default = true});
+  arguments.Add("--overlay", options.overlay,
+                "IMAGE OUT: draw measured and reprojected points on the image, residuals x10",
+                {.min_values = 2});
+}
+
+std::string TextOf(const CalibrationProblem& problem, const Solver& solver,
+                   const ComparisonRow& row) {
+  std::string text = DescribeReport(problem, solver.spec(), *row.report);
+  if (row.from_truth) {
+    text +=
+        fmt::format("  error against the truth    {:.2f} mm, {:.4f} deg\n",
+                    row.from_truth->translation_m * 1e3, row.from_truth->rotation_rad * kDegPerRad);
+  }
+  return text;
+}
+
+int Run(const SolveOptions& options) {
+  const Expected<SolverPtr> solver = AllSolvers().Make(options.solver);
+  if (!solver) return Refuse("solve", solver.error());
+  const Expected<LoadedProblem> input = LoadProblem(options.input);
+  if (!input) return Refuse("solve", input.error());
+  const CalibrationProblem& problem = input->file.problem;
+  const std::vector<ComparisonRow> rows =
+      Compare(problem, {&*solver, 1}, input->file.true_cam_from_lidar);
+  const ComparisonRow& row = rows.front();
+  if (!row.report) {
+    PrintNoAnswer("solve", options.input, row);
+    return DeliverAnswers("solve", options.input, *input, rows, "", false);
+  }
+  if (!options.overlay.empty()) {
+    const Expected<void> drawn =
+        DrawOverlay(problem, *row.report, options.overlay[0], options.overlay[1]);
+    if (!drawn) return Refuse("solve", drawn.error());
+  }
+  return DeliverAnswers("solve", options.input, *input, rows, TextOf(problem, **solver, row), true);
+}
+
+}  // namespace
+
+Command SolveCommand() {
+  constexpr const char* kFooter =
+      "Examples:\n"
+      "  sextant solve points.txt\n"
+      "  sextant solve points.txt --solver 'refine(ransac(kabsch, seed=7), loss=huber)'\n"
+      "  sextant solve pairs.csv --camera camera.yaml --solver 'refine(epnp)' --json result.json";
+  return MakeCommand<SolveOptions>("solve", "The answer of one solver, with its uncertainty",
+                                   kFooter, Declare, Run);
+}
+
+}  // namespace sextant::cli

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// The only source that includes CLI11, which takes about 12 s to compile.
+#include "cli/parse.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <sstream>
+#include <type_traits>
+
+#include "base/nearest_name.h"
+#include "base/version.h"
+#include "cli/output.h"
+
+namespace sextant::cli {
+namespace {
+
+template <class Value>
+struct NumberOf {
+  using Type = Value;
+};
+template <class Value>
+struct NumberOf<std::optional<Value>> {
+  using Type = Value;
+};
+
+template <class Value>
+void SetRange(const ArgumentRange& range, CLI::Option& option) {
+  using Number = typename NumberOf<Value>::Type;
+  if constexpr (std::is_arithmetic_v<Number>) {
+    option.check(CLI::Range(static_cast<Number>(range.low), static_cast<Number>(range.high)));
+  }
+}
+
+template <class Value>
+CLI::Option& AddOption(const Argument& argument, Value& value, CLI::App& app) {
+  CLI::Option& option = *app.add_option(argument.name, value, argument.help);
+  if (argument.rules.range) SetRange<Value>(*argument.rules.range, option);
+  return option;
+}
+
+CLI::Option& AddOption(const Argument& argument, bool& value, CLI::App& app) {
+  return *app.add_flag(argument.name, value, argument.help);
+}
+
+void SetRules(const ArgumentRules& rules, CLI::App& app, CLI::Option& option) {
+  if (rules.required) option.required();
+  if (rules.shows_default) option.capture_default_str();
+  if (rules.min_values > 0) {
+    option.expected(rules.min_values, std::max(rules.min_values, rules.max_values));
+  }
+  if (rules.separator != '\0') option.delimiter(rules.separator);
+  if (!rules.choices.empty()) option.check(CLI::IsMember(rules.choices, CLI::ignore_case));
+  if (!rules.excludes.empty()) option.excludes(app.get_option(rules.excludes));
+}
+
+void AddCommand(const Command& command, const std::string& group, CLI::App& parent) {
+  CLI::App& app = *parent.add_subcommand(command.name, command.summary);
+  app.group(group);
+  app.footer(command.footer);
+  Arguments arguments;
+  if (command.declare) command.declare(arguments);
+  for (const Argument& argument : arguments.all()) {
+    std::visit(
+        [&](auto* value) { SetRules(argument.rules, app, AddOption(argument, *value, app)); },
+        argument.target);
+  }
+  for (const Command& sub : command.subcommands) AddCommand(sub, "Subcommands", app);
+  if (!command.run) app.require_subcommand(1);
+}
+
+std::vector<const Command*> AllCommands(const Program& program) {
+  std::vector<const Command*> all;
+  for (const CommandGroup& group : program.groups) {
+    for (const Command& command : group.commands) all.push_back(&command);
+  }
+  return all;
+}
+
+// The error for an argument that should name a command and does not; empty if it names one.
+std::string UnknownName(const std::string& program, const std::string& name,
+                        const std::vector<const Command*>& commands) {
+  std::vector<std::string> known;
+  for (const Command* command : commands) {
+    if (command->name == name) return {};
+    known.push_back(command->name);
+  }
+  return fmt::format("{} has no command '{}'; {}\n", program, name, SuggestName(name, known));
+}
+
+// CLI11 would only report that a command is required.
+std::string UnknownCommand(const Program& program, int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-') return {};
+  const std::string name = argv[1];
+  for (const auto& [old_name, new_name] : program.renamed) {
+    if (name == old_name) {
+      return fmt::format("'{0} {1}' is now '{0} {2}'\n", program.name, name, new_name);
+    }
+  }
+  const std::vector<const Command*> commands = AllCommands(program);
+  std::string error = UnknownName(program.name, name, commands);
+  if (!error.empty() || argc < 3 || argv[2][0] == '-') return error;
+  for (const Command* command : commands) {
+    if (command->name != name || command->run) continue;
+    std::vector<const Command*> subcommands;
+    for (const Command& sub : command->subcommands) subcommands.push_back(&sub);
+    return UnknownName(program.name + " " + name, argv[2], subcommands);
+  }
+  return {};
+}
+
+// The run of the command, or of the subcommand, that the parsed line names.
+std::function<int()> ChosenRun(const CLI::App& app, const std::vector<const Command*>& commands) {
+  const std::vector<const CLI::App*> chosen = app.get_subcommands(nullptr);
+  for (const Command* command : commands) {
+    for (const CLI::App* sub : chosen) {
+      if (!sub->parsed() || sub->get_name() != command->name) continue;
+      std::vector<const Command*> subcommands;
+      for (const Command& one : command->subcommands) subcommands.push_back(&one);
+      const std::function<int()> run = ChosenRun(*sub, subcommands);
+      return run ? run : command->run;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+ParsedLine ParseLine(const Program& program, int argc, const char* const* argv) {
+  if (std::string error = UnknownCommand(program, argc, argv); !error.empty()) {
+    return {.run = {}, .exit_code = kWrongUse, .out = {}, .err = std::move(error)};
+  }
+  CLI::App app(program.introduction, program.name);
+  app.set_version_flag("--version", std::string(Version()));
+  app.set_help_all_flag("--help-all", "The help of every command");
+  app.require_subcommand(1);
+  app.footer(program.footer);
+  for (const CommandGroup& group : program.groups) {
+    for (const Command& command : group.commands) AddCommand(command, group.title, app);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    std::ostringstream out;
+    std::ostringstream err;
+    const int code = app.exit(error, out, err);
+    return {.run = {},
+            .exit_code = code == 0 ? kAnswered : kWrongUse,
+            .out = out.str(),
+            .err = err.str()};
+  }
+  return {
+      .run = ChosenRun(app, AllCommands(program)), .exit_code = kAnswered, .out = {}, .err = {}};
+}
+
+int RunProgram(const Program& program, int argc, const char* const* argv) {
+  const ParsedLine line = ParseLine(program, argc, argv);
+  fmt::print("{}", line.out);
+  fmt::print(stderr, "{}", line.err);
+  return line.run ? line.run() : line.exit_code;
+}
+
+}  // namespace sextant::cli

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/problem_input.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "base/version.h"
+#include "cli/output.h"
+#include "io/boards/board_file.h"
+#include "io/boards/marker_files.h"
+#include "io/cameras/camera_file.h"
+#include "io/problems/read_problem.h"
+
+namespace sextant::cli {
+namespace {
+
+// Only the sizes of the boards matter here, so a marker_coordinates.txt may have any number of
+// them.
+Expected<std::vector<Board>> ReadNamedBoards(const std::filesystem::path& path) {
+  if (path.extension() == ".yaml" || path.extension() == ".yml") return ReadBoards(path);
+  return ReadMarkerCoordinates(path).map(BoardsOf);
+}
+
+Expected<void> AddNamedFiles(const ProblemInputOptions& options, CalibrationProblem& problem) {
+  if (!options.camera_path.empty()) {
+    SEXTANT_ASSIGN_OR_RETURN(const Camera camera, ReadCamera(options.camera_path));
+    problem.camera = camera;
+  }
+  if (!options.boards_path.empty()) {
+    SEXTANT_ASSIGN_OR_RETURN(const std::vector<Board> boards, ReadNamedBoards(options.boards_path));
+    problem.boards = boards;
+  }
+  return {};
+}
+
+std::string DiagnosticsText(const LoadedProblem& input, bool reordered) {
+  std::string text;
+  for (const std::string& line : input.notes) text += "  " + line + "\n";
+  for (const std::string& line : Describe(input.diagnostics)) text += "  " + line + "\n";
+  if (text.empty()) return text;
+  if (reordered && input.diagnostics.order) {
+    text += "  the order above was taken, because of --reorder\n";
+  }
+  return "\nData diagnostics:\n" + text;
+}
+
+std::string ResultsJson(const LoadedProblem& input, const std::vector<ComparisonRow>& rows) {
+  ResultFile results{.version = std::string(Version()), .input = input.summary, .results = {}};
+  for (const ComparisonRow& row : rows) results.results.push_back({row.solver, row.report});
+  return FormatResults(results);
+}
+
+}  // namespace
+
+void DeclareProblemInput(ProblemInputOptions& options, Arguments& arguments) {
+  arguments.Add("FILE", options.problem_path, kCorrespondencesHelp, {.required = true});
+  arguments.Add("--camera", options.camera_path,
+                "Intrinsics: ROS camera_info YAML, OpenCV YAML, or .ini");
+  arguments.Add("--boards", options.boards_path,
+                "Known board sizes: a board file (YAML), or marker_coordinates.txt of the\n"
+                "original package");
+  arguments.Add("--reorder", options.reorder,
+                "Use the order of corners and boards that fits best, if it fits far better than\n"
+                "the order of the file");
+  arguments.Add("--json", options.json_path, "Write the results as JSON; - for standard output");
+}
+
+Expected<LoadedProblem> LoadProblem(const ProblemInputOptions& options) {
+  SEXTANT_ASSIGN_OR_RETURN(const DetectedProblem read, ReadProblem(options.problem_path));
+  LoadedProblem input;
+  input.file = read;
+  input.notes = read.notes;
+  CalibrationProblem& problem = input.file.problem;
+  SEXTANT_RETURN_IF_ERROR(AddNamedFiles(options, problem));
+  input.diagnostics = DiagnosePairs(problem);
+  if (options.reorder && input.diagnostics.order) {
+    problem = Reordered(problem, *input.diagnostics.order);
+  }
+  input.summary = {.path = options.problem_path,
+                   .format = std::string(ToString(read.format)),
+                   .pairs_3d3d = static_cast<int>(problem.pairs_3d3d.size()),
+                   .pairs_2d3d = static_cast<int>(problem.pairs_2d3d.size()),
+                   .points_in_cam = static_cast<int>(problem.point_sets.in_cam.size()),
+                   .points_in_lidar = static_cast<int>(problem.point_sets.in_lidar.size())};
+  return input;
+}
+
+Expected<std::vector<SolverPtr>> MakeSolvers(const SolverRegistry& registry,
+                                             const std::vector<SpecNode>& specs) {
+  std::vector<SolverPtr> solvers;
+  for (const SpecNode& spec : specs) {
+    SEXTANT_ASSIGN_OR_RETURN(SolverPtr solver, registry.Make(spec));
+    solvers.push_back(std::move(solver));
+  }
+  return solvers;
+}
+
+void PrintNoAnswer(const char* command, const ProblemInputOptions& options,
+                   const ComparisonRow& row) {
+  const Error& error = row.report.error();
+  Refuse(command, {error.code, fmt::format("{}: no answer of {}: {}", options.problem_path,
+                                           row.solver, error.message)});
+}
+
+int DeliverAnswers(const char* command, const ProblemInputOptions& options,
+                   const LoadedProblem& input, const std::vector<ComparisonRow>& rows,
+                   const std::string& text, bool answered) {
+  const std::string diagnostics = DiagnosticsText(input, options.reorder);
+  if (options.json_path == "-") fmt::print(stderr, "{}", diagnostics);
+  return Deliver(command, options.json_path, text + diagnostics, ResultsJson(input, rows),
+                 answered ? kAnswered : kNoAnswer);
+}
+
+}  // namespace sextant::cli

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/images/image_codec.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+
+namespace sextant {
+namespace {
+
+using testing::HasSubstr;
+
+cv::Mat Gradient(int type) {
+  cv::Mat image(20, 30, type);
+  for (int row = 0; row < image.rows; ++row) {
+    image.row(row).setTo(cv::Scalar(10.0 * row, 5.0 * row, 3.0 * row));
+  }
+  return image;
+}
+
+int DifferingValues(const cv::Mat& a, const cv::Mat& b) {
+  EXPECT_EQ(a.type(), b.type());
+  EXPECT_EQ(a.size(), b.size());
+  return a.size() == b.size() ? cv::countNonZero((a != b).reshape(1)) : -1;
+}
+
+TEST(ImageCodec, PngIsLosslessForEveryDepth) {
+  for (const int type : {CV_8UC1, CV_8UC3, CV_16UC1}) {
+    const cv::Mat image = Gradient(type);
+    const Expected<std::string> bytes = EncodeImage(".png", image);
+    ASSERT_TRUE(bytes) << bytes.error().message;
+    const Expected<cv::Mat> decoded = DecodeImage(*bytes, DecodedColor::kUnchanged);
+    ASSERT_TRUE(decoded) << decoded.error().message;
+    EXPECT_EQ(DifferingValues(image, *decoded), 0) << type;
+  }
+}
+
+TEST(ImageCodec, ConvertsColors) {
+  const Expected<std::string> bytes = EncodeImage(".png", Gradient(CV_8UC3));
+  ASSERT_TRUE(bytes) << bytes.error().message;
+  EXPECT_EQ(DecodeImage(*bytes, DecodedColor::kGrey)->type(), CV_8UC1);
+  EXPECT_EQ(DecodeImage(*bytes, DecodedColor::kBgr)->type(), CV_8UC3);
+}
+
+TEST(ImageCodec, JpegIsClose) {
+  const cv::Mat image = Gradient(CV_8UC1);
+  const Expected<std::string> bytes = EncodeImage(".jpg", image);
+  ASSERT_TRUE(bytes) << bytes.error().message;
+  const Expected<cv::Mat> decoded = DecodeImage(*bytes, DecodedColor::kGrey);
+  ASSERT_TRUE(decoded) << decoded.error().message;
+  EXPECT_LT(cv::norm(image, *decoded, cv::NORM_INF), 8.0);
+}
+
+TEST(ImageCodec, WhatIsNoImageIsAnError) {
+  for (const char* text : {"", "this is not an image", "\x89PNG"}) {
+    const Expected<cv::Mat> decoded = DecodeImage(text, DecodedColor::kUnchanged);
+    ASSERT_FALSE(decoded) << text;
+    EXPECT_EQ(decoded.error().code, ErrorCode::kParse);
+    EXPECT_THAT(decoded.error().message, HasSubstr("expected an image"));
+  }
+  for (const char* extension : {".nothing", "", "png"}) {
+    const Expected<std::string> bytes = EncodeImage(extension, Gradient(CV_8UC1));
+    ASSERT_FALSE(bytes) << extension;
+    EXPECT_EQ(bytes.error().code, ErrorCode::kInvalidOption);
+  }
+}
+
+}  // namespace
+}  // namespace sextant
