@@ -8,6 +8,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,10 +28,12 @@ constexpr std::size_t kMaxFilesInFolder = 40;
 constexpr std::array<std::string_view, 5> kPrograms = {"bench", "cli", "examples", "python",
                                                        "tests"};
 
-// What sextant_library(<folder> PUBLIC ... PRIVATE ...) names.
+// What sextant_library(<folder> PUBLIC ... PRIVATE ...) names, and where a library is optional
+// target_link_libraries(sextant_<folder> ...) too.
 struct LinkLine {
   std::vector<std::string> public_links;
   std::vector<std::string> private_links;
+  std::vector<std::string> interface_links;  // For those who link the folder: it includes none.
 };
 using LinkLines = std::map<std::string, LinkLine>;  // By folder.
 
@@ -60,26 +63,36 @@ bool IsProgram(std::string_view folder) {
   return std::ranges::count(kPrograms, folder.substr(0, folder.find('/'))) > 0;
 }
 
+// Adds the links that the arguments of a CMake call name after PUBLIC, PRIVATE and INTERFACE.
+void AddLinks(const std::string& arguments, LinkLine& line) {
+  std::istringstream words(arguments);
+  std::vector<std::string>* links = nullptr;
+  for (std::string word; words >> word;) {
+    if (word == "PUBLIC") {
+      links = &line.public_links;
+    } else if (word == "PRIVATE") {
+      links = &line.private_links;
+    } else if (word == "INTERFACE") {
+      links = &line.interface_links;
+    } else if (links != nullptr) {
+      links->push_back(word);
+    }
+  }
+}
+
 LinkLines ReadLinkLines(const std::vector<SourceFile>& files) {
-  const std::regex call(R"(sextant_library\(([^)]*)\))");
-  const std::regex word(R"([^\s]+)");
+  static const std::regex call(R"((sextant_library|target_link_libraries)\(\s*(\S+)([^)]*)\))");
   LinkLines result;
   for (const SourceFile& file : files) {
     if (!file.path.ends_with("CMakeLists.txt")) continue;
     std::string text;
     for (const std::string& line : file.lines) text += line.substr(0, line.find('#')) + '\n';
+    std::string target = "sextant_" + file.folder;
+    std::ranges::replace(target, '/', '_');
     for (std::sregex_iterator found(text.begin(), text.end(), call), end; found != end; ++found) {
-      const std::string arguments = (*found)[1];
-      LinkLine line;
-      std::vector<std::string>* links = nullptr;
-      for (std::sregex_iterator w(arguments.begin(), arguments.end(), word); w != end; ++w) {
-        if (w->str() == "PUBLIC" || w->str() == "PRIVATE") {
-          links = w->str() == "PUBLIC" ? &line.public_links : &line.private_links;
-        } else if (links != nullptr) {
-          links->push_back(w->str());
-        }
-      }
-      result[file.folder] = line;
+      const std::string name = (*found)[2];
+      const bool is_folder = (*found)[1] == "sextant_library" && name == file.folder;
+      if (is_folder || name == target) AddLinks((*found)[3], result[file.folder]);
     }
   }
   return result;
@@ -176,7 +189,6 @@ void AppendIncludeFaults(const std::string& folder, const LinkLine& line,
     }
   }
   for (const std::string& link : line.public_links) {
-    // A folder without headers of its own passes on what it names.
     if (used.contains(link) && !used_by_headers.contains(link)) {
       faults.push_back("the link line of " + folder + " names " + link +
                        " as PUBLIC, but no header there includes it");
@@ -218,7 +230,9 @@ std::vector<std::string> CircleFrom(const std::string& folder, const LinkLines& 
   }
   if (!done.insert(folder).second) return {};
   path.push_back(folder);
-  const std::vector<std::string> links = AllLinks(lines.at(folder));
+  std::vector<std::string> links = AllLinks(lines.at(folder));
+  const std::vector<std::string>& passed_on = lines.at(folder).interface_links;
+  links.insert(links.end(), passed_on.begin(), passed_on.end());
   for (const auto& [next, line] : lines) {
     if (!Contains(links, TargetOf(next))) continue;
     std::vector<std::string> circle = CircleFrom(next, lines, path, done);
@@ -310,8 +324,10 @@ TEST(Layering, FaultsAreSeen) {
 }
 
 TEST(Layering, CirclesAreSeen) {
-  const LinkLine to_b = {.public_links = {"sextant::b"}, .private_links = {}};
-  const LinkLine to_c = {.public_links = {}, .private_links = {"sextant::x_c"}};
+  const LinkLine to_b = {
+      .public_links = {"sextant::b"}, .private_links = {}, .interface_links = {}};
+  const LinkLine to_c = {
+      .public_links = {}, .private_links = {"sextant::x_c"}, .interface_links = {}};
   EXPECT_THAT(FindCircle({{"a", to_b}, {"b", to_c}, {"x/c", {}}}), IsEmpty());
   EXPECT_THAT(FindCircle({{"a", to_b}, {"b", to_c}, {"x/c", to_b}}), ElementsAre("b", "x/c", "b"));
 }
