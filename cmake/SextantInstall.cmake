@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# `cmake --install`, and find_package(sextant) for whoever links us: sextant::solvers and so on.
+# `cmake --install`, and find_package(sextant) with targets sextant::solvers and so on.
 include(CMakePackageConfigHelpers)
 
 set(SEXTANT_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/sextant)
