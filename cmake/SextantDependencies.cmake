@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# Every library, with the Debian package and the reason, is listed in scripts/packages.txt.
-# A version is the oldest that works; newer majors of fmt, Ceres and OpenCV pass these checks.
+# scripts/packages.txt lists every library with its Debian package and its purpose. Each version is the
+# oldest that works; newer major versions of fmt, Ceres and OpenCV pass these checks.
 
-# find_package for a library that our static libraries link: for us now and, where it was found,
-# through sextantConfig.cmake for whoever calls find_package(sextant).
+# find_package for a library that our static libraries link. If it was found, sextantConfig.cmake finds
+# it too, for projects that call find_package(sextant).
 macro(sextant_dependency package)
   find_package(${package} ${ARGN})
   if(${package}_FOUND)
@@ -33,15 +33,15 @@ pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)
 string(APPEND SEXTANT_FIND_DEPENDENCIES "pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)\n")
 if(SEXTANT_OPENCV)
   find_package(CLI11 REQUIRED)
-  # Draws boards to print; the program only.
+  # Draws boards to print.
   pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
-  # The program only: OpenCV maps over a hundred shared objects into a process.
+  # For the program only: highgui maps over a hundred shared objects into a process.
   find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs highgui)
 endif()
 
-# Recordings of ROS: optional. lz4 and zstd are named as the linker knows them, as not every
-# distribution has CMake files of theirs.
-option(SEXTANT_BAG "Read and write recordings of ROS (sextant::bag), where the libraries are found" ON)
+# ROS recordings are optional. lz4 and zstd are found by their linker names, because not every
+# distribution has CMake files for them.
+option(SEXTANT_BAG "Read and write ROS recordings (sextant::bag) if the libraries are found" ON)
 if(SEXTANT_BAG)
   find_package(BZip2 QUIET)
   find_package(SQLite3 QUIET)
@@ -56,13 +56,13 @@ if(SEXTANT_BAG)
 find_dependency(SQLite3)
 ")
   else()
-    message(STATUS "bz2, lz4, zstd or SQLite not found: no recordings of ROS")
+    message(STATUS "bz2, lz4, zstd or SQLite not found: no ROS recordings")
     set(SEXTANT_BAG OFF)
   endif()
 endif()
 
-# Experiments on many machines: optional.
-option(SEXTANT_MPI "Build sextant-mpi, where MPI is found" ON)
+# Experiments on many machines are optional.
+option(SEXTANT_MPI "Build sextant-mpi if MPI is found" ON)
 if(SEXTANT_MPI AND SEXTANT_OPENCV)
   find_package(MPI QUIET COMPONENTS CXX)
   if(NOT MPI_CXX_FOUND)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Defines a library of one folder: sextant_library(<folder> PUBLIC ... PRIVATE ...).
 #
-# Sources are globbed, so that a new solver is one new file; CONFIGURE_DEPENDS looks again at each
-# build. The link line is the layering: tests/layering reads the includes against it.
+# Sources are globbed, so that a new solver is one new file; CONFIGURE_DEPENDS repeats this at each
+# build. The link line is the layering: it names exactly the folders and libraries that the sources
+# include, PUBLIC if a header does. tests/layering checks it.
 function(sextant_library name)
   cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
   string(REPLACE "/" "_" target ${name})
@@ -22,7 +23,8 @@ function(sextant_library name)
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sextant)
 endfunction()
 
-# Several libraries under one name: sextant_umbrella(<folder> <parts of it>...).
+# Several libraries under one name: sextant_umbrella(<folder> <parts of it>...). For programs; a library
+# links the parts that it uses.
 function(sextant_umbrella name)
   string(REPLACE "/" "_" target ${name})
   list(TRANSFORM ARGN PREPEND sextant::${target}_ OUTPUT_VARIABLE parts)

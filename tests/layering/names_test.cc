@@ -1,14 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 #include <regex>
 #include <string>
+#include <string_view>
 
 #include "support/source_tree.h"
 
 namespace sextant::test {
 namespace {
+
+// A wording, and the field's term for it: docs/conventions.md, Terms.
+struct Wording {
+  std::string_view found;
+  std::string_view instead;
+};
+
+constexpr std::array<Wording, 18> kWordings = {{
+    {"///< Of ", "a noun, or a sentence with a subject"},
+    {"/// Of ", "a noun, or a sentence with a subject"},
+    {"drawn anew", "bootstrap over views"},
+    {"views left out", "jackknife (leave-one-view-out)"},
+    {"says of itself", "data diagnostics"},
+    {"side by side", "vectorised, a SIMD vector of 8 doubles"},
+    {"quiet machine", "an idle machine"},
+    {"Untold", "unobservable"},
+    {"told too", "underestimated, overestimated"},
+    {"told intrinsics", "assumed intrinsics"},
+    {"kMost", "kMax"},
+    {"kFewest", "kMin"},
+    {"WeighedPairs", "WeightedPairs"},
+    {"weighed alike", "equal weights"},
+    {"pair of chance", "random pair"},
+    {"HoldAgainstItself", "CrossValidate"},
+    {"the least that", "the minimum"},
+    {"PairJudge", "PairScorer"},
+}};
 
 // Two types of one name in one namespace compile alone and corrupt memory once linked together.
 TEST(Names, EveryTypeOfTheLibraryIsDefinedInOneHeader) {
@@ -27,6 +56,20 @@ TEST(Names, EveryTypeOfTheLibraryIsDefinedInOneHeader) {
     }
   }
   EXPECT_GT(defined_in.size(), 30U);
+}
+
+// The terms of the glossary in sources, pages, scripts and messages.
+TEST(Names, WordsAreThoseOfTheField) {
+  for (const SourceFile& file : ReadSourceTree()) {
+    if (file.path == "tests/layering/names_test.cc") continue;
+    for (std::size_t i = 0; i < file.lines.size(); ++i) {
+      for (const Wording& wording : kWordings) {
+        EXPECT_EQ(file.lines[i].find(wording.found), std::string::npos)
+            << file.path << ":" << i + 1 << ": write \"" << wording.instead << "\" for \""
+            << wording.found << "\": " << file.lines[i];
+      }
+    }
+  }
 }
 
 }  // namespace
