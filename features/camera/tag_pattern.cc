@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <opencv2/aruco/dictionary.hpp>
 #include <optional>
 
 #include "base/nearest_name.h"
@@ -48,7 +47,7 @@ const std::vector<std::string>& TagFamilies() {
 }
 
 Expected<int> TagCount(std::string_view family) {
-  if (const auto dictionary = FindArucoDictionary(family)) return (*dictionary)->bytesList.rows;
+  if (const auto dictionary = FindArucoDictionary(family)) return dictionary->bytesList.rows;
   if (const AprilTagFamily april = MakeAprilTagFamily(family)) {
     return static_cast<int>(april->ncodes);
   }
@@ -63,8 +62,7 @@ Expected<TagPattern> MakeTagPattern(std::string_view family, int id) {
         ErrorCode::kInvalidInput,
         fmt::format("tag family {} has the ids 0 to {}, not {}", family, *count - 1, id));
   }
-  if (const auto dictionary = FindArucoDictionary(family))
-    return MakeArucoPattern(**dictionary, id);
+  if (const auto dictionary = FindArucoDictionary(family)) return MakeArucoPattern(*dictionary, id);
   return AprilTagPattern(*MakeAprilTagFamily(family), id);
 }
 

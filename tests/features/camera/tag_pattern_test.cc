@@ -5,20 +5,19 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <opencv2/aruco.hpp>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
 #include "features/camera/apriltag_family.h"
 #include "features/camera/aruco_dictionary.h"
+#include "features/camera/opencv_aruco.h"
 
 namespace sextant::test {
 namespace {
 
-std::vector<std::uint8_t> ArucoCells(const cv::Ptr<cv::aruco::Dictionary>& dictionary, int id) {
-  cv::Mat marker;
-  cv::aruco::drawMarker(dictionary, id, dictionary->markerSize + 2, marker, 1);
+std::vector<std::uint8_t> ArucoCells(const cv::aruco::Dictionary& dictionary, int id) {
+  const cv::Mat marker = DrawArucoCells(dictionary, id);
   std::vector<std::uint8_t> white;
   for (const std::uint8_t level : cv::Mat_<std::uint8_t>(marker)) white.push_back(level > 127);
   return white;
