@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 
 #include "base/nearest_name.h"
@@ -15,8 +14,7 @@ namespace sextant {
 namespace {
 
 TagPattern AprilTagPattern(apriltag_family_t& family, int id) {
-  const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> image(apriltag_to_image(&family, id),
-                                                                 image_u8_destroy);
+  const AprilTagImage image = DrawAprilTag(family, id);
   TagPattern pattern{.cells = family.total_width,
                      .edge_first = (family.total_width - family.width_at_border) / 2,
                      .edge_cells = family.width_at_border,

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -24,8 +23,7 @@ std::vector<std::uint8_t> ArucoCells(const cv::aruco::Dictionary& dictionary, in
 }
 
 std::vector<std::uint8_t> AprilTagCells(apriltag_family_t* family, int id) {
-  const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> image(apriltag_to_image(family, id),
-                                                                 image_u8_destroy);
+  const AprilTagImage image = DrawAprilTag(*family, id);
   std::vector<std::uint8_t> white;
   for (int y = 0; y < image->height; ++y) {
     for (int x = 0; x < image->width; ++x) white.push_back(image->buf[y * image->stride + x] > 127);
