@@ -9,11 +9,11 @@ extern "C" {
 #include <apriltag/tag36h11.h>
 }
 
-#include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "base/random.h"
 #include "features/camera/find_boards.h"
+#include "features/camera/opencv_aruco.h"
 #include "geometry/board_check.h"
 #include "geometry/so3.h"
 #include "simulator/camera/render.h"
@@ -132,13 +132,13 @@ void LibraryAruco(benchmark::State& state, const Photo& (*the_photo)(),
                   cv::aruco::CornerRefineMethod refine) {
   cv::setNumThreads(1);
   const cv::Mat image = the_photo().image;
-  const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_APRILTAG_36h11);
-  const auto parameters = cv::aruco::DetectorParameters::create();
-  parameters->cornerRefinementMethod = refine;
-  std::vector<std::vector<cv::Point2f>> corners;
-  std::vector<int> ids;
-  for (auto _ : state) cv::aruco::detectMarkers(image, dictionary, corners, ids, parameters);
-  if (ids.size() != 4) state.SkipWithError("not all tags were found");
+  const cv::aruco::Dictionary dictionary =
+      PredefinedArucoDictionary(cv::aruco::DICT_APRILTAG_36h11);
+  cv::aruco::DetectorParameters parameters = ArucoParameters();
+  parameters.cornerRefinementMethod = refine;
+  std::size_t count = 0;
+  for (auto _ : state) count = DetectAruco(image, dictionary, parameters).size();
+  if (count != 4) state.SkipWithError("not all tags were found");
 }
 
 BENCHMARK_CAPTURE(LibraryAprilTag, tags_apriltag_library_decimate_1, ThePhoto, 1.0F)

@@ -65,7 +65,7 @@ repair_dpkg() {
 # One unreachable source of many fails the update; whether that matters, the install tells.
 refresh_package_lists() { apt update || true; }
 
-# Installs what is missing of the sections build, library and test of packages.txt.
+# install_packages <section...>: installs what is missing of these sections of packages.txt.
 install_packages() {
   local missing=() section package
   if ! command -v dpkg-query >/dev/null; then
@@ -73,8 +73,8 @@ install_packages() {
     return
   fi
   while read -r section package _; do
-    case $section in
-      build | library | test) is_installed "$package" || missing+=("$package") ;;
+    case " $* " in
+      *" ${section:-#} "*) is_installed "$package" || missing+=("$package") ;;
     esac
   done <scripts/packages.txt
   if [ ${#missing[@]} = 0 ]; then
@@ -104,10 +104,11 @@ job_count() {
   echo $((cores < by_memory ? cores : by_memory))
 }
 
+# configure [cmake argument...]
 configure() {
   step "configuring build/release" \
     "read the error above; if this checkout was moved or the compiler changed, remove build/release"
-  quietly configure cmake --preset release
+  quietly configure cmake --preset release "$@"
 }
 
 # build [target...]: everything where no target is named.

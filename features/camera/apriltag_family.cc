@@ -35,6 +35,12 @@ constexpr std::array kFamilies = {
 };
 #undef SEXTANT_FAMILY
 
+// `Id` is int in AprilTag 3.2 and unsigned in 3.4.
+template <class Id>
+image_u8_t* Draw(image_u8_t* (*draw)(apriltag_family_t*, Id), apriltag_family_t& family, int id) {
+  return draw(&family, static_cast<Id>(id));
+}
+
 }  // namespace
 
 const std::vector<std::string>& AprilTagFamilyNames() {
@@ -51,6 +57,10 @@ AprilTagFamily MakeAprilTagFamily(std::string_view name) {
     if (name == entry.name) return {entry.create(), entry.destroy};
   }
   return {nullptr, [](apriltag_family_t*) {}};
+}
+
+AprilTagImage DrawAprilTag(apriltag_family_t& family, int id) {
+  return {Draw(apriltag_to_image, family, id), image_u8_destroy};
 }
 
 }  // namespace sextant

@@ -20,4 +20,9 @@ const std::vector<std::string>& AprilTagFamilyNames();
 /// The library's family; null if it has none of that name.
 AprilTagFamily MakeAprilTagFamily(std::string_view name);
 
+using AprilTagImage = std::unique_ptr<image_u8_t, void (*)(image_u8_t*)>;
+
+/// The tag as it is printed, one pixel per cell. `id` is one of the family.
+AprilTagImage DrawAprilTag(apriltag_family_t& family, int id);
+
 }  // namespace sextant

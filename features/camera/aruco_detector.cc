@@ -2,13 +2,13 @@
 #include "features/camera/aruco_detector.h"
 
 #include <algorithm>
-#include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 #include <vector>
 
 #include "features/camera/aruco_dictionary.h"
 #include "features/camera/contrast_regions.h"
+#include "features/camera/opencv_aruco.h"
 #include "features/camera/tag_reading.h"
 
 namespace sextant {
@@ -78,18 +78,18 @@ Quad Normalised(const Quad& corners, Refinement refine) {
 
 class ArucoDetector final : public TagDetector {
  public:
-  ArucoDetector(std::string name, std::string family, cv::Ptr<cv::aruco::Dictionary> dictionary,
+  ArucoDetector(std::string name, std::string family, cv::aruco::Dictionary dictionary,
                 const ArucoOptions& options)
       : TagDetector(std::move(name)),
         family_(std::move(family)),
         dictionary_(std::move(dictionary)),
-        parameters_(cv::aruco::DetectorParameters::create()),
+        parameters_(ArucoParameters()),
         refine_(options.refine),
         decimate_(options.decimate) {
-    parameters_->cornerRefinementMethod = static_cast<int>(options.refine);
-    parameters_->cornerRefinementWinSize = options.window_px;
-    parameters_->minMarkerPerimeterRate = options.min_perimeter;
-    parameters_->errorCorrectionRate = options.error_correction;
+    parameters_.cornerRefinementMethod = static_cast<int>(options.refine);
+    parameters_.cornerRefinementWinSize = options.window_px;
+    parameters_.minMarkerPerimeterRate = options.min_perimeter;
+    parameters_.errorCorrectionRate = options.error_correction;
   }
 
  private:
@@ -116,20 +116,17 @@ class ArucoDetector final : public TagDetector {
     // OpenCV's perimeters are relative to the sides of the image that it is given.
     const double sides = static_cast<double>(std::max(image.cols, image.rows)) /
                          std::max(region.width, region.height);
-    const auto parameters = cv::makePtr<cv::aruco::DetectorParameters>(*parameters_);
-    parameters->minMarkerPerimeterRate *= sides;
-    parameters->maxMarkerPerimeterRate *= sides;
-    std::vector<std::vector<cv::Point2f>> corners;
-    std::vector<int> ids;
-    cv::aruco::detectMarkers(image(region), dictionary_, corners, ids, parameters);
+    cv::aruco::DetectorParameters parameters = parameters_;
+    parameters.minMarkerPerimeterRate *= sides;
+    parameters.maxMarkerPerimeterRate *= sides;
     const Eigen::Vector2d origin(region.x, region.y);
     std::vector<Find> finds;
-    for (std::size_t i = 0; i < ids.size(); ++i) {
+    for (const OpenCvTag& tag : DetectAruco(image(region), dictionary_, parameters)) {
       Quad quad;
       for (std::size_t k = 0; k < 4; ++k) {
-        quad[k] = Eigen::Vector2d(corners[i][k].x, corners[i][k].y) + origin;
+        quad[k] = Eigen::Vector2d(tag.corners_px[k].x, tag.corners_px[k].y) + origin;
       }
-      finds.emplace_back(ids[i], Normalised(quad, refine_));
+      finds.emplace_back(tag.id, Normalised(quad, refine_));
     }
     return finds;
   }
@@ -139,7 +136,7 @@ class ArucoDetector final : public TagDetector {
     for (Eigen::Vector2d& corner : corners) {
       corner = corner * decimate_ + Eigen::Vector2d::Constant(0.5 * (decimate_ - 1));
     }
-    const TagReading reading = ReadTag(grey, corners, MakeArucoPattern(*dictionary_, id));
+    const TagReading reading = ReadTag(grey, corners, MakeArucoPattern(dictionary_, id));
     return {.family = family_,
             .id = id,
             .corners_px = corners,
@@ -148,8 +145,8 @@ class ArucoDetector final : public TagDetector {
   }
 
   std::string family_;
-  cv::Ptr<cv::aruco::Dictionary> dictionary_;
-  cv::Ptr<cv::aruco::DetectorParameters> parameters_;
+  cv::aruco::Dictionary dictionary_;
+  cv::aruco::DetectorParameters parameters_;
   Refinement refine_;
   int decimate_;
 };

@@ -13,7 +13,7 @@ namespace {
 
 struct DictionaryEntry {
   const char* name;
-  cv::aruco::PREDEFINED_DICTIONARY_NAME dictionary;
+  int type;
 };
 
 constexpr std::array kDictionaries = {
@@ -51,15 +51,15 @@ const std::vector<std::string>& ArucoDictionaryNames() {
   return names;
 }
 
-std::optional<cv::Ptr<cv::aruco::Dictionary>> FindArucoDictionary(std::string_view name) {
+std::optional<cv::aruco::Dictionary> FindArucoDictionary(std::string_view name) {
   for (const DictionaryEntry& entry : kDictionaries) {
-    if (name == entry.name) return cv::aruco::getPredefinedDictionary(entry.dictionary);
+    if (name == entry.name) return PredefinedArucoDictionary(entry.type);
   }
   return std::nullopt;
 }
 
-Expected<cv::Ptr<cv::aruco::Dictionary>> ReadArucoDictionary(const std::string& path) {
-  const auto dictionary = cv::makePtr<cv::aruco::Dictionary>();
+Expected<cv::aruco::Dictionary> ReadArucoDictionary(const std::string& path) {
+  cv::aruco::Dictionary dictionary;
   // Checked first because OpenCV prints a message of its own for a missing file.
   if (std::error_code error; !std::filesystem::is_regular_file(path, error)) {
     return MakeError(ErrorCode::kIo, fmt::format("{}: there is no dictionary file", path));
@@ -86,7 +86,7 @@ Expected<cv::Ptr<cv::aruco::Dictionary>> ReadArucoDictionary(const std::string& 
                                                         path, id, size * size));
       }
     }
-    dictionary->readDictionary(file.root());
+    dictionary.readDictionary(file.root());
   } catch (const cv::Exception& error) {
     return MakeError(ErrorCode::kParse, fmt::format("{}: not a dictionary: {}", path, error.err));
   }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <opencv2/aruco/dictionary.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/error.h"
+#include "features/camera/opencv_aruco.h"
 #include "features/camera/tag_pattern.h"
 
 namespace sextant {
@@ -17,11 +17,11 @@ const std::vector<std::string>& ArucoDictionaryNames();
 
 /// None if OpenCV has none of that name. "aruco_tag36h11" and so on are AprilTag families that
 /// OpenCV decodes itself.
-std::optional<cv::Ptr<cv::aruco::Dictionary>> FindArucoDictionary(std::string_view name);
+std::optional<cv::aruco::Dictionary> FindArucoDictionary(std::string_view name);
 
 /// Reads a custom dictionary in OpenCV's format: nmarkers, markersize, marker_0: "0110..." and so
 /// on (and maxCorrectionBits). Errors: kIo; kParse.
-Expected<cv::Ptr<cv::aruco::Dictionary>> ReadArucoDictionary(const std::string& path);
+Expected<cv::aruco::Dictionary> ReadArucoDictionary(const std::string& path);
 
 /// The printed pattern of an id of the dictionary: its bits with a black border of one cell.
 TagPattern MakeArucoPattern(const cv::aruco::Dictionary& dictionary, int id);

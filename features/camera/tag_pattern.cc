@@ -4,8 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <memory>
-#include <opencv2/aruco/dictionary.hpp>
 #include <optional>
 
 #include "base/nearest_name.h"
@@ -16,8 +14,7 @@ namespace sextant {
 namespace {
 
 TagPattern AprilTagPattern(apriltag_family_t& family, int id) {
-  const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> image(apriltag_to_image(&family, id),
-                                                                 image_u8_destroy);
+  const AprilTagImage image = DrawAprilTag(family, id);
   TagPattern pattern{.cells = family.total_width,
                      .edge_first = (family.total_width - family.width_at_border) / 2,
                      .edge_cells = family.width_at_border,
@@ -48,7 +45,7 @@ const std::vector<std::string>& TagFamilies() {
 }
 
 Expected<int> TagCount(std::string_view family) {
-  if (const auto dictionary = FindArucoDictionary(family)) return (*dictionary)->bytesList.rows;
+  if (const auto dictionary = FindArucoDictionary(family)) return dictionary->bytesList.rows;
   if (const AprilTagFamily april = MakeAprilTagFamily(family)) {
     return static_cast<int>(april->ncodes);
   }
@@ -62,9 +59,7 @@ Expected<TagPattern> MakeTagPattern(std::string_view family, int id) {
         ErrorCode::kInvalidInput,
         fmt::format("tag family {} has the ids 0 to {}, not {}", family, count - 1, id));
   }
-  if (const auto dictionary = FindArucoDictionary(family)) {
-    return MakeArucoPattern(**dictionary, id);
-  }
+  if (const auto dictionary = FindArucoDictionary(family)) return MakeArucoPattern(*dictionary, id);
   return AprilTagPattern(*MakeAprilTagFamily(family), id);
 }
 

@@ -14,12 +14,13 @@ using Bits = std::vector<std::uint64_t>;
 
 // Vertices by falling degree, those of one degree ascending.
 std::vector<int> ByFallingDegree(const std::vector<int>& degrees) {
+  // Allocated first: g++ 14 otherwise warns of the size that it infers where `begins` is empty.
+  std::vector<int> order(degrees.size());
   std::vector<int> begins(degrees.size() + 1, 0);
   for (const int degree : degrees) ++begins[static_cast<std::size_t>(degree)];
   int begin = 0;
   std::for_each(begins.rbegin(), begins.rend(),
                 [&](int& count) { begin += std::exchange(count, begin); });
-  std::vector<int> order(degrees.size());
   for (std::size_t v = 0; v < degrees.size(); ++v) {
     int& place = begins[static_cast<std::size_t>(degrees[v])];
     order[static_cast<std::size_t>(place++)] = static_cast<int>(v);

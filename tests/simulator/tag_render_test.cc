@@ -3,13 +3,13 @@
 
 #include <Eigen/Geometry>
 #include <memory>
-#include <opencv2/aruco.hpp>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
 #include "features/camera/apriltag_family.h"
 #include "features/camera/aruco_dictionary.h"
+#include "features/camera/opencv_aruco.h"
 #include "features/camera/tag_pattern.h"
 #include "simulator/camera/render.h"
 #include "simulator/scene/camera_model.h"
@@ -85,15 +85,11 @@ struct Found {
   Points corners;  // Clockwise from the tag's top-left, in our pixel convention.
 };
 
-std::vector<Found> FindAruco(const cv::Mat& image,
-                             const cv::Ptr<cv::aruco::Dictionary>& dictionary) {
-  std::vector<std::vector<cv::Point2f>> corners;
-  std::vector<int> ids;
-  cv::aruco::detectMarkers(image, dictionary, corners, ids);
+std::vector<Found> FindAruco(const cv::Mat& image, const cv::aruco::Dictionary& dictionary) {
   std::vector<Found> found;
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    found.push_back({.id = ids[i], .corners = {}});
-    for (const cv::Point2f& corner : corners[i])
+  for (const OpenCvTag& tag : DetectAruco(image, dictionary, ArucoParameters())) {
+    found.push_back({.id = tag.id, .corners = {}});
+    for (const cv::Point2f& corner : tag.corners_px)
       found.back().corners.emplace_back(corner.x, corner.y);
   }
   return found;

@@ -4,29 +4,26 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <memory>
-#include <opencv2/aruco.hpp>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
 #include "features/camera/apriltag_family.h"
 #include "features/camera/aruco_dictionary.h"
+#include "features/camera/opencv_aruco.h"
 
 namespace sextant::test {
 namespace {
 
-std::vector<std::uint8_t> ArucoCells(const cv::Ptr<cv::aruco::Dictionary>& dictionary, int id) {
-  cv::Mat marker;
-  cv::aruco::drawMarker(dictionary, id, dictionary->markerSize + 2, marker, 1);
+std::vector<std::uint8_t> ArucoCells(const cv::aruco::Dictionary& dictionary, int id) {
+  const cv::Mat marker = DrawArucoCells(dictionary, id);
   std::vector<std::uint8_t> white;
   for (const std::uint8_t level : cv::Mat_<std::uint8_t>(marker)) white.push_back(level > 127);
   return white;
 }
 
 std::vector<std::uint8_t> AprilTagCells(apriltag_family_t* family, int id) {
-  const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> image(apriltag_to_image(family, id),
-                                                                 image_u8_destroy);
+  const AprilTagImage image = DrawAprilTag(*family, id);
   std::vector<std::uint8_t> white;
   for (int y = 0; y < image->height; ++y) {
     for (int x = 0; x < image->width; ++x) white.push_back(image->buf[y * image->stride + x] > 127);
