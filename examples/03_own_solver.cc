@@ -8,8 +8,7 @@
 // Least squares of the 3D distances with equal weights, by Eigen's own function.
 class MySolver final : public sextant::Solver {
  public:
-  explicit MySolver(const std::string& name)
-      : Solver({.name = name, .needs = {.pairs_3d3d = 3}}) {}
+  explicit MySolver(const std::string& name) : Solver({.name = name, .needs = {.pairs_3d3d = 3}}) {}
 
  private:
   sextant::Expected<sextant::Estimate> DoSolve(

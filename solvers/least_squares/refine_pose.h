@@ -26,8 +26,8 @@ struct RefinedPose {
 RefinedPose RefinePose(const TermsView& terms, const Rigid3d& start, const RefineLimits& limits);
 
 /// Covariance of (dphi, dt) at a least-squares minimum: InvertSymmetric of J^T J, times the
-/// residual variance 2 cost / (residuals - 6) where the noise was only assumed. None where there are
-/// no redundant residuals, or the information is singular.
+/// residual variance 2 cost / (residuals - 6) where the noise was only assumed. None where there
+/// are no redundant residuals, or the information is singular.
 std::optional<Matrix6d> LeastSquaresCovariance(const PairTerms& terms, const Matrix6d& information,
                                                double cost);
 

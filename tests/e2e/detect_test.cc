@@ -159,7 +159,10 @@ TEST(Detect, AWrongDictionaryIsToldFromARealPhoto) {
             "  - {family: aruco_6x6_1000, id: 26, edge_m: 0.2}\n");
   const ProgramRun missing = Detect(photo.string() + " --board " + TestPath("board.yaml"));
   EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_THAT(missing.out, HasSubstr("there is no tag of aruco_6x6_1000, but there are tags of aruco_original: 26, 582"));
+  EXPECT_THAT(
+      missing.out,
+      HasSubstr(
+          "there is no tag of aruco_6x6_1000, but there are tags of aruco_original: 26, 582"));
 }
 
 TEST(Detect, NoTagIsSaidPlainly) {

@@ -95,7 +95,9 @@ TEST(Run, AFullDiskLosesNothing) {
   const ProgramRun full = RunProgram("trap '' XFSZ; ulimit -f 64; " SEXTANT_BINARY,
                                      RunArguments(experiment, "full", "--no-csv"));
   EXPECT_EQ(full.exit_code, 2);
-  EXPECT_THAT(full.err, HasSubstr("the rows written so far are kept: free some space and run the same command"));
+  EXPECT_THAT(
+      full.err,
+      HasSubstr("the rows written so far are kept: free some space and run the same command"));
   const std::string kept = Rows("full");
   EXPECT_GT(kept.size(), 9000U) << "at least one block";
   EXPECT_LE(kept.size(), 64U * 1024);
