@@ -63,9 +63,9 @@ class SampleSearch {
 
   void Run() {
     // After this many degenerate samples and no other, the data itself is degenerate.
-    constexpr int kMaxDegenerateSamples = 1000;
+    constexpr int kMaxFailedSamples = 1000;
     double wanted = options_.max_iterations;
-    while (iterations_ < wanted && (found_ || iterations_ < kMaxDegenerateSamples)) {
+    while (iterations_ < wanted && (found_ || iterations_ < kMaxFailedSamples)) {
       ++iterations_;
       random_.Sample(static_cast<int>(scorer_.size()), sample_);
       poses_.clear();
