@@ -8,19 +8,19 @@
 
 namespace sextant {
 
-/// What kind of thing went wrong. The message of an Error says which input and what to do.
+/// The kind of an error. The message of an Error names the input and the remedy.
 enum class ErrorCode {
-  kMissingData,    ///< The problem lacks a kind of data that the solver needs at all.
-  kTooFewPairs,    ///< The data is there, but fewer than the minimum.
+  kMissingData,    ///< The problem has none of a kind of data that the solver needs.
+  kTooFewPairs,    ///< Fewer data than the minimum, but not none.
   kNonFinite,      ///< An input number is NaN or infinite.
   kInvalidInput,   ///< An input is finite but outside its domain (negative sigma, no focal length).
   kDegenerate,     ///< The geometry leaves a direction of the pose undetermined.
   kMirrored,       ///< One point set is a mirror image of the other: no rotation maps them.
   kNoConsensus,    ///< No pose gathers enough inliers.
   kNoConvergence,  ///< An iteration did not reach its stopping inequality.
-  kUnknownName,    ///< No solver, option or choice of that name.
+  kUnknownName,    ///< No solver, option or choice has that name.
   kInvalidOption,  ///< An option's value is outside its range or of the wrong type.
-  kParse,          ///< A file's content is not what its format says.
+  kParse,          ///< The content of a file or text violates its format.
   kIo,             ///< A file cannot be opened, read or written.
 };
 
@@ -32,7 +32,7 @@ struct Error {
   std::string message;
 };
 
-/// A value or the reason why there is none. No exception crosses the public API.
+/// A value or an error. No exception crosses the public API.
 template <class T>
 using Expected = tl::expected<T, Error>;
 
@@ -45,7 +45,7 @@ inline tl::unexpected<Error> MakeError(ErrorCode code, std::string message) {
 #define SEXTANT_CONCAT_INNER(a, b) a##b
 #define SEXTANT_CONCAT(a, b) SEXTANT_CONCAT_INNER(a, b)
 
-/// Returns the error of an Expected from the calling function, and goes on where there is none.
+/// Returns the error of an Expected from the calling function, if there is one.
 #define SEXTANT_RETURN_IF_ERROR(...)                                              \
   do {                                                                            \
     if (auto sextant_status = (__VA_ARGS__); !sextant_status) {                   \

@@ -7,8 +7,8 @@
 
 namespace sextant {
 
-/// The known name that is fewest edits (Levenshtein) away from `wrong`; the first of equals.
-/// Empty where nothing is known.
+/// The known name with the smallest edit distance (Levenshtein) from `wrong`, the first of equals;
+/// empty where `known` is.
 std::string NearestName(std::string_view wrong, std::span<const std::string> known);
 
 /// "did you mean 'kabsch'?" or, where nothing is close, "known are a, b, c".

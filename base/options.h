@@ -12,7 +12,7 @@
 
 namespace sextant {
 
-/// What users read of one option in the catalogue.
+/// The documentation of one option in the catalogue.
 struct OptionDoc {
   std::string name;
   std::string default_value;
@@ -28,13 +28,13 @@ Expected<std::int64_t> ParseCount(const std::string& name, const std::string& te
                                   std::int64_t low, std::int64_t high);
 Expected<std::size_t> ParseChoice(const std::string& name, const std::string& text,
                                   const std::vector<std::string>& choices);
-/// A set of choices joined by +, as bits in their order; "none" is the empty one.
+/// A set of choices joined by +, as bits in their order; "none" is the empty set.
 Expected<unsigned> ParseSet(const std::string& name, const std::string& text,
                             const std::vector<std::string>& choices);
 std::string FormatReal(double value);
 
 /// Binds option names to the members of a plain settings struct. The struct's member initialisers
-/// are the only place where a default stands; the catalogue reads them from there.
+/// are the only place for defaults; the catalogue reads them from there.
 template <class Options>
 class OptionSet {
  public:
@@ -73,7 +73,7 @@ class OptionSet {
                });
   }
 
-  /// Any of the choices, joined by +; bit i of the member stands for choices[i]. None by default.
+  /// Any of the choices, joined by +; bit i of the member means choices[i]. None by default.
   OptionSet& Set(std::string name, unsigned Options::*member,
                  const std::vector<std::string>& choices, std::string meaning) {
     std::string joined;
@@ -85,7 +85,7 @@ class OptionSet {
         });
   }
 
-  /// Names are known to be this set's: the registry has checked them.
+  /// Requires known names; the registry checks them.
   Expected<Options> Parse(const OptionValues& values) const {
     Options options;
     for (const auto& [name, text] : values) {

@@ -17,7 +17,7 @@ std::uint64_t SplitMix64(std::uint64_t& state) {
   return z ^ (z >> 31);
 }
 
-// std::log may differ in its last bit between C libraries; frexp and the series round alike.
+// std::log may differ in its last bit between C libraries; frexp and the series do not.
 double PortableLog(double x) {
   constexpr double kLn2 = 0.693147180559945309417232121458;
   constexpr double kSqrtHalf = 0.707106781186547524400844362105;

@@ -11,8 +11,8 @@ namespace sextant {
 /// Portable random numbers: the same seed gives the same bits on every platform and compiler.
 ///
 /// Generator: xoshiro256++ (Blackman and Vigna 2021), seeded through splitmix64. The standard
-/// library's distributions differ between implementations, so the distributions are ours too and
-/// use only operations that IEEE 754 rounds exactly.
+/// library's distributions differ between implementations; the distributions here use only
+/// operations that IEEE 754 rounds exactly.
 /// Draw once per statement: the order of evaluation of function arguments is not portable.
 class Random {
  public:
@@ -40,8 +40,8 @@ class Random {
   std::array<std::uint64_t, 4> state_;
 };
 
-/// The seed of one trial, by hash of its place, so that it does not depend on which thread or rank
-/// runs it, nor on how many trials ran before.
+/// The seed of one trial: a hash of experiment, case and trial, so that it depends neither on the
+/// thread or rank that runs it nor on how many trials ran before.
 std::uint64_t DeriveSeed(std::uint64_t suite_seed, std::string_view experiment,
                          std::uint64_t case_index, std::uint64_t trial);
 

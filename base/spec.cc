@@ -70,15 +70,15 @@ class SpecParser {
     return true;
   }
 
-  // Signs belong to the words, for values such as -1e-3; slashes, for paths.
+  // Words include signs, for values such as -1e-3, and slashes, for paths.
   std::string Word() {
     SkipBlanks();
     const std::size_t start = position_;
     while (position_ < text_.size()) {
       const char c = text_[position_];
-      const bool belongs = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' ||
+      const bool is_word = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' ||
                            c == '.' || c == '-' || c == '+' || c == '/';
-      if (!belongs) break;
+      if (!is_word) break;
       ++position_;
     }
     return std::string(text_.substr(start, position_ - start));

@@ -10,7 +10,7 @@
 
 namespace sextant {
 
-/// A solver by name, as users compose it: `refine(ransac(kabsch, seed=7), loss=huber)`.
+/// The parsed spec of a composed solver: `refine(ransac(kabsch, seed=7), loss=huber)`.
 struct SpecNode {
   std::string name;
   std::vector<SpecNode> inner;                               ///< The solvers in the parentheses.
@@ -18,7 +18,8 @@ struct SpecNode {
 };
 
 /// Grammar: spec = name [ "(" [ argument { "," argument } ] ")" ], argument = spec | key "=" value.
-/// Names are letters, digits, '_' and '.'; blanks are ignored. Error: kParse, with the column.
+/// Names consist of letters, digits, '_' and '.'; blanks are ignored. Error: kParse, with the
+/// column.
 Expected<SpecNode> ParseSpec(std::string_view text);
 
 /// Specs separated by commas outside parentheses.

@@ -9,8 +9,8 @@
 namespace sextant {
 namespace {
 
-/// Eigen's own closed form, beside ours for comparison. It weighs all pairs alike and does not see
-/// degenerate or mirrored sets, which our kernel refuses first.
+/// Eigen's closed form, for comparison with kabsch. It gives all pairs equal weights and does not
+/// detect degenerate or mirrored sets, which FitKabsch rejects first.
 class EigenUmeyamaSolver final : public Solver {
  public:
   explicit EigenUmeyamaSolver(const std::string& name)
@@ -48,7 +48,7 @@ class EigenUmeyamaSolver final : public Solver {
 SolverEntry EigenUmeyamaEntry() {
   return {
       .name = "eigen.umeyama",
-      .summary = "Eigen's closed form of the same least squares, all pairs weighed alike",
+      .summary = "Eigen's closed form of the same least squares, with equal weights",
       .needs = "3 or more 3D-3D pairs, not on one line",
       .reference = "Umeyama 1991; Eigen::umeyama",
       .example = "eigen.umeyama",

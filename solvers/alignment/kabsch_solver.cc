@@ -30,7 +30,7 @@ std::optional<Matrix6d> CovarianceOf(std::span<const Pair3d3d> pairs, const Kabs
   return KabschCovariance(moments, pose, WeightedSquares(pairs, pose) / freedom);
 }
 
-// The buffers hold as many as the sample, or more.
+// Shape: each buffer is at least as large as the sample.
 std::optional<Rigid3d> FitSample(std::span<const Pair3d3d> pairs, std::span<const int> sample,
                                  std::span<Eigen::Vector3d> in_cam,
                                  std::span<Eigen::Vector3d> in_lidar, std::span<double> weights) {

@@ -9,7 +9,7 @@ namespace sextant {
 namespace {
 
 /// The mu_offset column of the paper's tables 3 to 5: the weighted mean of
-/// point_in_cam - R point_in_lidar with R taken as given (the initial pose's, else the identity).
+/// point_in_cam - R point_in_lidar with a given R (that of the initial pose, else the identity).
 ///
 /// The covariance is conditional on that R: its rotation block is zero.
 class MeanOffsetSolver final : public Solver {

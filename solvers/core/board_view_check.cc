@@ -29,15 +29,15 @@ class ViewCheck {
     for (const Rigid3d* pose : {&view_.cam_from_board, &view_.lidar_from_board}) {
       if (!pose->IsFinite()) return NonFinite("a pose");
       if (std::abs(pose->rotation.norm() - 1.0) > kUnit) {
-        return Invalid("a rotation that is no unit quaternion");
+        return Invalid("a rotation that is not a unit quaternion");
       }
     }
     for (const BoardPoints& points : view_.printed) {
-      if (Expected<void> ok = CheckPrinted(points); !ok) return ok;
+      SEXTANT_RETURN_IF_ERROR(CheckPrinted(points));
     }
-    if (Expected<void> ok = CheckFace(); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(CheckFace());
     for (const EdgeRay& ray : view_.edges) {
-      if (Expected<void> ok = CheckRay(ray); !ok) return ok;
+      SEXTANT_RETURN_IF_ERROR(CheckRay(ray));
     }
     return {};
   }
@@ -57,7 +57,7 @@ class ViewCheck {
   Expected<void> CheckPrinted(const BoardPoints& points) const {
     const std::size_t count = points.pixels.size();
     if (count == 0 || points.in_board_m.size() != count) {
-      return Invalid(fmt::format("{} printed points and {} pixels of them, expected as many",
+      return Invalid(fmt::format("{} printed points and {} pixels, expected equally many",
                                  points.in_board_m.size(), count));
     }
     const auto finite = [](const Eigen::Vector2d& v) { return v.allFinite(); };
@@ -93,7 +93,7 @@ class ViewCheck {
   Expected<void> CheckRay(const EdgeRay& ray) const {
     if (!ray.direction.allFinite() || !std::isfinite(ray.sigma_m)) return NonFinite("an edge ray");
     if (std::abs(ray.direction.norm() - 1.0) > kUnit) {
-      return Invalid("an edge ray whose direction is no unit vector");
+      return Invalid("an edge ray whose direction is not a unit vector");
     }
     const int sides = board_.hole ? 2 * kCornersPerBoard : kCornersPerBoard;
     if (ray.side < 0 || ray.side >= sides) {
@@ -138,10 +138,10 @@ Expected<void> CheckBoardViews(std::span<const BoardView> views, std::span<const
   for (const BoardView& view : views) {
     if (!seen.emplace(view.view, view.board).second) {
       return MakeError(ErrorCode::kInvalidInput,
-                       fmt::format("board {} is in view {} twice, expected once a moment",
+                       fmt::format("board {} is in view {} twice, expected at most once",
                                    view.board, view.view));
     }
-    if (Expected<void> ok = CheckBoardView(view, boards); !ok) return ok;
+    SEXTANT_RETURN_IF_ERROR(CheckBoardView(view, boards));
   }
   return {};
 }

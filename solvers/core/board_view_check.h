@@ -8,16 +8,16 @@
 
 namespace sextant {
 
-/// The board of that id; null where there is none.
+/// The board with that id; null where there is none.
 const Board* FindBoard(std::span<const Board> boards, int id);
 
-/// Whether the view can be worked with: its board known and with a size, finite numbers, as many
-/// pixels as printed points, covariances of their size that are symmetric positive definite, rays
-/// of unit length to sides that the board has, positive sigmas.
+/// Whether the view is usable: its board is known and has a size; numbers are finite; there are as
+/// many pixels as printed points; covariances have their size and are symmetric positive definite;
+/// rays have unit length and name sides that the board has; sigmas are positive.
 /// Errors: kNonFinite, kInvalidInput.
 Expected<void> CheckBoardView(const BoardView& view, std::span<const Board> boards);
 
-/// All views, and that no board is in one moment twice.
+/// Checks all views, and that no board is in one view twice.
 Expected<void> CheckBoardViews(std::span<const BoardView> views, std::span<const Board> boards);
 
 }  // namespace sextant

@@ -8,13 +8,13 @@
 
 namespace sextant {
 
-/// An intrinsic that was estimated along with the pose; named as IntrinsicName does.
+/// An intrinsic that was estimated together with the pose; its name is that of IntrinsicName.
 using EstimatedIntrinsic = EstimatedNumber;
 
-/// The camera that goes with a pose, where it was estimated too.
+/// The camera that was estimated together with a pose.
 struct CameraEstimate {
   Camera camera;
-  std::vector<EstimatedIntrinsic> estimated;  ///< All others are as given.
+  std::vector<EstimatedIntrinsic> estimated;  ///< All other intrinsics are as given.
 };
 
 }  // namespace sextant

@@ -6,11 +6,11 @@
 
 namespace sextant {
 
-/// A number that was estimated along with the pose.
+/// A number that was estimated together with the pose.
 struct EstimatedNumber {
-  std::string name;  ///< Ends in its unit: "fx_px", "range_bias_m"; none where it is a ratio.
+  std::string name;  ///< Ends in the unit: "fx_px", "range_bias_m"; ratios have none.
   double value = 0.0;
-  std::optional<double> sigma;  ///< None where the data leaves no residual to judge by.
+  std::optional<double> sigma;  ///< None where there is no redundant data.
 };
 
 }  // namespace sextant

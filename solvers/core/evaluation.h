@@ -8,7 +8,7 @@
 
 namespace sextant {
 
-/// How well a pose explains a problem, by the one definition that every solver is judged with.
+/// How well a pose explains a problem; the same definition for every solver.
 struct Evaluation {
   /// sqrt(mean_i |point_in_cam_i - cam_from_lidar * point_in_lidar_i|^2), the paper's RMSE; none
   /// without 3D-3D pairs.

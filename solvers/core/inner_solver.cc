@@ -32,8 +32,9 @@ Expected<PairKind> KindOfPairs(const Solver& inner, const std::string& outer) {
   if (needs.pairs_3d3d > 0 && needs.pairs_2d3d > 0) {
     return MakeError(
         ErrorCode::kInvalidOption,
-        fmt::format("{}: '{}' needs both kinds of pairs, expected a solver of one; put {} inside",
-                    outer, inner.spec().name, outer));
+        fmt::format(
+            "{}: '{}' needs both kinds of pairs, expected a solver of one kind; put {} inside",
+            outer, inner.spec().name, outer));
   }
   return needs.pairs_3d3d > 0 ? PairKind::k3d3d : PairKind::k2d3d;
 }

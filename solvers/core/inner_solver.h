@@ -10,10 +10,10 @@
 namespace sextant {
 
 /// The kind of pairs that `inner` needs. Error: kInvalidOption where it needs none (point sets) or
-/// both, or estimates the camera; `outer` is the combinator's name for the message.
+/// both, or estimates the camera; `outer` is the name of the wrapping solver for the message.
 Expected<PairKind> KindOfPairs(const Solver& inner, const std::string& outer);
 
-/// Error: kInvalidOption where `inner` estimates the camera, which `outer` would take no notice of.
+/// Error: kInvalidOption where `inner` estimates the camera, which `outer` would ignore.
 Expected<void> CheckKeepsCamera(const Solver& inner, const std::string& outer);
 
 }  // namespace sextant

@@ -13,20 +13,20 @@
 
 namespace sextant {
 
-/// What a factory gets: the canonical name, checked option names, and the inner solver, if any.
+/// The arguments of a factory: the canonical name, options with checked names, the inner solver.
 struct SolverArguments {
   std::string name;
   OptionValues options;
-  SolverPtr inner;  ///< Set exactly where the entry wraps a solver.
+  SolverPtr inner;  ///< Null unless the entry wraps a solver.
 };
 
-/// One line of the catalogue.
+/// One entry of the catalogue of solvers.
 struct SolverEntry {
   std::string name;
   std::string summary;    ///< What it minimises or does, in one line.
-  std::string needs;      ///< In words: "3 or more 3D-3D pairs, not collinear".
-  std::string reference;  ///< Where it comes from.
-  std::string example;    ///< A spec that works.
+  std::string needs;      ///< Text such as "3 or more 3D-3D pairs, not collinear".
+  std::string reference;  ///< Source of the method.
+  std::string example;    ///< A valid spec.
   bool wraps_solver = false;
   std::vector<OptionDoc> options = {};
   std::function<Expected<SolverPtr>(const SolverArguments&)> make;
@@ -38,7 +38,7 @@ class SolverRegistry {
   void Add(SolverEntry entry) { entries_.push_back(std::move(entry)); }
   const std::vector<SolverEntry>& entries() const { return entries_; }
 
-  /// Errors: kParse, kUnknownName (names the nearest known one), kInvalidOption.
+  /// Errors: kParse, kUnknownName (suggests the nearest known name), kInvalidOption.
   Expected<SolverPtr> Make(std::string_view spec) const;
   Expected<SolverPtr> Make(const SpecNode& node) const;
 

@@ -26,18 +26,19 @@ bool IsSymmetricPositive(const Eigen::Matrix3d& m) {
   return m.isApprox(m.transpose(), 1e-9) && Eigen::LLT<Eigen::Matrix3d>(m).info() == Eigen::Success;
 }
 
-// Whether all pairs are finite and state a sigma, or none, which is nearly always so and seen
-// without a branch a number: 0 x is 0 of every finite x. False is no verdict.
+// Whether all pairs are finite and either all or none state a sigma, which is nearly always so.
+// Takes no branch per number: 0 x is 0 for every finite x. False only means that CheckPairs must
+// look.
 bool AreOrdinary(std::span<const Pair3d3d> pairs) {
   double zero = 0.0;
-  bool alike = true;
+  bool consistent = true;
   for (const Pair3d3d& pair : pairs) {
     const Eigen::Vector3d sum = pair.point_in_cam + pair.point_in_lidar;
     zero += 0.0 * (sum.x() + sum.y() + (sum.z() + pair.sigma_m));
-    alike = alike && !pair.covariance_in_cam && pair.sigma_m >= 0.0 &&
-            (pair.sigma_m > 0.0) == (pairs[0].sigma_m > 0.0);
+    consistent = consistent && !pair.covariance_in_cam && pair.sigma_m >= 0.0 &&
+                 (pair.sigma_m > 0.0) == (pairs[0].sigma_m > 0.0);
   }
-  return alike && zero == 0.0;
+  return consistent && zero == 0.0;
 }
 
 Expected<void> CheckPairs(std::span<const Pair3d3d> pairs) {
@@ -70,15 +71,15 @@ Expected<void> CheckPairs(std::span<const Pair3d3d> pairs) {
 
 bool AreOrdinary(std::span<const Pair2d3d> pairs) {
   double zero = 0.0;
-  bool alike = true;
+  bool consistent = true;
   for (const Pair2d3d& pair : pairs) {
     const Eigen::Vector3d& point = pair.point_in_lidar;
     zero += 0.0 * ((pair.pixel.x() + pair.pixel.y()) + (point.x() + point.y()) +
                    (point.z() + pair.sigma_px));
-    alike &= pair.sigma_px >= 0.0;
-    alike &= (pair.sigma_px > 0.0) == (pairs[0].sigma_px > 0.0);
+    consistent &= pair.sigma_px >= 0.0;
+    consistent &= (pair.sigma_px > 0.0) == (pairs[0].sigma_px > 0.0);
   }
-  return alike && zero == 0.0;
+  return consistent && zero == 0.0;
 }
 
 Expected<void> CheckPairs(std::span<const Pair2d3d> pairs) {

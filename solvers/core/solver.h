@@ -15,7 +15,7 @@
 
 namespace sextant {
 
-/// The least data that a solver can work with; 0 where it does not look at that kind.
+/// The minimum data that a solver can work with; 0 where it does not use that kind.
 struct DataNeeds {
   int pairs_3d3d = 0;
   int pairs_2d3d = 0;  ///< Also needs the camera.
@@ -25,28 +25,28 @@ struct DataNeeds {
   bool points_on_plane = false;  ///< Works where all points in the LiDAR frame lie on one plane.
 };
 
-/// What a solver is and promises; the contract tests hold it to this.
+/// Properties of a solver, which the contract tests check.
 struct SolverSpec {
-  std::string name;  ///< Canonical: makes the same solver when parsed again.
+  std::string name;  ///< Canonical spec: makes the same solver when parsed again.
   DataNeeds needs = {};
-  bool estimates_rotation = true;  ///< False: the rotation of the initial pose is taken as given.
-  bool is_global = true;           ///< False: finds the optimum near its start only.
-  bool estimates_camera = false;   ///< Its pose goes with another camera than the problem's.
+  bool estimates_rotation = true;  ///< False: keeps the rotation of the initial pose.
+  bool is_global = true;           ///< False: finds only the optimum near its start.
+  bool estimates_camera = false;   ///< The pose belongs to a camera that it estimates too.
 };
 
-/// Whether it finds all six degrees of freedom from anywhere, unlike baselines and local searches.
+/// Whether it finds all six degrees of freedom from any start, unlike baselines and local searches.
 inline bool FindsWholePose(const SolverSpec& spec) {
   return spec.is_global && spec.estimates_rotation;
 }
 
 enum class Termination {
-  kClosedForm,     ///< The optimum by formula, or a search that is finite by construction.
-  kConverged,      ///< The method's own stopping inequality holds; stated in its header.
+  kClosedForm,     ///< A formula, or a search that is finite by construction.
+  kConverged,      ///< The stopping inequality stated in the solver's comment holds.
   kMaxIterations,  ///< Stopped by the limit; the answer is the best so far.
 };
 std::string_view ToString(Termination termination);
 
-/// A step on the way to the answer of a composed solver.
+/// One stage of a composed solver.
 struct Stage {
   std::string solver;
   Rigid3d cam_from_lidar;
@@ -54,24 +54,25 @@ struct Stage {
   double wall_time_us = 0.0;
 };
 
-/// What a method returns of itself; Solver::Solve completes it to a SolveReport.
+/// The result of a solver's own method; Solver::Solve completes it to a SolveReport.
 struct Estimate {
   Rigid3d cam_from_lidar;
   Termination termination = Termination::kClosedForm;
   int iterations = 0;
-  /// Indices, ascending, of the pairs that the answer rests on (the 3D-3D ones where the solver
+  /// Indices, ascending, of the pairs that the answer is based on (the 3D-3D ones where the solver
   /// needs both kinds); empty for point sets.
   std::vector<int> inliers;
-  /// Of (dphi [rad], dt [m]); see Perturb. None where the data leaves no residual to judge by.
+  /// Of (dphi [rad], dt [m]); see Perturb. None where there is no redundant data to estimate it.
   std::optional<Matrix6d> covariance;
-  /// Where the solver estimates the camera too; the covariance of the pose then accounts for it.
+  /// Set where the solver estimates the camera too; the covariance of the pose then accounts for
+  /// it.
   std::optional<CameraEstimate> camera;
-  /// What else was estimated: a range bias of the LiDAR, sizes of boards.
+  /// Other estimated numbers: a range bias of the LiDAR, sizes of boards.
   std::vector<EstimatedNumber> extras;
-  /// What the reader of the answer must know, each a sentence: what was asked for and could not be
-  /// told, data that contradicts its stated noise.
+  /// One sentence each: parameters that could not be estimated, data that contradicts its stated
+  /// noise.
   std::vector<std::string> warnings;
-  /// Where the solver works on raw observations: of each of problem.board_views, in their order.
+  /// One for each of problem.board_views, in their order, where the solver uses raw observations.
   std::vector<BoardViewFit> board_views;
   /// Other poses that explain the data about as well, best first (p3p, ippe).
   std::vector<Rigid3d> alternatives;
@@ -81,10 +82,10 @@ struct Estimate {
 struct SolveReport : Estimate {
   std::string solver;
   double wall_time_us = 0.0;
-  Evaluation evaluation;  ///< Of the answer with its camera, over all data of the problem.
+  Evaluation evaluation;  ///< Of the pose with its camera, over all data of the problem.
 };
 
-/// A way to find cam_from_lidar. Immutable, deterministic, thread-safe.
+/// A method that finds cam_from_lidar. Immutable, deterministic, thread-safe.
 class Solver {
  public:
   virtual ~Solver() = default;
@@ -93,14 +94,14 @@ class Solver {
 
   const SolverSpec& spec() const { return spec_; }
 
-  /// Checks that the problem has what the solver needs and that it is finite, solves, times and
-  /// evaluates. Errors: kMissingData, kTooFewPairs, kNonFinite, kInvalidInput, and those of the
-  /// method itself.
+  /// Checks that the problem has the data that the solver needs and that it is finite; solves,
+  /// measures the time and evaluates. Errors: kMissingData, kTooFewPairs, kNonFinite,
+  /// kInvalidInput, and those of the method itself.
   Expected<SolveReport> Solve(const CalibrationProblem& problem) const;
 
   /// Appends every pose that explains the sampled pairs (indices into the kind of pairs that the
-  /// solver needs) to `poses`; none where the sample is degenerate. The inner loop of consensus
-  /// combinators: no checks, no covariance. The problem must have passed CheckProblem.
+  /// solver needs) to `poses`; none where the sample is degenerate. This is the inner loop of the
+  /// robust solvers: no checks, no covariance. The problem must have passed CheckProblem.
   void Hypothesize(const CalibrationProblem& problem, std::span<const int> sample,
                    std::vector<Rigid3d>& poses) const {
     DoHypothesize(problem, sample, poses);
@@ -109,7 +110,7 @@ class Solver {
  protected:
   explicit Solver(SolverSpec spec) : spec_(std::move(spec)) {}
 
-  /// Solves the sample as a problem of its own; overrides are faster, and may fall back on it.
+  /// Solves the sample as a separate problem; overrides are faster and may fall back on this.
   virtual void DoHypothesize(const CalibrationProblem& problem, std::span<const int> sample,
                              std::vector<Rigid3d>& poses) const;
 
@@ -121,7 +122,8 @@ class Solver {
 
 using SolverPtr = std::shared_ptr<const Solver>;
 
-/// Whether the problem meets the needs, with finite numbers; the error names the first that fails.
+/// Whether the problem meets the needs, with finite numbers. The error names the first that it does
+/// not meet.
 Expected<void> CheckProblem(const CalibrationProblem& problem, const SolverSpec& spec);
 
 }  // namespace sextant

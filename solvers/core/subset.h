@@ -9,8 +9,8 @@ namespace sextant {
 
 struct DataNeeds;
 
-/// The problem with only the pairs at `indices` of the kind that `needs` asks for (3D-3D where it
-/// asks for both); the rest unchanged, point sets left out.
+/// The problem with only the pairs at `indices` of the kind in `needs` (3D-3D where it has both);
+/// camera, boards and initial pose are kept, everything else is left out.
 CalibrationProblem SubsetOf(const CalibrationProblem& problem, const DataNeeds& needs,
                             std::span<const int> indices);
 

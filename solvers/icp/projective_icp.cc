@@ -92,8 +92,8 @@ void SubtractRingOffsets(ScanWindows& target, ScanWindows& source) {
   for (int pass = 0; pass < kPasses; ++pass) {
     const RingOffsets offsets = EstimateRingOffsets(target, source);
     if (offsets.target_m.empty() && offsets.source_m.empty()) return;
-    if (!offsets.target_m.empty()) target.TakeOff(offsets.target_m);
-    if (!offsets.source_m.empty()) source.TakeOff(offsets.source_m);
+    if (!offsets.target_m.empty()) target.SubtractOffsets(offsets.target_m);
+    if (!offsets.source_m.empty()) source.SubtractOffsets(offsets.source_m);
   }
 }
 

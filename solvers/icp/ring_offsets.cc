@@ -114,7 +114,7 @@ Equations EquationsOf(const ScanWindows& windows, std::span<const Index> ring_of
     if (of_row[r] > kMaxOfRow * *quartile) continue;
     for (std::size_t column = 0; column < columns; ++column) {
       const std::size_t cell = r * columns + column;
-      const bool is_flat = windows.TellsNoise(cell) &&
+      const bool is_flat = windows.CanEstimateNoise(cell) &&
                            windows.planes().range_variance[cell] < kMaxOfWindow * of_row[r];
       if (!is_flat) continue;
       const WindowShare share = ShareOf(windows, row, static_cast<int>(column), *quartile);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kBlock = PairColumns::kBlock;
 
-using LaneBits = unsigned long long __attribute__((vector_size(64)));
+using Bits8 = unsigned long long __attribute__((vector_size(64)));
 
 template <class Real>
 SEXTANT_INLINE Real SquaredLength(const Point3<Real>& v) {
@@ -18,10 +18,10 @@ SEXTANT_INLINE Real SquaredLength(const Point3<Real>& v) {
 }
 
 // | |c| - |l| |^2 <= t without a root: (c^2 - l^2)^2 <= t (2 (c^2 + l^2) - t), or c^2 + l^2 <= t.
-// One of the two is not negative where it holds.
+// It holds where one of the two margins is not negative.
 template <class Real>
 struct Margins {
-  Real alike;
+  Real equal;
   Real near;
 };
 
@@ -44,28 +44,28 @@ SEXTANT_INLINE Vertex VertexOf(const PairColumns& pairs, std::size_t pair) {
           pairs.Column(kVarianceColumn)[place]};
 }
 
-// Bit k is set where pair k of the block agrees. Signs are gathered, not comparisons, which
-// compilers take apart; they say nothing of padded pairs.
+// Bit k is set where pair k of the block agrees. The signs of the margins are collected instead of
+// comparisons, which compilers break into scalars; bits of padding are meaningless.
 SEXTANT_INLINE std::uint64_t AgreementsInBlock(const PairColumns& pairs, std::size_t block,
                                                const Vertex& vertex, double max_squared) {
-  constexpr LaneBits kShifts = {0, 8, 16, 24, 32, 40, 48, 56};
+  constexpr Bits8 kShifts = {0, 8, 16, 24, 32, 40, 48, 56};
   constexpr int kSign = 63;
-  LaneBits bits{};
+  Bits8 bits{};
   for (std::size_t k = kSimdWidth; k-- > 0;) {
     const std::size_t at = block + kSimdWidth * k;
     const Vec8d c2 = SquaredLength(PointsAt(pairs, kCamColumn, at) - vertex.cam);
     const Vec8d l2 = SquaredLength(PointsAt(pairs, kLidarColumn, at) - vertex.lidar);
     const Vec8d t = max_squared * (LoadVec(pairs.Column(kVarianceColumn) + at) + vertex.variance);
     const Margins<Vec8d> margins = MarginsOf(c2, l2, t);
-    const LaneBits differ =
-        __builtin_bit_cast(LaneBits, margins.alike) & __builtin_bit_cast(LaneBits, margins.near);
+    const Bits8 differ =
+        __builtin_bit_cast(Bits8, margins.equal) & __builtin_bit_cast(Bits8, margins.near);
     bits = bits + bits + (differ >> kSign);
   }
   bits <<= kShifts;
   return ~static_cast<std::uint64_t>(HorizontalOr(__builtin_bit_cast(Mask8, bits)));
 }
 
-// Row i from the word `first` on.
+// Fills row i from the word `first` on.
 SEXTANT_INLINE void FillRow(const PairColumns& pairs, std::size_t i, double max_squared,
                             std::size_t first, std::uint64_t* row) {
   const Vertex vertex = VertexOf(pairs, i);
@@ -89,7 +89,7 @@ SEXTANT_MULTIVERSION void FillUpperBlocks(const PairColumns& pairs, double max_s
   }
 }
 
-// Bit j of word i becomes bit i of word j: halves change places, then halves of these.
+// Bit j of word i becomes bit i of word j: swaps off-diagonal halves, then those of each half.
 SEXTANT_INLINE void Transpose(std::uint64_t* block) {
   std::uint64_t mask = 0x00000000FFFFFFFFULL;
   for (std::size_t half = kBlock / 2; half > 0; half /= 2, mask ^= mask << half) {
@@ -128,7 +128,7 @@ bool Agree(const PairColumns& pairs, std::size_t i, std::size_t j, double max_sq
   const Margins<double> margins =
       MarginsOf(SquaredLength(a.cam - b.cam), SquaredLength(a.lidar - b.lidar),
                 max_squared * (a.variance + b.variance));
-  return margins.alike >= 0.0 || margins.near >= 0.0;
+  return margins.equal >= 0.0 || margins.near >= 0.0;
 }
 
 BitGraph AgreementGraph(const PairColumns& pairs, double max_squared) {

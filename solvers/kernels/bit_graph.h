@@ -32,16 +32,16 @@ class BitGraph {
   std::vector<std::uint64_t> bits_;
 };
 
-/// Where the bit of a vertex stands in a row.
+/// The word and bit of a vertex in a row.
 inline constexpr int kWordBits = 64;
 inline std::size_t WordOf(int vertex) { return static_cast<std::size_t>(vertex) / kWordBits; }
 inline std::uint64_t BitOf(int vertex) { return std::uint64_t{1} << (vertex % kWordBits); }
 
-/// Writes a & b; how many bits they share.
+/// Writes a & b and returns the number of its bits.
 int Intersect(const std::uint64_t* a, const std::uint64_t* b, std::size_t words,
               std::uint64_t* both);
 
-/// Of every vertex.
+/// The number of neighbours of every vertex.
 std::vector<int> DegreesOf(const BitGraph& graph);
 
 /// Calls visit(vertex) for every bit that is set, ascending.

@@ -8,7 +8,7 @@
 namespace sextant {
 namespace {
 
-// Eight of the vectors, coordinate by coordinate; `beyond` where there are no more.
+// Eight points, coordinate by coordinate; `beyond` stands for points beyond the last.
 template <std::size_t kSize>
 struct Coordinates {
   Vec8d of[kSize];
@@ -42,12 +42,12 @@ constexpr double kZero[3] = {};
 
 template <std::size_t kSize>
 SEXTANT_INLINE void SumCoordinates(const double* data, std::size_t count, double (&sums)[kSize]) {
-  Vec8d lanes[kSize] = {};
+  Vec8d vectors[kSize] = {};
   for (std::size_t at = 0; at < count; at += kSimdWidth) {
     const Coordinates<kSize> c = LoadCoordinates<kSize>(data, at, count, kZero);
-    for (std::size_t axis = 0; axis < kSize; ++axis) lanes[axis] += c.of[axis];
+    for (std::size_t axis = 0; axis < kSize; ++axis) vectors[axis] += c.of[axis];
   }
-  for (std::size_t axis = 0; axis < kSize; ++axis) sums[axis] = HorizontalSum(lanes[axis]);
+  for (std::size_t axis = 0; axis < kSize; ++axis) sums[axis] = HorizontalSum(vectors[axis]);
 }
 
 SEXTANT_MULTIVERSION
@@ -60,23 +60,23 @@ void SumOf3(const double* data, std::size_t count, double (&sums)[3]) {
   SumCoordinates<3>(data, count, sums);
 }
 
-// What is beyond the last point is at the centre and adds nothing.
+// Points beyond the last are at the centre and add nothing.
 SEXTANT_MULTIVERSION
 void SumOuter(const double* data, std::size_t count, const double (&centre)[3], double (&sums)[6]) {
-  Vec8d lanes[6] = {};
+  Vec8d vectors[6] = {};
   for (std::size_t at = 0; at < count; at += kSimdWidth) {
     const Coordinates<3> p = LoadCoordinates<3>(data, at, count, centre);
     const Vec8d x = p.of[0] - centre[0];
     const Vec8d y = p.of[1] - centre[1];
     const Vec8d z = p.of[2] - centre[2];
-    lanes[0] += x * x;
-    lanes[1] += x * y;
-    lanes[2] += x * z;
-    lanes[3] += y * y;
-    lanes[4] += y * z;
-    lanes[5] += z * z;
+    vectors[0] += x * x;
+    vectors[1] += x * y;
+    vectors[2] += x * z;
+    vectors[3] += y * y;
+    vectors[4] += y * z;
+    vectors[5] += z * z;
   }
-  for (int i = 0; i < 6; ++i) sums[i] = HorizontalSum(lanes[i]);
+  for (int i = 0; i < 6; ++i) sums[i] = HorizontalSum(vectors[i]);
 }
 
 struct MomentFrame {
@@ -141,7 +141,7 @@ void AddFit(const double* image, const double* points, std::size_t count, const 
   Vec8d squares = {};
   Vec8d in_front = {};
   for (std::size_t at = 0; at < count; at += kSimdWidth) {
-    // Beyond the last point the first is taken, and then not counted.
+    // Beyond the last point the first is loaded and gets no weight.
     const Coordinates<2> uv = LoadCoordinates<2>(image, at, count, image);
     const Coordinates<3> p = LoadCoordinates<3>(points, at, count, points);
     const Vec8d x = r[0] * p.of[0] + r[3] * p.of[1] + r[6] * p.of[2] + pose.t[0];

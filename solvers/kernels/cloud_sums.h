@@ -7,8 +7,8 @@
 
 namespace sextant {
 
-/// The passes over all points that the algebraic solvers make, eight points at a time and added up
-/// in one order on every machine.
+/// The passes over all points in the algebraic solvers, eight points at a time and summed in the
+/// same order on every machine. Each requires at least one point.
 
 Eigen::Vector2d MeanOf(std::span<const Eigen::Vector2d> image_points);
 Eigen::Vector3d MeanOf(std::span<const Eigen::Vector3d> points);
@@ -26,10 +26,10 @@ MomentSums SumMoments(std::span<const Eigen::Vector2d> image_points, const Eigen
                       std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& centroid,
                       const Eigen::Matrix3d& axes);
 
-/// How a pose explains image points (x/z, y/z).
+/// How well a pose explains image points (x/z, y/z).
 struct ImageFit {
   std::size_t behind = 0;    ///< Points behind the camera.
-  double sum_squares = 0.0;  ///< Of the image plane's residuals of the points in front.
+  double sum_squares = 0.0;  ///< Squared residuals in the image plane, of the points in front.
 };
 ImageFit FitOf(std::span<const Eigen::Vector2d> image_points,
                std::span<const Eigen::Vector3d> points, const Eigen::Matrix3d& rotation,

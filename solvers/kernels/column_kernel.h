@@ -10,9 +10,9 @@
 
 namespace sextant {
 
-/// What kernels over PairColumns share.
+/// Shared by the kernels over PairColumns.
 
-/// First columns of the two frames.
+/// Indices of columns: the first of three for each frame, and those of the variances.
 inline constexpr int kCamColumn = 0;
 inline constexpr int kLidarColumn = 3;
 inline constexpr int kVarianceColumn = 6;
@@ -41,7 +41,7 @@ inline ColumnPose ColumnPoseOf(const Rigid3d& cam_from_lidar) {
           PointAt(cam_from_lidar.translation)};
 }
 
-/// r_i^2 [sigma^2] of eight pairs; not a number where they fill up a block.
+/// r_i^2 [sigma^2] of eight pairs; NaN for padding.
 SEXTANT_INLINE Vec8d SquaredSigmas(const PairColumns& pairs, const ColumnPose& pose,
                                    std::size_t at) {
   const Point3<Vec8d> cam = PointsAt(pairs, kCamColumn, at);
@@ -52,13 +52,13 @@ SEXTANT_INLINE Vec8d SquaredSigmas(const PairColumns& pairs, const ColumnPose& p
   return (x * x + y * y + z * z) * LoadVec(pairs.Column(kInverseVarianceColumn) + at);
 }
 
-/// Sums of weighed pairs about the first, and least squares on them.
+/// Least squares on weighted pairs: sums relative to the first pair, then the closed form.
 class ColumnFit {
  public:
   SEXTANT_INLINE explicit ColumnFit(const PairColumns& pairs)
       : origin_a_(PointOf(pairs, kLidarColumn, 0)), origin_b_(PointOf(pairs, kCamColumn, 0)) {}
 
-  /// Eight pairs with their weights, none where they are masked out.
+  /// Adds eight pairs with their weights, without those that are masked out.
   SEXTANT_INLINE void Add(const PairColumns& pairs, std::size_t at, const Mask8& counts,
                           const Vec8d& weights, PairMomentSums<Vec8d>& sums) const {
     const Vec8d none{};

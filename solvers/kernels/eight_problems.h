@@ -9,10 +9,9 @@
 
 namespace sextant::p3p {
 
-/// Arithmetic that is written once for one problem (double), for the candidates of one problem
-/// (Vec4d) and for eight problems (Vec8d) side by side: choices in place of branches.
+/// Arithmetic that is written once for one problem (double), for the four candidates of one problem
+/// (Vec4d) and for eight problems (Vec8d): selections in place of branches.
 
-/// Four doubles side by side.
 using Vec4d = double __attribute__((vector_size(32)));
 
 SEXTANT_INLINE double Select(bool mask, double a, double b) { return mask ? a : b; }
@@ -69,7 +68,7 @@ struct Bits<Vec8d> {
 template <class T>
 SEXTANT_INLINE T RoughCubeRoot(const T& a) {
   using Whole = typename Bits<T>::Type;
-  // 1/4 + 1/16 + ..., and what brings one back to one.
+  // 1/4 + 1/16 + ...; the offset makes the root of 1 equal 1.
   const auto third = [](const auto& i) __attribute__((always_inline)) {
     return (i >> 2) + (i >> 4) + (i >> 6) + (i >> 8) + (i >> 10) + (i >> 12);
   };

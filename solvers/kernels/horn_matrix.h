@@ -7,8 +7,8 @@
 
 namespace sextant {
 
-/// The algebra of Wahba's problem for one matrix (Real = double) or for eight side by side (Vec8d),
-/// without a branch. Inlined, so that it follows the instruction set of its caller.
+/// The algebra of Wahba's problem without branches. Inlined, so that it is compiled for the
+/// instruction set of its caller.
 
 SEXTANT_INLINE double Sqrt(double x) { return std::sqrt(x); }
 SEXTANT_INLINE double Abs(double x) { return std::abs(x); }
@@ -22,7 +22,7 @@ struct CrossMatrix {
 };
 
 /// Horn's symmetric 4x4 matrix: q^T K q = trace(R(q) * cross) for q = (x, y, z, w). Named scalars
-/// stay in registers, where a matrix would wait for its own stores.
+/// stay in registers, whereas a matrix would be stored and loaded again.
 template <class Real>
 struct HornMatrix {
   Real xx, yy, zz, ww, xy, xz, yz, xw, yw, zw;
@@ -35,7 +35,7 @@ SEXTANT_INLINE HornMatrix<Real> MakeHornMatrix(const CrossMatrix<Real>& m) {
           m.zx - m.xz,        m.xy - m.yx};
 }
 
-/// The symmetric functions of the signed singular values that cross gives without an SVD.
+/// Symmetric functions of the signed singular values of cross, which need no SVD.
 template <class Real>
 struct Invariants {
   Real sum_squares;   // s1^2 + s2^2 + s3^2
@@ -73,9 +73,9 @@ SEXTANT_INLINE Quartic<Real> CharacteristicPolynomial(const Invariants<Real>& v)
           v.sum_squares * v.sum_squares - 4.0 * v.pair_squares};
 }
 
-/// Householder's step of third order, which takes the error to its fourth power. On a polynomial
-/// of real roots it does not overshoot from beyond the outermost: with d = 3 the difference is
-/// minus a divided difference of (x - r)^-(d + 1) over the other roots r.
+/// Householder's step of third order: the error becomes its fourth power. On a polynomial with real
+/// roots it does not overshoot from beyond the outermost root: with d = 3 the difference is minus a
+/// divided difference of (x - r)^-(d + 1) over the other roots r.
 template <class Real>
 SEXTANT_INLINE Real HouseholderStep(const Quartic<Real>& p, const Real& x) {
   const Real square = x * x;
@@ -138,13 +138,13 @@ SEXTANT_INLINE Vector4<Real> NullVector(const HornMatrix<Real>& k, const Real& s
   return Select(Min(adj_xx, adj_yy) < Min(adj_zz, adj_ww), xy, zw);
 }
 
-/// How far a vector is from the eigenvector of an eigenvalue.
+/// The distance of a vector from the eigenvector of an eigenvalue.
 template <class Real>
 struct EigenResidual {
   Vector4<Real> residual;  // K q - value q
   Real residual2;          // Its squared length.
   Real length2;            // |q|^2
-  Real shift;              // What the Rayleigh quotient adds to the value.
+  Real shift;              // The Rayleigh quotient minus the value.
 };
 
 template <class Real>
@@ -161,8 +161,9 @@ SEXTANT_INLINE EigenResidual<Real> ResidualOf(const HornMatrix<Real>& k, const R
           (q.x * x + q.y * y + (q.z * z + q.w * w)) / length2};
 }
 
-/// Where s1 is far above the others, the adjugate's rounding leaves parts of the two eigenvectors
-/// about 2 s1 below, which the residual at the Rayleigh quotient `value` shows and takes away.
+/// Where s1 is far above the others, rounding of the adjugate leaves components along the two
+/// eigenvectors whose eigenvalues are about 2 s1 lower. The residual at the Rayleigh quotient
+/// `value` shows them, and they are subtracted.
 template <class Real>
 SEXTANT_INLINE Vector4<Real> WithoutFarParts(const Vector4<Real>& q, const EigenResidual<Real>& r,
                                              const Real& value) {
@@ -177,7 +178,7 @@ struct RotationMatrix {
   Real xx, xy, xz, yx, yy, yz, zx, zy, zz;
 };
 
-/// Of a unit quaternion.
+/// The rotation of a unit quaternion.
 template <class Real>
 SEXTANT_INLINE RotationMatrix<Real> MakeRotationMatrix(const Vector4<Real>& q) {
   const Real x2 = q.x + q.x;
@@ -196,14 +197,16 @@ SEXTANT_INLINE RotationMatrix<Real> MakeRotationMatrix(const Vector4<Real>& q) {
           yz - wx,         xz - wy, yz + wx, 1.0 - (xx + yy)};
 }
 
-/// The least eigenvalue of the symmetric R * cross, the signed s3, to 1e-8 of its largest where s2
-/// equals it and to rounding where all differ.
+/// The smallest eigenvalue of the symmetric matrix R * cross, the signed s3: to 1e-8 of the largest
+/// where s2 equals it, and to rounding where all three differ.
 ///
-/// Less its mean q the matrix is p times one whose eigenvalues m solve m^3 - 3 m = 2 r, |r| <= 1.
-/// The one of largest size, in [sqrt(3), 2], is a single root of which a parabola in |r| knows
-/// three digits and two steps of Halley's the rest; the other two follow (Smith 1961, CACM 4).
+/// Minus its mean eigenvalue q the matrix is p times one whose eigenvalues m solve
+/// m^3 - 3 m = 2 r, |r| <= 1. The one with the largest magnitude, in [sqrt(3), 2], is a single
+/// root: a parabola in |r| gives three digits, two of Halley's steps the rest; the other two follow
+/// (Smith 1961, CACM 4).
 template <class Real>
-SEXTANT_INLINE Real LeastSingularValue(const RotationMatrix<Real>& r, const CrossMatrix<Real>& m) {
+SEXTANT_INLINE Real SmallestSingularValue(const RotationMatrix<Real>& r,
+                                          const CrossMatrix<Real>& m) {
   const Real xx = r.xx * m.xx + r.xy * m.yx + r.xz * m.zx;
   const Real yy = r.yx * m.xy + r.yy * m.yy + r.yz * m.zy;
   const Real zz = r.zx * m.xz + r.zy * m.yz + r.zz * m.zz;
@@ -218,7 +221,7 @@ SEXTANT_INLINE Real LeastSingularValue(const RotationMatrix<Real>& r, const Cros
   const Real p = Sqrt(p2);
   const Real half_det =
       0.5 * (a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz));
-  // A multiple of the identity has p = 0, and any r will do.
+  // A multiple of the identity has p = 0, where any r will do.
   const Real ratio = half_det / (p2 * p + 1e-300);
   const Real size = Min(Abs(ratio), Real{} + 1.0);
   Real root = 1.7320508 + size * (0.3333333 - size * 0.0653841);

@@ -13,10 +13,10 @@
 namespace sextant {
 namespace {
 
-// Five in RMSE: noise on four coplanar points reaches this less than once in a thousand.
+// A factor of five in RMSE: noise on four coplanar points reaches it less than once in a thousand.
 constexpr double kMirrorRatio = 25.0;
 
-// False where the formula cannot prove itself.
+// False where the residual does not prove the result of the formula.
 SEXTANT_INLINE bool FitMoments(const CentredMoments<double>& m, KernelFit& fit) {
   const std::optional<TraceMaximum> best = MaximizeTraceByFormula(m.cross, 0.5 * m.squares);
   if (!best) return false;
@@ -24,21 +24,21 @@ SEXTANT_INLINE bool FitMoments(const CentredMoments<double>& m, KernelFit& fit) 
   return true;
 }
 
-template <class L>
+template <class V>
 SEXTANT_INLINE bool FitByFormulaFor(const PointSpans& points, CentredMoments<double>& moments,
                                     KernelFit& fit) {
-  const CentredMoments<double> m = points.weights.empty() ? ComputeMoments<L, false, false>(points)
-                                                          : ComputeMoments<L, true, false>(points);
+  const CentredMoments<double> m = points.weights.empty() ? ComputeMoments<V, false, false>(points)
+                                                          : ComputeMoments<V, true, false>(points);
   moments.squares = m.squares;
   if (FitMoments(m, fit)) return true;
   moments = m;
   return false;
 }
 
-template <class L>
+template <class V>
 SEXTANT_INLINE bool FitByFormulaFor(const WeightedPoints& pairs, CentredMoments<double>& moments,
                                     KernelFit& fit) {
-  moments = ComputeMoments<L, true, true>(pairs);
+  moments = ComputeMoments<V, true, true>(pairs);
   return FitMoments(moments, fit);
 }
 
@@ -120,11 +120,11 @@ Matrix6d KabschCovariance(const KabschMoments& moments, const Rigid3d& cam_from_
   const Eigen::Matrix3d m = r * moments.cross;
   const Eigen::Matrix3d inverse = TraceLess(0.5 * (m + m.transpose())).inverse();
   const Eigen::Matrix3d noise = TraceLess(r * moments.scatter * r.transpose());
-  const Eigen::Matrix3d turn = variance * (inverse * noise * inverse);
-  // dt is that of the origin; a turn about the means moves it.
+  const Eigen::Matrix3d of_rotation = variance * (inverse * noise * inverse);
+  // dt is the shift of the origin, which a rotation about the means moves.
   const Eigen::Matrix3d lever = Hat(r * moments.mean_in_lidar);
   Matrix6d covariance;
-  covariance.topLeftCorner<3, 3>() = 0.5 * (turn + turn.transpose());
+  covariance.topLeftCorner<3, 3>() = 0.5 * (of_rotation + of_rotation.transpose());
   covariance.bottomLeftCorner<3, 3>() = lever * covariance.topLeftCorner<3, 3>();
   covariance.topRightCorner<3, 3>() = covariance.bottomLeftCorner<3, 3>().transpose();
   covariance.bottomRightCorner<3, 3>() = covariance.bottomLeftCorner<3, 3>() * lever.transpose() +

@@ -6,8 +6,7 @@
 
 namespace sextant {
 
-/// What FitKabsch and FitKabschBatch share besides their formulas.
-
+/// The result of the formula, before the check for mirrored points.
 struct KernelFit {
   Vector4<double> q;
   Point3<double> translation;
@@ -15,10 +14,11 @@ struct KernelFit {
   double mirrored_trace = 0.0;
 };
 
-/// Where the formula cannot prove itself; false where the points do not determine a rotation.
+/// Used where the residual does not prove the result of the formula. False where the points do not
+/// determine a rotation.
 bool FitByEigensolver(const CentredMoments<double>& moments, KernelFit& fit);
 
-/// The fit, or kMirrored; `squares` is that of the moments.
+/// The fit, or kMirrored. `squares` is CentredMoments::squares.
 KabschOutcome CheckFit(const KernelFit& kernel, double squares);
 
 }  // namespace sextant

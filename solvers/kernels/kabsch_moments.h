@@ -10,21 +10,20 @@
 
 namespace sextant {
 
-/// The sums that every least squares of 3D-3D pairs begins with, over one problem with its points
-/// in lanes, or over eight problems side by side.
+/// The sums that every least-squares fit of 3D-3D pairs starts from, eight pairs at a time.
 
 template <class Real>
 struct SymmetricMatrix {
   Real xx, yy, zz, xy, xz, yz;
 };
 
-/// About provisional origins.
+/// Sums relative to provisional origins.
 template <class Real>
 struct PairMomentSums {
   Real weight, squares;
   Point3<Real> a, b;
   CrossMatrix<Real> cross;
-  SymmetricMatrix<Real> scatter;  ///< sum w a a^T, where asked for.
+  SymmetricMatrix<Real> scatter;  ///< sum w a a^T, only where kScatter is set.
 
   template <bool kWeighted, bool kScatter>
   SEXTANT_INLINE void Add(const Point3<Real>& pa, const Point3<Real>& pb, const Real& w) {
@@ -51,11 +50,11 @@ struct PairMomentSums {
   }
 };
 
-template <bool kWeighted, bool kScatter, class L>
-SEXTANT_INLINE PairMomentSums<double> SumOf(const PairMomentSums<L>& s) {
-  const CrossMatrix<L>& m = s.cross;
-  const L first = SumEach(s.squares, s.a.x, s.a.y, s.a.z, s.b.x, s.b.y, s.b.z, m.xx);
-  const L second = SumEach(m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz);
+template <bool kWeighted, bool kScatter, class V>
+SEXTANT_INLINE PairMomentSums<double> SumOf(const PairMomentSums<V>& s) {
+  const CrossMatrix<V>& m = s.cross;
+  const V first = SumEach(s.squares, s.a.x, s.a.y, s.a.z, s.b.x, s.b.y, s.b.z, m.xx);
+  const V second = SumEach(m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz);
   PairMomentSums<double> sum{};
   if constexpr (kWeighted) sum.weight = HorizontalSum(s.weight);
   sum.squares = first[0];
@@ -71,7 +70,7 @@ SEXTANT_INLINE PairMomentSums<double> SumOf(const PairMomentSums<L>& s) {
   return sum;
 }
 
-/// About the weighted means; the means themselves about the provisional origins.
+/// Moments about the weighted means. The means are relative to the provisional origins.
 template <class Real>
 struct CentredMoments {
   Real weight, squares;  ///< squares: sum w (|a|^2 + |b|^2).
@@ -102,93 +101,93 @@ SEXTANT_INLINE CentredMoments<Real> Centre(const PairMomentSums<Real>& s, const 
   return m;
 }
 
-/// Points and weights as the caller holds them.
+/// Points and weights in separate arrays.
 struct PointSpans {
   SEXTANT_INLINE std::size_t size() const { return in_a.size(); }
   SEXTANT_INLINE Point3<double> a(std::size_t i) const { return PointAt(in_a[i]); }
   SEXTANT_INLINE Point3<double> b(std::size_t i) const { return PointAt(in_b[i]); }
   SEXTANT_INLINE double weight(std::size_t i) const { return weights[i]; }
-  SEXTANT_INLINE std::size_t place(std::size_t lane) const { return kPointOrder[lane]; }
+  SEXTANT_INLINE std::size_t place(std::size_t k) const { return kPointOrder[k]; }
 
   std::span<const Eigen::Vector3d> in_b;
   std::span<const Eigen::Vector3d> in_a;
   std::span<const double> weights;
 };
 
-/// Pairs, weighed by IsotropicWeight.
+/// Pairs with the weights IsotropicWeight.
 struct WeightedPoints {
   SEXTANT_INLINE std::size_t size() const { return pairs.size(); }
   SEXTANT_INLINE Point3<double> a(std::size_t i) const { return PointAt(pairs[i].point_in_lidar); }
   SEXTANT_INLINE Point3<double> b(std::size_t i) const { return PointAt(pairs[i].point_in_cam); }
   SEXTANT_INLINE double weight(std::size_t i) const { return IsotropicWeight(pairs[i]); }
-  SEXTANT_INLINE std::size_t place(std::size_t lane) const { return lane; }
+  SEXTANT_INLINE std::size_t place(std::size_t k) const { return k; }
 
   std::span<const Pair3d3d> pairs;
 };
 
-/// Points seen from an origin, eight at a time from the i-th on, in the order of `place`.
-template <class L>
+/// Points relative to an origin, eight at a time from the i-th on, in the order of `place`.
+template <class V>
 struct SeenFromOrigin {
   SEXTANT_INLINE SeenFromOrigin(std::span<const Eigen::Vector3d> all, const Point3<double>& o)
       : points(all), origin(o) {}
-  SEXTANT_INLINE Point3<L> Eight(std::size_t i) const {
-    return LoadPoints<L>(points[i].data(), origin);
+  SEXTANT_INLINE Point3<V> Eight(std::size_t i) const {
+    return LoadPoints<V>(points[i].data(), origin);
   }
 
   std::span<const Eigen::Vector3d> points;
-  RepeatedPoint<L> origin;
+  RepeatedPoint<V> origin;
 };
 
-/// A point of pairs.
-template <class L, Eigen::Vector3d Pair3d3d::*kPoint>
+/// The points of pairs in one frame, relative to an origin.
+template <class V, Eigen::Vector3d Pair3d3d::*kPoint>
 struct PairsFromOrigin {
-  SEXTANT_INLINE Point3<L> Eight(std::size_t i) const {
-    return Gather<L>(&pairs[i], kPoint) - origin;
+  SEXTANT_INLINE Point3<V> Eight(std::size_t i) const {
+    return Gather<V>(&pairs[i], kPoint) - origin;
   }
 
   std::span<const Pair3d3d> pairs;
   Point3<double> origin;
 };
 
-template <class L>
+template <class V>
 SEXTANT_INLINE auto FromOriginOfA(const PointSpans& points, const Point3<double>& o) {
-  return SeenFromOrigin<L>(points.in_a, o);
+  return SeenFromOrigin<V>(points.in_a, o);
 }
-template <class L>
+template <class V>
 SEXTANT_INLINE auto FromOriginOfB(const PointSpans& points, const Point3<double>& o) {
-  return SeenFromOrigin<L>(points.in_b, o);
+  return SeenFromOrigin<V>(points.in_b, o);
 }
-template <class L>
+template <class V>
 SEXTANT_INLINE auto FromOriginOfA(const WeightedPoints& points, const Point3<double>& o) {
-  return PairsFromOrigin<L, &Pair3d3d::point_in_lidar>{points.pairs, o};
+  return PairsFromOrigin<V, &Pair3d3d::point_in_lidar>{points.pairs, o};
 }
-template <class L>
+template <class V>
 SEXTANT_INLINE auto FromOriginOfB(const WeightedPoints& points, const Point3<double>& o) {
-  return PairsFromOrigin<L, &Pair3d3d::point_in_cam>{points.pairs, o};
+  return PairsFromOrigin<V, &Pair3d3d::point_in_cam>{points.pairs, o};
 }
 
-/// Of eight points, in their order.
-template <class L, class Points>
-SEXTANT_INLINE L EightWeights(const Points& points, std::size_t i) {
-  const auto w = [&](std::size_t lane) __attribute__((always_inline)) {
-    return points.weight(i + points.place(lane));
+/// The weights of eight points, in the order of `place`.
+template <class V, class Points>
+SEXTANT_INLINE V EightWeights(const Points& points, std::size_t i) {
+  const auto w = [&](std::size_t k) __attribute__((always_inline)) {
+    return points.weight(i + points.place(k));
   };
-  return VecOf<L>(w(0), w(1), w(2), w(3), w(4), w(5), w(6), w(7));
+  return VecOf<V>(w(0), w(1), w(2), w(3), w(4), w(5), w(6), w(7));
 }
 
 /// Which of the eight are the `place`-th or later.
-template <class L, class Points>
+template <class V, class Points>
 SEXTANT_INLINE auto PlacesFrom(const Points& points, std::size_t place) {
-  const auto at = [&](std::size_t lane) __attribute__((always_inline)) {
-    return static_cast<long long>(points.place(lane));
+  const auto at = [&](std::size_t k) __attribute__((always_inline)) {
+    return static_cast<long long>(points.place(k));
   };
-  return VecOf<MaskOf<L>>(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)) >=
+  return VecOf<MaskOf<V>>(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)) >=
          static_cast<long long>(place);
 }
 
-/// Moments of all points; weight is their number where unweighted. The first point as provisional
-/// origin keeps the digits of small sets far from the sensor.
-template <class L, bool kWeighted, bool kScatter, class Points>
+/// Moments of all points; the weight is their number where they have none. The first point as
+/// provisional origin preserves precision for small sets far from the sensor.
+template <class V, bool kWeighted, bool kScatter, class Points>
 SEXTANT_INLINE CentredMoments<double> ComputeMoments(const Points& points) {
   const Point3<double> origin_a = points.a(0);
   const Point3<double> origin_b = points.b(0);
@@ -200,24 +199,24 @@ SEXTANT_INLINE CentredMoments<double> ComputeMoments(const Points& points) {
                                     kWeighted ? points.weight(i) : 1.0);
     }
   } else {
-    const auto all_a = FromOriginOfA<L>(points, origin_a);
-    const auto all_b = FromOriginOfB<L>(points, origin_b);
-    PairMomentSums<L> eight{};
+    const auto all_a = FromOriginOfA<V>(points, origin_a);
+    const auto all_b = FromOriginOfB<V>(points, origin_b);
+    PairMomentSums<V> eight{};
     std::size_t i = 0;
     for (; i + kSimdWidth <= count; i += kSimdWidth) {
-      L weight{};
-      if constexpr (kWeighted) weight = EightWeights<L>(points, i);
+      V weight{};
+      if constexpr (kWeighted) weight = EightWeights<V>(points, i);
       eight.template Add<kWeighted, kScatter>(all_a.Eight(i), all_b.Eight(i), weight);
     }
     if (i < count) {
-      // The last eight once more; those counted already stand at the origins, without weight.
+      // The last eight again; those that were counted already are set to zero.
       const std::size_t last = count - kSimdWidth;
-      const auto is_new = PlacesFrom<L>(points, i - last);
-      const Point3<L> a = all_a.Eight(last);
-      const Point3<L> b = all_b.Eight(last);
-      const L none{};
-      L weight{};
-      if constexpr (kWeighted) weight = Select(is_new, EightWeights<L>(points, last), none);
+      const auto is_new = PlacesFrom<V>(points, i - last);
+      const Point3<V> a = all_a.Eight(last);
+      const Point3<V> b = all_b.Eight(last);
+      const V none{};
+      V weight{};
+      if constexpr (kWeighted) weight = Select(is_new, EightWeights<V>(points, last), none);
       eight.template Add<kWeighted, kScatter>(
           {Select(is_new, a.x, none), Select(is_new, a.y, none), Select(is_new, a.z, none)},
           {Select(is_new, b.x, none), Select(is_new, b.y, none), Select(is_new, b.z, none)},

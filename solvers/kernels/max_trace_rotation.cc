@@ -7,7 +7,7 @@
 namespace sextant {
 namespace {
 
-// Points within 1e-5 of their length of a line leave the turn about it to rounding.
+// Where points are within 1e-5 of their length of a line, rounding decides the rotation about it.
 constexpr double kMinRelativeGap = 1e-10;
 
 SEXTANT_MULTIVERSION bool ByFormula(const CrossMatrix<double>& cross, double bound,

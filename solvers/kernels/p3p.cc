@@ -11,14 +11,14 @@ namespace {
 using p3p::Vec4d;
 using p3p::Vector;
 
-// The candidates of one triple, side by side.
+// The candidates of one triple, one in each column.
 struct Candidates {
   double rotation[9][kMaxP3pPoses];
   double translation[3][kMaxP3pPoses];
-  double depth[kMaxP3pPoses];  // Not positive where it is no pose.
+  double depth[kMaxP3pPoses];  // Not positive where the candidate is no pose.
 };
 
-SEXTANT_INLINE Vec4d Together(const double (&a)[4]) { return Vec4d{a[0], a[1], a[2], a[3]}; }
+SEXTANT_INLINE Vec4d Packed(const double (&a)[4]) { return Vec4d{a[0], a[1], a[2], a[3]}; }
 
 SEXTANT_MULTIVERSION
 void FindCandidates(const double* rays, const double* points, Candidates& out) {
@@ -32,7 +32,7 @@ void FindCandidates(const double* rays, const double* points, Candidates& out) {
   double ratio_y[4];
   p3p::FindRatios(from.triangle, ratio_x, ratio_y);
   Vector<Vec4d> d;
-  Vec4d depth = p3p::Polish(from.triangle, Together(ratio_x), Together(ratio_y), d);
+  Vec4d depth = p3p::Polish(from.triangle, Packed(ratio_x), Packed(ratio_y), d);
   if (!(from.squared_height > p3p::kMinSquaredHeight)) depth = Vec4d{} - 1.0;
   Vec4d r[9];
   Vec4d t[3];
@@ -48,7 +48,7 @@ SEXTANT_INLINE void LoadVectors(const double (&from)[9][kSimdWidth], Vector<Vec8
   }
 }
 
-// A function of its own: of SolveP3pBatch, which is declared before, clang makes no versions.
+// A separate function: clang makes no versions of SolveP3pBatch, which was declared before.
 SEXTANT_MULTIVERSION
 void SolveEight(const P3pTriples& triples, P3pPoses& poses) {
   Vector<Vec8d> y[3];

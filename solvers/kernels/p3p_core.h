@@ -7,10 +7,10 @@
 
 namespace sextant::p3p {
 
-/// The equations of SolveP3p for one triple (T = double) and for eight side by side (T = Vec8d),
-/// without a branch that the numbers decide, so that both do the same arithmetic. From the four
-/// candidates on, U is what stands side by side: the candidates of one triple (Vec4d), or one
-/// candidate of eight triples.
+/// The equations of SolveP3p for one triple (T = double) and for eight triples (T = Vec8d), without
+/// branches that depend on the numbers, so that both do the same arithmetic. From the four
+/// candidates on, U is the type of the unknowns: Vec4d for the four candidates of one triple, Vec8d
+/// for one candidate of eight triples.
 
 /// A symmetric 3x3 matrix: the conic xx u^2 + 2 xy u v + yy v^2 + 2 xz u + 2 yz v + zz = 0.
 template <class T>
@@ -56,8 +56,8 @@ SEXTANT_INLINE T IsolatedRoot(const T& b, const T& c, const T& d) {
   const T u = RoughCubeRoot<T>(0.5 * Size(q) + SquareRoot(AtLeastZero(discriminant)));
   T s = Select(discriminant > 0.0, u - third / u, 2.0 * SquareRoot(AtLeastZero<T>(-third)));
   s = Select(q > 0.0, -s, s);
-  // From an upper bound of its size Newton's method descends on the root without overshooting. A
-  // step under the tolerance leaves its square.
+  // From an upper bound of its size Newton's method descends to the root without overshooting. The
+  // error after a step under the tolerance is about the square of that step.
   for (int step = 0; step < 8; ++step) {
     const T slope = 3.0 * s * s + p;
     const T change = Select(slope > 0.0, ((s * s + p) * s + q) / slope, T{});
@@ -92,7 +92,7 @@ struct Pencil {
 template <class T>
 SEXTANT_INLINE Pencil<T> FindDegenerate(Conic<T> a, Conic<T> b) {
   Cubic<T> c = DeterminantOfPencil(a, b);
-  // Where both are nearly degenerate (symmetric scenes), no root is well scaled from either.
+  // If both conics are nearly degenerate (symmetric scenes), no root is well scaled from either.
   constexpr double kTooSmall = 1e-3;
   const auto both = Larger(Size(c.c0), Size(c.c3)) < kTooSmall * Larger(Size(c.c1), Size(c.c2));
   if (Any(both)) {
@@ -101,7 +101,7 @@ SEXTANT_INLINE Pencil<T> FindDegenerate(Conic<T> a, Conic<T> b) {
     a = Select(both, sum, a);
     c = DeterminantOfPencil(a, b);
   }
-  // From the end of the cubic that is larger.
+  // Divide by the larger of the first and last coefficients.
   const auto ascending = Size(c.c3) >= Size(c.c0);
   const T inverse = 1.0 / Select(ascending, c.c3, c.c0);
   const T x = IsolatedRoot<T>(Select(ascending, c.c2, c.c1) * inverse,
@@ -112,9 +112,9 @@ SEXTANT_INLINE Pencil<T> FindDegenerate(Conic<T> a, Conic<T> b) {
   return {Combine(first, x, second), Select(Size(x) <= 1.0, second, first)};
 }
 
-/// The lines l.x u + l.y v + l.z = 0 that a degenerate conic is made of: it is p q^T + q p^T, and
-/// its adjugate -(p x q)(p x q)^T; [p x q]x added leaves 2 q p^T, of which every row is p and every
-/// column q. The largest ones are the most precise.
+/// The lines l.x u + l.y v + l.z = 0 that a degenerate conic consists of. The conic is
+/// p q^T + q p^T, and its adjugate -(p x q)(p x q)^T; adding [p x q]x gives 2 q p^T, in which every
+/// row is a multiple of p and every column of q. The longest ones are the most precise.
 template <class T>
 SEXTANT_INLINE void SplitIntoLines(const Conic<T>& c, Vector<T>& p, Vector<T>& q) {
   const Conic<T> adjugate = Adjugate(c);
@@ -126,8 +126,8 @@ SEXTANT_INLINE void SplitIntoLines(const Conic<T>& c, Vector<T>& p, Vector<T>& q
   const auto z_larger = -adjugate.zz > square;
   w = Select(z_larger, {adjugate.xz, adjugate.yz, adjugate.zz}, w);
   square = Select(z_larger, -adjugate.zz, square);
-  // Where the lines are complex (square < 0) their real part passes for a double line; what it
-  // meets is thrown out by the polish.
+  // Where the lines are complex (square < 0), their real part is used as a double line; Polish
+  // rejects its intersections.
   const auto is_real = square > 0.0;
   const T scale = Select(is_real, -1.0 / SquareRoot(Select(is_real, square, T{} + 1.0)), T{});
   w = scale * w;
@@ -149,12 +149,12 @@ SEXTANT_INLINE void SplitIntoLines(const Conic<T>& c, Vector<T>& p, Vector<T>& q
   q = longest(columns);
 }
 
-/// The two points where a line meets a conic; not numbers where it misses. A narrow miss counts as
+/// The two points where a line meets a conic; NaN where it misses. A narrow miss counts as
 /// touching.
 template <class T>
 SEXTANT_INLINE void Intersect(const Vector<T>& line, const Conic<T>& c, T (&u)[2], T (&v)[2]) {
   constexpr double kNarrowMiss = 1e-6;
-  // From the point of the line nearest to the origin, so that no slope is infinite.
+  // Parametrised from the point of the line nearest to the origin, so that no slope is infinite.
   const T du = -line.y;
   const T dv = line.x;
   const T back = -line.z / (line.x * line.x + line.y * line.y);
@@ -185,8 +185,8 @@ struct Triangle {
   T e12, e13, e23;  ///< Squared chords of the rays.
 };
 
-/// Candidates of the ratios (d_1, d_2) / d_3: where the two conics meet. The conics are in the
-/// ratios less one, over the widest chord.
+/// Candidates for the ratios (d_1, d_2) / d_3: the intersections of the two conics. The conics are
+/// in the ratios minus one, divided by the longest chord.
 template <class T>
 SEXTANT_INLINE void FindRatios(const Triangle<T>& t, T (&x)[4], T (&y)[4]) {
   const T square = Larger(Larger(t.e12, t.e13), t.e23);
@@ -247,17 +247,17 @@ SEXTANT_INLINE U SumOfSizes(const Vector<U>& a) {
 }
 
 /// Depths from their ratios, in units of the third side, by Newton's method on the law of cosines
-/// as long as it gains. What is returned is positive where they are a solution.
+/// as long as the error falls. The returned number is positive where they are a solution.
 template <class U, class T>
 SEXTANT_INLINE U Polish(const Triangle<T>& t, const U& x, const U& y, Vector<U>& d) {
   constexpr int kMaxSteps = 6;
   constexpr double kMaxError = 1e-9;
   const U third = 1.0 / SquareRoot((y - 1.0) * (y - 1.0) + t.e23 * y);
   d = {x * third, y * third, third};
-  // What is no number from here on is no solution: it never compares as smaller.
+  // NaN is no solution from here on: it never compares as smaller.
   Vector<U> residual = SideErrors(t, d);
   U error = SumOfSizes(residual);
-  // What the rounding of depths so large leaves of a side of length one.
+  // The effect of rounding depths of this size on a side of length one.
   const U rounding = 1e-15 * (d.x + d.y + d.z);
   for (int step = 0; step < kMaxSteps; ++step) {
     const Vector<U> next = d - NewtonStep(t, d, residual);
@@ -269,22 +269,22 @@ SEXTANT_INLINE U Polish(const Triangle<T>& t, const U& x, const U& y, Vector<U>&
     error = Select(better, next_error, error);
     if (!Any(Select(better, error, U{}) > rounding)) break;
   }
-  const U least = Select(d.x < d.y, d.x, d.y);
+  const U nearer = Select(d.x < d.y, d.x, d.y);
   const U ratio = Select(x < y, x, y);
-  const U depth = Select(d.z < least, d.z, least);
+  const U depth = Select(d.z < nearer, d.z, nearer);
   return Select(error < kMaxError, Select(ratio > 0.0, depth, ratio), U{} - 1.0);
 }
 
-/// What a triple's numbers are turned into: numbered so that the side from 2 to 3 is the longest,
-/// by which the others are divided.
+/// A triple whose points are numbered so that the side from 2 to 3 is the longest, which is the
+/// unit of length.
 template <class T>
 struct Prepared {
   Vector<T> ray[3];
   Vector<T> origin;         ///< Point 3.
   T side;                   ///< From 2 to 3.
-  Vector<T> frame_rows[3];  ///< The inverse of [p1 - p3, p2 - p3, their product], in sides.
+  Vector<T> frame_rows[3];  ///< The inverse of [p1 - p3, p2 - p3, their cross product].
   Triangle<T> triangle;
-  T squared_height;  ///< Of the triangle, in sides; flat ones leave a turn to rounding.
+  T squared_height;  ///< Height of the triangle; see kMinSquaredHeight.
 };
 
 template <class T>
@@ -295,7 +295,7 @@ SEXTANT_INLINE Prepared<T> Prepare(const Vector<T> (&rays)[3], const Vector<T> (
   const auto second_longer = opposite[1] > opposite[0];
   const T longer = Select(second_longer, opposite[1], opposite[0]);
   const auto third_longest = opposite[2] > longer;
-  // What of three is at the place that becomes the first, second or third.
+  // The element that becomes the first, second or third.
   const auto pick = [&](const auto(&of)[3], int shift) __attribute__((always_inline)) {
     return Select(third_longest, of[(2 + shift) % 3],
                   Select(second_longer, of[(1 + shift) % 3], of[shift]));
@@ -321,8 +321,8 @@ SEXTANT_INLINE Prepared<T> Prepare(const Vector<T> (&rays)[3], const Vector<T> (
   return out;
 }
 
-/// R row by row and t of the pose that puts the points at depths d; orthonormal as far as the sides
-/// are right.
+/// R row by row and t of the pose that puts the points at depths d. R is as orthonormal as the side
+/// lengths are exact.
 template <class U, class T>
 SEXTANT_INLINE void PoseAt(const Prepared<T>& from, const Vector<U>& d, U (&r)[9], U (&t)[3]) {
   const auto along = [](const U& depth, const Vector<T>& ray) __attribute__((always_inline)) {
@@ -345,8 +345,8 @@ SEXTANT_INLINE void PoseAt(const Prepared<T>& from, const Vector<U>& d, U (&r)[9
   }
 }
 
-/// Squared height of the triangle over its longest side: flatter, and the turn about that side is
-/// left to rounding.
+/// Minimum squared height of the triangle relative to its longest side: in a flatter one, rounding
+/// decides the rotation about that side.
 inline constexpr double kMinSquaredHeight = 1e-12;
 
 }  // namespace sextant::p3p

@@ -18,18 +18,18 @@ Eigen::Matrix3d Whitener(const Pair3d3d& pair, double assumed_sigma_m) {
   return Eigen::Matrix3d::Identity() / (pair.sigma_m > 0.0 ? pair.sigma_m : assumed_sigma_m);
 }
 
-// Up to eight terms; whether all pairs state their noise.
-template <class L>
+// Makes up to eight terms; returns whether all pairs state their noise.
+template <class V>
 SEXTANT_INLINE bool MakeBlockFor(std::span<const Pair2d3d> pairs, double assumed_sigma_px,
                                  PixelBlock& block) {
-  const EightPixelPairs<L> eight = GatherPixelPairs<L>(pairs);
-  const MaskOf<L> known = eight.sigma > 0.0;
+  const EightPixelPairs<V> eight = GatherPixelPairs<V>(pairs);
+  const MaskOf<V> known = eight.sigma > 0.0;
   StoreVec(eight.x, block.x);
   StoreVec(eight.y, block.y);
   StoreVec(eight.z, block.z);
   StoreVec(eight.u, block.u);
   StoreVec(eight.v, block.v);
-  StoreVec(1.0 / Select(known, eight.sigma, All<L>(assumed_sigma_px)), block.inverse_sigma);
+  StoreVec(1.0 / Select(known, eight.sigma, All<V>(assumed_sigma_px)), block.inverse_sigma);
   for (std::size_t k = pairs.size(); k < kSimdWidth; ++k) block.inverse_sigma[k] = 0.0;
   return !AnyTrue(~known);
 }
@@ -51,7 +51,7 @@ void PairTerms::Add(std::span<const Pair2d3d> pairs, const Camera& of_pairs,
                     const AssumedNoise& assumed) {
   camera = of_pairs;
   pixels.reserve(pixels.size() + pairs.size());
-  // Those that fill a block begun before, then block by block.
+  // First fill the last block, then append block by block.
   for (; !pairs.empty() && pixels.size() % kSimdWidth != 0; pairs = pairs.subspan(1)) {
     const Pair2d3d& pair = pairs.front();
     const double sigma = pair.sigma_px > 0.0 ? pair.sigma_px : assumed.sigma_px;

@@ -10,19 +10,19 @@
 
 namespace sextant {
 
-/// Which of a problem's pairs a combinator works on.
+/// The kind of a problem's pairs that a solver works on.
 enum class PairKind { k3d3d, k2d3d };
 
 /// Residuals of one pair: 3 coordinates or 2.
 inline constexpr int ResidualsPerPair(PairKind kind) { return kind == PairKind::k3d3d ? 3 : 2; }
 
-/// What is assumed of pairs that state no noise.
+/// The noise that is assumed for pairs that state none.
 struct AssumedNoise {
   double sigma_m = 0.02;
   double sigma_px = 1.0;
 };
 
-/// A 3D-3D pair made ready: r = whitener * (in_cam - R in_lidar - t), the residual of residuals.h
+/// A whitened 3D-3D pair: r = whitener * (in_cam - R in_lidar - t), the residual of residuals.h
 /// with unit variance on each axis.
 struct PointTerm {
   Eigen::Vector3d in_cam;
@@ -30,19 +30,19 @@ struct PointTerm {
   Eigen::Matrix3d whitener;
 };
 
-/// Whitened residuals, not owned: what the kernels take.
+/// A view of whitened pairs, the argument of the kernels.
 struct TermsView {
   std::span<const PointTerm> points;
   PixelTermsView pixels;
   const Camera* camera = nullptr;  ///< Needed where there are pixels.
 };
 
-/// Pairs of a problem with their noise, ready for scoring and minimisation.
+/// The whitened pairs of a problem.
 struct PairTerms {
   std::vector<PointTerm> points;
   PixelTerms pixels;
   Camera camera;
-  bool noise_known = true;  ///< False where a pair's noise was assumed.
+  bool noise_known = true;  ///< False where the noise of a pair was assumed.
 
   TermsView View() const { return {points, pixels.View(), &camera}; }
   std::size_t size() const { return points.size() + pixels.size(); }
@@ -51,11 +51,11 @@ struct PairTerms {
   void Add(std::span<const Pair2d3d> pairs, const Camera& of_pairs, const AssumedNoise& assumed);
 
   /// Replaces the content by the terms of `all` (one kind) at `indices`. Allocates nothing once
-  /// it has held as many.
+  /// it has held as many terms.
   void AssignSubset(const PairTerms& all, std::span<const int> indices);
 };
 
-/// All pairs of one kind.
+/// The terms of all pairs of one kind.
 PairTerms MakeTerms(const CalibrationProblem& problem, PairKind kind, const AssumedNoise& assumed);
 
 }  // namespace sextant

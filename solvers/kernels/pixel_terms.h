@@ -12,7 +12,7 @@
 
 namespace sextant {
 
-/// A 2D-3D pair made ready: r = inverse_sigma * (pixel - projection), the residual of residuals.h
+/// A whitened 2D-3D pair: r = inverse_sigma * (pixel - projection), the residual of residuals.h
 /// with unit variance on each axis.
 struct PixelTerm {
   Eigen::Vector2d pixel;
@@ -20,9 +20,8 @@ struct PixelTerm {
   double inverse_sigma = 1.0;
 };
 
-/// Eight terms side by side, so that one instruction works on all. Places beyond the last term
-/// repeat the first of their block with inverse_sigma zero: they project where it does, and add
-/// nothing.
+/// Eight terms, number by number, for SIMD vectors of 8 doubles. Padding repeats the first term of
+/// the block with inverse_sigma zero: it projects where that term does, and adds nothing.
 struct alignas(64) PixelBlock {
   double x[kSimdWidth], y[kSimdWidth], z[kSimdWidth];  ///< In the LiDAR frame [m].
   double u[kSimdWidth], v[kSimdWidth];                 ///< The pixel.
@@ -35,7 +34,7 @@ inline PixelTerm TermAt(const PixelBlock* blocks, std::size_t i) {
   return {{b.u[k], b.v[k]}, {b.x[k], b.y[k], b.z[k]}, b.inverse_sigma[k]};
 }
 
-/// Terms one after another, by value: what is stored are blocks.
+/// Terms one by one, by value; they are stored as blocks.
 class PixelTermsView {
  public:
   class Iterator {
@@ -78,7 +77,7 @@ class PixelTermsView {
   std::size_t size_ = 0;
 };
 
-/// The same, owned. Allocates nothing once it has held as many.
+/// The same, owned. Allocates nothing once it has held as many terms.
 class PixelTerms {
  public:
   std::size_t size() const { return size_; }
@@ -101,7 +100,7 @@ class PixelTerms {
     ++size_;
   }
 
-  /// Up to eight terms more, where those before fill their blocks.
+  /// Appends up to eight terms. Requires that the terms so far fill their blocks.
   void AppendBlock(const PixelBlock& block, std::size_t count) {
     assert(size_ % kSimdWidth == 0);
     blocks_.push_back(block);
@@ -115,7 +114,7 @@ class PixelTerms {
   std::span<const PixelBlock> blocks() const { return blocks_; }
 
  private:
-  // Whose places all repeat a term and add nothing.
+  // Appends a block of padding that repeats the term.
   void AddBlock(const PixelTerm& term);
 
   std::vector<PixelBlock> blocks_;

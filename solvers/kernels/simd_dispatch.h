@@ -5,12 +5,12 @@
 
 #include "base/simd.h"
 
-/// Defines a function from its template of the lanes, `name`For, which each machine gets with those
-/// that it computes on best; one, where the build is for one machine. The template and what it
-/// calls must be SEXTANT_INLINE. It asks the processor at each call, by one load and a branch that
-/// is always the same: the loader's choice would be as fast, but clang 14 then leaves out inline
-/// functions that only its versions call, and sanitizers cannot run it.
-// NOLINTBEGIN(bugprone-macro-parentheses): types and parameter lists bear none.
+/// Defines the function `name` from its template `name`For<V>, V = Vec8d or SplitVec8d: for
+/// AVX-512, AVX2 and SSE2 where the build is portable, else for one of them. The template and what
+/// it calls must be SEXTANT_INLINE. Each call looks up the processor's features, by one load and a
+/// branch that always goes the same way: the loader's choice would be as fast, but clang 14 then
+/// drops inline functions that only its versions call, and sanitizers cannot run it.
+// NOLINTBEGIN(bugprone-macro-parentheses): types and parameter lists cannot have them.
 #if defined(__AVX512F__)
 #define SEXTANT_SIMD_DISPATCH(Return, name, parameters, arguments) \
   Return name parameters { return name##For<Vec8d> arguments; }
@@ -43,9 +43,8 @@ struct SplitMask8 {
   Mask4 low, high;
 };
 
-/// Vec8d as two registers of four, for machines whose registers are no wider: there g++ 12 takes
-/// comparisons, choices and shuffles of Vec8d apart into scalars. Every operation rounds as that of
-/// Vec8d does.
+/// Vec8d as two registers of four, for machines without AVX-512: there g++ 12 breaks comparisons,
+/// selections and shuffles of Vec8d into scalars. Every operation rounds as that of Vec8d does.
 struct SplitVec8d {
   SEXTANT_INLINE double operator[](std::size_t i) const { return i < 4 ? low[i] : high[i - 4]; }
 
@@ -82,35 +81,30 @@ SEXTANT_SPLIT_COMPARISON(>)
 
 SEXTANT_INLINE SplitVec8d operator-(const SplitVec8d& a) { return {-a.low, -a.high}; }
 SEXTANT_INLINE SplitVec8d& operator+=(SplitVec8d& a, const SplitVec8d& b) { return a = a + b; }
-SEXTANT_INLINE SplitVec8d& operator-=(SplitVec8d& a, const SplitVec8d& b) { return a = a - b; }
 
 SEXTANT_INLINE SplitMask8 operator>=(const SplitMask8& a, long long b) {
   return {a.low >= b, a.high >= b};
 }
 SEXTANT_INLINE SplitMask8 operator~(const SplitMask8& a) { return {~a.low, ~a.high}; }
-SEXTANT_INLINE SplitMask8 operator&(const SplitMask8& a, const SplitMask8& b) {
-  return {a.low & b.low, a.high & b.high};
-}
 SEXTANT_INLINE SplitMask8 operator|(const SplitMask8& a, const SplitMask8& b) {
   return {a.low | b.low, a.high | b.high};
 }
-SEXTANT_INLINE SplitMask8& operator&=(SplitMask8& a, const SplitMask8& b) { return a = a & b; }
 SEXTANT_INLINE SplitMask8& operator|=(SplitMask8& a, const SplitMask8& b) { return a = a | b; }
 
-/// What a comparison of L gives.
-template <class L>
-using MaskOf = std::conditional_t<std::is_same_v<L, Vec8d>, Mask8, SplitMask8>;
+/// The result of a comparison of V.
+template <class V>
+using MaskOf = std::conditional_t<std::is_same_v<V, Vec8d>, Mask8, SplitMask8>;
 
-/// Zero where the mask does not hold, whatever is there.
-SEXTANT_INLINE Vec8d Keep(const Mask8& mask, const Vec8d& lanes) {
-  return reinterpret_cast<Vec8d>(mask & reinterpret_cast<Mask8>(lanes));
+/// Zero where the mask does not hold, also in place of NaN.
+SEXTANT_INLINE Vec8d Keep(const Mask8& mask, const Vec8d& v) {
+  return reinterpret_cast<Vec8d>(mask & reinterpret_cast<Mask8>(v));
 }
-SEXTANT_INLINE SplitVec8d Keep(const SplitMask8& mask, const SplitVec8d& lanes) {
-  return {reinterpret_cast<Vec4d>(mask.low & reinterpret_cast<Mask4>(lanes.low)),
-          reinterpret_cast<Vec4d>(mask.high & reinterpret_cast<Mask4>(lanes.high))};
+SEXTANT_INLINE SplitVec8d Keep(const SplitMask8& mask, const SplitVec8d& v) {
+  return {reinterpret_cast<Vec4d>(mask.low & reinterpret_cast<Mask4>(v.low)),
+          reinterpret_cast<Vec4d>(mask.high & reinterpret_cast<Mask4>(v.high))};
 }
 
-/// `mask ? a : b`, for what is written once for doubles and both kinds of lanes.
+/// `mask ? a : b`, for templates over double, Vec8d and SplitVec8d.
 SEXTANT_INLINE double Select(bool mask, double a, double b) { return mask ? a : b; }
 template <class Mask>
 SEXTANT_INLINE Vec8d Select(const Mask& mask, const Vec8d& a, const Vec8d& b) {
@@ -126,58 +120,49 @@ SEXTANT_INLINE SplitVec8d Sqrt(const SplitVec8d& a) {
   for (std::size_t i = 0; i < 4; ++i) roots.high[i] = std::sqrt(a.high[i]);
   return roots;
 }
-SEXTANT_INLINE SplitVec8d Abs(const SplitVec8d& a) { return Select(a < 0.0, -a, a); }
 SEXTANT_INLINE SplitVec8d Min(const SplitVec8d& a, const SplitVec8d& b) {
   return Select(b < a, b, a);
 }
-SEXTANT_INLINE SplitVec8d Max(const SplitVec8d& a, const SplitVec8d& b) {
-  return Select(a < b, b, a);
-}
 
-/// Eight numbers: doubles to lanes, whole numbers to a mask.
-template <class L, class Number>
-SEXTANT_INLINE L VecOf(Number a, Number b, Number c, Number d, Number e, Number f, Number g,
+/// Eight numbers as a vector: doubles, or integers for a mask.
+template <class V, class Number>
+SEXTANT_INLINE V VecOf(Number a, Number b, Number c, Number d, Number e, Number f, Number g,
                        Number h) {
-  if constexpr (std::is_class_v<L>) {
-    using Half = decltype(L::low);
+  if constexpr (std::is_class_v<V>) {
+    using Half = decltype(V::low);
     return {Half{a, b, c, d}, Half{e, f, g, h}};
   } else {
-    const L lanes = {a, b, c, d, e, f, g, h};
-    return lanes;
+    const V v = {a, b, c, d, e, f, g, h};
+    return v;
   }
 }
 
-/// One number in all lanes.
-template <class L>
-SEXTANT_INLINE L All(double value) {
-  return value - L{};
+/// One number in all elements.
+template <class V>
+SEXTANT_INLINE V All(double value) {
+  return value - V{};
 }
 
-/// Eight doubles from any address. Half by half: a copy of the whole would go by memory.
-template <class L>
-SEXTANT_INLINE L Load(const double* from) {
-  if constexpr (std::is_class_v<L>) {
-    L lanes;
-    std::memcpy(&lanes.low, from, sizeof lanes.low);
-    std::memcpy(&lanes.high, from + 4, sizeof lanes.high);
-    return lanes;
+/// Eight doubles from any address. Half by half: a copy of the whole would go through memory.
+template <class V>
+SEXTANT_INLINE V Load(const double* from) {
+  if constexpr (std::is_class_v<V>) {
+    V v;
+    std::memcpy(&v.low, from, sizeof v.low);
+    std::memcpy(&v.high, from + 4, sizeof v.high);
+    return v;
   } else {
     return LoadVec(from);
   }
 }
-SEXTANT_INLINE void StoreVec(const SplitVec8d& lanes, double* to) {
-  std::memcpy(to, &lanes.low, sizeof lanes.low);
-  std::memcpy(to + 4, &lanes.high, sizeof lanes.high);
+SEXTANT_INLINE void StoreVec(const SplitVec8d& v, double* to) {
+  std::memcpy(to, &v.low, sizeof v.low);
+  std::memcpy(to + 4, &v.high, sizeof v.high);
 }
 
-template <class Mask>
-SEXTANT_INLINE void StoreMask(const Mask& mask, long long* to) {
-  std::memcpy(to, &mask, sizeof mask);
-}
-
-SEXTANT_INLINE double HorizontalSum(const SplitVec8d& lanes) {
+SEXTANT_INLINE double HorizontalSum(const SplitVec8d& v) {
   using Two = double __attribute__((vector_size(16)));
-  const Vec4d four = lanes.low + lanes.high;
+  const Vec4d four = v.low + v.high;
   const Two two =
       __builtin_shufflevector(four, four, 0, 1) + __builtin_shufflevector(four, four, 2, 3);
   return two[0] + two[1];

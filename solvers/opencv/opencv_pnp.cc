@@ -13,7 +13,7 @@
 namespace sextant {
 namespace {
 
-/// The pairs as OpenCV takes them: pixels of a camera without distortion or offset.
+/// Pairs in OpenCV's types, with pixels of a camera without distortion and with principal point 0.
 struct OpenCvPairs {
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> pixels;
@@ -46,19 +46,19 @@ Rigid3d ToRigid(const cv::Mat& rotation_vector, const cv::Mat& translation) {
   return {ExpSo3(vector(rotation_vector)), vector(translation)};
 }
 
-/// Runs OpenCV and turns its exceptions into an error.
+/// Calls OpenCV and converts its exceptions to an error.
 template <class Function>
 Expected<void> Guard(const Function& function) {
   try {
     function();
   } catch (const cv::Exception& exception) {
     return MakeError(ErrorCode::kDegenerate,
-                     fmt::format("OpenCV refuses the pairs ({})", exception.err));
+                     fmt::format("OpenCV rejects the pairs ({})", exception.err));
   }
   return {};
 }
 
-/// Keeps finite poses with most points in front of the camera, least reprojection error first.
+/// Keeps finite poses with most points in front of the camera, smallest reprojection error first.
 Expected<PnpPoses> Rank(const Correspondences& data, std::span<const Rigid3d> poses) {
   struct Ranked {
     Rigid3d pose;
@@ -114,22 +114,20 @@ constexpr std::size_t kMinPairs = 4;
 /// `run` fills a rotation vector, a translation and inliers, and returns whether it found them.
 template <class Run>
 Expected<PnpPoses> Consensus(const PnpInput& input, const Run& run) {
-  const Expected<Correspondences> data =
-      PrepareCorrespondences(input.image_points, input.points, kMinPairs);
-  if (!data) return tl::unexpected<Error>(data.error());
+  SEXTANT_ASSIGN_OR_RETURN(const Correspondences data,
+                           PrepareCorrespondences(input.image_points, input.points, kMinPairs));
   cv::Mat rotation_vector;
   cv::Mat translation;
   cv::Mat inliers;
   bool ok = false;
-  const Expected<void> ran =
-      Guard([&] { ok = run(ToOpenCv(input), rotation_vector, translation, inliers); });
-  if (!ran) return tl::unexpected<Error>(ran.error());
+  SEXTANT_RETURN_IF_ERROR(
+      Guard([&] { ok = run(ToOpenCv(input), rotation_vector, translation, inliers); }));
   if (!ok || inliers.total() < kMinPairs) {
     return MakeError(ErrorCode::kNoConsensus,
                      "OpenCV finds no pose that four pairs agree on; raise threshold_px or "
                      "max_iterations, or check the pairing");
   }
-  Expected<PnpPoses> found = Rank(*data, std::vector<cv::Mat>{rotation_vector}, {translation});
+  Expected<PnpPoses> found = Rank(data, std::vector<cv::Mat>{rotation_vector}, {translation});
   if (!found) return found;
   for (int i = 0; i < static_cast<int>(inliers.total()); ++i) {
     found->inliers.push_back(inliers.at<int>(i));
@@ -142,35 +140,31 @@ Expected<PnpPoses> Consensus(const PnpInput& input, const Run& run) {
 
 Expected<PnpPoses> SolveOpenCvPnp(const PnpInput& input, OpenCvPnp method) {
   const std::size_t needed = method == OpenCvPnp::kSqpnp ? 3 : kMinPairs;
-  const Expected<Correspondences> data =
-      PrepareCorrespondences(input.image_points, input.points, needed);
-  if (!data) return tl::unexpected<Error>(data.error());
+  SEXTANT_ASSIGN_OR_RETURN(const Correspondences data,
+                           PrepareCorrespondences(input.image_points, input.points, needed));
   const OpenCvPairs pairs = ToOpenCv(input);
   std::vector<cv::Mat> rotation_vectors;
   std::vector<cv::Mat> translations;
-  const Expected<void> ran = Guard([&] {
+  SEXTANT_RETURN_IF_ERROR(Guard([&] {
     cv::solvePnPGeneric(pairs.points, pairs.pixels, pairs.intrinsics, cv::noArray(),
                         rotation_vectors, translations, /*useExtrinsicGuess=*/false,
                         static_cast<cv::SolvePnPMethod>(FlagOf(method)));
-  });
-  if (!ran) return tl::unexpected<Error>(ran.error());
-  return Rank(*data, rotation_vectors, translations);
+  }));
+  return Rank(data, rotation_vectors, translations);
 }
 
 Expected<PnpPoses> SolveOpenCvP3p(const PnpInput& input) {
-  const Expected<Correspondences> data =
-      PrepareCorrespondences(input.image_points, input.points, 3);
-  if (!data) return tl::unexpected<Error>(data.error());
-  const Triple triangle = WidestTriangle(*data);
+  SEXTANT_ASSIGN_OR_RETURN(const Correspondences data,
+                           PrepareCorrespondences(input.image_points, input.points, 3));
+  const Triple triangle = WidestTriangle(data);
   const OpenCvPairs pairs = ToOpenCv(input, triangle);
   std::vector<cv::Mat> rotation_vectors;
   std::vector<cv::Mat> translations;
-  const Expected<void> ran = Guard([&] {
+  SEXTANT_RETURN_IF_ERROR(Guard([&] {
     cv::solveP3P(pairs.points, pairs.pixels, pairs.intrinsics, cv::noArray(), rotation_vectors,
                  translations, cv::SOLVEPNP_P3P);
-  });
-  if (!ran) return tl::unexpected<Error>(ran.error());
-  Expected<PnpPoses> found = Rank(*data, rotation_vectors, translations);
+  }));
+  Expected<PnpPoses> found = Rank(data, rotation_vectors, translations);
   if (found) found->fixed_by = triangle;
   return found;
 }

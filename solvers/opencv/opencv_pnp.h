@@ -5,15 +5,15 @@
 
 namespace sextant {
 
-/// The closed forms and the iteration of cv::solvePnPGeneric that run on all pairs.
+/// The methods of cv::solvePnPGeneric that run on all pairs.
 enum class OpenCvPnp { kEpnp, kSqpnp, kIppe, kIterative };
 
-/// Errors: those of PrepareCorrespondences; kDegenerate where OpenCV refuses; kNoConsensus where
-/// its answer is not finite or has most points behind the camera.
+/// Errors: those of PrepareCorrespondences; kDegenerate where OpenCV throws; kNoConsensus where its
+/// answer is not finite or has most points behind the camera.
 Expected<PnpPoses> SolveOpenCvPnp(const PnpInput& input, OpenCvPnp method);
 
-/// cv::solveP3P on the widest triangle of the first four different points; all the pairs put its
-/// solutions in order.
+/// cv::solveP3P on the widest triangle of the first four different points; its solutions are
+/// ordered by the reprojection error of all pairs.
 Expected<PnpPoses> SolveOpenCvP3p(const PnpInput& input);
 
 struct OpenCvRansacOptions {
@@ -25,7 +25,8 @@ struct OpenCvRansacOptions {
 /// cv::solvePnPRansac around EPnP: samples of five, then EPnP on the inliers.
 Expected<PnpPoses> SolveOpenCvRansacEpnp(const PnpInput& input, const OpenCvRansacOptions& options);
 
-/// cv::solvePnPRansac of USAC with MAGSAC++ scoring (Barath et al. 2020) and local optimisation.
+/// cv::solvePnPRansac in its USAC form with MAGSAC++ scoring (Barath et al. 2020) and local
+/// optimisation.
 Expected<PnpPoses> SolveOpenCvMagsac(const PnpInput& input, const OpenCvRansacOptions& options);
 
 }  // namespace sextant

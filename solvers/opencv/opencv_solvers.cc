@@ -34,11 +34,11 @@ SolverEntry RansacEntry(const std::string& name, std::string summary, std::strin
   const OptionSet<OpenCvRansacOptions> options =
       OptionSet<OpenCvRansacOptions>()
           .Count("max_iterations", &OpenCvRansacOptions::max_iterations, 1, 1000000,
-                 "most samples drawn")
+                 "maximum number of samples")
           .Real("threshold_px", &OpenCvRansacOptions::threshold_px, "px", 1e-6, 1e6,
-                "reprojection error of an inlier, at most")
+                "largest reprojection error of an inlier")
           .Real("confidence", &OpenCvRansacOptions::confidence, "1", 0.01, 0.999999,
-                "probability of a sample without outliers at which to stop");
+                "probability of having drawn a sample without outliers when the search stops");
   return {
       .name = name,
       .summary = std::move(summary),
@@ -73,9 +73,10 @@ void AddOpenCvSolvers(SolverRegistry& registry) {
                      "OpenCV's pose from the derivative of a homography, both solutions",
                      "Collins and Bartoli 2014; cv::solvePnPGeneric", OnAllPairs(OpenCvPnp::kIppe),
                      PnpCovariance::kMoments));
-  registry.Add(Entry("opencv.p3p", {.pairs_2d3d = 3}, "3 or more 2D-3D pairs, not on one line",
-                     "OpenCV's P3P on the widest triangle of the first four; all pairs choose",
-                     "Gao et al. 2003; cv::solveP3P", SolveOpenCvP3p, PnpCovariance::kTriple));
+  registry.Add(Entry(
+      "opencv.p3p", {.pairs_2d3d = 3}, "3 or more 2D-3D pairs, not on one line",
+      "OpenCV's P3P on the widest triangle of the first four points; all pairs choose the pose",
+      "Gao et al. 2003; cv::solveP3P", SolveOpenCvP3p, PnpCovariance::kTriple));
   registry.Add(Entry("opencv.iterative", {.pairs_2d3d = 4}, four,
                      "OpenCV's Levenberg-Marquardt on the reprojection error, from a DLT",
                      "cv::solvePnP", OnAllPairs(OpenCvPnp::kIterative),

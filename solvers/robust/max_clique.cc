@@ -12,7 +12,7 @@ namespace {
 
 using Bits = std::vector<std::uint64_t>;
 
-// Vertices by falling degree, those of one degree ascending.
+// Vertices by falling degree, and ascending among those of equal degree.
 std::vector<int> ByFallingDegree(const std::vector<int>& degrees) {
   // Allocated first: g++ 14 otherwise warns of the size that it infers where `begins` is empty.
   std::vector<int> order(degrees.size());
@@ -28,8 +28,8 @@ std::vector<int> ByFallingDegree(const std::vector<int>& degrees) {
   return order;
 }
 
-// From each of the best connected vertices, whoever is connected with all so far, best connected
-// first.
+// The largest of several greedy cliques: each starts at one of the vertices with the highest degree
+// and adds vertices by falling degree.
 std::vector<int> GreedyClique(const BitGraph& graph, const std::vector<int>& degrees) {
   constexpr std::size_t kStarts = 4;
   const std::vector<int> order = ByFallingDegree(degrees);
@@ -53,16 +53,17 @@ std::vector<int> GreedyClique(const BitGraph& graph, const std::vector<int>& deg
   return best;
 }
 
-// The vertices left, ascending, when none has fewer than `least` neighbours among them.
-std::vector<int> CoreOf(const BitGraph& graph, std::vector<int> degrees, int least) {
+// The k-core with k = min_degree, ascending: each of its vertices has at least min_degree
+// neighbours in it.
+std::vector<int> CoreOf(const BitGraph& graph, std::vector<int> degrees, int min_degree) {
   std::vector<int> removed;
-  const auto is_low = [&](int v) { return degrees[static_cast<std::size_t>(v)] < least; };
+  const auto is_low = [&](int v) { return degrees[static_cast<std::size_t>(v)] < min_degree; };
   for (int v = 0; v < graph.vertices(); ++v) {
     if (is_low(v)) removed.push_back(v);
   }
   for (std::size_t next = 0; next < removed.size(); ++next) {
     ForEachBit(graph.Row(removed[next]), graph.words(), [&](int v) {
-      if (degrees[static_cast<std::size_t>(v)]-- == least) removed.push_back(v);
+      if (degrees[static_cast<std::size_t>(v)]-- == min_degree) removed.push_back(v);
     });
   }
   std::vector<int> core;
@@ -89,19 +90,19 @@ BitGraph Subgraph(const BitGraph& graph, const std::vector<int>& vertices) {
   return sub;
 }
 
-// Vertices so that each has the fewest neighbours among those after it, then reversed: the search
-// meets the best connected ones first in colouring.
+// Degeneracy order reversed: repeatedly removes the vertex with the fewest neighbours. Colouring
+// then starts with the best connected vertices.
 std::vector<int> DegeneracyOrder(const BitGraph& graph) {
   std::vector<int> degrees = DegreesOf(graph);
   std::vector<int> left(degrees.size());
   std::iota(left.begin(), left.end(), 0);
   std::vector<int> order;
   while (!left.empty()) {
-    const auto least = std::min_element(left.begin(), left.end(), [&](int a, int b) {
+    const auto next = std::min_element(left.begin(), left.end(), [&](int a, int b) {
       return degrees[static_cast<std::size_t>(a)] < degrees[static_cast<std::size_t>(b)];
     });
-    const int removed = *least;
-    left.erase(least);
+    const int removed = *next;
+    left.erase(next);
     order.push_back(removed);
     ForEachBit(graph.Row(removed), graph.words(),
                [&](int v) { --degrees[static_cast<std::size_t>(v)]; });
@@ -110,7 +111,7 @@ std::vector<int> DegeneracyOrder(const BitGraph& graph) {
   return order;
 }
 
-/// Cliques larger than one that is known.
+/// Searches for a clique larger than a known size.
 class CliqueSearch {
  public:
   CliqueSearch(const BitGraph& graph, std::size_t known, std::int64_t max_nodes)
@@ -127,7 +128,7 @@ class CliqueSearch {
 
   bool is_maximum() const { return nodes_ < max_nodes_; }
   std::int64_t nodes() const { return nodes_; }
-  /// Vertices of the given graph; empty where none is larger than the known.
+  /// Vertices of the given graph; empty where no clique is larger than the known size.
   std::vector<int> best() const {
     std::vector<int> vertices;
     for (const int v : best_) vertices.push_back(order_[static_cast<std::size_t>(v)]);
@@ -135,28 +136,28 @@ class CliqueSearch {
   }
 
  private:
-  // A candidate and the number of colours that it and the candidates before it need.
+  // A candidate and the number of colours used for it and the candidates before it.
   struct Coloured {
     int vertex;
     int colours;
   };
 
-  // Buffers of one depth of the search, kept from node to node.
+  // Buffers of one depth of the search, reused by its nodes.
   struct Level {
     Bits candidates;
     std::vector<Coloured> coloured;
   };
 
   Level& LevelAt(std::size_t depth) {
-    // A deque leaves its levels where they are.
+    // A deque does not move its elements when it grows.
     while (levels_.size() <= depth) levels_.push_back({Bits(sorted_.words(), 0), {}});
     return levels_[depth];
   }
 
-  // Candidates by rising colour; those that cannot lead beyond the largest are left out.
+  // Lists candidates by rising colour, without those that cannot lead to a larger clique.
   void Colour(Level& level) {
     level.coloured.clear();
-    const int useless = static_cast<int>(largest_) - static_cast<int>(current_.size());
+    const int max_useless = static_cast<int>(largest_) - static_cast<int>(current_.size());
     uncoloured_ = level.candidates;
     for (int colour = 1; AnyOf(uncoloured_); ++colour) {
       same_colour_ = uncoloured_;
@@ -167,7 +168,7 @@ class CliqueSearch {
           same_colour_[w] &= ~BitOf(v);
           const std::uint64_t* row = sorted_.Row(v);
           for (std::size_t k = w; k < same_colour_.size(); ++k) same_colour_[k] &= ~row[k];
-          if (colour > useless) level.coloured.push_back({v, colour});
+          if (colour > max_useless) level.coloured.push_back({v, colour});
         }
       }
     }
@@ -200,7 +201,7 @@ class CliqueSearch {
 
   std::int64_t max_nodes_;
   std::int64_t nodes_ = 0;
-  std::vector<int> order_;  // Vertex of the given graph at each place of `sorted_`.
+  std::vector<int> order_;  // The vertex of the given graph for each vertex of `sorted_`.
   BitGraph sorted_;
   std::deque<Level> levels_;
   Bits uncoloured_;

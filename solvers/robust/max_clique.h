@@ -10,18 +10,18 @@ namespace sextant {
 
 struct Clique {
   std::vector<int> vertices;  ///< Ascending.
-  bool is_maximum = true;     ///< False where the search stopped at its limit.
-  std::int64_t nodes = 0;     ///< Of the search tree.
+  bool is_maximum = true;     ///< False where the search stopped at max_nodes.
+  std::int64_t nodes = 0;     ///< Number of nodes of the search tree.
 };
 
 /// A largest set of vertices that are all connected with each other.
 ///
-/// A clique found greedily bounds the answer from below; vertices with too few neighbours for a
-/// larger one go, and those that then have too few, before the search. Exact branch and bound on
-/// the rest: a node's candidates are coloured greedily, no clique has more vertices than colours
-/// (Tomita and Seki 2003; bitsets as in San Segundo et al. 2011), vertices in degeneracy order.
-/// After `max_nodes` nodes the largest clique so far. The same graph gives the same clique.
-/// Memory: vertices^2 / 8 bytes for the graph, as much for what is left of it, 1/8 of a kilobyte a
+/// A greedy clique gives a lower bound; vertices with too few neighbours for a larger clique are
+/// removed, repeatedly, before the search. Exact branch and bound on the rest: the candidates of a
+/// node are coloured greedily, and no clique has more vertices than colours (Tomita and Seki 2003;
+/// bitsets as in San Segundo et al. 2011); vertices are in degeneracy order. After `max_nodes`
+/// nodes the largest clique so far is returned. The same graph gives the same clique. Memory:
+/// vertices^2 / 8 bytes for the graph, as much for what is left of it, and 1/8 of a kilobyte per
 /// level for N = 1000.
 Clique FindMaximumClique(const BitGraph& graph, std::int64_t max_nodes);
 

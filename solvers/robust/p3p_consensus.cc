@@ -18,13 +18,13 @@ namespace {
 
 // After this many degenerate triples and no other, the data itself is degenerate.
 constexpr int kMaxDegenerateSamples = 1000;
-// Of the squared threshold, in the first round of least squares; halved in the next. Generous, so
+// Factor of the squared threshold in the first round of least squares, halved in each next one, so
 // that a pair just outside is not lost for good.
 constexpr double kFirstWidening = 4.0;
 constexpr double kLocalStep = 1e-6;
 constexpr double kFinalStep = 1e-10;
 constexpr int kFinalRounds = 30;
-// The least inliers that least squares runs on.
+// The minimum number of inliers for least squares.
 constexpr int kMinInliers = 4;
 
 class Search {
@@ -62,7 +62,7 @@ class Search {
   P3pConsensus Answer() const { return {best_, best_cost_, samples_, found_}; }
 
  private:
-  // Uneven by 1e-9 of the share of each, and without a division.
+  // Avoids a division; the bias is at most 1e-9 of each probability.
   std::size_t Below(std::size_t count) { return ((random_.Bits() >> 32) * count) >> 32; }
 
   void DrawBatch() {
@@ -70,17 +70,18 @@ class Search {
       const std::size_t first = Below(count_);
       std::size_t second = Below(count_ - 1);
       std::size_t third = Below(count_ - 2);
-      // Ranks among the places that are left.
+      // Second and third are ranks among the indices not drawn yet.
       if (second >= first) ++second;
       if (third >= std::min(first, second)) ++third;
       if (third >= std::max(first, second)) ++third;
-      Place(first, 0, k);
-      Place(second, 1, k);
-      Place(third, 2, k);
+      SetTriple(k, 0, first);
+      SetTriple(k, 1, second);
+      SetTriple(k, 2, third);
     }
   }
 
-  void Place(std::size_t from, std::size_t to, std::size_t k) {
+  // Point `to` of triple k becomes term `from`.
+  void SetTriple(std::size_t k, std::size_t to, std::size_t from) {
     const PixelTerm term = terms_[from];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<Eigen::Index>(axis);
@@ -89,7 +90,8 @@ class Search {
     }
   }
 
-  // Whether one of the batch costs less than the best so far, and became it.
+  // Takes the cheapest pose of the batch if it costs less than the best so far, and returns whether
+  // it does.
   bool TakeBestCandidate() {
     bool better = false;
     for (std::size_t c = 0; c < kMaxP3pPoses; ++c) {
@@ -108,8 +110,8 @@ class Search {
     return better;
   }
 
-  // Least squares on the inliers alternating with choosing them, one step each, from the best; ends
-  // after `rounds`, or with a step that is small or does not lower the cost.
+  // Alternates one step of least squares on the inliers with choosing them, starting at the best
+  // pose. Ends after `rounds`, or with a step that is small or does not lower the cost.
   void Optimise(int rounds, double step_tolerance) {
     Rigid3d pose = best_;
     double widening = kFirstWidening;
@@ -152,7 +154,7 @@ class Search {
   Rigid3d best_;
   double best_cost_ = std::numeric_limits<double>::infinity();
   int samples_ = 0;
-  int drawn_ = 0;  // In this batch: the last one may be smaller.
+  int drawn_ = 0;  // Triples used of this batch: fewer than eight in the last one.
   bool found_ = false;
 };
 

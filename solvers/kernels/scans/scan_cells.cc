@@ -13,11 +13,11 @@ using Points = std::span<const Eigen::Vector3d>;
 
 constexpr int kMinRings = 4;
 constexpr int kMinColumns = 8;
-constexpr double kOfMostInARing = 0.02;  ///< Bins with less than this of the fullest are between.
-constexpr int kMinGap = 2;               ///< Bins between two rings.
-constexpr double kMinRow = 0.75;         ///< Height of a row of whole rings, in cells.
+constexpr double kMinRingShare = 0.02;  ///< Bins with less than this of the fullest are gaps.
+constexpr int kMinGap = 2;              ///< Bins between two rings.
+constexpr double kMinRow = 0.75;        ///< Height of a row of whole rings, in cells.
 
-// Eight points from `first` on, the last one again where there are no more.
+// Eight points from `first` on; the last one is repeated where there are fewer.
 SEXTANT_INLINE std::array<Vec8d, 3> LoadPoints(Points points, std::size_t first,
                                                const std::array<std::size_t, 3>& axes) {
   std::array<Vec8d, 3> loaded;
@@ -28,23 +28,23 @@ SEXTANT_INLINE std::array<Vec8d, 3> LoadPoints(Points points, std::size_t first,
   return loaded;
 }
 
-// Bins of slopes that hold rings, as the bins between one ring and the next; empty where the scan
-// shows no rings or some are wider than `widest` bins.
+// The middles of the rings in the histogram of slopes [bins]; empty where there are no rings or one
+// is wider than `max_width` bins.
 struct Rings {
   std::vector<double> middles;
 };
 
-Rings FindRings(std::span<const int> histogram, double widest) {
-  const double least = kOfMostInARing * *std::ranges::max_element(histogram);
+Rings FindRings(std::span<const int> histogram, double max_width) {
+  const double min_count = kMinRingShare * *std::ranges::max_element(histogram);
   Rings rings;
   int begin = -1;
   int last = -1;
   const auto close = [&] {
     if (begin >= 0) rings.middles.push_back(0.5 * (begin + last));
-    return begin < 0 || last - begin <= widest;
+    return begin < 0 || last - begin <= max_width;
   };
   for (int bin = 0; bin < static_cast<int>(histogram.size()); ++bin) {
-    if (histogram[static_cast<std::size_t>(bin)] <= least) continue;
+    if (histogram[static_cast<std::size_t>(bin)] <= min_count) continue;
     if (begin < 0 || bin - last > kMinGap) {
       if (!close()) return {};
       begin = bin;
@@ -55,7 +55,7 @@ Rings FindRings(std::span<const int> histogram, double widest) {
   return rings;
 }
 
-// Bins where a new row begins.
+// The bins at which rows begin, from the second row on.
 std::vector<int> RowStarts(const Rings& rings, double cell_bins, int bins) {
   std::vector<int> starts;
   if (rings.middles.empty()) {
@@ -75,7 +75,7 @@ std::vector<int> RowStarts(const Rings& rings, double cell_bins, int bins) {
 
 }  // namespace
 
-// Before its first use, as clang wants of functions of many versions.
+// Defined before its first use, as clang requires for functions with several versions.
 SEXTANT_MULTIVERSION
 void ScanCells::FindBearings(Points points, double* slopes, std::int32_t* columns) const {
   for (std::size_t i = 0; i < points.size(); i += kSimdWidth) {
@@ -107,7 +107,7 @@ ScanCells::ScanCells(Points points, double cell_rad) : cell_rad_(cell_rad) {
   }
 }
 
-// A sample of the points tells.
+// Decides by a sample of the points.
 void ScanCells::ChooseAxes(Points points) {
   Eigen::Array3d squares = Eigen::Array3d::Zero();
   const std::size_t step = std::max<std::size_t>(1, points.size() / 1000);
@@ -115,25 +115,25 @@ void ScanCells::ChooseAxes(Points points) {
     const double square = points[i].squaredNorm();
     if (square > 0.0) squares += points[i].array().square() / square;
   }
-  // Only clearly fewer: a cube of points is no reason to leave z.
-  Eigen::Index least = 2;
+  // The margin keeps z where the axes are about equal.
+  Eigen::Index chosen = 2;
   for (const Eigen::Index axis : {1, 0}) {
-    if (squares[axis] < 0.8 * squares[least]) least = axis;
+    if (squares[axis] < 0.8 * squares[chosen]) chosen = axis;
   }
-  const auto polar = static_cast<std::size_t>(least);
+  const auto polar = static_cast<std::size_t>(chosen);
   axes_ = {(polar + 1) % 3, (polar + 2) % 3, polar};
 }
 
 void ScanCells::ChooseRows(std::span<const double> slopes, double cell_rad) {
-  const auto [least, most] = std::ranges::minmax(slopes);
+  const auto [lowest, highest] = std::ranges::minmax(slopes);
   const double margin = 0.5 * std::tan(cell_rad);
-  first_slope_ = least - margin;
-  bins_a_slope_ = kBins / (most - least + 2.0 * margin);
+  first_slope_ = lowest - margin;
+  bins_per_slope_ = kBins / (highest - lowest + 2.0 * margin);
   std::vector<int> histogram(row_of_bin_.size());
   for (const double slope : slopes) {
     if (std::abs(slope) < kSteepest) ++histogram[static_cast<std::size_t>(BinOf(slope))];
   }
-  const double cell_bins = cell_rad * bins_a_slope_;
+  const double cell_bins = cell_rad * bins_per_slope_;
   const std::vector<int> starts = RowStarts(FindRings(histogram, cell_bins), cell_bins, kBins);
   rows_ = static_cast<int>(starts.size()) + 1;
   std::int16_t row = 0;
@@ -160,7 +160,7 @@ double ScanCells::SlopeOf(int row) const {
   return level2 > 0.0 ? std::copysign(std::sqrt(up2 / level2), height) : 0.0;
 }
 
-void ScanCells::TakeOff(std::span<const double> offsets_m) {
+void ScanCells::SubtractOffsets(std::span<const double> offsets_m) {
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     std::array<double, CellSums::kSize>& of = sums_[i].of;
     if (of[CellSums::kCount] == 0.0) continue;

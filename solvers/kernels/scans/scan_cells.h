@@ -12,7 +12,7 @@
 
 namespace sextant {
 
-/// Moments of the points in a cell, or in several: counts and sums [m, m^2].
+/// Moments of the points in one or more cells: count and sums [m, m^2].
 struct CellSums {
   static constexpr std::size_t kCount = 0;
   static constexpr std::size_t kFirst = 1;   ///< x, y, z.
@@ -21,19 +21,19 @@ struct CellSums {
   alignas(16) std::array<double, kSize> of{};
 };
 
-/// A scan cut into cells as its sensor sees it: rows of elevation, columns of azimuth. One pass
-/// over the points, which need no order.
+/// A scan divided into cells as its sensor sees it: rows of elevation, columns of azimuth. Takes
+/// one pass over the points, which may be in any order.
 ///
-/// Rows follow the rings: elevations that repeat are told by gaps between them, and a row is as few
-/// whole rings as are `cell_rad` high, so that a row never holds half a ring. Where elevations do
-/// not repeat rows are `cell_rad` high. Points that are more than 76 degrees off the plane that the
+/// Rows follow the rings: rings are recognised by the gaps between their elevations, and a row is
+/// the smallest number of whole rings that is `cell_rad` high, so that no row has half a ring. If
+/// there are no rings, rows are `cell_rad` high. Points more than 76 degrees off the plane that the
 /// sensor sweeps are left out.
 ///
-/// The axis that the azimuth goes about is that of the frame's three which the points keep farthest
-/// from: z of a LiDAR, y of a camera.
+/// Azimuth is about that axis of the frame which the points are farthest from: z for a LiDAR, y for
+/// a camera.
 class ScanCells {
  public:
-  /// Points [m] seen from their frame's origin, finite. Requires at least one.
+  /// Points [m] in the sensor's frame, finite. Requires at least one.
   ScanCells(std::span<const Eigen::Vector3d> points, double cell_rad);
 
   double cell_rad() const { return cell_rad_; }
@@ -42,14 +42,15 @@ class ScanCells {
   /// Row by row.
   const std::vector<CellSums>& sums() const { return sums_; }
 
-  /// Tangent of the elevation of a row, 0 level; the root mean square where it holds several rings.
+  /// Tangent of the elevation of a row, 0 for level; the root mean square where it has several
+  /// rings.
   double SlopeOf(int row) const;
 
-  /// Takes these [m] off the ranges of each row, as if they were measured too long. Within a cell
-  /// all points are taken to be as far as its root mean square.
-  void TakeOff(std::span<const double> offsets_m);
+  /// Subtracts an offset [m] from the ranges of each row. Within a cell all points are assumed to
+  /// be at the root mean square of its ranges. Shape: one offset per row.
+  void SubtractOffsets(std::span<const double> offsets_m);
 
-  /// Where eight points fall: cell numbers, or `outside` where there is no row.
+  /// Writes the cell numbers of eight points; `outside` where there is no row.
   SEXTANT_INLINE void CellsOf(const std::array<Vec8d, 3>& points, std::int32_t outside,
                               std::int32_t* cells) const {
     const Vec8d x = points[axes_[0]];
@@ -67,14 +68,13 @@ class ScanCells {
   static constexpr int kBins = 2048;
   static constexpr double kSteepest = 4.0;
 
-  // Tangents of elevations, no steeper than kSteepest.
+  // Tangents of elevations, clamped to kSteepest.
   static SEXTANT_INLINE Vec8d SlopesOf(const Vec8d& x, const Vec8d& y, const Vec8d& z) {
     const Vec8d level = Max(Sqrt(x * x + y * y), BroadcastVec(1e-12));
     return Max(Min(z / level, BroadcastVec(kSteepest)), BroadcastVec(-kSteepest));
   }
 
-  // Azimuths in turns, from 0 to 1, within 0.001 of it: that shifts the borders of cells and
-  // nothing else.
+  // Azimuths in turns, from 0 to 1, with errors up to 0.001, which only shift the borders of cells.
   static SEXTANT_INLINE Vec8d TurnsOf(const Vec8d& x, const Vec8d& y) {
     const Vec8d right = Abs(x);
     const Vec8d up = Abs(y);
@@ -92,9 +92,9 @@ class ScanCells {
     }
   }
 
-  // From 0 on; the first and the last are outside.
+  // 0 to kBins + 1; the first and the last are outside.
   SEXTANT_INLINE int BinOf(double slope) const {
-    const double bin = (slope - first_slope_) * bins_a_slope_ + 1.0;
+    const double bin = (slope - first_slope_) * bins_per_slope_ + 1.0;
     return static_cast<int>(std::clamp(bin, 0.0, kBins + 1.0));
   }
 
@@ -108,7 +108,7 @@ class ScanCells {
   int rows_ = 0;
   int columns_ = 0;
   double first_slope_ = 0.0;
-  double bins_a_slope_ = 0.0;
+  double bins_per_slope_ = 0.0;
   std::array<std::int16_t, kBins + 2> row_of_bin_{};  ///< -1 outside.
   std::vector<CellSums> sums_;
 };

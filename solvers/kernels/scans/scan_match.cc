@@ -6,27 +6,27 @@
 namespace sextant {
 namespace {
 
-constexpr double kMinCosine = 0.85;  ///< Between the normals of a match.
+constexpr double kMinCosine = 0.85;  ///< Of the angle between the normals of a match.
 constexpr double kEndOfWeights2 = 9.0;
 constexpr double kCellsOfAPlane = 9.0;
-/// Besides what is known of a match, in noise variances: planes are not quite flat.
+/// Added to the known variance of a match, in noise variances: planes are not quite flat.
 constexpr double kUnknownShare = 0.1;
 
-// A pose as the kernels read it.
+// A pose with its rotation as a matrix.
 struct Motion {
   explicit Motion(const Rigid3d& b_from_a)
       : rotation(b_from_a.rotation.toRotationMatrix()), translation(b_from_a.translation) {}
 
-  SEXTANT_INLINE std::array<Vec8d, 3> Turned(const std::array<Vec8d, 3>& v) const {
-    std::array<Vec8d, 3> turned;
+  SEXTANT_INLINE std::array<Vec8d, 3> Rotated(const std::array<Vec8d, 3>& v) const {
+    std::array<Vec8d, 3> rotated;
     for (int k = 0; k < 3; ++k) {
-      turned[static_cast<std::size_t>(k)] =
+      rotated[static_cast<std::size_t>(k)] =
           rotation(k, 0) * v[0] + rotation(k, 1) * v[1] + rotation(k, 2) * v[2];
     }
-    return turned;
+    return rotated;
   }
   SEXTANT_INLINE std::array<Vec8d, 3> Moved(const std::array<Vec8d, 3>& p) const {
-    std::array<Vec8d, 3> moved = Turned(p);
+    std::array<Vec8d, 3> moved = Rotated(p);
     for (int k = 0; k < 3; ++k) moved[static_cast<std::size_t>(k)] += translation[k];
     return moved;
   }
@@ -69,7 +69,7 @@ SEXTANT_INLINE Planes Gather(const std::vector<ScanPlane>& planes, const std::in
   return gathered;
 }
 
-// The planes' variances at q over the noise of one return.
+// The variances of the planes at q, divided by the noise of one return.
 SEXTANT_INLINE Vec8d PlaneVariance(const std::array<Vec8d, 6>& i, const std::array<Vec8d, 3>& q) {
   return i[0] * q[0] * q[0] + i[3] * q[1] * q[1] + i[5] * q[2] * q[2] +
          2.0 * (i[1] * q[0] * q[1] + i[2] * q[0] * q[2] + i[4] * q[1] * q[2]);
@@ -80,7 +80,7 @@ void MatchAll(const ScanSurfaces& target, const ScanSurfaces::Patches& patches,
               const Motion& motion, std::int32_t* plane_of) {
   const std::int32_t none = target.no_plane();
   for (std::size_t i = 0; i < patches.inverse_count.size(); i += kSimdWidth) {
-    const std::array<Vec8d, 3> normals = motion.Turned(Load(patches.normal, i));
+    const std::array<Vec8d, 3> normals = motion.Rotated(Load(patches.normal, i));
     target.cells().CellsOf(motion.Moved(Load(patches.middle, i)), none, plane_of + i);
     const Vec8d cosines = Dot(Gather(target.planes(), plane_of + i).normal, normals);
     for (std::size_t k = 0; k < kSimdWidth; ++k) {
@@ -89,8 +89,8 @@ void MatchAll(const ScanSurfaces& target, const ScanSurfaces::Patches& patches,
   }
 }
 
-// Sums of w r^2, of matches, of w j r and of the upper half of w j j^T, or, for the noise of the
-// gradient, of w^2 v j j^T with v what a match adds to it.
+// Sums over matches: w r^2, their number, w j r, and the upper triangle of w j j^T or, for the
+// noise of the gradient, of w^2 v j j^T with v the variance that a match contributes.
 enum class Hessian { kOfSteps, kOfNoise };
 struct Sums {
   std::array<double, 6> gradient;

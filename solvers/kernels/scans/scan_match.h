@@ -11,39 +11,39 @@
 
 namespace sextant {
 
-/// Which plane of one scan each patch of another lies on, for one pose.
+/// Matches the patches of one scan to planes of another at a pose.
 class ScanMatch {
  public:
-  /// The patches of `source` on the planes of `target`; both must outlive this.
+  /// Patches of `source`, planes of `target`; both must outlive this.
   ScanMatch(const ScanSurfaces& target, const ScanSurfaces& source);
 
-  /// Matches each patch to the plane of the cell that it falls into as the target's sensor sees it.
-  /// Normals more than 32 degrees apart do not match.
+  /// Matches each patch to the plane of the target's cell that it falls into. Normals more than 32
+  /// degrees apart do not match.
   void Match(const Rigid3d& target_from_source);
 
   /// Normal equations of sum w r^2 over the matches, r = normal . (R p + t) - distance [m], by
-  /// (dphi, dt) of a target that turns about its origin: derivative (q x normal, normal) at q = R p
-  /// + t.
+  /// (dphi, dt) with the rotation about the target's origin: derivative (q x normal, normal) at
+  /// q = R p + t.
   struct Equations {
     Matrix6d normal = Matrix6d::Zero();
-    Vector6d right = Vector6d::Zero();  ///< Descent: minus the gradient.
+    Vector6d right = Vector6d::Zero();  ///< Minus the gradient.
     double squares = 0.0;               ///< sum w r^2.
-    int matches = 0;                    ///< Of weight above 0.
+    int matches = 0;                    ///< With a weight above 0.
   };
 
-  /// The weight is one by the variance of r (noise of the patch's middle and of the plane there),
-  /// times Tukey's biweight (Beaton and Tukey 1974) that ends at the larger of gate_m and three
+  /// The weight is 1 / variance of r (noise of the patch's centroid and of the plane there), times
+  /// Tukey's biweight (Beaton and Tukey 1974), which ends at the larger of gate_m and three
   /// standard deviations.
   Equations Linearise(const Rigid3d& target_from_source, double gate_m) const;
 
-  /// Covariance of the noise in Linearise(pose, 0).right. Planes of neighbouring cells are of the
-  /// same returns: the nine cells that a window gives its plane to share the plane's noise.
+  /// Covariance of the noise in Linearise(pose, 0).right. Planes of neighbouring cells are fitted
+  /// to the same returns: the nine cells that use the plane of one window share its noise.
   Matrix6d NoiseOfRight(const Rigid3d& target_from_source) const;
 
  private:
   const ScanSurfaces& target_;
   const ScanSurfaces& source_;
-  std::vector<std::int32_t> plane_of_;  ///< By patch.
+  std::vector<std::int32_t> plane_of_;  ///< The number of the plane that each patch is matched to.
 };
 
 }  // namespace sextant

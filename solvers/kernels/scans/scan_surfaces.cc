@@ -8,25 +8,25 @@
 namespace sextant {
 namespace {
 
-constexpr double kMinOfPatch = 3.0;   ///< Points.
-constexpr double kMaxVariance = 2.0;  ///< Of a flat window's residuals, in that of the noise.
+constexpr double kMinPatchPoints = 3.0;
+constexpr double kMaxVariance = 2.0;  ///< Residual variance of a flat window, in noise variances.
 constexpr double kMaxPatchVariance = 3.0;
-constexpr double kMaxTilt_rad = 0.1;  ///< Sigma of a normal that is used.
+constexpr double kMaxTilt_rad = 0.1;  ///< Maximum sigma of the normal of a plane that is used.
 constexpr std::size_t kMinWindows = 20;
 
-// The number of the window whose plane cell (row, column) takes.
+// The window whose plane cell (row, column) takes.
 std::optional<std::size_t> BestWindow(const ScanWindows::Planes& windows, const ScanCells& cells,
-                                      int row, int column, double most_variance) {
+                                      int row, int column, double max_variance) {
   const auto at = [&](int r, int c) { return static_cast<std::size_t>(r * cells.columns() + c); };
   const std::size_t own = at(row, column);
-  if (windows.range_variance[own] < most_variance) return own;
+  if (windows.range_variance[own] < max_variance) return own;
   std::optional<std::size_t> best;
-  double least = most_variance;
+  double lowest = max_variance;
   for (int r = std::max(row - 1, 0); r <= std::min(row + 1, cells.rows() - 1); ++r) {
     for (int c = -1; c <= 1; ++c) {
       const std::size_t other = at(r, (column + c + cells.columns()) % cells.columns());
-      if (!(windows.range_variance[other] < least)) continue;
-      least = windows.range_variance[other];
+      if (!(windows.range_variance[other] < lowest)) continue;
+      lowest = windows.range_variance[other];
       best = other;
     }
   }
@@ -43,13 +43,14 @@ ScanPlane PlaneOf(const ScanWindows::Planes& windows, std::size_t i, double nois
   return plane;
 }
 
-// A single ring leaves a plane free to turn about it.
+// The points of a single ring do not determine the tilt of a plane about it.
 bool IsTiltKnown(const ScanPlane& plane) {
   const std::array<double, 6>& i = plane.inverse_moments;
   return plane.variance_m2 * (i[0] + i[3] + i[5]) < kMaxTilt_rad * kMaxTilt_rad;
 }
 
-double AlongNormal(const ScanPlane& plane, const CellSums& sums) {
+// Variance of the points of a cell along the normal of the plane.
+double VarianceAlongNormal(const ScanPlane& plane, const CellSums& sums) {
   const std::array<double, 3>& n = plane.normal;
   const double* q = sums.of.data() + CellSums::kSecond;
   const double count = sums.of[CellSums::kCount];
@@ -64,7 +65,7 @@ double AlongNormal(const ScanPlane& plane, const CellSums& sums) {
 
 ScanSurfaces::ScanSurfaces(const ScanWindows& windows) : cells_(windows.cells()) {
   ChoosePlanes(windows);
-  FillUp();
+  Pad();
 }
 
 void ScanSurfaces::ChoosePlanes(const ScanWindows& windows) {
@@ -90,8 +91,8 @@ void ScanSurfaces::AddPatch(std::size_t cell) {
   const CellSums& sums = cells_.sums()[cell];
   const ScanPlane& plane = planes_[cell];
   const double count = sums.of[CellSums::kCount];
-  if (count < kMinOfPatch) return;
-  if (AlongNormal(plane, sums) > kMaxPatchVariance * plane.variance_m2) return;
+  if (count < kMinPatchPoints) return;
+  if (VarianceAlongNormal(plane, sums) > kMaxPatchVariance * plane.variance_m2) return;
   for (std::size_t k = 0; k < 3; ++k) {
     patches_.middle[k].push_back(sums.of[CellSums::kFirst + k] / count);
     patches_.normal[k].push_back(plane.normal[k]);
@@ -100,7 +101,7 @@ void ScanSurfaces::AddPatch(std::size_t cell) {
   ++patch_count_;
 }
 
-void ScanSurfaces::FillUp() {
+void ScanSurfaces::Pad() {
   const std::size_t padded = (patch_count_ + kSimdWidth - 1) / kSimdWidth * kSimdWidth;
   for (std::size_t k = 0; k < 3; ++k) {
     patches_.middle[k].resize(padded, 0.0);

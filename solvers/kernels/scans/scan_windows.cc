@@ -7,14 +7,14 @@
 namespace sextant {
 namespace {
 
-constexpr double kMinPoints = 12.0;     ///< Of a window.
+constexpr double kMinPoints = 12.0;     ///< In a window.
 constexpr double kNoiseQuantile = 0.3;  ///< Most windows are flat, but not all.
-constexpr double kMinNoise_m = 1e-4;    ///< No LiDAR is better, and exact data would divide by 0.
-constexpr double kSteepCosine2 = 0.03;  ///< Windows seen flatter do not tell the noise.
-constexpr double kMinCosine2 = 0.02;    ///< Flatter, more than range noise moves points.
+constexpr double kMinNoise_m = 1e-4;    ///< No LiDAR is better; exact data would divide by 0.
+constexpr double kSteepCosine2 = 0.03;  ///< Below this a window cannot estimate the noise.
+constexpr double kMinCosine2 = 0.02;    ///< Below this, more than range noise moves points.
 
-// The sums of cells as structure of arrays, with a border of a cell that closes the circle and is
-// empty above and below.
+// The sums of cells as a structure of arrays, with a border of one cell: it wraps around in azimuth
+// and is empty above and below.
 class CellPlanes {
  public:
   explicit CellPlanes(const ScanCells& cells)
@@ -31,7 +31,7 @@ class CellPlanes {
     }
   }
 
-  // Sums over the 3 x 3 cells round each of eight cells of a row.
+  // Sums over the 3 x 3 cells around each of eight cells of a row.
   SEXTANT_INLINE Vec8d Window(std::size_t k, std::size_t row, std::size_t column) const {
     Vec8d sum = BroadcastVec(0.0);
     for (std::size_t r = 0; r < 3; ++r) {
@@ -89,7 +89,7 @@ SEXTANT_INLINE WindowFit FitWindows(const CellPlanes& cells, std::size_t row, st
   return fit;
 }
 
-// Cells beyond a row's end are cut off by the next row's, or by the vectors' last kSimdWidth.
+// Elements beyond the end of a row are overwritten by the next row; the last ones are padding.
 SEXTANT_MULTIVERSION
 void FitAllWindows(const CellPlanes& cells, std::size_t rows, std::size_t columns,
                    ScanWindows::Planes& windows) {
@@ -124,24 +124,25 @@ void ScanWindows::Fit() {
                 static_cast<std::size_t>(cells_.columns()), planes_);
 }
 
-bool ScanWindows::TellsNoise(std::size_t cell) const {
+bool ScanWindows::CanEstimateNoise(std::size_t cell) const {
   return std::isfinite(planes_.range_variance[cell]) && planes_.cosine2[cell] > kSteepCosine2;
 }
 
-double ScanWindows::NoiseVariance(std::size_t first, std::size_t count, std::size_t least) const {
+double ScanWindows::NoiseVariance(std::size_t first, std::size_t count,
+                                  std::size_t min_windows) const {
   std::vector<double> variances;
   for (std::size_t i = first; i < first + count; ++i) {
-    if (TellsNoise(i)) variances.push_back(planes_.range_variance[i]);
+    if (CanEstimateNoise(i)) variances.push_back(planes_.range_variance[i]);
   }
-  if (variances.size() < least) return 0.0;
+  if (variances.size() < min_windows) return 0.0;
   const auto at = variances.begin() + static_cast<std::ptrdiff_t>(
                                           kNoiseQuantile * static_cast<double>(variances.size()));
   std::nth_element(variances.begin(), at, variances.end());
   return std::max(*at, kMinNoise_m * kMinNoise_m);
 }
 
-void ScanWindows::TakeOff(std::span<const double> offsets_m) {
-  cells_.TakeOff(offsets_m);
+void ScanWindows::SubtractOffsets(std::span<const double> offsets_m) {
+  cells_.SubtractOffsets(offsets_m);
   Fit();
 }
 
