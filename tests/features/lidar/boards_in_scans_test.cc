@@ -19,7 +19,7 @@ namespace {
 
 struct Errors {
   std::vector<double> distances_m;
-  std::vector<double> nees;  // Of each board, per degree of freedom.
+  std::vector<double> nees;  // For each board, per degree of freedom.
 };
 
 double Mean(const std::vector<double>& values) {
