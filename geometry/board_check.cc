@@ -153,6 +153,16 @@ std::array<Eigen::Vector2d, 4> TagCorners(const BoardTag& tag) {
   return corners;
 }
 
+std::vector<Eigen::Vector2d> CornersInBoard(const Board& board) {
+  const Quad outer = Rectangle(Eigen::Vector2d::Zero(), board.top_right_m, board.right_bottom_m);
+  std::vector<Eigen::Vector2d> corners(outer.begin(), outer.end());
+  if (board.hole) {
+    const Quad inner = HoleCorners(*board.hole);
+    corners.insert(corners.end(), inner.begin(), inner.end());
+  }
+  return corners;
+}
+
 std::optional<BoardFault> FindBoardFault(const Board& board) {
   if (auto fault = FindSizeFault(board)) return fault;
   if (board.hole) {

@@ -27,4 +27,7 @@ std::optional<BoardFault> FindBoardFault(const Board& board);
 /// Corners of a tag in the board frame [m], clockwise as seen from the tag's own top-left.
 std::array<Eigen::Vector2d, 4> TagCorners(const BoardTag& tag);
 
+/// Corners of a board in its own frame [m]: the 4 outer ones, then the 4 of its hole, if any.
+std::vector<Eigen::Vector2d> CornersInBoard(const Board& board);
+
 }  // namespace sextant

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "geometry/board_check.h"
 #include "geometry/so3.h"
 #include "geometry/symmetric.h"
 #include "solvers/least_squares/minimise_pose.h"
@@ -158,14 +159,7 @@ Expected<BoardPose> EstimateBoardPose(const Camera& camera, std::span<const Boar
 
 std::vector<Eigen::Vector3d> BoardCorners(const Board& board) {
   std::vector<Eigen::Vector3d> corners;
-  const auto add = [&corners](const Eigen::Vector2d& centre, double width, double height) {
-    for (const auto& [x, y] :
-         {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)}) {
-      corners.emplace_back(centre.x() + 0.5 * width * x, centre.y() + 0.5 * height * y, 0.0);
-    }
-  };
-  add(Eigen::Vector2d::Zero(), board.top_right_m, board.right_bottom_m);
-  if (board.hole) add(board.hole->center_in_board_m, board.hole->width_m, board.hole->height_m);
+  for (const Eigen::Vector2d& corner : CornersInBoard(board)) corners.push_back(InBoard(corner));
   return corners;
 }
 

@@ -12,7 +12,7 @@ constexpr int kReduction = 4;
 constexpr int kTile = 4;  ///< Reduced pixels.
 constexpr int kTile_px = kReduction * kTile;
 constexpr int kMinSide_px = 160;
-constexpr double kMaxShare = 0.7;  ///< Of the image; beyond it one call for all is cheaper.
+constexpr double kMaxShare = 0.7;  ///< Fraction of the image above which one call is cheaper.
 
 // The range of the reduced image within each tile and its neighbours.
 cv::Mat RangesOfTiles(const cv::Mat& grey) {

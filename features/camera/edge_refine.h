@@ -22,7 +22,7 @@ struct EdgeRefineOptions {
 
 struct RefinedTag {
   Quad corners_px{};                           ///< Order and origin as in TagDetection.
-  Matrix8d covariance_px2 = Matrix8d::Zero();  ///< Of (x0, y0, x1, y1, ..., y3).
+  Matrix8d covariance_px2 = Matrix8d::Zero();  ///< Order: x0, y0, x1, ..., y3.
   double blur_px = 0.0;        ///< Sigma of the blur of edges by lens, focus, motion and the pixel.
   double noise_grey = 0.0;     ///< Standard deviation of the residuals.
   double contrast_grey = 0.0;  ///< Difference between the tag's white and black.

@@ -34,12 +34,12 @@ struct SeenBoard {
   std::vector<std::size_t> duplicate_tags{};  ///< Tags seen more than once, which are not used.
   std::vector<BoardPoints> printed{};  ///< Input of the pose: a group for each tag or checkerboard.
   std::optional<Expected<BoardPose>> pose{};  ///< None without a camera or without any detection.
-  PointsInCam corners{};                      ///< Of BoardCorners; empty without a pose.
+  PointsInCam corners{};                      ///< Those of BoardCorners; empty without a pose.
 };
 
 struct SeenBoards {
   std::vector<SeenBoard> boards{};         ///< One for each of BoardFinder::boards(), in order.
-  std::vector<TagDetection> other_tags{};  ///< Of the boards' families, but on none of them.
+  std::vector<TagDetection> other_tags{};  ///< Tags of the boards' families, on no board.
 };
 
 /// Finds boards in images. Immutable and thread-safe.

@@ -19,7 +19,7 @@ constexpr double kMaxRunRatio = 1.6;  // A hand or a stand may extend a run beyo
 constexpr int kPlanesPerCluster = 3;  // Parts of a person who holds the board may be flat, too.
 constexpr int kMinInCluster = 10;
 constexpr double kAround_m = 0.05;
-constexpr double kNearlyAll = 0.97;  // Of a patch; the rest may be hands or a stand.
+constexpr double kNearlyAll = 0.97;  // Fraction of a patch; the rest may be hands or a stand.
 constexpr double kMinJump_m = 0.06;
 constexpr double kJumpSigmas = 4.5;  // Three sigma of the difference of two returns.
 // Limits of the diagonal of the box around a patch's points, relative to the board's diagonal. The

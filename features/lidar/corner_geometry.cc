@@ -11,14 +11,6 @@ namespace {
 constexpr std::array<const char*, 4> kSideNames = {"top to right", "right to bottom",
                                                    "bottom to left", "left to top"};
 
-void AddRectangle(const Eigen::Vector2d& center, double width, double height,
-                  std::vector<Eigen::Vector2d>& corners) {
-  const Eigen::Vector2d right(0.5 * width, 0.0);
-  const Eigen::Vector2d down(0.0, 0.5 * height);
-  corners.insert(corners.end(), {center - right - down, center + right - down,
-                                 center + right + down, center - right + down});
-}
-
 }  // namespace
 
 int SidesOf(const Board& board) { return board.hole ? 2 * kCornersPerBoard : kCornersPerBoard; }
@@ -41,15 +33,6 @@ Expected<std::vector<std::vector<int>>> GroupBySide(const BoardPatch& patch, con
                     kSideNames[side % kCornersPerBoard], kNeeded));
   }
   return groups;
-}
-
-std::vector<Eigen::Vector2d> CornersInBoard(const Board& board) {
-  std::vector<Eigen::Vector2d> corners;
-  AddRectangle(Eigen::Vector2d::Zero(), board.top_right_m, board.right_bottom_m, corners);
-  if (board.hole) {
-    AddRectangle(board.hole->center_in_board_m, board.hole->width_m, board.hole->height_m, corners);
-  }
-  return corners;
 }
 
 Eigen::Matrix3d MovedByPlane(const LidarPlane& plane, const Eigen::Vector2d& center,

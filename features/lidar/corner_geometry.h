@@ -23,9 +23,6 @@ inline int SideAfter(int corner) { return corner; }
 /// Error: kTooFewPairs if a side has fewer than two.
 Expected<std::vector<std::vector<int>>> GroupBySide(const BoardPatch& patch, const Board& board);
 
-/// Corners of the board in its own frame [m], outer ones first.
-std::vector<Eigen::Vector2d> CornersInBoard(const Board& board);
-
 /// Derivative of a point at `in_plane` by the plane's offset and slopes (3x3). The point moves
 /// along the ray to the board's centre, because edges are rays intersected with the plane, and with
 /// the plane's tilt about that centre.

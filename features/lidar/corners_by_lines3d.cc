@@ -14,7 +14,7 @@ namespace sextant {
 namespace {
 
 constexpr double kThreshold_m = 0.01;  // As in the paper.
-constexpr double kMinCosine = 0.2;     // Of a ring to a side's normal, bounds the variance.
+constexpr double kMinCosine = 0.2;     // Between ring and side's normal; bounds the variance.
 
 struct Line3d {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();

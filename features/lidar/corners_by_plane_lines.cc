@@ -19,7 +19,7 @@ struct PlaneLine {
   double offset = 0.0;
   Eigen::Vector2d center = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  double growth_sigma = 0.0;  // Of the offset, common to all edges of the board.
+  double growth_sigma = 0.0;  // Error of the offset, common to all edges of the board.
 
   // Derivative of the line's position along its normal at a point by (angle, offset at the centre).
   Eigen::RowVector2d MovedAt(const Eigen::Vector2d& point) const {

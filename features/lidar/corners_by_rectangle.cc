@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 
 #include "features/lidar/corner_geometry.h"
+#include "geometry/board_check.h"
 
 namespace sextant {
 

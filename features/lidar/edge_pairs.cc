@@ -77,7 +77,7 @@ class SampleGrid {
 struct BothSides {
   std::vector<Sample> on;
   std::vector<Sample> off;
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // Of those on the plane.
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // Middle of those on the plane.
 };
 
 // Divides rays into those that end on the plane and those that pass it, within `reach_m` of the

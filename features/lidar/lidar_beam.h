@@ -20,7 +20,7 @@ struct LidarBeam {
   double aperture_v_m = 0.0095;
   double divergence_h_rad = 0.003;  ///< Full angle.
   double divergence_v_rad = 0.0015;
-  double growth = 0.16;  ///< Of the simulated VLP-16; real ones 0.07 to 0.13 (docs/simulator.md).
+  double growth = 0.16;        ///< Simulated VLP-16; real ones 0.07 to 0.13 (docs/simulator.md).
   double growth_sigma = 0.03;  ///< Standard deviation of the growth between boards.
   double edge_sigma = 0.12;    ///< Standard deviation of the growth between edge points.
 

@@ -15,7 +15,7 @@ namespace sextant {
 struct RectangleFit {
   Eigen::Vector2d center = Eigen::Vector2d::Zero();      ///< [m].
   double angle_rad = 0.0;                                ///< Angle of the board's x axis.
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Of (center, angle).
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Order: center, angle.
   /// For each edge point the side that it lies on: 0 between the corners 0 and 1, then clockwise, 4
   /// to 7 for the opening; -1 if it lies on none.
   std::vector<int> sides;

@@ -14,7 +14,7 @@ namespace sextant {
 /// The description of a message's type in a ROS 1 bag.
 struct Ros1Type {
   std::string_view name;
-  std::string_view md5;  ///< Of the definition without comments.
+  std::string_view md5;  ///< MD5 of the definition without comments.
   std::string_view definition;
 };
 

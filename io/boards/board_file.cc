@@ -21,9 +21,7 @@ bool IsMarkerCoordinates(std::string_view text, const std::string& file) {
 
 Expected<std::vector<Board>> ParseMarkerBoards(std::string_view text, const std::string& file) {
   SEXTANT_ASSIGN_OR_RETURN(const auto markers, ParseMarkerCoordinates(text, file));
-  return BoardsWithTags(markers).map_error([&](Error&& error) {
-    return Error{error.code, ToString(Place{.file = file}) + ": " + error.message};
-  });
+  return AtPlace(BoardsWithTags(markers), {.file = file});
 }
 
 Expected<std::vector<Board>> ParseBoardYaml(std::string_view text, const std::string& file) {

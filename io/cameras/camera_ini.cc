@@ -78,9 +78,7 @@ Expected<Camera> ParseCameraIni(std::string_view text, const std::string& file) 
   if (!in.ok()) return in.TakeError();
   std::copy(matrix.begin(), matrix.end(), parts.matrix.begin());
   parts.distortion = distortion;
-  return CameraFromParts(parts).map_error([&](Error&& error) {
-    return Error{error.code, ToString(Place{.file = file}) + ": " + error.message};
-  });
+  return AtPlace(CameraFromParts(parts), {.file = file});
 }
 
 }  // namespace sextant

@@ -91,9 +91,7 @@ Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file)
   if (!in.ok()) return in.TakeError();
   parts.distortion = distortion;
   parts.model = model;
-  return CameraFromParts(parts).map_error([&](Error&& error) {
-    return Error{error.code, ToString(Place{.file = file}) + ": " + error.message};
-  });
+  return AtPlace(CameraFromParts(parts), {.file = file});
 }
 
 }  // namespace sextant

@@ -138,10 +138,7 @@ Expected<CloudColumns> VertexColumns(const PlyElement& vertex, const std::string
   for (const PlyProperty& property : vertex.properties) {
     columns.push_back({property.is_list ? "" : property.name, IsInteger(property.type)});
   }
-  Expected<CloudColumns> found = FindCloudColumns(columns);
-  if (found) return found;
-  return MakeError(found.error().code, fmt::format("{}: element vertex: {}", Printable(file, 200),
-                                                   found.error().message));
+  return AtPlace(FindCloudColumns(columns), {.file = file, .name = "element vertex"});
 }
 
 }  // namespace

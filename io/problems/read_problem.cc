@@ -120,7 +120,7 @@ Expected<DetectedProblem> ParseProblem(std::string_view text, const std::string&
                .map(keep_problem);
       break;
   }
-  if (!ok) return tl::unexpected<Error>(std::move(ok.error()));
+  SEXTANT_RETURN_IF_ERROR(std::move(ok));
   return detected;
 }
 

@@ -86,7 +86,7 @@ struct CalibrationResult {
   std::string camera_frame = "camera";
   std::string lidar_frame = "lidar";
   Rigid3d cam_from_lidar;
-  std::optional<Matrix6d> covariance{};  ///< Of (dphi [rad], dt [m]); see Perturb.
+  std::optional<Matrix6d> covariance{};  ///< Order: dphi [rad], dt [m]; see Perturb.
   std::optional<Camera> camera{};
   std::optional<LidarPattern> lidar{};
   std::vector<Board> boards{};

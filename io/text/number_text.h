@@ -20,6 +20,13 @@ struct Place {
 /// "points.txt:5: field 2 (camx)".
 std::string ToString(const Place& place);
 
+/// The value, or its error with "<place>: " before the message.
+template <class T>
+Expected<T> AtPlace(Expected<T> value, const Place& place) {
+  if (!value) value.error().message.insert(0, ToString(place) + ": ");
+  return value;
+}
+
 /// The text in single quotes on one line: cut to 40 bytes, unprintable bytes as \xNN.
 std::string Quoted(std::string_view text);
 

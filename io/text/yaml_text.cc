@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/text/yaml_text.h"
 
+#include <fmt/format.h>
+
 namespace sextant {
 namespace {
 

@@ -10,7 +10,8 @@
 
 namespace sextant::test {
 
-/// A reader reads its input or refuses it in one short line; anything else stops the fuzzer.
+/// A reader must read its input or refuse it with a message of one short line; anything else
+/// aborts.
 template <class T>
 void CheckOutcome(const Expected<T>& outcome) {
   if (outcome) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One reader of text or bytes, named by CMakeLists.txt.
+// Fuzzes one reader of text or bytes, which CMakeLists.txt selects.
 #include SEXTANT_FUZZ_HEADER
 
 #include "tests/fuzz/check.h"

@@ -10,7 +10,7 @@
 
 namespace sextant::test {
 
-/// Decodes every message of a recording that could be opened.
+/// Decodes every message of a recording, if it was opened.
 inline void ReadWholeBag(const Expected<std::unique_ptr<Bag>>& bag) {
   CheckOutcome(bag);
   if (!bag) return;

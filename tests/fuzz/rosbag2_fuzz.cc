@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SQLite wants a file with a path of its own: one that each input overwrites.
+// SQLite needs a file, which each input overwrites.
 #include <fmt/core.h>
 #include <unistd.h>
 

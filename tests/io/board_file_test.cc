@@ -87,7 +87,7 @@ TEST_P(BadBoardTest, EndsInOneLineThatSaysWhereAndWhat) {
   ExpectRefused(ParseBoards(GetParam().text, "b"), GetParam());
 }
 
-// A board of 0.6 x 0.8 m with these lines more.
+// A board of 0.6 x 0.8 m with additional lines.
 std::string BoardWith(const std::string& lines) {
   return "boards:\n  - id: 0\n    top_right_m: 0.6\n    right_bottom_m: 0.8\n" + lines;
 }
@@ -172,8 +172,8 @@ TEST(BoardFile, TagsMayTouchEachOtherAndTheEdge) {
   EXPECT_TRUE(boards) << boards.error().message;
 }
 
-// The order in which the package's session lists the markers' corners on the image: the tag's own
-// top-left is at the board's right corner, and the whole tag towards its left corner.
+// In the order in which the package's session lists the markers' corners in the image, the tag's
+// own top-left points to the board's right corner, and the tag is near the board's left corner.
 TEST(BoardFile, TakesTheOriginalsMarkersWithTheirTags) {
   SEXTANT_REAL_DATA(path, "dhall/session_2017-05-03/marker_coordinates.txt");
   const auto boards = ReadBoards(path);

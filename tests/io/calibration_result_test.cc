@@ -54,13 +54,13 @@ TEST(CalibrationResult, BothFormsReadBackToTheBit) {
     const Expected<CalibrationResult> read = ParseCalibrationResult(text, "result");
     ASSERT_TRUE(read) << read.error().message << text;
     ExpectSame(*read, result);
-    // Nothing that the checks above leave out was lost either.
+    // Values that are not compared above were not lost either.
     EXPECT_EQ(FormatCalibrationResult(*read), FormatCalibrationResult(result));
     EXPECT_EQ(FormatCalibrationResultJson(*read), FormatCalibrationResultJson(result));
   }
 }
 
-TEST(CalibrationResult, TheLeastResultReadsBack) {
+TEST(CalibrationResult, AMinimalResultReadsBack) {
   CalibrationResult result;
   result.version = "0.1.0";
   result.solver = "kabsch";
@@ -85,7 +85,7 @@ TEST(CalibrationResult, JsonHasEveryKeyAndIsJson) {
   EXPECT_TRUE(full["views"][0]["boards"][0]["residuals_px"][3].is_null());
 }
 
-TEST(CalibrationResult, TheHashTellsConfigurationsApart) {
+TEST(CalibrationResult, TheHashDistinguishesConfigurations) {
   EXPECT_EQ(ConfigurationHash({}), "cbf29ce484222325");
   EXPECT_NE(ConfigurationHash({"a", "b"}), ConfigurationHash({"ab"}));
   EXPECT_NE(ConfigurationHash({"a", "b"}), ConfigurationHash({"b", "a"}));
@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"NegativeSeed",
                 "sextant_result: 1\nsextant: 0\nsolver: joint\nseed: -1\ncam_from_lidar: {}",
                 kParse, "r.yaml:4: seed: expected an integer from 0"},
-        BadText{"MatrixSaysAnotherThing",
+        BadText{"InconsistentMatrix",
                 "sextant_result: 1\nsextant: 0\nsolver: joint\nseed: 1\ncam_from_lidar:\n"
                 "  matrix: [[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3.1], [0, 0, 0, 1]]\n"
                 "  translation_m: [1, 2, 3]\n  quaternion_wxyz: [1, 0, 0, 0]",

@@ -53,7 +53,7 @@ TEST(CloudFile, CsvTakesColumnsInAnyOrder) {
 }
 
 // VLP-16 fires laser 0 at -15 deg, laser 1 at +1 deg, laser 2 at -13 deg, laser 3 at +3 deg.
-TEST(CloudFile, VeloViewRingsAndTimesAreBroughtToOurs) {
+TEST(CloudFile, VeloViewRingsAndTimesAreConverted) {
   const Expected<PointCloud> cloud = ParseCloud(
       "\"Points_m_XYZ:0\",\"Points_m_XYZ:1\",\"Points_m_XYZ:2\",\"intensity\",\"laser_id\","
       "\"azimuth\",\"distance_m\",\"adjustedtime\",\"timestamp\",\"vertical_angle\"\n"
@@ -77,7 +77,7 @@ PointCloud OnePointARing(const std::vector<int>& rings, const std::vector<double
   return cloud;
 }
 
-TEST(OrderRings, RingsFromAboveAreTurnedRound) {
+TEST(OrderRings, RingsNumberedFromAboveAreReversed) {
   PointCloud cloud = OnePointARing({0, 1, 3}, {3, 2, 1});
   OrderRings(cloud);
   EXPECT_THAT(cloud.ring, ElementsAre(3, 2, 0));
@@ -143,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "s.csv:2: field 3 (z): expected a number, got '7777"}),
     [](const auto& bad) { return bad.param.name; });
 
-// The rings of an Ouster are numbered from above; its scans are turned round.
+// The rings of an Ouster are numbered from above, so their numbers are reversed.
 TEST(CloudFile, ReadsRealPcdWithRingsFromTheLowest) {
   SEXTANT_REAL_DATA(folder, "ouster64");
   int scans = 0;
@@ -166,7 +166,7 @@ TEST(CloudFile, ReadsRealPcdWithRingsFromTheLowest) {
   EXPECT_EQ(scans, 3);
 }
 
-TEST(CloudFile, UnknownExtensionIsAnsweredWithTheKnownOnes) {
+TEST(CloudFile, AnUnknownExtensionGivesTheKnownOnes) {
   const Expected<PointCloud> cloud = ParseCloud("anything", "scan.xyz");
   ASSERT_FALSE(cloud);
   EXPECT_THAT(cloud.error().message, testing::HasSubstr(".ply"));

@@ -82,7 +82,7 @@ TEST_P(Direction, Ros1) {
   EXPECT_THAT(text, HasSubstr("pkg=\"tf2_ros\" type=\"static_transform_publisher\""));
 }
 
-// By option, whatever their order.
+// The values by option, in any order.
 std::map<std::string, std::string> OptionsOf(const std::string& text) {
   std::map<std::string, std::string> values;
   const std::regex option("--([a-z-]+)'?,? '?([^ ',\"]+)");
@@ -131,12 +131,12 @@ TEST_P(Direction, Urdf) {
   ASSERT_EQ(xyz.size(), 3U);
   ASSERT_EQ(rpy.size(), 3U);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  // About the fixed axes of the parent: roll first.
+  // Angles about the fixed axes of the parent, roll first.
   pose.rotate(Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()));
   pose.rotate(Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()));
   pose.rotate(Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()));
   pose.translation() = Eigen::Vector3d(xyz[0], xyz[1], xyz[2]);
-  // Near a pitch of 90 degrees roll and yaw are worth fewer digits.
+  // Near a pitch of 90 degrees, roll and yaw have fewer significant digits.
   ExpectMaps(pose, GetParam(), 1e-10);
   EXPECT_EQ(Find(text, "parent link=\"([^\"]*)"), parent());
   EXPECT_EQ(Find(text, "child link=\"([^\"]*)"), child());
@@ -147,7 +147,7 @@ INSTANTIATE_TEST_SUITE_P(Parents, Direction, testing::Bool(), [](const auto& lid
   return lidar_is_parent.param ? "Lidar" : "Camera";
 });
 
-TEST(ExportTransform, UrdfWhereRollAndYawAreOne) {
+TEST(ExportTransform, UrdfAtGimbalLock) {
   CalibrationResult result = test::FullCalibrationResult();
   Eigen::Matrix3d r;
   r << 0, -1, 0, 0, 0, -1, 1, 0, 0;
@@ -211,7 +211,7 @@ TEST(ExportTransform, OpenCvMatrixIsWrittenByRows) {
   EXPECT_LT(((matrix * kInLidar.homogeneous()).head<3>() - InCam()).norm(), 1e-12);
 }
 
-TEST(ExportTransform, RefusesWhatItCannotSay) {
+TEST(ExportTransform, RefusesWhatTheFormatCannotHold) {
   CalibrationResult result = test::FullCalibrationResult();
   const auto message = [&result](const char* format, const ExportOptions& options) {
     const Expected<std::string> text = ExportTransform(format, result, options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every reader takes any damage to a good file: it reads it or refuses it in one line.
+// Every reader survives any damage to a valid file: it reads it or refuses it in one line.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ namespace {
 
 using test::Repeated;
 
-/// The message of the error; empty where the text is read.
+/// The error message of a reader; empty if it accepts the text.
 using Refusal = std::function<std::string(const std::string&)>;
 
 template <class T>
@@ -126,7 +126,7 @@ std::vector<Reader> Readers() {
   };
 }
 
-// Cuts, doubles or overwrites a stretch.
+// Cuts, duplicates or overwrites a part of the text.
 std::string Damaged(std::string text, Random& random) {
   static const std::string kPieces[] = {"",
                                         "\n",
@@ -179,7 +179,7 @@ TEST_P(MutationTest, ReadsOrRefusesEveryDamage) {
     EXPECT_LT(message.size(), 500U) << message;
     EXPECT_TRUE(message.starts_with("f:")) << message;
   }
-  // Damage within a number or a comment may leave a good file, but not most often.
+  // Damage within a number or a comment may leave a valid file, but rarely.
   EXPECT_GT(refused, kTrials / 4);
 }
 

@@ -103,7 +103,7 @@ TEST(MarkerCoordinates, RealBoardsHaveTheEdgesOfTheRealPoints) {
     const std::size_t next = i / 4 * 4 + (i + 1) % 4;
     const double edge_m =
         (points->pairs_3d3d[next].point_in_cam - points->pairs_3d3d[i].point_in_cam).norm();
-    // Points are printed to six digits, the pose behind them to six.
+    // Points and the pose from which they were computed are printed to six digits.
     EXPECT_NEAR(edge_m, boards[i / 4].EdgeLengths()[i % 4], 2e-5) << i;
   }
 }

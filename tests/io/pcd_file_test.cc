@@ -23,7 +23,7 @@ using ErrorCode::kParse;
 constexpr PcdEncoding kEncodings[] = {PcdEncoding::kAscii, PcdEncoding::kBinary,
                                       PcdEncoding::kBinaryCompressed};
 
-// Values that a float holds exactly.
+// Values that a float represents exactly.
 PointCloud SomeCloud(int points) {
   PointCloud cloud;
   Random random(5);
@@ -130,7 +130,7 @@ TEST(Pcd, AcceptsOldHeadersAndWindowsLineEnds) {
   EXPECT_TRUE(cloud->points[1].array().isNaN().all());
 }
 
-// A stream of liblzf written by hand: a byte n < 32 stands before n + 1 bytes as they are.
+// A stream of liblzf written by hand: a byte n < 32 precedes n + 1 literal bytes.
 TEST(Pcd, ReadsACompressedStreamThatIsNotOurs) {
   std::string data;
   for (const float value : {1.0F, 4.0F, 2.0F, 5.0F, 3.0F, 6.0F}) data += Bytes(value);
@@ -236,7 +236,7 @@ TEST(Pcd, ReadsTheRealScansOfAVlp16) {
   EXPECT_EQ(cloud->points[0], Eigen::Vector3d(-1.2484956F, 2.2013252F, -0.67810601F));
   EXPECT_EQ(cloud->intensity[1], 45.0F);
   EXPECT_EQ(std::set<std::uint16_t>(cloud->ring.begin(), cloud->ring.end()).size(), 16U);
-  // Ring 15 of a VLP-16 looks up by 15 degrees.
+  // Ring 15 of a VLP-16 has an elevation of 15 degrees.
   for (std::size_t i = 0; i < cloud->points.size(); ++i) {
     const Eigen::Vector3d& p = cloud->points[i];
     const double elevation = std::atan2(p.z(), std::hypot(p.x(), p.y()));

@@ -56,7 +56,7 @@ void ExpectBothPoints(const Expected<PointCloud>& cloud) {
   EXPECT_EQ(cloud->time_s, std::vector<double>({0.0, 2'000'000 * 1e-9}));
 }
 
-TEST(PlyFile, ReadsEveryEncodingAlike) {
+TEST(PlyFile, EveryEncodingGivesTheSameCloud) {
   ExpectBothPoints(ParsePly(Binary(false), "f"));
   ExpectBothPoints(ParsePly(Binary(true), "f"));
   ExpectBothPoints(ParsePly(Header("ascii", "2") + "2 7 8\n1.5 2.5 -3.25 114 0.5 300 0\n"

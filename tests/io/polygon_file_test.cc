@@ -84,7 +84,7 @@ TEST(PolygonFile, NothingMarkedRoundTrips) {
   EXPECT_TRUE(read->corners.empty());
 }
 
-TEST(PolygonFile, AFileThatIsNotThereIsNamed) {
+TEST(PolygonFile, AMissingFileIsNamed) {
   const Expected<ScanMarks> read = ReadPolygons("/no/such/polygons.yaml");
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().code, ErrorCode::kIo);

@@ -142,7 +142,7 @@ TEST(ProblemYaml, PointSetsFollowThePairsUnlessTheyAreGiven) {
   EXPECT_TRUE(empty->problem.point_sets.in_cam.empty());
 }
 
-TEST(ProblemYaml, ReadsWhatAHandWouldWrite) {
+TEST(ProblemYaml, ReadsHandWrittenFiles) {
   const Expected<ProblemFile> read = ParseProblemYaml(R"(
 # Two corners
 sextant_problem: 1
@@ -172,7 +172,7 @@ TEST_P(BadYamlTest, EndsInOneLineThatSaysWhereAndWhat) {
 
 std::string Problem(const std::string& rest) { return "sextant_problem: 1\n" + rest; }
 
-// A view without faults as far as its poses go.
+// A view with valid poses.
 std::string View(const std::string& rest) {
   return Problem(
       "boards:\n  - {id: 0, top_right_m: 0.5, right_bottom_m: 0.5}\n"

@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(ReadProblem, TellsTheFormatByTheContent) {
+TEST(ReadProblem, RecognisesTheFormatByTheContent) {
   const std::tuple<const char*, const char*, ProblemFormat> cases[] = {
       {"points.txt", "1\n1 2 3\n4 5 6\n", ProblemFormat::kPoints},
       {"points", "\xef\xbb\xbf\r\n1\r\n1 2 3\r\n4 5 6\r\n", ProblemFormat::kPoints},
@@ -28,7 +28,7 @@ TEST(ReadProblem, TellsTheFormatByTheContent) {
   }
 }
 
-TEST(ReadProblem, NamesTheFormatsWhereNoneFits) {
+TEST(ReadProblem, ListsTheFormatsIfNoneMatches) {
   for (const char* text : {"", "\n\n", "hello world\n", "1 2 3\n", "\x7f\x45LF", "%PDF-1.4"}) {
     const Expected<DetectedProblem> read = ParseProblem(text, "some.file");
     ASSERT_FALSE(read) << text;
@@ -38,7 +38,7 @@ TEST(ReadProblem, NamesTheFormatsWhereNoneFits) {
   }
 }
 
-TEST(ReadProblem, LeavesTheErrorToTheFormatThatFits) {
+TEST(ReadProblem, ReportsTheErrorOfTheMatchingFormat) {
   const std::pair<const char*, const char*> cases[] = {
       {"8\n", "expected x y z of LiDAR point 1 of 8"},
       {"u,v,x,y,w\n", "unknown column 'w'"},

@@ -45,7 +45,7 @@ TEST(TextFile, KeepsPermissionsAndFollowsLinks) {
   EXPECT_EQ(fs::status(path).permissions(), fs::perms{0640});
 }
 
-TEST(TextFile, LeavesNothingBehindWhereItCannotWrite) {
+TEST(TextFile, LeavesNoFileIfItCannotWrite) {
   const ScratchFolder folder;
   fs::create_directory(folder.path() / "taken");
   const Expected<void> on_folder = WriteFileAtomically(folder.path() / "taken", "x");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses of real boards whose publishers give them.
+// Poses of real boards compared with the published ones.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -21,8 +21,8 @@ namespace {
 
 using nlohmann::json;
 
-// One board of a session of ankitdhall/lidar_camera_calibration, which found the marker's pose from
-// its four pixels, and the board's corners from that.
+// One board of a session of ankitdhall/lidar_camera_calibration, which computed the marker's pose
+// from its four pixels and the board's corners from that pose.
 struct DhallBoard {
   Board board{};
   DetectedMarker marker{};
@@ -53,9 +53,9 @@ std::vector<DhallBoard> ReadSession(const std::filesystem::path& session) {
   return read;
 }
 
-// The stored pixels have six digits. What is lost by that moves the pose by 1e-5 m and a corner,
-// half a metre from the marker, by as much again and more: its depth by up to 2.4e-5 m here, which
-// is 1.7 sigma of that rounding, so that a fixed bound closer than this would ask for luck.
+// The stored pixels have six digits. This rounding moves the pose by 1e-5 m and a corner half a
+// metre from the marker by more: its depth by up to 2.4e-5 m here, 1.7 sigma of the rounding. A
+// tighter fixed bound would therefore not be justified.
 TEST(DhallSession, PixelsGiveTheStoredPosesAndBoardCorners) {
   SEXTANT_REAL_DATA(folder, "dhall");
   const auto camera = ReadCamera(folder / "zed_left_uurmi.ini");
@@ -87,7 +87,7 @@ TEST(DhallSession, PixelsGiveTheStoredPosesAndBoardCorners) {
   }
 }
 
-// The poses themselves are stored too: no pixels, so what is left is their own six digits.
+// The poses are stored too: without pixels, only the rounding to their six digits remains.
 TEST(DhallSession, StoredPosesGiveTheStoredBoardCorners) {
   SEXTANT_REAL_DATA(folder, "dhall/session_2017-05-03");
   const std::vector<DhallBoard> session = ReadSession(folder);
@@ -141,10 +141,10 @@ TEST(Fiducials, PoseOfTheFirstPhoto) {
   RecordProperty("refined_from_gold_px", std::to_string(largest));
 }
 
-// The publishers' own detections, through a fisheye. Their row of pose 1 is another placement's.
-// The centre they store is off the checkerboard's by half of their translation_error (x: 2 mm),
-// along the short side. A board of 7 x 5 inner corners looks the same turned by 180 degrees: in two
-// images they took it the other way round than we do.
+// The publishers' own detections, through a fisheye. Their row of pose 1 belongs to another
+// placement. Their centre differs from the checkerboard's by half of their translation_error
+// (x: 2 mm), along the short side. A board of 7 x 5 inner corners looks the same when rotated by
+// 180 degrees: in two images they chose the other orientation than we do.
 TEST(AcfrImages, BoardCentreAsPublished) {
   SEXTANT_REAL_DATA(folder, "acfr_vlp16");
   const auto camera = ReadCamera(folder / "camera_info.yaml");
@@ -166,7 +166,7 @@ TEST(AcfrImages, BoardCentreAsPublished) {
     EXPECT_LT(pose.rms_px, 0.4) << image;
     const auto row = std::ranges::find(*poses, id, &AcfrPose::id);
     ASSERT_NE(row, poses->end());
-    // Turned about the checkerboard's centre, the board's lies beyond it.
+    // Rotated about the checkerboard's centre, the board's centre is on its other side.
     const Eigen::Vector2d board_center = is_turned ? 2.0 * center : Eigen::Vector2d(0.0, 0.0);
     const double off_m =
         (pose.cam_from_board * Eigen::Vector3d(0.0, board_center.y(), 0.0) - row->in_cam.centre_m)

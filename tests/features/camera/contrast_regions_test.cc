@@ -38,7 +38,7 @@ void Paste(const std::string& family, int id, int cell_px, const cv::Point& at, 
   }
 }
 
-TEST(ContrastRegions, NoiseAloneIsNoneAndTextureIsAll) {
+TEST(ContrastRegions, NoiseGivesNoneAndTextureTheWholeImage) {
   cv::Mat wall = Wall();
   EXPECT_TRUE(ContrastRegions(wall).empty());
   AddNoise(wall, 3.0, 1);
@@ -49,7 +49,7 @@ TEST(ContrastRegions, NoiseAloneIsNoneAndTextureIsAll) {
   EXPECT_EQ(all[0], cv::Rect(0, 0, kWidth, kHeight));
 }
 
-TEST(ContrastRegions, HoldWhatDiffersWithRoomAroundItAndDoNotMeet) {
+TEST(ContrastRegions, ContainPartsWithContrastAndAMarginAndAreDisjoint) {
   Random random(3);
   for (int trial = 0; trial < 50; ++trial) {
     cv::Mat wall = Wall();
@@ -77,14 +77,14 @@ TEST(ContrastRegions, HoldWhatDiffersWithRoomAroundItAndDoNotMeet) {
   }
 }
 
-TEST(ContrastRegions, ASmallImageIsLookedAtWhole) {
+TEST(ContrastRegions, ASmallImageIsOneRegion) {
   const cv::Mat image(100, 300, CV_8U, cv::Scalar(7));
   ASSERT_EQ(ContrastRegions(image).size(), 1U);
   EXPECT_EQ(ContrastRegions(image)[0].area(), 100 * 300);
 }
 
-// Tags from three pixels a cell to some that fill half the image, faint ones among them.
-TEST(ContrastRegions, NoTagIsLostToThem) {
+// Tags from three pixels per cell up to half the image, including faint ones.
+TEST(ContrastRegions, TheyContainEveryTag) {
   for (const char* spec : {"apriltag(family=tag36h11)", "apriltag(family=tag36h11,decimate=2)",
                            "aruco(dictionary=tag36h11)"}) {
     const TagDetectorPtr detector = *MakeTagDetector(spec);
@@ -112,8 +112,8 @@ TEST(ContrastRegions, NoTagIsLostToThem) {
   }
 }
 
-// Noise is not traced (LeastRange in apriltag_detector.cc), and tags of four of its sigmas still
-// are: the library itself loses the first ones at three and a half.
+// Noise is not traced (MinRange in apriltag_detector.cc), but tags with a contrast of four sigma
+// are found: the library itself loses the first ones at three and a half.
 TEST(ContrastRegions, NoTagIsLostToTheNoise) {
   for (const char* spec : {"apriltag(family=tag36h11)", "apriltag(family=tag36h11,decimate=2)"}) {
     const TagDetectorPtr detector = *MakeTagDetector(spec);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each detector on photos whose tags are known.
+// Each detector on photos with known tags.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -57,7 +57,7 @@ Quad QuadOf(const json& corners) {
   return quad;
 }
 
-// Gold corners are OpenCV's, which without refinement stand half a pixel inside.
+// The gold corners are OpenCV's, which without refinement are half a pixel inside.
 Quad AsOpenCvReports(const Quad& corners) { return MoveEdgesOut(corners, -0.445); }
 
 TEST(ArucoGold, EveryTagAndNoOther) {
@@ -86,7 +86,7 @@ TEST(ArucoGold, EveryTagAndNoOther) {
 TEST(Fiducials, CornersOfTheGoldWithinATenthOfAPixel) {
   SEXTANT_REAL_DATA(folder, "fiducials");
   const json gold = json::parse(test::ReadText(folder / "expected.json"));
-  // What the normalisation of subpix adds is not in the gold.
+  // The gold does not include the correction of subpix.
   const auto as_opencv = [](const Quad& quad) { return MoveEdgesOut(quad, -0.08); };
   int tags_checked = 0;
   for (const char* image : {"tag_01_d7_14cm.png", "tag_245-246_d7_14cm.png"}) {

@@ -56,7 +56,7 @@ struct Photo {
   std::vector<Rigid3d> cam_from_board;
 };
 
-// The camera's frame is the world's.
+// The world frame is the camera's.
 Photo Photograph(const std::vector<Board>& boards, const std::vector<Rigid3d>& poses,
                  std::uint64_t seed) {
   Scene scene;
@@ -109,23 +109,23 @@ TEST(FindBoards, CornersInTheCameraFrameAreWithinTheirCovariance) {
         EXPECT_LT(off.norm(), 0.004) << "board " << b << " corner " << k;
         const Eigen::Matrix3d covariance = board.corners.CovarianceOf(k);
         EXPECT_LT(SquaredMahalanobis(off, covariance), 40.0) << b << " " << k;
-        // Depth is what a camera knows least.
+        // Depth is a camera's least certain coordinate.
         EXPECT_GT(covariance(2, 2), covariance(0, 0));
       }
-      // A rigid board: only 6 of the corners' 12 or 24 numbers are free.
+      // The board is rigid: only 6 of the corners' 12 or 24 coordinates are independent.
       const Eigen::VectorXd variances = EigenOf<Eigen::Dynamic>(board.corners.covariance).values;
       EXPECT_EQ((variances.array() > 1e-9 * variances.maxCoeff()).count(), 6);
     }
   }
   EXPECT_LE(checkers_missed, 1);
-  // 8 poses of 6 numbers: the mean of 48 squares has a standard error of sqrt(2 / 48) = 0.2. That
-  // of checkerboard corners is a bound of theirs, not an estimate.
+  // 8 poses of 6 numbers: the mean of 48 squares has a standard error of sqrt(2 / 48) = 0.2. The
+  // sigma of checkerboard corners is an upper bound, not an estimate.
   EXPECT_GT(nees[0], 0.5);
   EXPECT_LT(nees[0], 1.6);
   EXPECT_LT(nees[1], 1.6);
 }
 
-// From afar one tag alone leaves open which way the board leans; a second tag on it decides.
+// From afar, a single tag does not determine the tilt of the board; a second tag on it does.
 TEST(FindBoards, AmbiguityIsReportedAndResolvedByOtherTags) {
   Board one{.id = 0, .top_right_m = 0.9, .right_bottom_m = 0.3};
   one.tags = {{.family = "tag36h11", .id = 1, .edge_m = 0.1, .center_in_board_m = {-0.35, 0.0}}};
@@ -149,8 +149,8 @@ TEST(FindBoards, AmbiguityIsReportedAndResolvedByOtherTags) {
   EXPECT_LT(DistanceBetween((*both.boards[0].pose)->cam_from_board, pose).rotation_rad, 0.02);
 }
 
-// Of tags that get smaller, every one that the whole image shows.
-TEST(FindBoards, WhatAReducedImageHidesIsFoundInTheWhole) {
+// Among tags of decreasing size, every one that is found in the full image is found.
+TEST(FindBoards, TagsMissedInTheDecimatedImageAreFoundInTheFullOne) {
   Rigid3d pose;
   pose.translation = {0.0, 0.0, 2.0};
   int hidden = 0;
@@ -176,7 +176,7 @@ TEST(FindBoards, WhatAReducedImageHidesIsFoundInTheWhole) {
   EXPECT_GT(hidden, 0);
 }
 
-// OpenCV reads AprilTag's families too, and calls another corner the first.
+// OpenCV detects AprilTag's families too, but begins at another corner.
 TEST(FindBoards, EitherLibraryGivesTheSamePose) {
   const Board board = HollowBoard();
   const Rigid3d pose = HeldByACorner({0.1, -0.05, 1.6}, 0.3);
@@ -193,7 +193,7 @@ TEST(FindBoards, EitherLibraryGivesTheSamePose) {
   }
 }
 
-TEST(FindBoards, RefusesWhatCannotBeLookedFor) {
+TEST(FindBoards, RefusesBoardsThatCannotBeDetected) {
   const auto message = [](std::vector<Board> boards, const std::string& detector = "") {
     const Expected<BoardFinder> made = BoardFinder::Make(std::move(boards), std::nullopt, detector);
     return made ? std::string() : made.error().message;
@@ -235,7 +235,7 @@ TEST(ExplainMissing, NamesTheCause) {
   EXPECT_THAT(other.text, HasSubstr("36h11: 3, 4, 5, 6"));
   EXPECT_EQ(cause(cv::Mat(200, 300, CV_8U, cv::Scalar(90)), tag), "not_there");
 
-  // With the board's pose it is known where the tag should be.
+  // The board's pose predicts the position of the tag.
   const BoardPose known{.cam_from_board = pose};
   changed = cv::Mat(photo.image.size(), CV_8U, cv::Scalar(128));
   EXPECT_EQ(ExplainMissing(changed, tag, &photo.camera, &known).cause, MissingCause::kCovered);

@@ -13,7 +13,7 @@ namespace {
 
 using test::AddNoise;
 
-// A slope of light, and squares of a print in half of the image.
+// A gradient of brightness, and printed squares in half of the image.
 cv::Mat Scene() {
   cv::Mat image(480, 480, CV_8U);
   for (int y = 0; y < image.rows; ++y) {
@@ -25,12 +25,12 @@ cv::Mat Scene() {
   return image;
 }
 
-TEST(ImageNoise, IsToldThroughLightAndPrint) {
+TEST(ImageNoise, IsEstimatedDespiteGradientsAndPrint) {
   for (const double sigma_grey : {1.0, 2.0, 3.0, 5.0}) {
     cv::Mat image = Scene();
     AddNoise(image, sigma_grey, 1);
-    // Rounding to whole levels adds 1 / 12. A quarter of all blocks is the median of those without
-    // print, 6 percent above their lower quartile.
+    // Rounding to whole levels adds a variance of 1 / 12. The lower quartile of all blocks is the
+    // median of those without print, 6 percent above their lower quartile.
     EXPECT_NEAR(EstimateNoiseGrey(image), std::sqrt(sigma_grey * sigma_grey + 1.0 / 12.0),
                 0.09 * sigma_grey);
   }

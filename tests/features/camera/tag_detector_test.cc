@@ -19,7 +19,7 @@ using testing::HasSubstr;
 constexpr int kCell_px = 12;
 constexpr int kMargin_px = 40;
 
-// A tag squarely in front, its cells of whole pixels, turned clockwise by quarters.
+// A tag seen frontally, with cells of whole pixels, rotated clockwise by quarter turns.
 cv::Mat Print(const TagPattern& pattern, int quarters = 0) {
   const int side = pattern.cells * kCell_px + 2 * kMargin_px;
   cv::Mat image(side, side, CV_8U, cv::Scalar(220));
@@ -43,7 +43,7 @@ Quad CornersOfPrint(const TagPattern& pattern) {
 
 class EveryFamily : public testing::TestWithParam<std::string> {};
 
-// Id, orientation and pixels of every family by its own library, however the tag is turned.
+// Id, orientation and pixels of every family by its own library, for every rotation of the tag.
 TEST_P(EveryFamily, IsFoundWithItsOwnTopLeftFirst) {
   const std::string& family = GetParam();
   const TagDetectorPtr detector = *MakeTagDetector(*DetectorSpecFor(family));
@@ -68,7 +68,7 @@ TEST_P(EveryFamily, IsFoundWithItsOwnTopLeftFirst) {
 INSTANTIATE_TEST_SUITE_P(Families, EveryFamily, testing::ValuesIn(TagFamilies()),
                          [](const auto& family) { return family.param; });
 
-// Half a pixel forgotten on the way back from the reduced image would move the middle.
+// An error of half a pixel in the conversion from the decimated image would move the centre.
 TEST(TagDetector, AReducedImageShowsTheTagWhereItIs) {
   const TagPattern pattern = *MakeTagPattern("aruco_6x6_250", 17);
   const Quad upright = CornersOfPrint(pattern);
@@ -164,7 +164,7 @@ TEST(TagDetector, OneDetectorServesManyThreads) {
   }
 }
 
-// The board of the class comment of CheckerDetection, and the same turned by quarters.
+// The board described at CheckerDetection, and the same rotated by quarter turns.
 TEST(Checkerboard, OrderFollowsTheBlackOuterSquare) {
   constexpr int kSquare_px = 30;
   cv::Mat board(7 * kSquare_px, 8 * kSquare_px, CV_8U, cv::Scalar(230));
@@ -184,7 +184,7 @@ TEST(Checkerboard, OrderFollowsTheBlackOuterSquare) {
     ASSERT_EQ(found->checkers.size(), 1U) << quarters;
     const CheckerDetection& checker = found->checkers[0];
     EXPECT_TRUE(checker.is_turn_known);
-    // Corner (0, 0) of the upright board is at pixel (59.5, 59.5), and turns with it.
+    // Corner (0, 0) of the upright board is at pixel (59.5, 59.5) and rotates with the board.
     Eigen::Vector2d first(2 * kSquare_px - 0.5, 2 * kSquare_px - 0.5);
     cv::Size size(8 * kSquare_px, 7 * kSquare_px);
     for (int i = 0; i < quarters; ++i) {

@@ -14,7 +14,7 @@
 namespace sextant {
 namespace {
 
-// Anywhere on a tag of 60 px and round it; as many as do not fill the last lanes.
+// Pixels anywhere on and around a tag of 60 px; their number does not fill the last SIMD vector.
 EdgePixels SomePixels() {
   Random random(1);
   EdgePixels pixels;
@@ -52,8 +52,8 @@ TagState Moved(TagState state, int unknown, double step) {
   return state;
 }
 
-// The derivative by the blur leaves a skewed blur's correlation out, and a homography's also moves
-// the blur's shape, which is left out too: both to some percent of the largest.
+// The derivative by the blur neglects the correlation of a skewed blur, and the derivatives by the
+// homography neglect the change of the blur's shape: both by some percent of the largest.
 TEST(TagModel, NormalEquationsAreThoseOfItsOwnDifferences) {
   const EdgePixels pixels = SomePixels();
   TagModel model(*MakeTagPattern("tag36h11", 4), pixels);
@@ -83,8 +83,8 @@ TEST(TagModel, NormalEquationsAreThoseOfItsOwnDifferences) {
   }
 }
 
-// Along an edge of the border, far from its ends, the picture is the normal distribution's
-// integral.
+// Across an edge of the border, far from its ends, the grey level follows the normal distribution
+// function.
 TEST(TagModel, AnEdgeRisesAsTheNormalDistribution) {
   EdgePixels pixels;
   for (std::size_t i = 0; i < 2 * kSimdWidth; ++i) {
@@ -109,7 +109,7 @@ TEST(TagModel, AnEdgeRisesAsTheNormalDistribution) {
   }
 }
 
-TEST(Undistortion, AStepFromAPixelNearbyIsAsGood) {
+TEST(Undistortion, FromANearbyPixelIsAsAccurate) {
   for (const char* name : {"pinhole", "zed_left", "point_grey", "fisheye"}) {
     const Camera camera = *FindCameraModel(name);
     const Undistortion undistortion(camera);

@@ -46,8 +46,8 @@ TEST_P(TagPatternTest, IsWhatTheLibraryDraws) {
   }
 }
 
-// The square whose corners are reported is the outer border of the ring of one colour that
-// detectors look for: its outermost cells are of one colour, those around it of the other.
+// Detectors report the corners of the outer border of a ring of cells of one colour: the outermost
+// cells of the square have one colour, those around it the other.
 TEST_P(TagPatternTest, ReportsTheSquareBetweenTwoRingsOfOneColourEach) {
   const TagPattern pattern = *MakeTagPattern(GetParam(), 0);
   const int first = pattern.edge_first;

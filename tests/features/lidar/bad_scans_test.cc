@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scans as they come: damaged, turned, in any order, with boards that are hidden or cut.
+// Scans with defects: damaged, rotated, in any order, with boards that are hidden or cut off.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// One board straight ahead, so that the edge of the field of view can be put through it.
+// One board straight ahead, so that the edge of the field of view can cross it.
 struct SeenBoard {
   Scene scene;
   std::vector<Board> boards;
@@ -83,7 +83,7 @@ TEST(BadScans, OrderOfThePointsDoesNotMatter) {
   }
 }
 
-TEST(BadScans, ReturnsThatAreNoneAreLeftOut) {
+TEST(BadScans, InvalidReturnsAreOmitted) {
   SeenBoard seen = OneBoard();
   const double whole = WorstCorner(seen, Search(seen.cloud, seen.boards));
   const double infinity = std::numeric_limits<double>::infinity();
@@ -98,7 +98,7 @@ TEST(BadScans, ReturnsThatAreNoneAreLeftOut) {
   EXPECT_EQ(WorstCorner(seen, Search(seen.cloud, seen.boards)), whole);
 }
 
-TEST(BadScans, OneRingHoldsNoBoard) {
+TEST(BadScans, OneRingGivesNoBoard) {
   SeenBoard seen = OneBoard();
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < seen.cloud.points.size(); ++i) {
@@ -112,7 +112,7 @@ TEST(BadScans, OneRingHoldsNoBoard) {
   }
 }
 
-TEST(BadScans, FewPointsHoldNoBoard) {
+TEST(BadScans, FewPointsGiveNoBoard) {
   const SeenBoard seen = OneBoard();
   for (const std::size_t count : {1U, 2U, 7U, 40U}) {
     PointCloud few;
@@ -124,23 +124,23 @@ TEST(BadScans, FewPointsHoldNoBoard) {
   }
 }
 
-// A pole 0.6 m before the board hides a stripe of it and with it some of its edges.
+// A pole 0.6 m in front of the board hides a stripe of it, including parts of its edges.
 TEST(BadScans, BoardBehindAPoleIsFound) {
   const SeenBoard seen = OneBoard(
       {{.name = "pole", .base_in_world = {1.2, 0.08, -1.0}, .radius_m = 0.02, .height_m = 2.5}});
   EXPECT_LT(WorstCorner(seen, Search(seen.cloud, seen.boards)), 0.015);
 }
 
-// Behind a person little of it is left.
+// A person hides most of the board.
 TEST(BadScans, BoardBehindAPersonIsNot) {
   const SeenBoard seen = OneBoard(
       {{.name = "person", .base_in_world = {1.2, 0.0, -1.0}, .radius_m = 0.25, .height_m = 1.75}});
   EXPECT_TRUE(Search(seen.cloud, seen.boards).found.empty());
 }
 
-// The driver gives a sector only, whose edge cuts the board: what is beyond it is unknown, and what
-// was got lies where it should; a board that is cut in half is refused.
-TEST(BadScans, BoardCutByTheFieldOfViewIsPlacedByTheRest) {
+// The driver reports only a sector, whose limit crosses the board: the visible part is placed
+// correctly; a board that is cut in half is rejected.
+TEST(BadScans, BoardCutByTheFieldOfViewIsPlacedByItsVisiblePart) {
   for (const double cut_m : {-0.25, -0.2, 0.0}) {
     SeenBoard seen = OneBoard();
     std::vector<std::size_t> places;
@@ -159,13 +159,13 @@ TEST(BadScans, BoardCutByTheFieldOfViewIsPlacedByTheRest) {
   }
 }
 
-// A mirror on the wall shows the board again behind it, of the right size.
-TEST(BadScans, TheReflectionOfABoardIsNotTakenForIt) {
+// A mirror on the wall shows a second image of the board behind it, of the same size.
+TEST(BadScans, TheReflectionOfABoardIsRejected) {
   SeenBoard seen = OneBoard();
   const double mirror_x = 5.0;
   const Eigen::Vector3d center = seen.scene.boards[0].world_from_board.translation;
   const std::size_t count = seen.cloud.points.size();
-  // Rays that meet the mirror below the board and come back from it.
+  // Rays that meet the mirror below the board and are reflected.
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3d p = seen.cloud.points[i];
     if ((p - center).norm() > 0.4) continue;
@@ -177,7 +177,7 @@ TEST(BadScans, TheReflectionOfABoardIsNotTakenForIt) {
 }
 
 // Six lines of a rosette, numbered, are not six rings.
-TEST(BadScans, NumbersThatAreNoRingsAreNotTakenForThem) {
+TEST(BadScans, RingNumbersOfARosetteAreIgnored) {
   SeenBoard seen = OneBoard();
   Expected<SimulatedScan> scan = SimulateScan(seen.scene, *FindLidarModel("livox"), {.seed = 1});
   ASSERT_TRUE(scan);

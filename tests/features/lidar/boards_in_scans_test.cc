@@ -19,7 +19,7 @@ namespace {
 
 struct Errors {
   std::vector<double> distances_m;
-  std::vector<double> nees;  // Of each board, per degree of freedom.
+  std::vector<double> nees;  // For each board, per degree of freedom.
 };
 
 double Mean(const std::vector<double>& values) {
@@ -76,7 +76,7 @@ void AddErrors(const Scene& scene, const BoardSearch& search, const std::vector<
 }
 
 // The paper's set-up: VLP-16, two 48 cm boards, 1.8 m, range sigma 1 cm.
-TEST(BoardsInScans, KnowledgeOfPlaneAndSizePaysAsStated) {
+TEST(BoardsInScans, UsingPlaneAndSizeReducesTheErrorAsStated) {
   constexpr int kScans = 60;
   const LidarModel model = ModelWithSigma("vlp16", 0.01);
   std::map<std::string, Errors> errors;
@@ -90,10 +90,10 @@ TEST(BoardsInScans, KnowledgeOfPlaneAndSizePaysAsStated) {
   }
   EXPECT_LT(Median(errors["rectangle"].distances_m), 0.0025);
   EXPECT_LT(Median(errors["plane_lines"].distances_m), 0.0055);
-  // The paper's way is worse, and that is the point: it must not be better by a wrong truth.
+  // The paper's method is worse, as expected; if it were better, the ground truth would be wrong.
   EXPECT_GT(Median(errors["lines3d"].distances_m), 0.008);
   EXPECT_LT(Median(errors["lines3d"].distances_m), 0.016);
-  // Of the boards' means, for the four corners of one share their errors.
+  // Uses the boards' means, because the four corners of a board share their errors.
   for (const auto& [name, of] : errors) {
     const double allowed = 2.0 * StandardError(of.nees);
     EXPECT_GT(Mean(of.nees), 0.8 - allowed) << name;
@@ -102,7 +102,7 @@ TEST(BoardsInScans, KnowledgeOfPlaneAndSizePaysAsStated) {
   }
 }
 
-// Distance of the furthest corner of each found board from its truth, by the known size.
+// For each board found, the largest distance of a corner from its true position, for `rectangle`.
 std::vector<double> WorstCorners(const Scene& scene, const BoardSearch& search) {
   std::vector<double> worst;
   for (const BoardPatch& patch : search.found) {
@@ -174,7 +174,7 @@ TEST_P(HeldBoards, InHands) {
 INSTANTIATE_TEST_SUITE_P(Models, HeldBoards, testing::Values("vlp16", "os1_64"),
                          [](const auto& test) { return test.param; });
 
-// Rings cross all four sides of a board that is turned by 20 degrees or more.
+// Rings cross all four sides of a board that is rotated by 20 degrees or more.
 TEST(BoardsInScans, OtherAnglesThan45WhereTheRingsAllowIt) {
   const LidarModel model = ModelWithSigma("os1_64", 0.01);
   for (const double turn : {20.0, 30.0, 60.0, 70.0}) {
@@ -230,7 +230,7 @@ TEST(BoardsInScans, HollowBoardGivesEightCorners) {
   scene.boards = {PlaceBoard(board, {.azimuth_deg = 5.0, .distance_m = 2.2})};
   const BoardSearch search = SearchScan(scene, {board}, model, 1);
   ASSERT_EQ(search.found.size(), 1U);
-  // Lines in space take the range noise along; see the test of the extractors' errors.
+  // 3D lines include the range noise; see the test of the extractors' errors.
   const std::map<std::string, double> allowed = {
       {"rectangle", 0.02}, {"plane_lines", 0.03}, {"lines3d", 0.15}};
   for (const auto& [extractor, distance] : allowed) {
@@ -244,7 +244,7 @@ TEST(BoardsInScans, HollowBoardGivesEightCorners) {
   }
 }
 
-TEST(BoardsInScans, TooFewRingsAreSaid) {
+TEST(BoardsInScans, TooFewRingsAreReported) {
   const LidarModel model = *FindLidarModel("vlp16");
   Board board;
   board.top_right_m = 0.484;
@@ -259,7 +259,7 @@ TEST(BoardsInScans, TooFewRingsAreSaid) {
   EXPECT_NE(search.rejected[0].why.find("rings"), std::string::npos) << search.rejected[0].why;
 }
 
-TEST(BoardsInScans, WithoutRingFieldTheSame) {
+TEST(BoardsInScans, WithoutARingFieldTheResultIsTheSame) {
   const LidarModel model = *FindLidarModel("vlp16");
   Random random(6);
   const Scene scene = TwoBoardsInRoom({.distance_m = 1.8}, random);

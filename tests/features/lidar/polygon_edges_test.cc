@@ -40,7 +40,7 @@ ScanMarks DrawScene(const Scene& scene) {
   return marks;
 }
 
-// A VLP-16 whose rings have no biases: no estimator can see them.
+// A VLP-16 whose rings have no biases, which no estimator can observe.
 ScanRings RingsOf(const Scene& scene, std::uint64_t seed, double sigma_m = 0.01) {
   LidarModel model = Model("vlp16");
   model.range_sigma_m = sigma_m;
@@ -64,9 +64,9 @@ std::vector<double> ErrorsOf(const Expected<LidarCorners>& corners, const SceneB
   return errors;
 }
 
-// The paper's set-up, as in boards_in_scans_test.cc, and the same bounds: who draws is told no
-// more than who searches finds.
-TEST(PolygonEdges, EveryExtractorMeetsTheTruthAsOnBoardsThatWereFound) {
+// The paper's set-up, as in boards_in_scans_test.cc, with the same bounds: marked boards are as
+// accurate as those that the search finds.
+TEST(PolygonEdges, EveryExtractorIsAsAccurateAsOnBoardsThatWereFound) {
   std::map<std::string, std::vector<double>> errors;
   for (std::uint64_t i = 0; i < 40; ++i) {
     Random random(DeriveSeed(1, "polygon_edges", 0, i));
@@ -133,9 +133,9 @@ TEST(PolygonEdges, AnOblongBoardDrawnFromTheWrongEdgeIsRefused) {
   EXPECT_THAT(wrong.error().message, HasSubstr("fit in exchanged order"));
 }
 
-// A strip in the board's own plane that goes on over its lower right edge, as a stand does: the
+// A strip in the board's own plane that continues beyond its lower right edge, like a stand: the
 // rings do not end there.
-TEST(PolygonEdges, WhereARingGoesOnInThePlaneTheBoardDoesNotEnd) {
+TEST(PolygonEdges, ARingThatContinuesInThePlaneHasNoEndThere) {
   Scene scene = PlacedBoards(1);
   const Rigid3d& pose = scene.boards[0].world_from_board;
   scene.walls.push_back(Wall(
@@ -146,7 +146,7 @@ TEST(PolygonEdges, WhereARingGoesOnInThePlaneTheBoardDoesNotEnd) {
     const Eigen::Vector3d in_board = pose.Inverse() * patches->front().plane.At(edge.in_plane);
     EXPECT_LT(in_board.head<2>().cwiseAbs().maxCoeff(), 0.24 + 0.015) << in_board.transpose();
   }
-  // A whole board's corners are 2.2 mm off in the median; here an edge has lost half its ends.
+  // The corners of a full board have a median error of 2.2 mm; here an edge lacks half of its ends.
   const std::vector<double> errors = ErrorsOf(
       ExtractCorners("rectangle", patches->front(), scene.boards[0].board), scene.boards[0]);
   EXPECT_LT(*std::ranges::max_element(errors), 0.012);
@@ -168,8 +168,8 @@ TEST(PolygonEdges, AHollowBoardGivesEightCorners) {
   }
 }
 
-// Three times the paper's noise: the thresholds follow it.
-TEST(PolygonEdges, NoisyRangesAreNoHindrance) {
+// Three times the paper's noise: the thresholds scale with it.
+TEST(PolygonEdges, NoisyRangesAreTolerated) {
   std::vector<double> errors;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Scene scene = PlacedBoards(2);
@@ -244,7 +244,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "board 0: no ring ends on it within its bottom-right area"}),
     [](const auto& bad) { return bad.param.name; });
 
-// Top, right, bottom, left as one sees them, with the sides that follow.
+// The corners top, right, bottom and left as seen by the sensor, each with the side after it.
 BoardCorners Seen(const BoardCorners& corners, Board& board) {
   const auto height = [](const Eigen::Vector3d& point) { return point.z() / point.norm(); };
   const auto azimuth = [](const Eigen::Vector3d& p) { return std::atan2(p.y(), p.x()); };
@@ -257,7 +257,7 @@ BoardCorners Seen(const BoardCorners& corners, Board& board) {
   return seen;
 }
 
-TEST(PolygonEdges, RealBoardsDrawnRoundTheirStoredCornersMeetThem) {
+TEST(PolygonEdges, RealBoardsMarkedAtTheirStoredCornersAgreeWithThem) {
   SEXTANT_REAL_DATA(folder, "acfr_vlp16");
   const Expected<std::vector<AcfrPose>> poses = ReadAcfrPoses(folder / "poses.csv");
   ASSERT_TRUE(poses) << poses.error().message;
@@ -286,7 +286,7 @@ TEST(PolygonEdges, RealBoardsDrawnRoundTheirStoredCornersMeetThem) {
     RecordProperty(name + "_median_um", static_cast<int>(1e6 * Median(of)));
     RecordProperty(name + "_largest_um", static_cast<int>(1e6 * *std::ranges::max_element(of)));
   }
-  // The stored corners are answers of another program, 11 mm from a crude fit in the median.
+  // The stored corners are results of another program, with a median of 11 mm from a crude fit.
   EXPECT_LT(Median(distances["rectangle"]), 0.020);
   EXPECT_LT(*std::ranges::max_element(distances["rectangle"]), 0.060);
   EXPECT_LT(Median(distances["plane_lines"]), 0.020);

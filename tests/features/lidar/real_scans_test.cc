@@ -15,8 +15,8 @@
 namespace sextant::test {
 namespace {
 
-// Each corner to the nearest stored one: the file's order is not ours, and corners of one board are
-// ten times further apart than anything allowed here.
+// Distance of each corner to the nearest stored one: the file's order differs from ours, and the
+// corners of a board are ten times further apart than any distance allowed here.
 void AddDistances(const LidarCorners& corners, const AcfrBoardView& stored,
                   std::vector<double>& distances) {
   for (const Eigen::Vector3d& corner : corners.in_lidar) {
@@ -59,8 +59,8 @@ TEST(RealScans, AcfrBoardIsFoundInEveryFullScan) {
   EXPECT_LT(Median(lines3d), 0.030);
 }
 
-// Its ranges are some 7 cm too long, so that angles and ranges together make the board 2 to 3 %
-// larger than it is; the camera sees it as large. Its own scale stays within what is asked.
+// The ranges are about 7 cm too long, so that angles and ranges together make the board 2 to 3 %
+// larger than it is; the camera agrees with this size. The size ratio is within the stated bounds.
 TEST(RealScans, OusterBoardIsFoundWithAndWithoutRings) {
   SEXTANT_REAL_DATA(folder, "ouster64");
   Board board;

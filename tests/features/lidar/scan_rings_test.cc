@@ -43,7 +43,7 @@ TEST(ScanRings, OnePointIsOneRing) {
   EXPECT_EQ(rings->ring(0).size(), 1U);
 }
 
-// Numbers that count downwards, with gaps, in shuffled order.
+// Ring numbers that descend with elevation, with gaps, in shuffled order.
 TEST(ScanRings, SortsByElevationAndAzimuth) {
   PointCloud cloud;
   for (int azimuth = 0; azimuth < 360; azimuth += 3) {

@@ -35,7 +35,7 @@ TEST(PairByStamp, ToleranceIsIncluded) {
   EXPECT_EQ(PairByStamp(Stamps{}, Stamps{5}, 50).unpaired_second.size(), 1U);
 }
 
-// The definition, word for word: the closest two of those left, again and again.
+// Implements the definition directly: repeatedly takes the closest remaining pair.
 std::vector<std::int64_t> ByDefinition(Stamps first, Stamps second, std::int64_t tolerance) {
   std::vector<std::int64_t> distances;
   while (true) {
@@ -61,7 +61,7 @@ std::vector<std::int64_t> ByDefinition(Stamps first, Stamps second, std::int64_t
 TEST(PairByStamp, IsTheGreedyOfItsDefinition) {
   Random random(5);
   for (int trial = 0; trial < 300; ++trial) {
-    // Stamps of powers of two apart have no two equal distances, so that the answer is unique.
+    // Stamps that are powers of two apart have distinct distances, so the result is unique.
     Stamps first;
     Stamps second;
     std::int64_t time = 0;

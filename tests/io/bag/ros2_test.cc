@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ROS 2's recordings: the seeds of the fuzz targets, which no code of ours wrote, and their damage.
+// Recordings of ROS 2: the seeds of the fuzz targets, written by other tools, and damaged copies.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -21,7 +21,7 @@ std::filesystem::path Seed(const std::string& name) {
   return test::SourceFolder() / "tests/fuzz/corpus" / name;
 }
 
-// One cloud and one camera, whatever the container and its compression.
+// Each container, with each compression, has one cloud and one camera.
 class SeedTest : public testing::TestWithParam<const char*> {};
 
 TEST_P(SeedTest, HasACloudAndACamera) {
@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, SeedTest,
                          testing::Values("mcap/plain", "mcap/lz4", "mcap/zstd", "rosbag2/plain",
                                          "rosbag2/zstd"));
 
-// The first error of opening and of decoding all; empty where there is none.
+// The first error of opening a recording and decoding all of it; empty if there is none.
 std::string FirstError(const Expected<std::unique_ptr<Bag>>& bag) {
   if (!bag) return bag.error().message;
   std::vector<std::size_t> all((*bag)->topics().size());
@@ -101,7 +101,7 @@ TEST(Ros2, EveryDamageIsReadOrRefusedInOneLine) {
 
 BagMessage Message(const BagTopic& topic, std::string_view data) { return {&topic, 0, 9, data}; }
 
-TEST(Ros2, MessagesThatLieAreRefusedWithTheField) {
+TEST(Ros2, InconsistentMessagesAreRefusedWithTheField) {
   const BagTopic topic{.name = "/points",
                        .type = "sensor_msgs/PointCloud2",
                        .kind = MessageKind::kPointCloud,

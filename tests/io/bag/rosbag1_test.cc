@@ -26,7 +26,7 @@ CloudMessage SomeScan(int seed, int points) {
   Random random(static_cast<std::uint64_t>(seed));
   CloudMessage scan{{kStart + seed, "velodyne"}, {}};
   for (int i = 0; i < points; ++i) {
-    // What a float32 holds, so that nothing is lost.
+    // Values that a float32 represents exactly.
     scan.cloud.points.emplace_back(static_cast<float>(random.Uniform(-9, 9)), 0.5 * i, -0.25);
     scan.cloud.intensity.push_back(static_cast<float>(i));
     scan.cloud.ring.push_back(static_cast<std::uint16_t>(i % 2 == 0 ? 3 : 0));
@@ -62,7 +62,7 @@ CameraInfoMessage SomeCamera(CameraModel model) {
 
 void Require(const Expected<void>& done) { ASSERT_TRUE(done) << done.error().message; }
 
-// Two scans, an image of each kind, cameras of all models.
+// Two scans, an image of each kind, and cameras of all models.
 std::filesystem::path WrittenBag(BagCompression compression, int points = 40) {
   std::filesystem::path path = test::TestFolder() / "session.bag";
   Expected<Rosbag1Writer> writer = Rosbag1Writer::Create(path, compression);
@@ -183,7 +183,7 @@ std::size_t CountMessages(const Bag& bag) {
   return count;
 }
 
-// What a recorder leaves behind that was stopped hard: no index, and nothing that points to it.
+// The file of a recorder that was killed: no index, and no reference to one.
 TEST(Rosbag1, IsReadWithoutItsIndex) {
   std::string bytes = test::ReadText(WrittenBag(BagCompression::kNone));
   const std::size_t index_pos = bytes.find("index_pos=") + 10;
@@ -215,7 +215,7 @@ TEST(Rosbag1, WriterRefusesWhatAToolOfRosCouldNotRead) {
   EXPECT_EQ(Rosbag1Writer::Create("/proc/none/a.bag").error().code, ErrorCode::kIo);
 }
 
-// All of a bag's messages decoded; the first error's message, or nothing.
+// Decodes all messages of a bag; returns the first error's message, or nothing.
 std::string ReadAll(const Expected<std::unique_ptr<Bag>>& bag) {
   if (!bag) return bag.error().message;
   const Expected<void> read =
@@ -255,7 +255,7 @@ TEST(Rosbag1, EveryTruncationIsRefusedWithTheByte) {
       EXPECT_THAT(message, testing::StartsWith("f: ")) << size;
     }
   }
-  // Whole records are left where a cut falls between two of them.
+  // A cut between two records leaves whole records.
   EXPECT_GT(refused, trials - 10);
 }
 
