@@ -162,11 +162,11 @@ void AddHolder(const SceneBoard& placed, Random& random, Scene& scene) {
   constexpr double kBody_m = 0.2;
   // From the board's centre to the body, so that a tilted board does not touch it.
   const double gap = random.Uniform(0.22, 0.45);
-  const double beside = random.Uniform(-0.1, 0.1);
+  const double sideways = random.Uniform(-0.1, 0.1);
   const Eigen::Vector3d center = placed.world_from_board.translation;
   const Eigen::Vector3d away = Eigen::Vector3d(center.x(), center.y(), 0.0).normalized();
   const Eigen::Vector3d left = Eigen::Vector3d::UnitZ().cross(away);
-  const Eigen::Vector3d body = center + (gap + kBody_m) * away + beside * left;
+  const Eigen::Vector3d body = center + (gap + kBody_m) * away + sideways * left;
   scene.cylinders.push_back({.name = "person",
                              .base_in_world = {body.x(), body.y(), kFloor_m},
                              .radius_m = kBody_m,

@@ -140,6 +140,7 @@ Expected<SceneObserver> SceneObserver::Make(const SceneSettings& settings,
 
 Scene SceneObserver::PlaceBoardsInRoom(std::uint64_t seed) const {
   Scene scene = scene_;
+  // The purpose "hang" is part of the seeds of all recorded figures.
   Random random(DeriveSeed(seed, "hang", 0, 0));
   for (SceneBoard& board : scene.boards) {
     Vector6d delta;
