@@ -72,7 +72,7 @@ Expected<Rigid3d> ExtrinsicOf(const SceneSettings& settings, const Rigid3d& of_s
   return cam_from_lidar;
 }
 
-Expected<Camera> AssumedCamera(const SceneSettings& settings, const Camera& true_camera) {
+Expected<Camera> SolverCamera(const SceneSettings& settings, const Camera& true_camera) {
   Camera assumed = true_camera;
   if (!settings.assumed_intrinsics.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(const auto numbers,
@@ -124,7 +124,7 @@ Expected<SceneObserver> SceneObserver::Make(const SceneSettings& settings,
                      fmt::format("{}: camera {} cannot find any board", settings.scene, camera));
   }
   SEXTANT_ASSIGN_OR_RETURN(observer.assumed_camera_,
-                           AssumedCamera(settings, *PublishedCamera(scene_camera)));
+                           SolverCamera(settings, *PublishedCamera(scene_camera)));
   observer.lidar_ = *FindLidarModel(observer.scene_.lidar.model);
   if (const auto known = ExtractCorners(settings.extractor, {}, {});
       !known && known.error().code == ErrorCode::kUnknownName) {
