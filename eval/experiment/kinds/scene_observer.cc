@@ -11,6 +11,7 @@
 #include "base/units.h"
 #include "features/lidar/corner_extractor.h"
 #include "geometry/random_vectors.h"
+#include "geometry/scan_marks.h"
 #include "io/text/number_text.h"
 #include "simulator/scene/camera_model.h"
 #include "simulator/scene/scene_file.h"
