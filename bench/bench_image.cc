@@ -17,9 +17,9 @@ namespace {
 Scene Room(const std::string& camera_model) {
   Scene scene;
   scene.cameras = {{.model = camera_model}};
-  const Eigen::Quaterniond hung(Eigen::AngleAxisd(0.25 * M_PI, Eigen::Vector3d::UnitZ()));
+  const Eigen::Quaterniond diagonal(Eigen::AngleAxisd(0.25 * M_PI, Eigen::Vector3d::UnitZ()));
   for (const double x : {-0.4, 0.4}) {
-    SceneBoard board{.world_from_board = {hung, {x, 0.0, 2.0}}};
+    SceneBoard board{.world_from_board = {diagonal, {x, 0.0, 2.0}}};
     board.board = {.top_right_m = 0.484,
                    .right_bottom_m = 0.468,
                    .tags = {{.family = "aruco_original", .id = 26, .edge_m = 0.205}}};

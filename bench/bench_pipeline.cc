@@ -21,16 +21,16 @@ namespace {
 constexpr double kMaxError_m = 0.1;  // Two boards at 2 m in a single view.
 constexpr double kMaxError_rad = 0.05;
 
-SceneBoard Hang(int id, double y_m, double yaw_rad) {
-  SceneBoard hung;
-  hung.board = {.id = id, .top_right_m = 0.468, .right_bottom_m = id == 0 ? 0.484 : 0.49};
-  hung.board.tags = {{.family = "aruco_original", .id = id == 0 ? 26 : 582, .edge_m = 0.205}};
+SceneBoard PlaceBoard(int id, double y_m, double yaw_rad) {
+  SceneBoard placed;
+  placed.board = {.id = id, .top_right_m = 0.468, .right_bottom_m = id == 0 ? 0.484 : 0.49};
+  placed.board.tags = {{.family = "aruco_original", .id = id == 0 ? 26 : 582, .edge_m = 0.205}};
   Eigen::Matrix3d facing;
   facing << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  hung.world_from_board = {
+  placed.world_from_board = {
       Eigen::Quaterniond(facing) * ExpSo3({0.0, yaw_rad, 0.0}) * ExpSo3({0.0, 0.0, 0.8}),
       {2.0, y_m, 0.0}};
-  return hung;
+  return placed;
 }
 
 struct Recording {
@@ -45,7 +45,7 @@ struct Recording {
 const Recording& TheRecording() {
   static const Recording recording = [] {
     Recording made;
-    made.scene.boards = {Hang(0, 0.5, 0.3), Hang(1, -0.5, -0.2)};
+    made.scene.boards = {PlaceBoard(0, 0.5, 0.3), PlaceBoard(1, -0.5, -0.2)};
     Eigen::Matrix3d forward;
     forward << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     SceneCamera camera{.name = "cam", .model = "zed_left"};

@@ -53,18 +53,18 @@ std::string Describe(const WeakDirection& weak) {
 
 }  // namespace
 
-std::vector<std::string> Describe(const PairDiagnostics& judgement) {
+std::vector<std::string> Describe(const PairDiagnostics& diagnostics) {
   std::vector<std::string> lines;
-  if (judgement.order) lines.push_back(Describe(*judgement.order));
-  if (judgement.mirrored_rmse_m) {
+  if (diagnostics.order) lines.push_back(Describe(*diagnostics.order));
+  if (diagnostics.mirrored_rmse_m) {
     lines.push_back(fmt::format(
         "mirrored: a reflection would fit with RMSE {:.4f} m, less than half of what any rotation "
         "reaches; check the corners' order and the sign of the axes",
-        *judgement.mirrored_rmse_m));
+        *diagnostics.mirrored_rmse_m));
   }
-  for (const EdgeFinding& edge : judgement.edges) lines.push_back(Describe(edge));
-  if (judgement.weak_rotation) lines.push_back(Describe(*judgement.weak_rotation));
-  if (judgement.weak_translation) lines.push_back(Describe(*judgement.weak_translation));
+  for (const EdgeFinding& edge : diagnostics.edges) lines.push_back(Describe(edge));
+  if (diagnostics.weak_rotation) lines.push_back(Describe(*diagnostics.weak_rotation));
+  if (diagnostics.weak_translation) lines.push_back(Describe(*diagnostics.weak_translation));
   return lines;
 }
 

@@ -98,28 +98,28 @@ CalibrationProblem Reordered(const CalibrationProblem& problem, const OrderFindi
 }
 
 PairDiagnostics DiagnosePairs(const CalibrationProblem& problem) {
-  PairDiagnostics judgement;
-  if (problem.pairs_3d3d.size() < 3) return judgement;
-  judgement.order = FindBetterOrder(problem.pairs_3d3d);
-  const CalibrationProblem judged =
-      judgement.order ? Reordered(problem, *judgement.order) : problem;
-  judgement.edges = DiagnoseEdges(judged);
+  PairDiagnostics diagnostics;
+  if (problem.pairs_3d3d.size() < 3) return diagnostics;
+  diagnostics.order = FindBetterOrder(problem.pairs_3d3d);
+  const CalibrationProblem ordered =
+      diagnostics.order ? Reordered(problem, *diagnostics.order) : problem;
+  diagnostics.edges = DiagnoseEdges(ordered);
 
-  const std::vector<Pair3d3d>& pairs = judged.pairs_3d3d;
+  const std::vector<Pair3d3d>& pairs = ordered.pairs_3d3d;
   const std::vector<double> weights(pairs.size(), 1.0);
   const PointSets points = PointsOf(pairs);
   const Expected<KabschFit> fit = FitKabsch(points.in_cam, points.in_lidar, weights);
-  if (!fit) return judgement;
+  if (!fit) return diagnostics;
   if (fit->sum_squares > kMirroredRatio * kMirroredRatio * fit->mirrored_sum_squares &&
       fit->sum_squares > 1e-12 * points.in_cam.front().squaredNorm()) {
-    judgement.mirrored_rmse_m =
+    diagnostics.mirrored_rmse_m =
         std::sqrt(fit->mirrored_sum_squares / static_cast<double>(pairs.size()));
   }
   if (const auto covariance = PropagateCovariance(pairs, weights, fit->b_from_a)) {
-    judgement.weak_rotation = Weakest(covariance->topLeftCorner<3, 3>(), true);
-    judgement.weak_translation = Weakest(covariance->bottomRightCorner<3, 3>(), false);
+    diagnostics.weak_rotation = Weakest(covariance->topLeftCorner<3, 3>(), true);
+    diagnostics.weak_translation = Weakest(covariance->bottomRightCorner<3, 3>(), false);
   }
-  return judgement;
+  return diagnostics;
 }
 
 }  // namespace sextant

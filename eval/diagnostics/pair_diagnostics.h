@@ -66,6 +66,6 @@ PairDiagnostics DiagnosePairs(const CalibrationProblem& problem);
 CalibrationProblem Reordered(const CalibrationProblem& problem, const OrderFinding& order);
 
 /// One line of text per finding, with the figures and advice.
-std::vector<std::string> Describe(const PairDiagnostics& judgement);
+std::vector<std::string> Describe(const PairDiagnostics& diagnostics);
 
 }  // namespace sextant

@@ -48,7 +48,7 @@ void AddWalls(Scene& scene) {
 
 }  // namespace
 
-SceneBoard PlaceBoard(const Board& board, const BoardPlacement& placement) {
+SceneBoard PlaceBoard(const Board& board, const RoomPlacement& placement) {
   const double azimuth = placement.azimuth_deg * kRadPerDeg;
   SceneBoard placed;
   placed.board = board;
@@ -126,7 +126,7 @@ Scene TwoBoardsInRoom(const BoardField& field, Random& random) {
     board.id = i;
     board.top_right_m = i == 0 ? 0.484 : 0.490;
     board.right_bottom_m = 0.468;
-    BoardPlacement placement;
+    RoomPlacement placement;
     placement.azimuth_deg =
         (i == 0 ? 1.0 : -1.0) * random.Uniform(field.min_azimuth_deg, field.max_azimuth_deg);
     placement.distance_m = field.distance_m * random.Uniform(0.95, 1.05);
@@ -162,11 +162,11 @@ void AddHolder(const SceneBoard& placed, Random& random, Scene& scene) {
   constexpr double kBody_m = 0.2;
   // From the board's centre to the body, so that a tilted board does not touch it.
   const double gap = random.Uniform(0.22, 0.45);
-  const double beside = random.Uniform(-0.1, 0.1);
+  const double sideways = random.Uniform(-0.1, 0.1);
   const Eigen::Vector3d center = placed.world_from_board.translation;
   const Eigen::Vector3d away = Eigen::Vector3d(center.x(), center.y(), 0.0).normalized();
   const Eigen::Vector3d left = Eigen::Vector3d::UnitZ().cross(away);
-  const Eigen::Vector3d body = center + (gap + kBody_m) * away + beside * left;
+  const Eigen::Vector3d body = center + (gap + kBody_m) * away + sideways * left;
   scene.cylinders.push_back({.name = "person",
                              .base_in_world = {body.x(), body.y(), kFloor_m},
                              .radius_m = kBody_m,

@@ -120,8 +120,8 @@ void ReadCamera(YamlFields& in, const YamlNode& node, std::vector<SceneCamera>& 
   } else {
     camera.model = in.TextAt(node, "model");
   }
-  if (const YamlNode* told = node.Find("assumed_intrinsics")) {
-    camera.assumed_intrinsics = ReadCameraBlock(in, *told);
+  if (const YamlNode* assumed = node.Find("assumed_intrinsics")) {
+    camera.assumed_intrinsics = ReadCameraBlock(in, *assumed);
   }
   camera.world_from_cam = ReadScenePose(in, in.Require(node, "pose"), SceneAxes::kForwardIsZ);
   cameras.push_back(camera);

@@ -107,12 +107,13 @@ class SceneCheck {
     Require(same == 1, what, "another camera has the same name");
     const Expected<Camera> rendering = RenderingCamera(camera);
     if (!rendering) return Fail(rendering.error());
-    const Expected<Camera> told = PublishedCamera(camera);
-    if (!told) return Fail(told.error());
+    const Expected<Camera> assumed = PublishedCamera(camera);
+    if (!assumed) return Fail(assumed.error());
     Require(
-        told->width_px == rendering->width_px && told->height_px == rendering->height_px, what,
+        assumed->width_px == rendering->width_px && assumed->height_px == rendering->height_px,
+        what,
         fmt::format("its image has {} x {} px, assumed_intrinsics say {} x {}", rendering->width_px,
-                    rendering->height_px, told->width_px, told->height_px));
+                    rendering->height_px, assumed->width_px, assumed->height_px));
     cameras_.push_back(*rendering);
   }
 

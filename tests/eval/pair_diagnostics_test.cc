@@ -32,10 +32,10 @@ void RotateLabels(CalibrationProblem& problem, int view, int board, int turns) {
 }
 
 TEST(PairDiagnostics, ReportsNothingForGoodData) {
-  const PairDiagnostics judgement = DiagnosePairs(CleanProblem(3));
-  EXPECT_FALSE(judgement.order);
-  EXPECT_FALSE(judgement.mirrored_rmse_m);
-  EXPECT_THAT(judgement.edges, testing::IsEmpty());
+  const PairDiagnostics diagnostics = DiagnosePairs(CleanProblem(3));
+  EXPECT_FALSE(diagnostics.order);
+  EXPECT_FALSE(diagnostics.mirrored_rmse_m);
+  EXPECT_THAT(diagnostics.edges, testing::IsEmpty());
 }
 
 TEST(PairDiagnostics, FindsRotatedLabelsOfOneBoard) {
@@ -43,16 +43,16 @@ TEST(PairDiagnostics, FindsRotatedLabelsOfOneBoard) {
     const CalibrationProblem truth = CleanProblem(1);
     CalibrationProblem problem = truth;
     RotateLabels(problem, 0, 1, turns);
-    const PairDiagnostics judgement = DiagnosePairs(problem);
-    ASSERT_TRUE(judgement.order);
-    EXPECT_FALSE(judgement.order->boards_swapped);
-    EXPECT_EQ(judgement.order->moved.size(), 4U);
-    EXPECT_LT(judgement.order->rmse_reordered_m, 0.03);
-    const CalibrationProblem reordered = Reordered(problem, *judgement.order);
+    const PairDiagnostics diagnostics = DiagnosePairs(problem);
+    ASSERT_TRUE(diagnostics.order);
+    EXPECT_FALSE(diagnostics.order->boards_swapped);
+    EXPECT_EQ(diagnostics.order->moved.size(), 4U);
+    EXPECT_LT(diagnostics.order->rmse_reordered_m, 0.03);
+    const CalibrationProblem reordered = Reordered(problem, *diagnostics.order);
     for (std::size_t i = 0; i < truth.pairs_3d3d.size(); ++i) {
       EXPECT_EQ(reordered.pairs_3d3d[i].point_in_lidar, truth.pairs_3d3d[i].point_in_lidar);
     }
-    EXPECT_THAT(Describe(judgement).front(), HasSubstr("--reorder uses it"));
+    EXPECT_THAT(Describe(diagnostics).front(), HasSubstr("--reorder uses it"));
   }
 }
 
@@ -63,10 +63,10 @@ TEST(PairDiagnostics, FindsSwappedBoardsAndReversedOrders) {
   for (std::size_t i = 0; i < 4; ++i)
     std::swap(pairs[i].point_in_lidar, pairs[i + 4].point_in_lidar);
   std::swap(pairs[9].point_in_lidar, pairs[11].point_in_lidar);
-  const PairDiagnostics judgement = DiagnosePairs(problem);
-  ASSERT_TRUE(judgement.order);
-  EXPECT_TRUE(judgement.order->boards_swapped);
-  const CalibrationProblem reordered = Reordered(problem, *judgement.order);
+  const PairDiagnostics diagnostics = DiagnosePairs(problem);
+  ASSERT_TRUE(diagnostics.order);
+  EXPECT_TRUE(diagnostics.order->boards_swapped);
+  const CalibrationProblem reordered = Reordered(problem, *diagnostics.order);
   for (std::size_t i = 0; i < truth.pairs_3d3d.size(); ++i) {
     EXPECT_EQ(reordered.pairs_3d3d[i].point_in_lidar, truth.pairs_3d3d[i].point_in_lidar);
   }
@@ -75,20 +75,20 @@ TEST(PairDiagnostics, FindsSwappedBoardsAndReversedOrders) {
 TEST(PairDiagnostics, ReportsTheBoardWithInconsistentEdges) {
   CalibrationProblem problem = CleanProblem(2);
   problem.pairs_3d3d[13].point_in_lidar.z() += 0.3;
-  const PairDiagnostics judgement = DiagnosePairs(problem);
-  ASSERT_EQ(judgement.edges.size(), 1U);
-  EXPECT_EQ(judgement.edges[0].view, 1);
-  EXPECT_EQ(judgement.edges[0].board, 1);
-  EXPECT_THAT(Describe(judgement), testing::Contains(HasSubstr("board 1 of view 1")));
+  const PairDiagnostics diagnostics = DiagnosePairs(problem);
+  ASSERT_EQ(diagnostics.edges.size(), 1U);
+  EXPECT_EQ(diagnostics.edges[0].view, 1);
+  EXPECT_EQ(diagnostics.edges[0].board, 1);
+  EXPECT_THAT(Describe(diagnostics), testing::Contains(HasSubstr("board 1 of view 1")));
 }
 
 TEST(PairDiagnostics, ReportsANominalSizeThatDisagreesWithBothSensors) {
   CalibrationProblem problem = CleanProblem(1);
   problem.boards[0].top_right_m = 0.60;
-  const PairDiagnostics judgement = DiagnosePairs(problem);
-  ASSERT_FALSE(judgement.edges.empty());
-  EXPECT_EQ(judgement.edges[0].board, 0);
-  EXPECT_EQ(judgement.edges[0].known_m, 0.60);
+  const PairDiagnostics diagnostics = DiagnosePairs(problem);
+  ASSERT_FALSE(diagnostics.edges.empty());
+  EXPECT_EQ(diagnostics.edges[0].board, 0);
+  EXPECT_EQ(diagnostics.edges[0].known_m, 0.60);
 }
 
 TEST(PairDiagnostics, ReportsTheWeakRotationOfAlmostCollinearPoints) {
@@ -100,10 +100,10 @@ TEST(PairDiagnostics, ReportsTheWeakRotationOfAlmostCollinearPoints) {
     pair.point_in_lidar = truth.Inverse() * pair.point_in_cam;
     pair.point_in_cam.z() += 1e-3 * (pair.id.corner - 1.5);
   }
-  const PairDiagnostics judgement = DiagnosePairs(problem);
-  ASSERT_TRUE(judgement.weak_rotation);
-  EXPECT_GT(std::abs(judgement.weak_rotation->axis_in_cam.x()), 0.99);
-  EXPECT_THAT(Describe(judgement), testing::Contains(HasSubstr("rotation about")));
+  const PairDiagnostics diagnostics = DiagnosePairs(problem);
+  ASSERT_TRUE(diagnostics.weak_rotation);
+  EXPECT_GT(std::abs(diagnostics.weak_rotation->axis_in_cam.x()), 0.99);
+  EXPECT_THAT(Describe(diagnostics), testing::Contains(HasSubstr("rotation about")));
 }
 
 TEST(SimulatePairs, TheSameSeedGivesTheSameBytes) {

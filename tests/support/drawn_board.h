@@ -54,7 +54,7 @@ inline MarkedBoard DrawBoard(int id, const BoardCorners& corners, const ScanMark
 /// wall behind them.
 inline Scene PlacedBoards(int boards) {
   Scene scene;
-  scene.name = "hung boards";
+  scene.name = "two boards";
   for (int i = 0; i < boards; ++i) {
     const double side = boards == 1 ? 0.0 : 0.5 - 1.0 * i;
     const Eigen::Vector3d center(1.8, side, 0.02);

@@ -8,7 +8,7 @@
 
 namespace sextant::test {
 
-/// Folder of the real data: SEXTANT_DATA, else ../shared/data beside the checkout; none if absent.
+/// Folder of the real data: SEXTANT_DATA, else ../shared/data next to the checkout; none if absent.
 std::optional<std::filesystem::path> RealDataFolder();
 
 }  // namespace sextant::test

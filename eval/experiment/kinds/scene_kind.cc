@@ -82,11 +82,11 @@ Expected<KnownProblem> MakeKnown(const SceneObserver& observer, int views, const
   KnownProblem known;
   known.cam_from_lidar = observer.cam_from_lidar();
   for (int view = 0; view < views; ++view) {
-    const std::uint64_t hang_seed =
+    const std::uint64_t placement_seed =
         DeriveSeed(id.seed, "view", static_cast<std::uint64_t>(view), 0);
     SEXTANT_ASSIGN_OR_RETURN(CalibrationProblem seen,
-                             observer.Observe(observer.PlaceBoardsInRoom(hang_seed), id.seed, view,
-                                              kBetweenViews_s * view));
+                             observer.Observe(observer.PlaceBoardsInRoom(placement_seed), id.seed,
+                                              view, kBetweenViews_s * view));
     if (view == 0) {
       known.problem = std::move(seen);
       continue;

@@ -11,6 +11,7 @@
 #include "base/units.h"
 #include "features/lidar/corner_extractor.h"
 #include "geometry/random_vectors.h"
+#include "geometry/scan_marks.h"
 #include "io/text/number_text.h"
 #include "simulator/scene/camera_model.h"
 #include "simulator/scene/scene_file.h"
@@ -72,7 +73,7 @@ Expected<Rigid3d> ExtrinsicOf(const SceneSettings& settings, const Rigid3d& of_s
   return cam_from_lidar;
 }
 
-Expected<Camera> AssumedCamera(const SceneSettings& settings, const Camera& true_camera) {
+Expected<Camera> SolverCamera(const SceneSettings& settings, const Camera& true_camera) {
   Camera assumed = true_camera;
   if (!settings.assumed_intrinsics.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(const auto numbers,
@@ -124,7 +125,7 @@ Expected<SceneObserver> SceneObserver::Make(const SceneSettings& settings,
                      fmt::format("{}: camera {} cannot find any board", settings.scene, camera));
   }
   SEXTANT_ASSIGN_OR_RETURN(observer.assumed_camera_,
-                           AssumedCamera(settings, *PublishedCamera(scene_camera)));
+                           SolverCamera(settings, *PublishedCamera(scene_camera)));
   observer.lidar_ = *FindLidarModel(observer.scene_.lidar.model);
   if (const auto known = ExtractCorners(settings.extractor, {}, {});
       !known && known.error().code == ErrorCode::kUnknownName) {
@@ -140,6 +141,7 @@ Expected<SceneObserver> SceneObserver::Make(const SceneSettings& settings,
 
 Scene SceneObserver::PlaceBoardsInRoom(std::uint64_t seed) const {
   Scene scene = scene_;
+  // The purpose "hang" is part of the seeds of all recorded figures.
   Random random(DeriveSeed(seed, "hang", 0, 0));
   for (SceneBoard& board : scene.boards) {
     Vector6d delta;

@@ -53,7 +53,7 @@ class ColumnPasses {
     std::vector<std::vector<double>> columns;
   };
 
-  /// Requires wanted metrics; -1 stands for no metric, and its column stays empty. The rows must
+  /// Requires wanted metrics; -1 means no metric, and its column stays empty. The rows must
   /// outlive this object.
   ColumnPasses(const ConditionRows& rows, const std::vector<int>& metrics);
 
