@@ -6,6 +6,7 @@
 #include <atomic>
 #include <memory>
 
+#include "calibrate/calibrate.h"
 #include "eval/extractors/board_scenes.h"
 #include "io/bag/rosbag1_writer.h"
 #include "simulator/scene/camera_model.h"
@@ -142,6 +143,31 @@ TEST_F(Recording, OfManyPairsSomeAreTakenEvenly) {
   EXPECT_EQ(plan->moments[0].cloud, 0U);
   EXPECT_EQ(plan->moments[1].cloud, 3U);
   EXPECT_EQ(plan->moments[2].cloud, 6U);
+}
+
+TEST_F(Recording, IsCalibratedAsASessionWithItsOwnCamera) {
+  Record({0.0, 0.2});
+  std::vector<Frame> frames = TenthsOfASecond({0, 1});
+  frames[1].cloud_ns += 2'000'000'000;  // Too late to be taken for motion.
+  frames[1].image_ns += 2'000'000'000;
+  Write(frames);
+  const Session session{.bag = folder_.path() / "session.bag"};
+  const Expected<Calibration> calibration =
+      Calibrate(session, {.boards = boards_, .bootstrap_samples = 0});
+  ASSERT_TRUE(calibration) << calibration.error().message;
+  ASSERT_TRUE(calibration->result) << calibration->result.error().message;
+  EXPECT_EQ(calibration->observed.camera.width_px, 1280);
+  EXPECT_EQ(calibration->result->views.size(), 2U);
+  EXPECT_NEAR(*calibration->result->views[1].cloud_time_s, 3.1, 1e-9);
+  EXPECT_THAT(calibration->result->configuration, testing::Contains("tolerance_s: 0.05"));
+  Random random(DeriveSeed(1, "observe_bag", 0, 0));
+  const Rigid3d truth = TrueCamFromLidar(TaggedBoards(random));
+  EXPECT_LT(DistanceBetween(calibration->result->cam_from_lidar, truth).translation_m, 0.03);
+
+  const Expected<Calibration> unpaired =
+      Calibrate(session, {.boards = boards_, .tolerance_s = 0.001});
+  ASSERT_FALSE(unpaired);
+  EXPECT_THAT(unpaired.error().message, HasSubstr("session.bag: the time stamps never meet"));
 }
 
 }  // namespace
