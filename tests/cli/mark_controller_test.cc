@@ -91,7 +91,7 @@ TEST(MarkController, DraggingMovesThePictureAndMarksNothing) {
   controller.Move(at);  // The button is up: nothing moves.
   EXPECT_LT((controller.viewport().ToCanvas(pixel) - at - by).norm(), 1e-9);
   controller.LeftDown(at);
-  controller.Move(at + Eigen::Vector2d(2.0, 1.0));  // A hand that trembles still clicks.
+  controller.Move(at + Eigen::Vector2d(2.0, 1.0));  // A click by a trembling hand.
   controller.LeftUp(at + Eigen::Vector2d(2.0, 1.0));
   EXPECT_EQ(controller.session().marks().unfinished.size(), 1U);
 }

@@ -26,7 +26,7 @@ std::string Seed(const std::string& name) {
   return (test::SourceFolder() / "tests/fuzz/corpus" / name).string();
 }
 
-// The seed has a scan, an image of 2 x 2 and an encoded one, all of one moment.
+// The seed has a scan, an image of 2 x 2 and an encoded image, all with one time stamp.
 TEST(BagCommand, ListsTopicsAndPairs) {
   SKIP_WHERE_NOT_BUILT();
   const ProgramRun run = RunBag(Seed("rosbag1/lz4"));
@@ -38,7 +38,7 @@ TEST(BagCommand, ListsTopicsAndPairs) {
   EXPECT_THAT(run.out, HasSubstr("without a partner: 0 scans, 0 images"));
 }
 
-TEST(BagCommand, ExtractsWhatOtherCommandsRead) {
+TEST(BagCommand, ExtractsFilesThatOtherCommandsRead) {
   SKIP_WHERE_NOT_BUILT();
   const std::filesystem::path folder = TestFolder() / "out";
   const ProgramRun run = RunBag(Seed("rosbag1/none") + " --extract " + folder.string());
@@ -77,7 +77,7 @@ TEST(BagCommand, ExtractsARealRecording) {
   EXPECT_THAT(run.out, HasSubstr(": 3 files"));
 }
 
-TEST(BagCommand, RefusesWhatIsNoRecordingOrSaysHowToReadIt) {
+TEST(BagCommand, RefusesAFileThatIsNoRecordingOrNamesWhatToInstall) {
   const ProgramRun run = RunBag(Seed("ply/ascii"));
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err,

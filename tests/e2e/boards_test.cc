@@ -6,6 +6,7 @@
 #include <string>
 
 #include "e2e/run_sextant.h"
+#include "e2e/shared_session.h"
 #include "support/pictures.h"
 #include "support/run_program.h"
 
@@ -38,14 +39,7 @@ boards:
 )";
 
 // Two scans of two boards, with the file of the boards beside them.
-fs::path SimulatedScans() {
-  fs::path folder = TestFolder() / "session";
-  WriteText(TestFolder() / "scene.yaml", kSceneOfBoards);
-  const ProgramRun run = RunSextant("simulate " + (TestFolder() / "scene.yaml").string() +
-                                    " --scans 2 --out " + folder.string());
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  return folder;
-}
+fs::path SimulatedScans() { return test::SharedSession(kSceneOfBoards, "--scans 2"); }
 
 TEST(Boards, FindsThemInManyScansAndDrawsOne) {
   const fs::path session = SimulatedScans();
@@ -65,7 +59,7 @@ TEST(Boards, FindsThemInManyScansAndDrawsOne) {
   const json& found = result["scans"][0]["boards"];
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0]["board"], 0);
-  // Where the scene has it, in the LiDAR's frame: 2 m ahead, 0.5 m to the left.
+  // The scene's position in the LiDAR frame: 2 m ahead, 0.5 m to the left.
   EXPECT_NEAR(found[0]["center_in_lidar_m"][0].get<double>(), 2.0, 0.03);
   EXPECT_NEAR(found[0]["center_in_lidar_m"][1].get<double>(), 0.5, 0.03);
   EXPECT_EQ(found[0]["corners"]["in_lidar_m"].size(), 4U);
@@ -73,7 +67,7 @@ TEST(Boards, FindsThemInManyScansAndDrawsOne) {
   EXPECT_FALSE(test::ReadPicture(picture.string()).empty());
 }
 
-TEST(Boards, WhatIsMissingIsSaidAndEndsInOne) {
+TEST(Boards, AMissingBoardIsReportedAndEndsInOne) {
   const fs::path session = SimulatedScans();
   WriteText(TestFolder() / "large.yaml", "id: 7\ntop_right_m: 0.8\nright_bottom_m: 0.8\n");
   const ProgramRun run = RunSextant("boards " + (session / "scan_000.pcd").string() + " --board " +

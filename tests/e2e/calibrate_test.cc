@@ -6,6 +6,7 @@
 #include <string>
 
 #include "e2e/run_sextant.h"
+#include "e2e/shared_session.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 
@@ -23,7 +24,7 @@ using test::WriteText;
 using testing::HasSubstr;
 using testing::Not;
 
-// Two boards that swing slowly and far, so that each of a session's scans has them elsewhere.
+// Two boards that swing slowly and widely, so that they are in a different place in each scan.
 constexpr const char* kSceneToCalibrate = R"(sextant_scene: 1
 name: calibrate
 lidar: {model: vlp16, pose: {position_m: [0, 0, 1]}}
@@ -51,18 +52,13 @@ walls:
 )";
 
 fs::path Simulated(const std::string& options) {
-  fs::path folder = TestFolder() / "session";
-  WriteText(TestFolder() / "scene.yaml", kSceneToCalibrate);
-  const ProgramRun run = RunSextant("simulate " + (TestFolder() / "scene.yaml").string() +
-                                    " --interval 60 --out " + folder.string() + " " + options);
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  return folder;
+  return test::SharedSession(kSceneToCalibrate, "--interval 60 " + options);
 }
 
 std::string Out() { return " --out " + (TestFolder() / "result.yaml").string(); }
 
 TEST(Calibrate, ASimulatedSessionAsItStands) {
-  const fs::path session = Simulated("--scans 4");
+  const fs::path session = test::CopyOfSession(Simulated("--scans 4"));
   const fs::path out = TestFolder() / "result.json";
   const ProgramRun run =
       RunSextant("calibrate " + session.string() + Out() + " --json " + out.string());
@@ -79,13 +75,13 @@ TEST(Calibrate, ASimulatedSessionAsItStands) {
   RunSextant("calibrate " + session.string() + Out() + " --json " + again.string());
   EXPECT_EQ(ReadText(out), ReadText(again));
 
-  // Others beside it.
+  // With other solvers for comparison.
   const ProgramRun compared =
       RunSextant("calibrate " + session.string() + Out() + " --solver 'gnc(kabsch),kabsch,epnp'");
   EXPECT_EQ(compared.exit_code, 0) << compared.err;
   EXPECT_THAT(compared.out, HasSubstr("to first [mm]"));
 
-  // The third image with the first's scan.
+  // The third image with the scan of the first.
   fs::copy_file(session / "scan_000.pcd", session / "scan_002.pcd",
                 fs::copy_options::overwrite_existing);
   const ProgramRun mixed = RunSextant("calibrate " + session.string() + Out());
@@ -112,7 +108,7 @@ TEST(Calibrate, TheProblemFileGivesTheSameAnswerToSolve) {
   EXPECT_THAT(nowhere.err, HasSubstr("/proc/none/problem.yaml"));
 }
 
-TEST(Calibrate, OnePairByItsFilesSaysWhatItCannotKnow) {
+TEST(Calibrate, OnePairOfFilesWarnsOfTheSingleView) {
   const fs::path session = Simulated("--scans 1");
   const std::string files = " --image " + (session / "cam_000.png").string() + " --cloud " +
                             (session / "scan_000.pcd").string() + " --camera " +
@@ -135,8 +131,8 @@ TEST(Calibrate, OnePairByItsFilesSaysWhatItCannotKnow) {
   EXPECT_THAT(wrong.out, HasSubstr("board file: distances in the images are"));
 }
 
-TEST(Calibrate, NothingInCommonIsAnAnswerOfItsOwn) {
-  const fs::path session = Simulated("--scans 1");
+TEST(Calibrate, NoCommonBoardEndsInOne) {
+  const fs::path session = test::CopyOfSession(Simulated("--scans 1"));
   std::string boards = ReadText(session / "boards.yaml");
   for (const char* id : {"id: 26", "id: 582"}) {
     const std::size_t at = boards.find(id);
@@ -150,7 +146,7 @@ TEST(Calibrate, NothingInCommonIsAnAnswerOfItsOwn) {
   EXPECT_THAT(run.err, HasSubstr("was not found"));
 }
 
-TEST(Calibrate, WrongUseIsSaid) {
+TEST(Calibrate, WrongUseIsReported) {
   const ProgramRun nothing = RunSextant("calibrate");
   EXPECT_EQ(nothing.exit_code, 2);
   EXPECT_THAT(nothing.err, HasSubstr("--image"));

@@ -40,16 +40,36 @@ TEST(Cli, NamesTheCommandThatIsMeant) {
   EXPECT_EQ(run.err, "sextant has no command 'calibrat'; did you mean 'calibrate'?\n");
 }
 
+TEST(Cli, NamesTheNewNameOfARenamedCommand) {
+  for (const auto& [old_name, new_name] :
+       {std::pair("board", "print-board"), std::pair("solvers", "list solvers"),
+        std::pair("detectors", "list detectors"), std::pair("extractors", "list extractors"),
+        std::pair("lidars", "list lidars"), std::pair("kinds", "list kinds")}) {
+    const ProgramRun run = RunSextant(old_name);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(run.err,
+              std::string("'sextant ") + old_name + "' is now 'sextant " + new_name + "'\n");
+  }
+}
+
+// OpenCV's image formats depend on more than a hundred shared objects; see io/images.
+TEST(Cli, StartsWithoutTheImageFormats) {
+  const ProgramRun run = test::RunProgram("LD_TRACE_LOADED_OBJECTS=1 " SEXTANT_BINARY, "");
+  ASSERT_THAT(run.out, HasSubstr("libopencv_core")) << run.err;
+  EXPECT_THAT(run.out, Not(HasSubstr("libopencv_imgcodecs")));
+}
+
 TEST(Cli, HelpTeachesEveryCommand) {
   const ProgramRun top = RunSextant("--help");
   EXPECT_EQ(top.exit_code, 0);
-  for (const char* command : {"solve", "compare", "average", "list", "convert", "run", "merge",
-                              "simulate", "mark", "bag", "print-board"}) {
-    EXPECT_THAT(top.out, HasSubstr(command));
+  for (const char* command : {"calibrate", "advise", "project", "export", "detect", "boards",
+                              "mark", "bag", "simulate", "print-board", "convert", "fuse", "solve",
+                              "compare", "average", "list", "run", "merge", "reproduce"}) {
+    EXPECT_THAT(top.out, HasSubstr(std::string("\n  ") + command + " "));
     const ProgramRun help = RunSextant(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0);
+    EXPECT_THAT(help.out, HasSubstr("Example"));
   }
-  EXPECT_THAT(RunSextant("solve --help").out, HasSubstr("Example"));
   EXPECT_THAT(RunSextant("--version").out, testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+\n"));
 }
 
@@ -108,12 +128,12 @@ TEST(Cli, SolvesBoardViewsOfAFileByTheJointSolver) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json pose = json::parse(run.out).at("results").at(0).at("cam_from_lidar");
   for (int i = 0; i < 3; ++i) {
-    const double told = pose.at("matrix").at(static_cast<std::size_t>(i)).at(3);
-    EXPECT_NEAR(told, views->true_cam_from_lidar.translation[i], 1e-5);
+    const double solved = pose.at("matrix").at(static_cast<std::size_t>(i)).at(3);
+    EXPECT_NEAR(solved, views->true_cam_from_lidar.translation[i], 1e-5);
   }
 }
 
-TEST(Cli, JsonFileStandsBesideTheText) {
+TEST(Cli, JsonIsWrittenInAdditionToTheText) {
   const auto path = TestFolder() / "result.json";
   const ProgramRun run = RunSextant("solve " + SimulatedSession() + " --json " + path.string());
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -187,7 +207,7 @@ TEST(Cli, DrawsTheResiduals) {
   EXPECT_EQ(RunSextant("compare " + session + " --plot /nowhere/plot.svg").exit_code, 2);
 }
 
-TEST(Cli, ReordersCornersWhereAskedAndSaysSoWhereNot) {
+TEST(Cli, ReordersCornersOnRequestAndAdvisesItOtherwise) {
   const std::string session = SimulatedSession("--outliers 0");
   const auto path = TestFolder() / "points.txt";
   ASSERT_EQ(RunSextant("convert " + session + " " + path.string()).exit_code, 0);
@@ -200,9 +220,9 @@ TEST(Cli, ReordersCornersWhereAskedAndSaysSoWhereNot) {
   for (const std::string& line : lines) text += line + "\n";
   WriteText(path, text);
 
-  const ProgramRun told =
+  const ProgramRun given =
       RunSextant("solve " + path.string() + " --json " + (TestFolder() / "given.json").string());
-  EXPECT_THAT(told.out, HasSubstr("--reorder uses it"));
+  EXPECT_THAT(given.out, HasSubstr("--reorder uses it"));
   const ProgramRun taken = RunSextant("solve " + path.string() + " --reorder --json " +
                                       (TestFolder() / "taken.json").string());
   EXPECT_EQ(taken.exit_code, 0) << taken.err;
@@ -241,7 +261,7 @@ struct BadInput {
 
 class BadFile : public testing::TestWithParam<BadInput> {};
 
-// Never a crash, a hang or a pose: exit code 1 or 2 and one line that names the file.
+// No crash, no hang and no pose: exit code 1 or 2, and one line that names the file.
 TEST_P(BadFile, EndsInOneLineThatNamesIt) {
   const auto path = TestFolder() / "bad.txt";
   WriteText(path, GetParam().text);

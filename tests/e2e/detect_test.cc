@@ -77,7 +77,7 @@ TEST(Detect, WithoutABoardListsTheTagsOfAFamily) {
   const ProgramRun run = Detect(TestPath("photo.png") + " --detector 'aruco(dictionary=original)'");
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("tag 26 of aruco_original"));
-  // Nothing of the usual family: it says what there is.
+  // The default family has no tag in it: the output names the family that has.
   const ProgramRun other = Detect(TestPath("photo.png"));
   EXPECT_EQ(other.exit_code, 1);
   EXPECT_THAT(other.out, AllOf(HasSubstr("no tag"), HasSubstr("aruco_original would find: 26")));
@@ -149,7 +149,7 @@ TEST(Detect, BadBoardsAndDetectorsAreRefused) {
   EXPECT_EQ(Detect("").exit_code, 2);
 }
 
-TEST(Detect, AWrongDictionaryIsToldFromARealPhoto) {
+TEST(Detect, AWrongDictionaryIsReportedForARealPhoto) {
   SEXTANT_REAL_DATA(photo, "dhall/photos/setup_view1.jpg");
   const ProgramRun listed = Detect(photo.string() + " --detector 'aruco(dictionary=6x6_250)'");
   EXPECT_EQ(listed.exit_code, 1);
@@ -165,7 +165,7 @@ TEST(Detect, AWrongDictionaryIsToldFromARealPhoto) {
           "there is no tag of aruco_6x6_1000, but there are tags of aruco_original: 26, 582"));
 }
 
-TEST(Detect, NoTagIsSaidPlainly) {
+TEST(Detect, ReportsThatThereIsNoTag) {
   SEXTANT_REAL_DATA(image, "ouster64/images/frame3.png");
   const ProgramRun run = Detect(image.string() + " --quick");
   EXPECT_EQ(run.exit_code, 1);

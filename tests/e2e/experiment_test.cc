@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 std::string Quoted(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
 
-// A small experiment with every sort of output; returns its path.
+// Writes a small experiment with every kind of output; returns its path.
 std::filesystem::path WriteExperiment(int trials) {
   std::filesystem::path path = TestFolder() / "small.yaml";
   WriteText(path,
@@ -76,7 +76,7 @@ TEST(Run, SameBytesOnOneAndTwoThreads) {
   }
 }
 
-TEST(Run, KilledAtAnyMomentItGoesOn) {
+TEST(Run, ContinuesAfterBeingKilledAtAnyMoment) {
   const std::filesystem::path experiment = WriteExperiment(4000);
   ASSERT_EQ(RunSextant(RunArguments(experiment, "whole", "--no-csv")).exit_code, 0);
   for (const char* seconds : {"0.05", "0.1", "0.15", "0.2"}) {
@@ -88,7 +88,7 @@ TEST(Run, KilledAtAnyMomentItGoesOn) {
   EXPECT_TRUE(Rows("killed") == Rows("whole"));
 }
 
-// A limit of the file's size stands for a full disk.
+// A limit of the file size simulates a full disk.
 TEST(Run, AFullDiskLosesNothing) {
   const std::filesystem::path experiment = WriteExperiment(2000);
   ASSERT_EQ(RunSextant(RunArguments(experiment, "whole", "--no-csv")).exit_code, 0);

@@ -21,7 +21,7 @@ using test::TestPath;
 using test::WriteText;
 using testing::HasSubstr;
 
-// cam1 stands 1 m to the left of cam2 (x to the right), both turned alike against the LiDAR.
+// cam1 is 1 m to the left of cam2 (x to the right); both have the same rotation to the LiDAR.
 constexpr const char* kFirst = "0 -1 0 0\n0 0 -1 0\n1 0 0 0\n0 0 0 1\n";
 constexpr const char* kSecond = "0 -1 0 -1\n0 0 -1 0\n1 0 0 0\n0 0 0 1\n";
 
@@ -61,7 +61,7 @@ TEST(Fuse, MovesEveryCloudToTheFrameOfTheLast) {
   }
 }
 
-TEST(Fuse, SaysWhatIsMissing) {
+TEST(Fuse, ReportsWhatIsMissing) {
   WriteClouds();
   const std::string a = TestPath("a.pcd") + " ";
   const std::string b = TestPath("b.pcd") + " ";
@@ -85,14 +85,14 @@ TEST(Fuse, SaysWhatIsMissing) {
   }
 }
 
-// The published pose brings more surfaces together, and closer, than none. (Not the median: both
-// scans have the ground at the same height below the sensor, whatever the pose.)
+// The published pose brings more surfaces together, and closer, than none. (Not the median: in both
+// scans the ground is at the same height below the sensor, for either pose.)
 TEST(Fuse, RealScansAgreeUnderTheirPublishedPose) {
   SEXTANT_REAL_DATA(folder, "gicp");
   WriteText(TestPath("same.txt"), "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   const std::string clouds =
       "fuse " + (folder / "source.ply").string() + " " + (folder / "target.ply").string();
-  struct Said {
+  struct Agreement {
     double overlap = 0.0;
     double rms_mm = 0.0;
   };
@@ -104,10 +104,10 @@ TEST(Fuse, RealScansAgreeUnderTheirPublishedPose) {
       const std::size_t at = run.out.find(text);
       return at == std::string::npos ? -1.0 : std::stod(run.out.substr(at + text.size()));
     };
-    return Said{number_after("source.ply: "), number_after("rms ")};
+    return Agreement{number_after("source.ply: "), number_after("rms ")};
   };
-  const Said published = fuse((folder / "T_target_source.txt").string());
-  const Said none = fuse(TestPath("same.txt"));
+  const Agreement published = fuse((folder / "T_target_source.txt").string());
+  const Agreement none = fuse(TestPath("same.txt"));
   EXPECT_GT(none.rms_mm, 0.0);
   EXPECT_GT(published.overlap, none.overlap);
   EXPECT_LT(published.rms_mm, none.rms_mm);

@@ -33,9 +33,10 @@ using testing::HasSubstr;
 
 constexpr int kWidth = 1280;
 constexpr int kHeight = 800;
-constexpr double kSeconds = 20.0;  // For what takes a fraction of one on an idle machine.
+constexpr double kSeconds =
+    20.0;  // Limit for what takes a fraction of a second on an idle machine.
 
-// A scan of the paper's board, and the projection in which it is shown.
+// A scan of the paper's board, and the projection of the window.
 struct Drawing {
   Scene scene = test::PlacedBoards(1);
   ScanMarks projection{.camera = AssumedCamera(1280, 720), .cam_from_lidar = AxesCamFromLidar()};
@@ -48,10 +49,10 @@ void WriteScan(const Scene& scene) {
   test::WriteText(TestPath("scan.pcd"), FormatPcd(scan.cloud));
 }
 
-// Of the scan in the file, chosen by the marks. The medians of these extractors are 2.2, 4.7 and
-// 12 mm; `most_m` is four times as much.
+// Corners of the scan in the file, extracted by the marks. The median errors of these extractors
+// are 2.2, 4.7 and 12 mm; `max_m` is about four times as much.
 void ExpectCornersNear(const SceneBoard& board, const ScanMarks& marks, const char* extractor,
-                       double most_m) {
+                       double max_m) {
   const Expected<PointCloud> cloud = ReadPcd(TestPath("scan.pcd"));
   ASSERT_TRUE(cloud) << cloud.error().message;
   const auto patches =
@@ -61,7 +62,7 @@ void ExpectCornersNear(const SceneBoard& board, const ScanMarks& marks, const ch
   ASSERT_TRUE(corners) << corners.error().message;
   const test::BoardCorners truth = test::CornersOf(board, {});
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    EXPECT_LT((corners->in_lidar[i] - truth[i]).norm(), most_m) << extractor << " " << i;
+    EXPECT_LT((corners->in_lidar[i] - truth[i]).norm(), max_m) << extractor << " " << i;
   }
 }
 
@@ -77,7 +78,7 @@ class OpenWindow {
   int Wait() { return program_.Wait(kSeconds); }
   void Press(const std::string& key) { display_.Do("key " + key); }
 
-  // The window stands in the corner of the screen: no window manager moves it.
+  // The window is in the corner of the screen, because no window manager moves it.
   void Click(const std::vector<Eigen::Vector2d>& canvas, int button = 1) {
     std::string events;
     for (const Eigen::Vector2d& at : canvas) {
@@ -86,7 +87,7 @@ class OpenWindow {
     display_.Do(events);
   }
 
-  // The wheel; then waits for the window that may take the place of this one.
+  // Turns the wheel, and waits for the window that may replace this one.
   void TurnWheel(const Eigen::Vector2d& canvas, int notches) {
     Click({canvas}, 2);  // Middle: does nothing but shows that the pointer is there.
     display_.Do(fmt::format("click --repeat {} --delay 0 4", notches));
@@ -120,7 +121,7 @@ std::vector<Eigen::Vector2d> OnCanvas(const MarkViewport& view, const Quadrilate
   return clicks;
 }
 
-// What the autosave file holds once it holds as many edges and clicks.
+// Whether the autosave file gets that many edges and clicks in time.
 bool IsKept(std::size_t edges, std::size_t clicks) {
   return Eventually(kSeconds, [&] {
     const Expected<ScanMarks> kept = ReadPolygons(TestPath("polygons.yaml.autosave"));
@@ -169,7 +170,7 @@ TEST(Mark, ABoardDrawnByClicksIsSaved) {
   EXPECT_TRUE(marks->unfinished.empty());
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t k = 0; k < 4; ++k) {
-      // The pointer stands on whole pixels of the canvas, within half of one of what was meant.
+      // The pointer is on whole pixels of the canvas, within half a pixel of the intended position.
       EXPECT_LT((marks->boards[0].edges[i][k] - edges[i][k]).norm(), 0.8) << i << " " << k;
     }
   }
@@ -178,7 +179,7 @@ TEST(Mark, ABoardDrawnByClicksIsSaved) {
   ExpectCornersNear(drawing.scene.boards[0], *marks, "lines3d", 0.050);
 }
 
-TEST(Mark, WhatIsNotSavedIsThereAtTheNextStart) {
+TEST(Mark, UnsavedMarksAreThereAtTheNextStart) {
   if (!VirtualDisplay::IsInstalled()) GTEST_SKIP() << VirtualDisplay::kAbsent;
   const Drawing drawing;
   WriteScan(drawing.scene);
@@ -190,7 +191,7 @@ TEST(Mark, WhatIsNotSavedIsThereAtTheNextStart) {
     window.Click({{300, 300}});
     ASSERT_TRUE(IsKept(1, 1));
     window.Press("q");
-    window.Press("q");  // The first asks.
+    window.Press("q");  // The first one warns.
     EXPECT_EQ(window.Wait(), 1);
     EXPECT_THAT(test::ReadText(TestPath("log")), HasSubstr("polygons.yaml.autosave"));
   }
@@ -216,7 +217,7 @@ test::ProgramRun Mark(const std::string& arguments) {
                           "mark " + arguments);
 }
 
-TEST(Mark, WithoutADisplayItSaysWhatToDo) {
+TEST(Mark, WithoutADisplayItGivesAdvice) {
   const test::ProgramRun none = Mark("--cloud scan.pcd");
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_THAT(none.err, HasSubstr("DISPLAY is not set"));
@@ -227,7 +228,7 @@ TEST(Mark, WithoutADisplayItSaysWhatToDo) {
   EXPECT_THAT(dead.err, HasSubstr("nothing answers on DISPLAY=:4711"));
 }
 
-TEST(Mark, ItsPictureCanBeHadWithoutADisplay) {
+TEST(Mark, RendersAPictureWithoutADisplay) {
   const Drawing drawing;
   WriteScan(drawing.scene);
   ScanMarks marks = drawing.projection;
@@ -242,7 +243,7 @@ TEST(Mark, ItsPictureCanBeHadWithoutADisplay) {
   EXPECT_EQ(Mark(files + " --render window.bmp").exit_code, 2);
 }
 
-// How many pixels of the window's picture two ways of starting it differ in.
+// The number of pixels that differ in the window's picture between two sets of options.
 int DifferingPixels(const std::string& a, const std::string& b) {
   const std::string files = "--cloud " + TestPath("scan.pcd") + " --out " + TestPath("none.yaml");
   std::vector<cv::Mat> pictures;
@@ -254,12 +255,12 @@ int DifferingPixels(const std::string& a, const std::string& b) {
   return cv::countNonZero(pictures[0] != pictures[1]);
 }
 
-TEST(Mark, APoseMayComeAsNumbersFromFilesOrAsAYaw) {
+TEST(Mark, APoseIsReadFromNumbersFilesOrAYaw) {
   const Drawing drawing;
   WriteScan(drawing.scene);
   const Eigen::AngleAxisd turn(-0.25 * std::numbers::pi, Eigen::Vector3d::UnitZ());
   const Rigid3d pose = AxesCamFromLidar() * Rigid3d{Eigen::Quaterniond(turn), {0, 0, 0}};
-  // To the left: what is ahead and left of the LiDAR is in the middle.
+  // To the left: a point ahead and left of the LiDAR is in the middle.
   EXPECT_LT((pose * Eigen::Vector3d(1.0, 1.0, 0.0)).head<2>().norm(), 1e-9);
   const Eigen::Quaterniond& q = pose.rotation;
   const std::string numbers =

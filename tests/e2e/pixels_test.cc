@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// solve and compare on 2D-3D pairs: what the answer carries, and bad input of every kind.
+// solve and compare on 2D-3D pairs: the contents of the answer, and bad input of every kind.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ const std::vector<Point> kPoints = {{-0.9, -0.5, 3.1}, {0.8, -0.6, 2.4}, {0.7, 0
                                     {-0.6, 0.7, 2.6},  {0.1, 0.2, 3.4},  {-0.3, -0.8, 2.2},
                                     {0.5, 0.1, 2.9},   {-0.8, 0.2, 3.6}};
 
-// The camera stands where the LiDAR does: the point is seen at its own projection, times `sign`.
+// The camera and the LiDAR are in the same place; `sign` -1 puts the point behind the camera.
 std::string Row(const Point& p, double sign = 1.0) {
   const double u = 639.5 + 700.0 * p[0] / p[2];
   const double v = 359.5 + 700.0 * p[1] / p[2];
@@ -94,7 +94,7 @@ TEST(Pixels, BothErrorsStandInTheAnswerWhereBothKindsAreGiven) {
   }
 }
 
-TEST(Pixels, IntrinsicsStandInTheAnswerWhereTheyAreEstimated) {
+TEST(Pixels, EstimatedIntrinsicsAreInTheAnswer) {
   const std::string pairs = InFolder("pairs.csv", Csv(kPoints));
   std::string wrong = kCamera;
   for (std::size_t at = wrong.find("700"); at != std::string::npos; at = wrong.find("700")) {
@@ -112,7 +112,7 @@ TEST(Pixels, IntrinsicsStandInTheAnswerWhereTheyAreEstimated) {
   EXPECT_GT(camera.at("estimated").at(1).at("sigma").get<double>(), 0.1);
 }
 
-TEST(Pixels, TheCameraOfAProblemFileServesOthers) {
+TEST(Pixels, TheCameraOfAProblemFileCanBeUsedForOthers) {
   const std::string session = (TestFolder() / "session.yaml").string();
   ASSERT_EQ(RunSextant("simulate pairs --out " + session).exit_code, 0);
   const std::string pairs = InFolder("pairs.csv", Csv(kPoints));
@@ -130,7 +130,7 @@ void PrintTo(const BadPairs& bad, std::ostream* out) { *out << bad.name; }
 class BadPixels : public testing::TestWithParam<BadPairs> {};
 
 // No pose, exit code 1 or 2, and one line that names the file and what is wrong with it.
-TEST_P(BadPixels, EndInOneLineThatSaysWhy) {
+TEST_P(BadPixels, EndInOneLineWithTheReason) {
   const std::string pairs = InFolder("bad.csv", GetParam().text);
   const std::string camera = InFolder("camera.yaml", kCamera);
   for (const char* solver : {"epnp", "'refine(ransac(epnp))'"}) {
@@ -175,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadPairs{"missing_field", kHeader + "1,1,1,1\n", "bad.csv:2:"}),
     [](const auto& kind) { return std::string(kind.param.name); });
 
-// Pixels that have nothing to do with the points, one pair after another.
+// Pixels that are unrelated to the points.
 TEST(Pixels, OnlyOutliersAreNoConsensus) {
   std::string text = kHeader;
   for (int i = 0; i < 40; ++i) {
@@ -239,7 +239,7 @@ TEST(Pixels, BadCamerasAreNamed) {
   EXPECT_EQ(RunSextant("solve " + pairs + " --camera " + TestFolder().string()).exit_code, 2);
 }
 
-TEST(Pixels, AMissingCameraIsAskedFor) {
+TEST(Pixels, AMissingCameraIsReported) {
   const std::string pairs = InFolder("pairs.csv", Csv(kPoints));
   for (const char* command : {"solve --solver epnp ", "compare "}) {
     const ProgramRun run = RunSextant(command + pairs);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sextant print-board`: what it prints is found again by `sextant detect`, at true scale.
+// `sextant print-board`: `sextant detect` finds the printed board, at true scale.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>

@@ -72,7 +72,7 @@ TEST(Reproduce, JudgesEveryClaimOnOnePage) {
   EXPECT_TRUE(std::filesystem::exists(TestFolder() / "paper" / "points" / "report.md"));
 }
 
-TEST(Reproduce, GoesOnWhereItWasAndGivesTheSamePage) {
+TEST(Reproduce, ContinuesWhereItWasAndGivesTheSamePage) {
   ASSERT_EQ(RunSextant(Arguments("one") + " --quick --threads 1").exit_code, 0);
   const std::string page = ReadText(TestFolder() / "one" / "REPRODUCTION.md");
   EXPECT_THAT(page, HasSubstr("sextant reproduce --quick"));
@@ -82,7 +82,7 @@ TEST(Reproduce, GoesOnWhereItWasAndGivesTheSamePage) {
   EXPECT_EQ(ReadText(TestFolder() / "two" / "REPRODUCTION.md"), page);
 }
 
-// Outside the range of ten trials lies one further trial in six: no reason to refute.
+// One trial in six is outside the range of ten others, which is no reason to refute.
 TEST(Reproduce, FewTrialsDoNotRefuteASingleMeasurement) {
   const std::string arguments = Arguments("paper");
   std::string experiment = kExperiment;
@@ -94,7 +94,7 @@ TEST(Reproduce, FewTrialsDoNotRefuteASingleMeasurement) {
                         "trials, 1 not testable."));
 }
 
-TEST(Reproduce, SaysWhatIsWrong) {
+TEST(Reproduce, ReportsWhatIsWrong) {
   const std::string arguments = Arguments("paper");
   std::string claims = kClaims;
   claims.replace(claims.find("subject: kabsch"), 15, "subject: kabsh ");
@@ -108,7 +108,7 @@ TEST(Reproduce, SaysWhatIsWrong) {
   EXPECT_THAT(absent.err, HasSubstr("nowhere.yaml"));
 }
 
-// The page's verdicts by where, claim and printed value.
+// The verdicts of the page, by place, claim and printed value.
 std::map<std::string, std::string> VerdictsOf(const std::filesystem::path& page) {
   std::map<std::string, std::string> verdicts;
   std::istringstream lines(ReadText(page));
@@ -123,7 +123,7 @@ std::map<std::string, std::string> VerdictsOf(const std::filesystem::path& page)
   return verdicts;
 }
 
-// The whole of it: the quick run judges every claim that paper/ judges, and contradicts none.
+// The quick run judges every claim that paper/ judges, and contradicts none.
 TEST(Reproduce, QuicklyAgreesWithThePageOfTheFullRun) {
   const std::filesystem::path root = test::SourceRoot();
   const ProgramRun run = RunSextant(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is done with a result: drawn, exported, and what it advises.
+// The commands that use a result: project, export and advise.
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 
@@ -10,6 +10,7 @@
 
 #include "calibrate/session/session.h"
 #include "e2e/run_sextant.h"
+#include "e2e/shared_session.h"
 #include "io/boards/board_file.h"
 #include "io/cameras/camera_file.h"
 #include "io/results/calibration_result.h"
@@ -43,14 +44,10 @@ walls:
   - {name: back, width_m: 8, height_m: 4, pose: {position_m: [4.4, 0, 1.5]}}
 )";
 
-// A simulated session and, beside it, a result with its true pose.
+// A simulated session, and a result with its true pose.
 class ResultCommands : public testing::Test {
  protected:
   void SetUp() override {
-    WriteText(TestFolder() / "scene.yaml", kSceneOfResult);
-    const ProgramRun run =
-        RunSextant("simulate " + (TestFolder() / "scene.yaml").string() + " --out " + Session());
-    ASSERT_EQ(run.exit_code, 0) << run.err;
     const auto session = ReadSession(Session());
     ASSERT_TRUE(session && session->true_cam_from_lidar);
     result_.version = "0.1.0";
@@ -61,7 +58,7 @@ class ResultCommands : public testing::Test {
     Write();
   }
 
-  static std::string Session() { return (TestFolder() / "session").string(); }
+  static std::string Session() { return test::SharedSession(kSceneOfResult).string(); }
   static std::string Result() { return (TestFolder() / "result.yaml").string(); }
   static std::string Picture() { return (TestFolder() / "out.png").string(); }
   void Write() const { WriteText(Result(), FormatCalibrationResult(result_)); }
@@ -86,11 +83,11 @@ TEST_F(ResultCommands, ProjectDrawsTheScanAndBothOutlines) {
   const ProgramRun run = Project();
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("board left: its centre by image (orange) and scan (white)"));
-  // Under the truth the two are off by what the extractors are: millimetres.
+  // With the true pose, the distance is the error of the extractors: millimetres.
   EXPECT_LT(MillimetresApart(run.out), 15.0);
   const cv::Mat picture = test::ReadPicture(Picture());
   ASSERT_EQ(picture.cols, result_.camera->width_px);
-  // The board is nearest and so blue; the wall behind it red: both are there.
+  // The board is nearest, so it is blue; the wall behind it is red.
   int blue = 0;
   int red = 0;
   for (const cv::Vec3b& p : cv::Mat_<cv::Vec3b>(picture)) {
@@ -105,7 +102,7 @@ TEST_F(ResultCommands, ProjectShowsAWrongPose) {
   result_.cam_from_lidar.translation.x() += 0.2;
   Write();
   EXPECT_NEAR(MillimetresApart(Project().out), 200.0, 15.0);
-  // Nothing of the scan is in the image with the camera turned round.
+  // With the camera turned around, no return is in the image.
   result_.cam_from_lidar.rotation = ExpSo3({0.0, 3.14159, 0.0}) * result_.cam_from_lidar.rotation;
   result_.boards.clear();
   Write();
@@ -114,7 +111,7 @@ TEST_F(ResultCommands, ProjectShowsAWrongPose) {
   EXPECT_THAT(nothing.err, HasSubstr("no return of"));
 }
 
-TEST_F(ResultCommands, ProjectSaysWhatDoesNotFit) {
+TEST_F(ResultCommands, ProjectReportsWhatDoesNotFit) {
   result_.camera->width_px = 640;
   Write();
   const ProgramRun wrong_size = Project();
@@ -175,7 +172,7 @@ TEST_F(ResultCommands, AdviseProposesAndDraws) {
   EXPECT_GT(picture.cols, 1000);
 }
 
-TEST_F(ResultCommands, AdviseSaysWhatItNeeds) {
+TEST_F(ResultCommands, AdviseReportsWhatItNeeds) {
   const ProgramRun absent = RunSextant("advise " + Session());
   EXPECT_EQ(absent.exit_code, 2);
   EXPECT_THAT(absent.err, HasSubstr("run sextant calibrate first"));

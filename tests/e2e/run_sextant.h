@@ -7,7 +7,7 @@
 
 namespace sextant::test {
 
-/// Runs the program that was built beside the tests.
+/// Runs the program that was built with the tests.
 inline ProgramRun RunSextant(const std::string& arguments) {
   return RunProgram(SEXTANT_BINARY, arguments);
 }

@@ -29,7 +29,7 @@ using test::RunSextant;
 using test::TestFolder;
 using testing::HasSubstr;
 
-// Two small cameras that differ, so that a topic with the other's messages is seen.
+// Two small cameras that differ, so that swapped topics are noticed.
 constexpr const char* kSceneOfTwoCameras = R"(sextant_scene: 1
 name: small
 lidar: {model: vlp16, pose: {position_m: [0, 0, 1]}}
@@ -93,14 +93,14 @@ TEST(SimulateBag, ItsMessagesAreTheSessionsFiles) {
     // The first message alone: the camera stays the same.
     const Expected<Camera> recorded =
         ReadCamera(extracted / (camera + "_camera_info") / "000000_1000000000.yaml");
-    const Expected<Camera> told = ReadCamera(out / (camera + "_info.yaml"));
-    ASSERT_TRUE(recorded && told);
-    EXPECT_EQ(FormatCameraInfo(*recorded, camera), FormatCameraInfo(*told, camera));
+    const Expected<Camera> written = ReadCamera(out / (camera + "_info.yaml"));
+    ASSERT_TRUE(recorded && written);
+    EXPECT_EQ(FormatCameraInfo(*recorded, camera), FormatCameraInfo(*written, camera));
   }
 }
 
 #ifdef SEXTANT_WITH_BAG
-TEST(SimulateBag, EveryMessageSaysItsFrameAndItsScansTime) {
+TEST(SimulateBag, EveryMessageHasItsFrameAndItsScansTime) {
   const fs::path out = TestFolder() / "session";
   ASSERT_EQ(Simulate(out, "--scans 2 --interval 0.25 --bag").exit_code, 0);
   const Expected<std::unique_ptr<Bag>> bag = OpenBag(out / "session.bag");

@@ -24,7 +24,7 @@ using testing::HasSubstr;
 using testing::Key;
 using testing::UnorderedElementsAre;
 
-// A small image, so that a session takes no time.
+// A small image, for a fast simulation.
 constexpr const char* kSceneToSimulate = R"(sextant_scene: 1
 name: small
 lidar: {model: vlp16, pose: {position_m: [0, 0, 1]}}
@@ -55,7 +55,7 @@ std::map<std::string, std::string> FilesIn(const fs::path& folder) {
   return files;
 }
 
-TEST(Simulate, WritesWhatAUserWouldHaveAndTheTruthApart) {
+TEST(Simulate, WritesAUsersFilesAndTheTruthSeparately) {
   const fs::path out = TestFolder() / "session";
   const ProgramRun run = RunSextant("simulate " + SceneFile() + " --out " + out.string());
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -88,13 +88,13 @@ TEST(Simulate, TheSameSeedGivesTheSameBytesAndAnotherOthers) {
   EXPECT_NE(first.at("scan_000.pcd"), first.at("scan_001.pcd"));
 }
 
-TEST(Simulate, AKilledRunGoesOnWhereItWas) {
+TEST(Simulate, AKilledRunContinuesWhereItWas) {
   const std::string scene = SceneFile();
   const std::string whole = (TestFolder() / "whole").string();
   const std::string killed = (TestFolder() / "killed").string();
   const std::string command = std::string(SEXTANT_BINARY) + " simulate " + scene + " --scans 8";
   ASSERT_EQ(RunSextant("simulate " + scene + " --scans 8 --out " + whole).exit_code, 0);
-  // Killed once its second image stands there.
+  // Killed as soon as its second image exists.
   test::RunProgram("sh", "-c '" + command + " --out " + killed + " & pid=$!; while [ ! -e " +
                              killed +
                              "/cam_001.png ] && kill -0 $pid; do sleep 0.001; done; kill "
@@ -109,7 +109,7 @@ TEST(Simulate, AKilledRunGoesOnWhereItWas) {
   EXPECT_EQ(FilesIn(killed), FilesIn(whole));
 }
 
-TEST(Simulate, MoreScansMayBeAskedForButNothingElseChanged) {
+TEST(Simulate, MoreScansMayBeAddedButNothingElseChanged) {
   const std::string scene = SceneFile();
   const std::string out = (TestFolder() / "session").string();
   ASSERT_EQ(RunSextant("simulate " + scene + " --out " + out).exit_code, 0);
@@ -128,7 +128,7 @@ TEST(Simulate, MoreScansMayBeAskedForButNothingElseChanged) {
   EXPECT_EQ(FilesIn(other).size(), 1U);
 }
 
-TEST(Simulate, TheFastLevelsAreProblemFiles) {
+TEST(Simulate, TheFastLevelsWriteProblemFiles) {
   const std::string scene = SceneFile();
   for (const std::string level : {"corners", "pairs"}) {
     const std::string out = (TestFolder() / level).string();

@@ -22,7 +22,9 @@ cv::Mat Gradient(int type) {
 int DifferingValues(const cv::Mat& a, const cv::Mat& b) {
   EXPECT_EQ(a.type(), b.type());
   EXPECT_EQ(a.size(), b.size());
-  return a.size() == b.size() ? cv::countNonZero((a != b).reshape(1)) : -1;
+  if (a.size() != b.size() || a.type() != b.type()) return -1;
+  const cv::Mat differs = a != b;
+  return cv::countNonZero(differs.reshape(1));
 }
 
 TEST(ImageCodec, PngIsLosslessForEveryDepth) {
