@@ -48,7 +48,7 @@ void AddWalls(Scene& scene) {
 
 }  // namespace
 
-SceneBoard PlaceBoard(const Board& board, const BoardPlacement& placement) {
+SceneBoard PlaceBoard(const Board& board, const ScenePlacement& placement) {
   const double azimuth = placement.azimuth_deg * kRadPerDeg;
   SceneBoard placed;
   placed.board = board;
@@ -126,7 +126,7 @@ Scene TwoBoardsInRoom(const BoardField& field, Random& random) {
     board.id = i;
     board.top_right_m = i == 0 ? 0.484 : 0.490;
     board.right_bottom_m = 0.468;
-    BoardPlacement placement;
+    ScenePlacement placement;
     placement.azimuth_deg =
         (i == 0 ? 1.0 : -1.0) * random.Uniform(field.min_azimuth_deg, field.max_azimuth_deg);
     placement.distance_m = field.distance_m * random.Uniform(0.95, 1.05);

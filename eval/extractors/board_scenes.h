@@ -8,7 +8,7 @@
 namespace sextant {
 
 /// Placement of a board in front of a LiDAR at the world's origin; angles in degrees.
-struct BoardPlacement {
+struct ScenePlacement {
   double azimuth_deg = 0.0;
   double distance_m = 1.8;
   double height_m = 0.0;
@@ -18,7 +18,7 @@ struct BoardPlacement {
 };
 
 /// The board with the pose of the placement.
-SceneBoard PlaceBoard(const Board& board, const BoardPlacement& placement);
+SceneBoard PlaceBoard(const Board& board, const ScenePlacement& placement);
 
 /// A room of 10 m x 10 m without a board: floor, walls, and a person, a cupboard and a pole at
 /// random places.
