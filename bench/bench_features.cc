@@ -13,7 +13,7 @@ extern "C" {
 
 #include "base/random.h"
 #include "features/camera/find_boards.h"
-#include "features/camera/opencv_aruco.h"
+#include "features/camera/tags/opencv_aruco.h"
 #include "geometry/board_check.h"
 #include "geometry/so3.h"
 #include "simulator/camera/render.h"

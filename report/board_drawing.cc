@@ -9,7 +9,7 @@
 #include <cmath>
 #include <memory>
 
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/tag_pattern.h"
 
 namespace sextant {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <mutex>
 
-#include "features/camera/apriltag_family.h"
 #include "features/camera/contrast_regions.h"
 #include "features/camera/image_noise.h"
+#include "features/camera/tags/apriltag_family.h"
 
 namespace sextant {
 namespace {

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "features/camera/aruco_dictionary.h"
 #include "features/camera/contrast_regions.h"
-#include "features/camera/opencv_aruco.h"
 #include "features/camera/tag_reading.h"
+#include "features/camera/tags/aruco_dictionary.h"
+#include "features/camera/tags/opencv_aruco.h"
 
 namespace sextant {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "features/camera/quad.h"
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/tag_pattern.h"
 #include "features/camera/undistortion.h"
 
 namespace sextant {

@@ -9,8 +9,8 @@
 #include <tuple>
 
 #include "features/camera/tag_detector.h"
-#include "features/camera/tag_pattern.h"
 #include "features/camera/tag_reading.h"
+#include "features/camera/tags/tag_pattern.h"
 #include "geometry/board_check.h"
 
 namespace sextant {

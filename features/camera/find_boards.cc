@@ -9,7 +9,7 @@
 
 #include "base/spec.h"
 #include "features/camera/grey_image.h"
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/tag_pattern.h"
 #include "geometry/board_check.h"
 
 namespace sextant {

@@ -13,7 +13,7 @@
 #include "features/camera/aruco_detector.h"
 #include "features/camera/checkerboard_detector.h"
 #include "features/camera/grey_image.h"
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/tag_pattern.h"
 
 namespace sextant {
 namespace {

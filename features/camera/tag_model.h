@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "features/camera/edge_pixels.h"
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/tag_pattern.h"
 
 namespace sextant {
 

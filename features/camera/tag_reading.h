@@ -4,7 +4,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "features/camera/quad.h"
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/tag_pattern.h"
 
 namespace sextant {
 

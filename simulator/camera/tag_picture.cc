@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/random.h"
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/tag_pattern.h"
 #include "geometry/board_check.h"
 #include "geometry/so3.h"
 #include "simulator/scene/camera_model.h"

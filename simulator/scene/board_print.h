@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/tag_pattern.h"
 #include "geometry/board.h"
 
 namespace sextant {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/tag_pattern.h"
 #include "geometry/board_check.h"
 #include "simulator/lidar/lidar_model.h"
 #include "simulator/scene/camera_model.h"

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "features/camera/apriltag_family.h"
-#include "features/camera/aruco_dictionary.h"
-#include "features/camera/opencv_aruco.h"
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/apriltag_family.h"
+#include "features/camera/tags/aruco_dictionary.h"
+#include "features/camera/tags/opencv_aruco.h"
+#include "features/camera/tags/tag_pattern.h"
 #include "simulator/camera/render.h"
 #include "simulator/scene/camera_model.h"
 #include "support/edge_fit.h"

@@ -9,7 +9,7 @@
 
 #include "base/random.h"
 #include "features/camera/tag_detector.h"
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/tag_pattern.h"
 #include "support/grey_noise.h"
 
 namespace sextant {

@@ -8,7 +8,7 @@
 
 #include "features/camera/grey_image.h"
 #include "features/camera/quad.h"
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/tag_pattern.h"
 #include "support/run_program.h"
 
 namespace sextant {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/tag_pattern.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "features/camera/apriltag_family.h"
-#include "features/camera/aruco_dictionary.h"
-#include "features/camera/opencv_aruco.h"
+#include "features/camera/tags/apriltag_family.h"
+#include "features/camera/tags/aruco_dictionary.h"
+#include "features/camera/tags/opencv_aruco.h"
 
 namespace sextant::test {
 namespace {

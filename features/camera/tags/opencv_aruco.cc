@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "features/camera/opencv_aruco.h"
+#include "features/camera/tags/opencv_aruco.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "features/camera/aruco_dictionary.h"
+#include "features/camera/tags/aruco_dictionary.h"
 
 #include <fmt/core.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/tag_pattern.h"
 
 #include <fmt/core.h>
 
@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "base/nearest_name.h"
-#include "features/camera/apriltag_family.h"
-#include "features/camera/aruco_dictionary.h"
+#include "features/camera/tags/apriltag_family.h"
+#include "features/camera/tags/aruco_dictionary.h"
 
 namespace sextant {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "features/camera/opencv_aruco.h"
-#include "features/camera/tag_pattern.h"
+#include "features/camera/tags/opencv_aruco.h"
+#include "features/camera/tags/tag_pattern.h"
 
 namespace sextant {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "features/camera/apriltag_family.h"
+#include "features/camera/tags/apriltag_family.h"
 
 extern "C" {
 #include <apriltag/tag16h5.h>
