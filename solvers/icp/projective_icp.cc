@@ -19,7 +19,7 @@ constexpr int kMinMatches = 30;
 constexpr std::size_t kMinPatches = 30;
 /// Relative eigenvalue of the normal matrix, with rotations scaled by the scene's size, below which
 /// a motion is undetermined.
-constexpr double kMinStiffness = 1e-4;
+constexpr double kMinMotionStiffness = 1e-4;
 
 // Matching in both directions, and the summed normal equations for (dphi, dt) of
 // target_from_source.
@@ -154,7 +154,7 @@ Expected<ProjectiveIcpFit> FitProjectiveIcp(std::span<const Eigen::Vector3d> tar
                                    "start, or raise max_distance_m",
                                    fit.iterations, equations.matches, kMinMatches));
     }
-    if (RelativeStiffness(equations.normal) < kMinStiffness) {
+    if (RelativeStiffness(equations.normal) < kMinMotionStiffness) {
       return MakeError(ErrorCode::kDegenerate,
                        fmt::format("projective icp, iteration {}: the surfaces seen in both scans "
                                    "leave a motion undetermined",
