@@ -13,12 +13,12 @@
 
 namespace sextant {
 
-/// Whoever finds a pose from the camera and 2D-3D pairs, or says that there is none. Called from
-/// several threads.
+/// A method that finds a pose from the camera and 2D-3D pairs, or none. Called from several
+/// threads.
 struct Contestant {
   std::string name;
   std::function<std::optional<Rigid3d>(const CalibrationProblem&)> find;
-  bool knows_inliers = false;  ///< Gets the true pairs only: what the noise alone allows.
+  bool knows_inliers = false;  ///< Gets the true pairs only: the limit set by noise alone.
 };
 Contestant ContestantOf(const SolverPtr& solver);
 Contestant ContestantThatKnowsInliers(const SolverPtr& solver);
@@ -27,33 +27,33 @@ Contestant ContestantThatKnowsInliers(const SolverPtr& solver);
 /// of 2 m at 3 m.
 struct OutlierStudy {
   std::uint64_t seed = 1;
-  int scenes = 100;  ///< Of each cell.
+  int scenes = 100;  ///< Per cell.
   int threads = 2;
   std::vector<int> pairs = {20, 100, 500};
   std::vector<double> outlier_fractions = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7};
   std::function<void()> after_scene = [] {};  ///< Called from any thread, for progress.
 };
 
-/// What counts as a success.
+/// Largest errors of a success.
 inline constexpr double kSuccessRotation = 0.5 * 0.017453292519943295;  // 0.5 degrees
 inline constexpr double kSuccessTranslation = 0.05;
 
-/// How one contestant did in the scenes of one size and share of outliers.
+/// The results of one contestant in the scenes of one size and share of outliers.
 struct OutlierCell {
   std::string contestant;
   int pairs = 0;
   double outlier_fraction = 0.0;
   int scenes = 0;
   int successes = 0;
-  int unanswered = 0;  ///< No pose, which is better than a wrong one.
+  int unanswered = 0;  ///< Scenes without a pose, which is better than a wrong one.
 };
 
-/// Cells by pairs, then contestants, then fractions: all contestants on the same scenes. The
-/// figures do not depend on the number of threads.
+/// Cells ordered by pairs, contestant and fraction; all contestants get the same scenes. The
+/// results do not depend on the number of threads.
 std::vector<OutlierCell> StudyOutliers(const OutlierStudy& study,
                                        std::span<const Contestant> contestants);
 
-/// The cells of so many pairs, a row a contestant: successes, and in parentheses wrong poses.
+/// The cells with `pairs` pairs, one row per contestant: successes, and wrong poses in parentheses.
 TextTable OutlierTable(std::span<const OutlierCell> cells, int pairs);
 
 }  // namespace sextant

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The accuracy of every registered solver on seeded scenes, against what it was: golden/NAME.json
-// holds the figures of golden/NAME.yaml. scripts/update-golden rewrites them through this test.
+// The accuracy of every registered solver on seeded scenes, compared with golden/NAME.json, the
+// figures of golden/NAME.yaml. scripts/update-golden rewrites them through this test.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "regression/golden_figures.h"
 #include "eval/experiment/run/run_trials.h"
 #include "io/text/text_file.h"
+#include "regression/golden_figures.h"
 #include "solvers/builtin_solvers.h"
 #include "support/run_program.h"
 #include "support/source_tree.h"
@@ -20,7 +20,7 @@ namespace {
 
 std::filesystem::path GoldenFolder() { return SourceRoot() / "tests" / "regression" / "golden"; }
 
-// The figures of the experiment as the solvers are now.
+// The figures of the experiment with the current solvers.
 std::vector<GoldenFigure> RunGolden(const std::string& name) {
   const Expected<Experiment> experiment =
       ReadExperiment(GoldenFolder() / (name + ".yaml"), BuiltinKinds(), BuiltinSolvers());
@@ -78,7 +78,7 @@ TEST(GoldenFigures, HoldEveryRegisteredSolver) {
   }
 }
 
-// The comparison sees what it looks for.
+// The comparison detects each kind of change.
 TEST(GoldenFigures, NameWhatGotWorseWhereAndByHowMuch) {
   const std::vector<GoldenFigure> golden = {
       {"20 pixels", "epnp", "median(rotation_deg)", 0.10, 0.09, 0.11},

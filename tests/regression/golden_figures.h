@@ -9,7 +9,7 @@
 
 namespace sextant {
 
-/// A figure of an experiment as it once was, with what chance alone makes of it.
+/// A stored figure of an experiment with its tolerance.
 struct GoldenFigure {
   std::string condition;
   std::string subject;
@@ -19,16 +19,16 @@ struct GoldenFigure {
   double high = 0.0;
 };
 
-/// The figures of the experiment's tables; those without a value or an interval are left out.
+/// The figures of the experiment's tables, without those that lack a value or an interval.
 std::vector<GoldenFigure> CollectFigures(const Experiment& experiment, const ReportData& data);
 
-/// A figure a line, so that a change reads well as a diff.
+/// One figure per line, for readable diffs.
 std::string FormatGolden(const std::vector<GoldenFigure>& figures);
 Expected<std::vector<GoldenFigure>> ParseGolden(const std::string& text, const std::string& file);
 
-/// What got worse by more than chance: a line each that says which solver, where and by how much.
-/// Worse are errors above their golden interval and rates below it. A figure that is new or gone is
-/// a line too.
+/// One line for each figure that got significantly worse: solver, condition and by how much. Worse
+/// means errors above the golden interval and rates below it. New and missing figures have a line
+/// too.
 std::vector<std::string> CompareWithGolden(const std::vector<GoldenFigure>& golden,
                                            const std::vector<GoldenFigure>& now);
 

@@ -28,7 +28,7 @@ namespace {
 constexpr int kProblems = 16;
 constexpr double kMaxSquared = 9.21;
 
-// One scene in the forms that kernels take.
+// One scene in the forms that the kernels need.
 struct Forms {
   RandomScene scene;
   std::vector<Eigen::Vector3d> in_cam;
@@ -70,14 +70,14 @@ std::vector<Forms> MakeForms(int pairs, double outliers, bool planar) {
   return all;
 }
 
-// A kernel that gives no answer would be fast.
+// A kernel without an answer would be fast.
 void Require(bool answered, const char* kernel) {
   if (answered) return;
   std::fprintf(stderr, "%s gave no answer\n", kernel);
   std::abort();
 }
 
-// solve(forms) says whether there is an answer.
+// solve(forms) returns whether there is an answer.
 template <class Solve>
 KernelCall CallOf(const char* name, int pairs, Solve solve, double outliers = 0.0,
                   bool planar = false) {
@@ -122,7 +122,7 @@ void AddRefinements(std::vector<KernelCall>& calls) {
   }
 }
 
-// What the loop of ransac does with a hypothesis.
+// The work of the loop of ransac on a hypothesis.
 void AddConsensus(std::vector<KernelCall>& calls) {
   calls.push_back(CallOf(
       "score_pixels", 100,

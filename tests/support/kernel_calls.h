@@ -7,18 +7,17 @@
 
 namespace sextant::test {
 
-/// A kernel with everything it needs at hand.
+/// A call of a kernel with its inputs.
 struct KernelCall {
-  std::string name;  ///< "kabsch/8": with the number of points.
-  int problems = 0;  ///< That one call solves, all different.
+  std::string name;  ///< "kabsch/8": the kernel and the number of points.
+  int problems = 0;  ///< Number of different problems that one call solves.
   std::function<void()> call;
 };
 
-/// The kernels that others are built from. What they need is made here and kept; the same in every
-/// run.
+/// Calls of the basic kernels. Inputs are made here, kept, and the same in every run.
 std::vector<KernelCall> KernelCalls();
 
-/// Whole solvers, by spec and number of pairs, which may allocate: "ransac(p3p)/100".
+/// Calls of whole solvers by spec and number of pairs, "ransac(p3p)/100". They may allocate.
 std::vector<KernelCall> SolverCalls();
 
 }  // namespace sextant::test

@@ -8,11 +8,11 @@
 
 namespace sextant {
 
-// Each binary that holds the contract tests defines these: the solvers that they run for.
+// Each binary with the contract tests defines these: the solvers that the tests run for.
 SolverRegistry RegistryUnderContract();
 std::vector<std::string> SpecsUnderContract();
 
-/// Why a solver need not keep a promise; empty where it must. `promise` is a test's name.
-std::string ExcuseFrom(const std::string& promise, const std::string& spec);
+/// Why a solver may lack a property; empty where it must have it. `property` is a test's name.
+std::string ExcuseFrom(const std::string& property, const std::string& spec);
 
 }  // namespace sextant
