@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels beside those of Eigen, on the same points.
+// The kernels compared with those of Eigen, on the same points.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Geometry>
@@ -23,7 +23,7 @@ struct PointPairs {
 
 constexpr double kSigma = 0.01;
 
-// Ten sigmas of a single point: only a wrong answer is farther off.
+// Ten sigmas of a single point: only a wrong answer has larger errors.
 constexpr Tolerance kTolerance = {.rotation_rad = 0.1, .translation_m = 0.1};
 
 std::vector<PointPairs> MakePointPairs(const benchmark::State& state) {
@@ -57,7 +57,7 @@ void Kabsch(benchmark::State& state) {
   }
 }
 
-// Matrix: how the points are stored, which decides what Eigen may keep on the stack.
+// Matrix: the type that stores the points; with a fixed size Eigen keeps them on the stack.
 template <class Matrix>
 Matrix Columns(const std::vector<Eigen::Vector3d>& points) {
   return Eigen::Map<const Eigen::Matrix3Xd>(points[0].data(), 3,
@@ -89,7 +89,7 @@ void UmeyamaFixed(benchmark::State& state) {
   Umeyama<Eigen::Matrix<double, 3, kCount>>(state);
 }
 
-// Ten to one and more: the two larger eigenvalues of Horn's matrix come close.
+// Elongation of 10:1 and more, where the two largest eigenvalues of Horn's matrix are close.
 void KabschElongated(benchmark::State& state) {
   std::vector<PointPairs> problems(64);
   Random random(2);
@@ -121,7 +121,7 @@ SEXTANT_MULTIVERSION double ReadAll(const double* numbers, std::size_t count) {
   return HorizontalSum((sums[0] + sums[1]) + (sums[2] + sums[3]));
 }
 
-// What the memory allows: the same arrays, read once.
+// The limit set by memory: reads the same arrays once.
 void Reading(benchmark::State& state) {
   const std::vector<PointPairs> problems = MakePointPairs(state);
   const std::size_t count = 3 * problems[0].in_cam.size();
@@ -135,7 +135,7 @@ void AllCounts(benchmark::internal::Benchmark* benchmark) {
   for (const int count : {3, 4, 8, 20, 100, 1000, 1000000}) benchmark->Arg(count);
 }
 
-// Names are task/implementation/N: the report compares those that differ in the second only.
+// Names are task/implementation/N: the report compares those that differ in the second part only.
 BENCHMARK(Kabsch)->Name("kabsch/sextant")->Apply(AllCounts);
 BENCHMARK(Umeyama<Eigen::Matrix3Xd>)->Name("kabsch/umeyama_3xN")->Apply(AllCounts);
 BENCHMARK(Umeyama<Eigen::MatrixXd>)->Name("kabsch/umeyama_dynamic")->Apply(AllCounts);

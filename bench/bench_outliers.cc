@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often each robust solver finds the pose among outliers, beside OpenCV's and opengv's, all on
-// the same scenes. Prints the table; ends in 1 where one of ours is beaten by a peer, or fails at
-// 100 pairs and up to 50 percent of outliers.
+// How often each robust solver finds the pose among outliers, compared with OpenCV and opengv on
+// the same scenes. Prints the table; exits with 1 where a peer beats one of ours, or one of ours
+// fails at 100 pairs and up to 50 percent of outliers.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -28,8 +28,8 @@ namespace sextant::bench {
 namespace {
 
 constexpr const char* kOurs[] = {"refine(ransac(p3p))", "ransac(p3p)", "ransac(epnp)", "gnc(epnp)"};
-// Held to the goals; gnc is a local method, listed to be compared.
-constexpr std::size_t kHeld = 3;
+// The first ones have goals; gnc is a local method, listed for comparison.
+constexpr std::size_t kWithGoals = 3;
 
 std::vector<Contestant> Solvers(const SolverRegistry& registry,
                                 const std::vector<std::string>& specs) {
@@ -46,7 +46,7 @@ std::vector<Contestant> Solvers(const SolverRegistry& registry,
 }
 
 #ifdef SEXTANT_BENCH_OPENGV
-// Threshold as ours, 3.03 px, and as many iterations; refined on the inliers, as its examples do.
+// With our threshold, 3.03 px, and number of iterations; refined on the inliers as in its examples.
 std::optional<Rigid3d> OpengvRansac(const CalibrationProblem& problem) {
   using Problem = opengv::sac_problems::absolute_pose::AbsolutePoseSacProblem;
   constexpr double kThresholdPx = 3.03;
@@ -84,13 +84,13 @@ std::vector<Contestant> Peers() {
   return peers;
 }
 
-// Two standard errors of the difference of two counts, such as chance alone makes.
-int Chance(int successes, int scenes) {
+// Two standard errors of the difference of two counts.
+int TwoStandardErrors(int successes, int scenes) {
   const double share = static_cast<double>(successes) / scenes;
   return static_cast<int>(2.0 * std::sqrt(2.0 * scenes * share * (1.0 - share)));
 }
 
-// One line for every goal that is missed.
+// Prints one line for every goal that is missed.
 int CountMisses(const OutlierStudy& study, const std::vector<OutlierCell>& cells,
                 std::size_t contestants) {
   const std::size_t fractions = study.outlier_fractions.size();
@@ -103,12 +103,13 @@ int CountMisses(const OutlierStudy& study, const std::vector<OutlierCell>& cells
       for (std::size_t k = std::size(kOurs); k < knows_inliers; ++k) {
         best_peer = std::max(best_peer, cell(k).successes);
       }
-      for (std::size_t k = 0; k < kHeld; ++k) {
+      for (std::size_t k = 0; k < kWithGoals; ++k) {
         const OutlierCell ours = cell(k);
         const bool must_not_fail = ours.pairs == 100 && ours.outlier_fraction <= 0.5;
         const int goal =
             must_not_fail ? ours.scenes : std::min(best_peer, cell(knows_inliers).successes);
-        if (ours.successes + (must_not_fail ? 0 : Chance(goal, ours.scenes)) >= goal) continue;
+        if (ours.successes + (must_not_fail ? 0 : TwoStandardErrors(goal, ours.scenes)) >= goal)
+          continue;
         ++misses;
         std::printf("missed: %s, %d pairs, %.0f %% outliers: %d successes, goal %d\n",
                     ours.contestant.c_str(), ours.pairs, 100.0 * ours.outlier_fraction,

@@ -54,7 +54,6 @@ constexpr Goal kGoals[] = {
     {"kabsch", 100, "umeyama_fixed", 6.0},
     {"kabsch", 1000000, "umeyama_dynamic", 5.0},
     {"kabsch", 1000000, "read_points/sextant", 0.9},
-    {"kabsch_64_problems", 8, "umeyama_fixed", 25.0},
     {"p3p", 3, "opengv_kneip", 1.8},
     {"p3p", 3, "opencv_p3p", 25.0},
     {"ippe", 8, "opencv_ippe", 10.0},

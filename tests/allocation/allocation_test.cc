@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// No kernel allocates once it has what it needs: this binary counts every call of malloc, which
-// operator new and Eigen's matrices of any size end in.
+// No kernel allocates after its first call: this binary counts every call of malloc, which operator
+// new and Eigen's dynamic matrices use.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -16,13 +16,13 @@
 #endif
 
 namespace {
-// Of this thread; a plain number that needs no set-up, as malloc is called before main.
+// For this thread; a plain number without initialisation, as malloc is called before main.
 thread_local long allocations = 0;
 }  // namespace
 
 #ifdef SEXTANT_COUNTS_ALLOCATIONS
-// The C library's own, under the names that it exports for this purpose.
-// NOLINTBEGIN: its names, and those of its parameters.
+// The C library's own functions, under the names that it exports for this purpose.
+// NOLINTBEGIN: names are those of the C library.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -73,7 +73,7 @@ long AllocationsOf(const Call& call) {
   return allocations - before;
 }
 
-// A compiler may leave out an allocation that it sees the end of.
+// A compiler may remove an allocation that does not escape.
 void* volatile escaped = nullptr;
 
 TEST_F(Allocation, IsCounted) {
@@ -111,7 +111,7 @@ TEST_F(Allocation, NoKernelAllocates) {
   }
 }
 
-// A scene without a consensus, so that ransac tries all that it may.
+// A scene without a consensus, so that ransac draws all samples that it may.
 CalibrationProblem Hopeless(bool pixels) {
   const RandomSceneOptions options{.pairs = 100, .sigma_m = 0.01, .sigma_px = 1.0};
   Random random(3);
@@ -132,7 +132,7 @@ TEST_F(Allocation, TheLoopOfRansacAllocatesNothing) {
       static_cast<void>(solver->Solve(problem));
       return AllocationsOf([&] { static_cast<void>(solver->Solve(problem)); });
     };
-    // Whole stages come and go with the poses found, a buffer each.
+    // Each new best pose may allocate a buffer.
     EXPECT_NEAR(static_cast<double>(of_iterations(2000)), static_cast<double>(of_iterations(1000)),
                 20.0)
         << inner;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our own solvers are under contract, and so is their registry. A new line in the table of solvers
-// is tested without a change here.
+// The contract tests for our own solvers, and tests of their registry. A new entry in the table of
+// solvers is tested without a change here.
 #include "solvers/builtin_solvers.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace sextant {
 
 SolverRegistry RegistryUnderContract() { return BuiltinSolvers(); }
 
-// Each entry's own example, and each combinator around the closed form of each kind of pairs.
+// The example of each entry, and each wrapping solver around a closed form for each kind of pairs.
 std::vector<std::string> SpecsUnderContract() {
   const SolverRegistry registry = BuiltinSolvers();
   std::vector<std::string> specs;

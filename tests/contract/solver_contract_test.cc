@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every registered solver promises, alone and composed. Which solvers, says the binary that
-// this file is built into: see under_contract.h.
+// Properties that every registered solver must have, alone and composed. The binary that includes
+// this file names the solvers: see under_contract.h.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ class SolverContract : public testing::TestWithParam<std::string> {
 
   const SolverSpec& spec() const { return solver_->spec(); }
 
-  // A scene that holds only the kind of data that the solver says it needs.
+  // A scene with only the kind of data that the solver needs.
   PairScene SceneFor(SceneOptions options, Random& random) const {
     if (!spec().is_global) options.max_rotation_rad = 0.1;
     if (!spec().estimates_rotation) options.max_rotation_rad = 0.0;
@@ -54,8 +54,8 @@ class SolverContract : public testing::TestWithParam<std::string> {
     if (needs.board_views == 0) problem.board_views.clear();
   }
 
-  // How the LiDAR may be mounted elsewhere: what is measured along its rays moves only with
-  // rotations, and what is searched near a start not far.
+  // Another mounting of the LiDAR. Raw observations along its rays allow only a rotation, and local
+  // solvers only a translation.
   Rigid3d OtherFromLidar() const {
     Rigid3d other_from_lidar{Eigen::Quaterniond::Identity(), {0.3, -0.2, 0.1}};
     if (FindsWholePose(spec())) other_from_lidar.rotation = ExpSo3({0.4, -1.1, 0.7});
@@ -65,7 +65,7 @@ class SolverContract : public testing::TestWithParam<std::string> {
 
   static constexpr SceneOptions Noisy() { return {.pairs = 12, .sigma_m = 0.01, .sigma_px = 1.0}; }
 
-  // The same session with the LiDAR mounted elsewhere: points of frame lidar seen from frame other.
+  // The same session with another mounting of the LiDAR: points of frame lidar in frame other.
   static CalibrationProblem MoveLidar(CalibrationProblem problem, const Rigid3d& other_from_lidar) {
     for (Pair3d3d& pair : problem.pairs_3d3d) {
       pair.point_in_lidar = other_from_lidar * pair.point_in_lidar;
@@ -85,8 +85,8 @@ class SolverContract : public testing::TestWithParam<std::string> {
     return problem;
   }
 
-  // Turns the camera about its axis and its image with it: all that a pinhole with square pixels
-  // lets one move without another image.
+  // Rotates the camera about its axis, and its image with it: the only motion of a pinhole camera
+  // with square pixels that needs no new image.
   static Rigid3d RollCamera(double angle, CalibrationProblem& problem) {
     const Eigen::Rotation2Dd turn(angle);
     const Eigen::Vector2d centre(problem.camera->cx_px, problem.camera->cy_px);
@@ -109,7 +109,7 @@ class SolverContract : public testing::TestWithParam<std::string> {
   SolverPtr solver_;
 };
 
-// Properties that hold for some solvers only; the instantiations below say for which.
+// Properties that only some solvers have; the instantiations below select these.
 class GlobalPointPairContract : public SolverContract {};
 class PairContract : public SolverContract {};
 class PairNoiseContract : public SolverContract {};
@@ -228,10 +228,10 @@ TEST_P(SolverContract, CovarianceIsSymmetricAndPositive) {
   EXPECT_GE(EigenOf(*report->covariance).values(0), -1e-12);
 }
 
-// Mean normalised estimation error squared over its 6 degrees of freedom is 1 for an honest
-// covariance; 200 trials leave a standard error of sqrt(2 / 1200) = 0.041, and five of these are
-// allowed beside 5 percent for what a covariance of first order leaves out.
-TEST_P(PairNoiseContract, CovarianceIsHonest) {
+// The mean normalised estimation error squared over its 6 degrees of freedom is 1 for a consistent
+// covariance. 200 trials have a standard error of sqrt(2 / 1200) = 0.041; allowed are five of these
+// and 5 percent for the terms that a first-order covariance neglects.
+TEST_P(PairNoiseContract, CovarianceIsConsistent) {
   constexpr int kTrials = 200;
   double sum = 0.0;
   for (int trial = 0; trial < kTrials; ++trial) {
@@ -246,18 +246,18 @@ TEST_P(PairNoiseContract, CovarianceIsHonest) {
   EXPECT_NEAR(sum / kTrials, 1.0, 5.0 * std::sqrt(2.0 / (6.0 * kTrials)) + 0.05);
 }
 
-TEST_P(SolverContract, SaysWhatIsMissing) {
+TEST_P(SolverContract, NamesMissingData) {
   const Expected<SolveReport> report = solver_->Solve(CalibrationProblem{});
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::kMissingData);
   EXPECT_NE(report.error().message.find(spec().name), std::string::npos);
 }
 
-TEST_P(MinimumContract, SaysHowManyItNeeds) {
+TEST_P(MinimumContract, RefusesTooFewPairs) {
   const DataNeeds& needs = spec().needs;
-  const int least = std::max({needs.pairs_3d3d, needs.pairs_2d3d, needs.points_per_set});
+  const int minimum = std::max({needs.pairs_3d3d, needs.pairs_2d3d, needs.points_per_set});
   Random random(9);
-  const PairScene scene = SceneFor({.pairs = least - 1}, random);
+  const PairScene scene = SceneFor({.pairs = minimum - 1}, random);
   const Expected<SolveReport> report = solver_->Solve(scene.problem);
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::kTooFewPairs);
@@ -289,7 +289,7 @@ TEST_P(PairContract, RefusesNegativeSigmas) {
   EXPECT_EQ(report.error().code, ErrorCode::kInvalidInput);
 }
 
-TEST_P(RotationContract, RefusesPointsOnALineOrAllAlike) {
+TEST_P(RotationContract, RefusesCollinearAndCoincidentPoints) {
   Random random(12);
   for (const double length : {1.0, 0.0}) {
     PairScene scene = SceneFor({.pairs = 12}, random);
@@ -360,7 +360,7 @@ bool UsesPairs(const SolverSpec& spec) { return spec.needs.points_per_set == 0; 
 bool IsGlobalOnPointPairs(const SolverSpec& spec) {
   return spec.needs.pairs_3d3d > 0 && spec.is_global && spec.estimates_rotation;
 }
-// The covariance of a solver that takes the rotation as given is conditional on it.
+// The covariance of a solver that does not estimate the rotation is conditional on it.
 bool HasFullCovariance(const SolverSpec& spec) {
   return UsesPairs(spec) && spec.estimates_rotation;
 }
@@ -372,7 +372,7 @@ bool NeedsTwoOrMore(const SolverSpec& spec) {
 #define SEXTANT_INSTANTIATE(suite, specs) \
   INSTANTIATE_TEST_SUITE_P(Every, suite, testing::ValuesIn(specs), TestName)
 SEXTANT_INSTANTIATE(SolverContract, SpecsUnderContract());
-// A folder of solvers may have none of a kind.
+// A binary may have no solver of some kind.
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(GlobalPointPairContract);
 SEXTANT_INSTANTIATE(GlobalPointPairContract, SpecsWhere(IsGlobalOnPointPairs));
 SEXTANT_INSTANTIATE(PairContract, SpecsWhere(UsesPairs));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// count_instructions: calls every kernel under valgrind --tool=callgrind, which it asks for the
-// instructions of each alone. Without valgrind it only calls them. Prints what the counts depend on
-// besides the source.
+// count_instructions: calls every kernel, and under valgrind --tool=callgrind dumps the
+// instructions of each. Prints the compiler and the instruction set, which the counts depend on.
 #include <valgrind/callgrind.h>
 
 #include <cstdio>
@@ -19,7 +18,7 @@ int main() {
 #endif
   std::printf(", %s\n", __builtin_cpu_supports("avx2") ? "avx2" : "sse2");
   for (const KernelCall& kernel : calls) {
-    kernel.call();  // Buffers and what is set up once.
+    kernel.call();  // Allocates buffers and initialises statics.
     CALLGRIND_START_INSTRUMENTATION;
     CALLGRIND_ZERO_STATS;
     kernel.call();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernels take no more instructions than they took. Unlike time, instructions are the same in every
-// run: a regression of a few percent shows.
+// Kernels take no more instructions than the golden counts. Unlike times, instruction counts are
+// the same in every run, so that a regression of a few percent shows.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,11 +20,11 @@
 namespace sextant::test {
 namespace {
 
-// Of a problem. What the linker puts where moves counts by less.
+// Per problem. Changes of code layout move the counts by less.
 constexpr double kTolerance = 0.03;
 
 struct Counts {
-  std::string built;  // Compiler, and for which processors the kernels were chosen.
+  std::string built;  // Compiler and instruction set of the kernels.
   std::map<std::string, double> per_problem;
 };
 
@@ -32,7 +32,7 @@ std::filesystem::path GoldenPath() {
   return SourceRoot() / "tests" / "instructions" / "golden" / "instructions.json";
 }
 
-// Instructions of each dump, by the name that it was asked for with.
+// Instructions of each dump by its name.
 std::map<std::string, double> ReadDumps(const std::filesystem::path& folder) {
   const std::regex trigger("desc: Trigger: Client Request: (.*)");
   const std::regex totals("(?:totals|summary): ([0-9]+)");
@@ -78,7 +78,7 @@ std::string Format(const Counts& counts) {
   return json.dump(1) + "\n";
 }
 
-TEST(Instructions, NoKernelTakesMoreThanItTook) {
+TEST(Instructions, NoKernelExceedsItsGoldenCount) {
   if (std::string_view(SEXTANT_COUNT_INSTRUCTIONS).empty()) {
     GTEST_SKIP() << "valgrind was not found, or this is no release build";
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The graph of pairs that agree, its cliques, and what is found among nineteen outliers of twenty.
+// The graph of pairs that agree, its cliques, and the solvers at 95 percent outliers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,15 +33,15 @@ BitGraph RandomGraph(int vertices, double density, Random& random) {
   return graph;
 }
 
-// Every subset of a small graph, to hold the searches to exactness.
-std::set<std::vector<int>> CliquesByBruteForce(const BitGraph& graph, std::size_t least) {
+// All cliques of a small graph, to test the searches for exactness.
+std::set<std::vector<int>> CliquesByBruteForce(const BitGraph& graph, std::size_t min_size) {
   std::set<std::vector<int>> cliques;
   for (unsigned subset = 0; subset < (1U << graph.vertices()); ++subset) {
     std::vector<int> members;
     for (int v = 0; v < graph.vertices(); ++v) {
       if ((subset >> v & 1U) != 0) members.push_back(v);
     }
-    bool connected = members.size() >= least;
+    bool connected = members.size() >= min_size;
     for (std::size_t i = 0; connected && i < members.size(); ++i) {
       for (std::size_t j = 0; connected && j < i; ++j) {
         connected = graph.AreConnected(members[i], members[j]);
@@ -67,19 +67,19 @@ TEST(MaximumClique, IsTheLargestOfSmallGraphs) {
   }
 }
 
-TEST(MaximumClique, OfNoEdgesIsOneVertexAndOfNothingNone) {
+TEST(MaximumClique, WithoutEdgesIsOneVertex) {
   EXPECT_EQ(FindMaximumClique(BitGraph(100), 1000).vertices.size(), 1U);
   EXPECT_TRUE(FindMaximumClique(BitGraph(0), 1000).vertices.empty());
 }
 
-TEST(ListCliques, NamesEachOnceAndNoOther) {
+TEST(ListCliques, ListsEachOnce) {
   Random random(10);
   for (int trial = 0; trial < 40; ++trial) {
     const double density = random.Uniform(0.1, 0.9);
     const BitGraph graph = RandomGraph(10, density, random);
-    for (const std::size_t least : {1U, 3U, 4U}) {
-      const std::set<std::vector<int>> expected = CliquesByBruteForce(graph, least);
-      const std::vector<std::vector<int>> listed = ListCliques(graph, least, 100'000, 1'000'000);
+    for (const std::size_t min_size : {1U, 3U, 4U}) {
+      const std::set<std::vector<int>> expected = CliquesByBruteForce(graph, min_size);
+      const std::vector<std::vector<int>> listed = ListCliques(graph, min_size, 100'000, 1'000'000);
       EXPECT_TRUE(std::equal(listed.begin(), listed.end(), expected.begin(), expected.end()));
     }
   }
@@ -93,7 +93,7 @@ TEST(ListCliques, StopsAtItsLimits) {
   EXPECT_TRUE(ListCliques(BitGraph(0), 1, 10, 10).empty());
 }
 
-// Around the width of a word, with noise that differs from pair to pair.
+// With counts around the width of a word, and noise that differs between pairs.
 TEST(AgreementGraph, ConnectsPairsWhoseLengthsAgree) {
   constexpr double kMaxSquared = 9.0;
   for (const int count : {1, 2, 63, 64, 65, 128, 150}) {
@@ -129,11 +129,12 @@ TEST(AgreementGraph, ConnectsPairsWhoseLengthsAgree) {
   }
 }
 
-class AmongNineteenOfTwenty : public testing::TestWithParam<const char*> {};
+class At95PercentOutliers : public testing::TestWithParam<const char*> {};
 
-// Five true pairs: the pose of four of them fits the four better than that of all five, and as many
-// false ones agree now and then. Nothing that the true pairs tell may be lost.
-TEST_P(AmongNineteenOfTwenty, FindsWhatTheTruePairsTell) {
+// With five true pairs the pose of four of them fits these four better than that of all five, and
+// sometimes as many false ones agree. The solver must find every pose that the true pairs
+// determine.
+TEST_P(At95PercentOutliers, FindsAsManyPosesAsTheTruePairs) {
   const SceneOptions options{.pairs = 100, .sigma_m = 0.005};
   const SolverRegistry registry = BuiltinSolvers();
   const Expected<SolverPtr> solver = registry.Make(GetParam());
@@ -164,7 +165,7 @@ TEST_P(AmongNineteenOfTwenty, FindsWhatTheTruePairsTell) {
   EXPECT_LT(squares, 1.02 * oracle_squares);
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, AmongNineteenOfTwenty,
+INSTANTIATE_TEST_SUITE_P(Every, At95PercentOutliers,
                          testing::Values("clique(kabsch)", "robust(kabsch)"),
                          [](const auto& instance) {
                            return std::string(instance.param).substr(0, 6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is particular to each combinator; outliers_test.cc has what they share.
+// Properties of each robust solver; outliers_test.cc has those that all share.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -54,7 +54,7 @@ TEST(Ransac, StopsEarlyOnCleanDataAndAtItsLimitOnPoor) {
   EXPECT_EQ(poor->termination, Termination::kMaxIterations);
 }
 
-TEST(Ransac, SaysThatTheSampleIsTooLargeOrTooSmall) {
+TEST(Ransac, RefusesSamplesThatAreTooLargeOrTooSmall) {
   const PairScene scene = SceneWithOutliers(4, 10, 0.0);
   const Expected<SolveReport> large = Solve("ransac(kabsch,sample_size=15)", scene.problem);
   ASSERT_FALSE(large);
@@ -64,7 +64,7 @@ TEST(Ransac, SaysThatTheSampleIsTooLargeOrTooSmall) {
   EXPECT_EQ(small.error().code, ErrorCode::kInvalidOption);
 }
 
-TEST(Ransac, KeepsToItsThresholdAndLeastInliers) {
+TEST(Ransac, ObeysThresholdAndMinInliers) {
   const PairScene scene = SceneWithOutliers(5, 30, 0.3);
   const Expected<SolveReport> strict = Solve("ransac(kabsch,min_inliers=25)", scene.problem);
   ASSERT_FALSE(strict);
@@ -90,7 +90,7 @@ TEST(Ransac, CountsAPairGivenSeveralTimesOnce) {
   }
 }
 
-TEST(Ransac, SaysThatThePointsAreMirrored) {
+TEST(Ransac, ReportsMirroredPoints) {
   PairScene scene = SceneWithOutliers(13, 20, 0.0);
   for (Pair3d3d& pair : scene.problem.pairs_3d3d) pair.point_in_lidar.x() *= -1.0;
   for (const char* spec : {"ransac(kabsch)", "gnc(kabsch)", "clique(kabsch)", "robust(kabsch)"}) {
@@ -109,7 +109,7 @@ TEST(Ransac, WithoutRefitReturnsTheBestSample) {
   EXPECT_TRUE(report->covariance);
 }
 
-TEST(DropWorst, KeepsAsManyAsAskedAndDropsTheOutliersFirst) {
+TEST(DropWorst, KeepsTheGivenNumberAndDropsOutliersFirst) {
   Random random(7);
   const SceneOptions options{.pairs = 20, .sigma_m = 0.01};
   PairScene scene = MakeScene(options, random);
@@ -139,8 +139,8 @@ TEST(Gnc, LeavesCleanDataAlone) {
   EXPECT_EQ(gnc->cam_from_lidar.translation, plain->cam_from_lidar.translation);
 }
 
-// Isotropic pairs go in columns and in closed form, others by their whiteners.
-TEST(IsotropicPairs, AreAnsweredAlikeInColumnsAndByCovariances) {
+// Isotropic pairs use columns and closed forms, pairs with covariances iterate over terms.
+TEST(IsotropicPairs, ColumnsAndCovariancesGiveTheSameAnswer) {
   for (const char* spec : {"gnc(kabsch)", "ransac(kabsch)", "ransac(kabsch,refit=none)",
                            "ransac(kabsch,local_optimisation=0)"}) {
     for (const int pairs : {12, 64, 100}) {

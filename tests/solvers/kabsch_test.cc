@@ -51,8 +51,8 @@ TEST(Kabsch, RecoversExactPosesOfEveryShapeAndScale) {
   }
 }
 
-// The digits that the coordinates themselves lose at 1 km are all that may be lost.
-TEST(Kabsch, KeepsItsDigitsAKilometreFromBothOrigins) {
+// No more precision may be lost than by rounding the coordinates at 1 km.
+TEST(Kabsch, IsPreciseAKilometreFromBothOrigins) {
   Random random(5);
   for (int trial = 0; trial < 200; ++trial) {
     const Rigid3d truth{ExpSo3({random.Normal(), random.Normal(), random.Normal()}),

@@ -31,7 +31,7 @@ RotationCase WithSingularValues(const Eigen::Vector3d& s, Random& random) {
           v * u.conjugate()};
 }
 
-// An eigensolver's eigenvector is off by about this many roundings over the gap of eigenvalues.
+// The error of an eigensolver's eigenvector: about this many roundings over the gap of eigenvalues.
 double RotationTolerance(const Eigen::Vector3d& s, double bound) {
   return std::max(2e-12, 50.0 * 2.2e-16 * bound / (s[1] + s[2]));
 }
@@ -82,7 +82,7 @@ TEST(MaxTraceRotation, FindsTheMaximiserOfRandomSpectra) {
   }
 }
 
-TEST(MaxTraceRotation, RefusesWhatLeavesATurnFree) {
+TEST(MaxTraceRotation, RefusesAFreeRotation) {
   Random random(13);
   const std::vector<Eigen::Vector3d> spectra = {
       {0, 0, 0}, {1, 0, 0}, {1, 1e-11, 0}, {1, 1, -1}, {1, 0.5, -0.5}};

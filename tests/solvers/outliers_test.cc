@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What ransac, gnc, clique, robust and drop_worst promise in common, against the inner solver on
-// the true inliers: the oracle that no combinator beats.
+// Properties that ransac, gnc, clique, robust and drop_worst share, compared with the inner solver
+// on the true inliers: the oracle that no robust solver beats.
 #include "support/outliers.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ struct OutlierCase {
   std::string spec;
   std::string oracle;  ///< Solved on the true inliers.
   int pairs;
-  double share;  ///< Of outliers.
+  double share;  ///< Share of outliers.
   int trials;
   double lost_pairs = 2.0;  ///< Share of the error allowed for pairs beyond the threshold.
 };
@@ -39,8 +39,8 @@ double SquaredError(const SolveReport& report, const Rigid3d& truth, const Matri
   return error.dot(scale * error);
 }
 
-// Every trial finds the pose, and the RMS error is near the oracle's: what is lost are the true
-// pairs beyond the 99 percent threshold, which weigh more where there are few.
+// Every trial finds the pose, and the RMS error is near the oracle's: only true pairs beyond the 99
+// percent threshold are lost, which matters more where there are few.
 TEST_P(Outliers, AnswersNearlyAsWellAsOnTheTrueInliers) {
   const OutlierCase& c = GetParam();
   const SceneOptions options{.pairs = c.pairs, .sigma_m = 0.005, .sigma_px = 1.0};
@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(Every, Outliers, testing::ValuesIn(OutlierCases()), Out
 
 class Elimination : public testing::TestWithParam<std::string> {};
 
-// The paper's 20 points by hand to 11 and to 8, with four outliers: every pair kept is a true one.
+// The paper's elimination of 20 points to 11 and to 8, with four outliers: every kept pair is true.
 TEST_P(Elimination, KeepsTruePairsOnly) {
   const SceneOptions options{.pairs = 20, .sigma_px = 1.0};
   const Expected<SolverPtr> solver = BuiltinSolvers().Make(GetParam());
@@ -155,9 +155,9 @@ INSTANTIATE_TEST_SUITE_P(Every, Elimination,
 
 class NoConsensus : public testing::TestWithParam<std::string> {};
 
-// Were chance accepted at the stated 0.01 per problem, 40 problems would give more than 3 false
-// answers once in a thousand runs.
-TEST_P(NoConsensus, IsSaidWhereEveryPairIsAnOutlier) {
+// At the stated rate of 0.01 false answers per problem, 40 problems would give more than 3 once in
+// a thousand runs.
+TEST_P(NoConsensus, IsReportedWhereEveryPairIsAnOutlier) {
   const Expected<SolverPtr> solver = BuiltinSolvers().Make(GetParam());
   ASSERT_TRUE(solver) << solver.error().message;
   int answers = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels from p3p to the minimum: how often, and how near to the Cramer-Rao bound.
+// refine(p3p) and ransac(p3p): success rates, and errors relative to the Cramer-Rao bound.
 #include "solvers/robust/p3p_consensus.h"
 
 #include <gtest/gtest.h>
@@ -23,10 +23,10 @@ using test::MakeScene;
 using test::PairScene;
 using test::SceneOptions;
 
-// A chi-square number of 6 degrees of freedom is larger once in 10^9: a wrong answer.
+// Chi-square with 6 degrees of freedom exceeds this once in 10^9: the answer is wrong.
 constexpr double kWrong = 53.0;
 
-/// Root mean square of the errors over the bound, and the answers that are no estimates of it.
+/// RMS of the errors relative to the bound, and the number of wrong answers.
 struct Score {
   int wrong = 0;
   int right = 0;
@@ -46,7 +46,7 @@ struct Score {
   double Ratio() const { return std::sqrt(squares / (6.0 * right)); }
 };
 
-// Of the first so many pixels.
+// With the first `count` pixels.
 Matrix6d BoundOf(const PairScene& scene, int pairs) {
   CalibrationProblem pixels = scene.problem;
   pixels.pairs_3d3d.clear();
@@ -65,13 +65,13 @@ TEST(RefinedP3p, IsAtTheBound) {
       const PairScene scene = MakeScene({.pairs = pairs, .sigma_px = 1.0}, random);
       score.Add(solver->Solve(scene.problem), scene, BoundOf(scene, pairs));
     }
-    // One in a thousand. The goal is 1.02, 4 standard errors of the ratio where trials are many.
+    // At most one in a thousand. The goal is 1.02, 4 standard errors of the ratio of many trials.
     EXPECT_LE(score.wrong, trials / 1000) << pairs;
     EXPECT_LE(score.Ratio(), std::max(1.02, 1.0 + 4.0 / std::sqrt(12.0 * trials))) << pairs;
   }
 }
 
-// Pairs that state no sigma, and pairs that hold an outlier, end in the same minimum.
+// Pairs without sigmas, and pairs with an outlier, lead to the same minimum.
 TEST(RefinedP3p, FindsTheMinimumThatRefinementOfOthersFinds) {
   const SolverPtr ours = *BuiltinSolvers().Make("refine(p3p)");
   const SolverPtr other = *BuiltinSolvers().Make("refine(sqpnp)");
@@ -121,7 +121,7 @@ TEST(RansacOfP3p, IsAtTheBoundOfTheTruePairs) {
       score.Add(solver->Solve(scene.problem), scene, BoundOf(scene, InlierCount(100, outliers)));
     }
     EXPECT_EQ(score.wrong, 0) << outliers;
-    // The goal; two standard errors of the ratio of so many trials are 0.026.
+    // The goal; two standard errors of the ratio of these trials are 0.026.
     EXPECT_LE(score.Ratio(), 1.03) << outliers;
   }
 }
@@ -137,7 +137,7 @@ TEST(P3pConsensus, IsTheSameForTheSameSeedAndDrawsNoMoreThanAllowed) {
   const P3pConsensus again = find(1, 10000);
   EXPECT_EQ(once.cam_from_lidar.Matrix(), again.cam_from_lidar.Matrix());
   EXPECT_EQ(once.samples, again.samples);
-  // Another seed ends in the same minimum.
+  // Another seed leads to the same minimum.
   const P3pConsensus other = find(2, 10000);
   EXPECT_LT(DistanceBetween(once.cam_from_lidar, other.cam_from_lidar).rotation_rad, 1e-8);
   EXPECT_EQ(find(1, 5).samples, 5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs are gathered eight at a time: no term may differ from its pair, wherever it stands.
+// Pairs are gathered eight at a time: every term must equal its pair at every position.
 #include "solvers/kernels/pair_terms.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ void ExpectTermOf(const Pair2d3d& pair, double sigma_px, const PixelTerm& term) 
   EXPECT_EQ(term.inverse_sigma, 1.0 / sigma_px);
 }
 
-TEST(PairTerms, EachIsItsPairWhereverItStands) {
+TEST(PairTerms, EqualTheirPairsAtEveryPosition) {
   Random random(1);
   for (std::size_t first = 0; first < 20; ++first) {
     for (const std::size_t second : {0U, 1U, 7U, 8U, 9U, 23U}) {
@@ -46,7 +46,7 @@ TEST(PairTerms, EachIsItsPairWhereverItStands) {
   }
 }
 
-TEST(PairTerms, PlacesBeyondTheLastRepeatATermAndAddNothing) {
+TEST(PairTerms, PaddingRepeatsATermAndAddsNothing) {
   Random random(2);
   const std::vector<Pair2d3d> pairs = RandomPairs(11, 1.0, random);
   PairTerms terms;

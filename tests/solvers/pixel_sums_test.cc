@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is computed eight terms at a time, against the same one term at a time.
+// Compares sums over eight terms at a time with sums over one term at a time.
 #include "solvers/kernels/pixel_sums.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ struct SumsCase {
   PinholePose Pose() const { return {terms.camera, pose}; }
 };
 
-// Focal lengths that differ, sigmas that differ; residuals of a few sigmas.
+// Different focal lengths and sigmas; residuals of a few sigmas.
 SumsCase MakeCase(int pairs, Random& random) {
   test::PairScene scene = test::MakeScene({.pairs = pairs, .sigma_px = 1.0}, random);
   scene.problem.camera->fy_px = 690.0;
@@ -46,7 +46,7 @@ double SquaredOf(const PixelTerm& term, const SumsCase& c) {
   return (term.inverse_sigma * (term.pixel - *projected)).squaredNorm();
 }
 
-// Over the terms with r^2 <= max_squared.
+// Sums over the terms with r^2 <= max_squared.
 PixelSums OneByOne(const SumsCase& c, double max_squared) {
   PixelSums sums;
   sums.information.setZero();
@@ -88,7 +88,7 @@ TEST(PixelSums, AreThoseOfEveryTerm) {
   }
 }
 
-TEST(PixelSums, LeaveOutWhatIsNotWithin) {
+TEST(PixelSums, LeaveOutOutliers) {
   Random random(2);
   for (int pairs = 1; pairs <= 26; ++pairs) {
     SumsCase c = MakeCase(pairs, random);
@@ -130,7 +130,7 @@ TEST(PixelSums, SquaresAndCostAreThoseOfEveryTerm) {
   }
 }
 
-TEST(PixelSums, AreRefusedForAPointBehindTheCamera) {
+TEST(PixelSums, FailForAPointBehindTheCamera) {
   Random random(4);
   SumsCase c = MakeCase(20, random);
   c.pose.translation.z() -= 3.0;
@@ -138,7 +138,7 @@ TEST(PixelSums, AreRefusedForAPointBehindTheCamera) {
   EXPECT_FALSE(SumPixels(c.terms.pixels.blocks(), c.Pose(), sums));
 }
 
-TEST(PixelScreen, GivesUpPosesOfFewInliersAndKeepsGoodOnes) {
+TEST(PixelScreen, RejectsPosesOfFewInliersAndKeepsGoodOnes) {
   Random random(5);
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const PixelScreen screen(0.5);
@@ -155,7 +155,7 @@ TEST(PixelScreen, GivesUpPosesOfFewInliersAndKeepsGoodOnes) {
   EXPECT_EQ(given_up, 200);
 }
 
-TEST(PixelTerms, ComeBackInTheirOrder) {
+TEST(PixelTerms, KeepTheirOrder) {
   PixelTerms terms;
   for (int i = 0; i < 19; ++i) {
     terms.push_back({{i, i + 0.25}, {i + 0.5, i + 0.75, 2.0 * i}, 1.0 + i});

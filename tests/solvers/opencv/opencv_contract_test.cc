@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenCV's solvers under the contract of ours. What they fail is excused by name, with the reason.
+// The contract tests for OpenCV's solvers. The properties that they lack are listed with reasons.
 #include <map>
 #include <utility>
 
@@ -21,21 +21,23 @@ std::vector<std::string> SpecsUnderContract() {
   return specs;
 }
 
-std::string ExcuseFrom(const std::string& promise, const std::string& spec) {
-  const std::string three = "solves three of the first four pairs, however they lie";
-  const std::string samples = "ends with the inliers of its samples, not with a minimum over them";
+std::string ExcuseFrom(const std::string& property, const std::string& spec) {
+  const std::string three = "uses three of the first four pairs, whatever their geometry";
+  const std::string samples =
+      "ends with a pose of its samples, not with a minimum over the inliers";
   const std::map<std::pair<std::string, std::string>, std::string> excuses = {
-      {{"RecoversExactData", "opencv.p3p"}, three + ", and leaves them 1e-6 off"},
+      {{"RecoversExactData", "opencv.p3p"}, three + ", with errors of 1e-6"},
       {{"OrderOfThePairsDoesNotMatter", "opencv.p3p"}, three},
-      {{"CovarianceIsHonest", "opencv.p3p"},
-       three + "; first order says little of a flat triangle"},
-      {{"RecoversExactData", "opencv.ransac_epnp"}, "its EPnP leaves 3e-7 m"},
-      {{"CovarianceIsHonest", "opencv.ransac_epnp"},
-       "ends with EPnP, which errs more than the least squares whose covariance it is given"},
+      {{"CovarianceIsConsistent", "opencv.p3p"},
+       three + "; a first-order covariance is poor for a flat triangle"},
+      {{"RecoversExactData", "opencv.ransac_epnp"}, "its EPnP has errors of 3e-7 m"},
+      {{"CovarianceIsConsistent", "opencv.ransac_epnp"},
+       "ends with EPnP, whose errors exceed those of the least squares that the covariance "
+       "assumes"},
       {{"RecoversExactData", "opencv.magsac"}, samples},
       {{"AnswerMovesWithTheLidarFrame", "opencv.magsac"}, samples},
   };
-  const auto found = excuses.find({promise, spec});
+  const auto found = excuses.find({property, spec});
   return found == excuses.end() ? std::string() : found->second;
 }
 
