@@ -112,7 +112,7 @@ TEST(P3p, SolvesSymmetricTriangles) {
   }
 }
 
-// Two solutions merge there: half of the digits are what is left.
+// Two solutions merge there, which costs half of the digits.
 TEST(P3p, SolvesOnTheDangerCylinder) {
   Random random(4);
   int far_off = 0;
@@ -125,7 +125,7 @@ TEST(P3p, SolvesOnTheDangerCylinder) {
     }
     if (ErrorOfBest(SeenFrom(in_cam, random), 3.0) > 1e-5) ++far_off;
   }
-  EXPECT_LE(far_off, 5);  // triangles of three almost equal angles
+  EXPECT_LE(far_off, 5);  // Triangles of three almost equal angles.
 }
 
 TEST(P3p, SolvesCornersOfBoards) {
@@ -156,7 +156,7 @@ TEST(P3p, HasNoPoseForDegenerateTriples) {
   EXPECT_EQ(count({a, a, a}), 0);
 }
 
-// Poses of both that are nearest to each other; infinite where their numbers differ.
+// Largest distance between corresponding poses; infinite where their numbers differ.
 double DifferenceOf(std::span<const Rigid3d> alone, const P3pPoses& together, std::size_t triple) {
   std::size_t count = 0;
   double worst = 0.0;
@@ -173,14 +173,14 @@ double DifferenceOf(std::span<const Rigid3d> alone, const P3pPoses& together, st
   return count == alone.size() ? worst : std::numeric_limits<double>::infinity();
 }
 
-TEST_P(P3pAtDepth, EightTriplesSideBySideHaveThePosesOfEach) {
+TEST_P(P3pAtDepth, TheVectorOfEightTriplesHasThePosesOfEach) {
   Random random(10);
   for (int batch = 0; batch < 500; ++batch) {
     std::array<TripleView, kSimdWidth> views;
     P3pTriples triples;
     for (std::size_t k = 0; k < kSimdWidth; ++k) {
       Triple in_cam = RandomTriple(GetParam(), random);
-      // Now and then one that has none: points on a line, or of one point twice.
+      // Some triples have none: points on a line, or a duplicated point.
       if (random.Uniform() < 0.05) in_cam[2] = 0.5 * (in_cam[0] + in_cam[1]);
       if (random.Uniform() < 0.05) in_cam[1] = in_cam[0];
       views[k] = SeenFrom(in_cam, random);
@@ -226,7 +226,7 @@ TEST(P3pSolver, ThreePairsGiveEverySolutionAndMoreChooseAmongThem) {
   }
 }
 
-TEST(P3pSolver, SaysWhyThereIsNoPose) {
+TEST(P3pSolver, ReportsWhyThereIsNoPose) {
   const SolverPtr p3p = *BuiltinSolvers().Make("p3p");
   Random random(8);
   test::PairScene scene = test::MakeScene({.pairs = 3}, random);
@@ -245,8 +245,8 @@ TEST(P3pSolver, SaysWhyThereIsNoPose) {
   EXPECT_EQ(p3p->Solve(scene.problem).error().code, ErrorCode::kNoConsensus);
 }
 
-// Without stated noise the pixels that choose also say how noisy all are.
-TEST(P3pSolver, CovarianceIsHonestWhereTheNoiseIsNotStated) {
+// Without stated noise its variance is estimated from the pixels outside the triple.
+TEST(P3pSolver, CovarianceIsConsistentWhereTheNoiseIsNotStated) {
   const SolverPtr p3p = *BuiltinSolvers().Make("p3p");
   constexpr int kTrials = 300;
   double sum = 0.0;
@@ -259,7 +259,7 @@ TEST(P3pSolver, CovarianceIsHonestWhereTheNoiseIsNotStated) {
     ASSERT_TRUE(known && unknown);
     sum += unknown->covariance->trace() / known->covariance->trace();
   }
-  // The 74 residuals leave sqrt(2 / 74) a trial and correlate little.
+  // With 74 residuals the relative error is sqrt(2 / 74) per trial, nearly uncorrelated.
   EXPECT_NEAR(sum / kTrials, 1.0, 0.05);
 }
 
