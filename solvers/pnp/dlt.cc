@@ -105,10 +105,9 @@ PoseOfMoments DltOfMoments(const Correspondences& data, const Rigid3d&) {
 
 Expected<Rigid3d> SolveDlt(std::span<const Eigen::Vector2d> image_points,
                            std::span<const Eigen::Vector3d> points_in_lidar) {
-  const Expected<Correspondences> data =
-      PrepareCorrespondences(image_points, points_in_lidar, kMinDltPoints);
-  if (!data) return tl::unexpected<Error>(data.error());
-  return PoseOf(*data);
+  SEXTANT_ASSIGN_OR_RETURN(const Correspondences& data,
+                           PrepareCorrespondences(image_points, points_in_lidar, kMinDltPoints));
+  return PoseOf(data);
 }
 
 SolverEntry DltEntry() {

@@ -71,19 +71,18 @@ Expected<EpnpFit> SolveEpnp(std::span<const Eigen::Vector2d> image_points,
                             std::span<const Eigen::Vector3d> points_in_lidar,
                             const PnpChoice& choice) {
   constexpr std::size_t kMinPoints = 4;
-  const Expected<Correspondences> data =
-      PrepareCorrespondences(image_points, points_in_lidar, kMinPoints);
-  if (!data) return tl::unexpected<Error>(data.error());
+  SEXTANT_ASSIGN_OR_RETURN(const Correspondences& data,
+                           PrepareCorrespondences(image_points, points_in_lidar, kMinPoints));
   EpnpCandidate best;
-  const double mirrored = Search(*data, choice.near, best);
+  const double mirrored = Search(data, choice.near, best);
   if (choice.near != nullptr) {
-    best.fit = FitOf(*data, best.rotation, best.centroid);
-  } else if (Expected<void> ok = Check(*data, best, mirrored); !ok && !choice.unchecked) {
-    return tl::unexpected<Error>(std::move(ok.error()));
+    best.fit = FitOf(data, best.rotation, best.centroid);
+  } else if (!choice.unchecked) {
+    SEXTANT_RETURN_IF_ERROR(Check(data, best, mirrored));
   }
-  PolishIfExact(*data, best.fit, best.rotation, best.centroid);
+  PolishIfExact(data, best.fit, best.rotation, best.centroid);
   EpnpFit fit;
-  fit.cam_from_lidar = PoseOf(*data, best);
+  fit.cam_from_lidar = PoseOf(data, best);
   fit.sum_squares = best.fit.sum_squares;
   return fit;
 }

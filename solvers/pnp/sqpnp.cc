@@ -158,12 +158,11 @@ Expected<SqpnpFit> SolveSqpnp(std::span<const Eigen::Vector2d> image_points,
                               std::span<const Eigen::Vector3d> points_in_lidar,
                               const PnpChoice& choice) {
   constexpr std::size_t kMinPoints = 3;
-  const Expected<Correspondences> data =
-      PrepareCorrespondences(image_points, points_in_lidar, kMinPoints);
-  if (!data) return tl::unexpected<Error>(data.error());
-  const RotationCost cost(*data);
-  Minima minima(*data, cost);
-  const PointCloudFrame& frame = data->frame;
+  SEXTANT_ASSIGN_OR_RETURN(const Correspondences& data,
+                           PrepareCorrespondences(image_points, points_in_lidar, kMinPoints));
+  const RotationCost cost(data);
+  Minima minima(data, cost);
+  const PointCloudFrame& frame = data.frame;
   if (frame.different_count > 3) {
     if (frame.IsPlanar()) {
       SearchFromEigenvectors<2>(cost, minima);
@@ -173,7 +172,7 @@ Expected<SqpnpFit> SolveSqpnp(std::span<const Eigen::Vector2d> image_points,
     if (frame.deviation.z() < kThin * frame.deviation.x()) SearchFromMirrorImage(minima);
   }
   if (frame.different_count <= kMaxForTriangle || !minima.ExplainImage(kWellExplained)) {
-    const TrianglePoses found = PosesOfWidestTriangle(*data);
+    const TrianglePoses found = PosesOfWidestTriangle(data);
     for (int i = 0; i < found.count; ++i) {
       const Rigid3d& pose = found.poses[static_cast<std::size_t>(i)];
       minima.SearchFrom(pose.rotation * frame.axes);
@@ -190,7 +189,7 @@ Expected<SqpnpFit> SolveSqpnp(std::span<const Eigen::Vector2d> image_points,
   for (Minimum minimum : minima.found()) {
     if (minimum.cost > 2.0 * minima.best_cost() + kRounding * trace) break;
     Eigen::Matrix3d rotation = minimum.rotation * frame.axes.transpose();
-    PolishIfExact(*data, minimum.fit, rotation, minimum.centroid);
+    PolishIfExact(data, minimum.fit, rotation, minimum.centroid);
     const auto at = static_cast<std::size_t>(fit.count++);
     Rigid3d& pose = fit.cam_from_lidar[at];
     pose.rotation = Eigen::Quaterniond(rotation).normalized();

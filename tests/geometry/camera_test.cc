@@ -22,7 +22,7 @@ Camera PlainCamera(CameraModel model) {
           .cy_px = 359.5};
 }
 
-// The spread of what calibrations of real lenses give.
+// Coefficients in the range of calibrations of real lenses.
 Camera RandomCamera(CameraModel model, Random& random) {
   Camera camera = PlainCamera(model);
   std::array<double, 8>& k = camera.distortion;
@@ -63,7 +63,7 @@ TEST_P(CameraModels, JacobianIsTheDerivativeOfTheProjection) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto ahead = Project(camera, point + step * Eigen::Vector3d::Unit(axis));
       const auto behind = Project(camera, point - step * Eigen::Vector3d::Unit(axis));
-      if (!ahead || !behind) continue;  // across the border of the domain
+      if (!ahead || !behind) continue;  // Across the border of the domain.
       const Eigen::Vector2d numeric = (*ahead - *behind) / (2.0 * step);
       EXPECT_LT((numeric - analytic->pixel_by_point.col(axis)).norm() * point.z(), 1e-4);
     }
@@ -82,7 +82,7 @@ TEST_P(CameraModels, UnprojectInvertsProject) {
     const std::optional<Eigen::Vector3d> ray = Unproject(camera, pixel->pixel);
     ASSERT_TRUE(ray);
     EXPECT_NEAR(ray->norm(), 1.0, 1e-15);
-    // Near the fold the pixel says little of the ray: compare where it was measured.
+    // Near the fold the ray is ill-conditioned: compare pixels.
     EXPECT_LT((*Project(camera, *ray) - pixel->pixel).norm(), 1e-10);
     const Eigen::Matrix2d by_plane = point.z() * pixel->pixel_by_point.leftCols<2>();
     if (by_plane.determinant() < 0.1 * camera.fx_px * camera.fy_px) continue;
@@ -145,7 +145,7 @@ TEST(Project, AgreesWithOpenCv) {
           {674.463192733460, 373.685066766147}});
 }
 
-// x (1 - x^2) turns at x = 1 / sqrt(3); past x = 1 it would even come out on the other side.
+// x (1 - x^2) has its maximum at x = 1 / sqrt(3), and changes sign beyond x = 1.
 TEST(CameraDomain, EndsWhereTheImageStopsGrowing) {
   Camera camera = PlainCamera(CameraModel::kBrownConrady);
   camera.distortion[0] = -1.0;
@@ -158,7 +158,8 @@ TEST(CameraDomain, EndsWhereTheImageStopsGrowing) {
   EXPECT_FALSE(Unproject(camera, {639.5 + border_px + 1e-3, 359.5}));
 }
 
-// The growth is lost between r = 0.71 and 1.29 and returns: no radius beyond is in the domain.
+// The radius decreases between r = 0.71 and 1.29 and then grows again: no radius beyond is in the
+// domain.
 TEST(CameraDomain, DoesNotReturnBehindTheFold) {
   Camera camera = PlainCamera(CameraModel::kBrownConrady);
   // 1 + 3 k1 s + 5 k2 s^2 = (1 - s / 0.5) (1 - s / 1.66)
@@ -185,14 +186,14 @@ TEST(CameraDomain, FisheyeEndsAtItsFoldOrAtNinetyDegrees) {
   EXPECT_TRUE(Project(camera, {1e3, 0.0, 1.0}));
   EXPECT_TRUE(Unproject(camera, {639.5 + 700.0 * 1.57, 359.5}));
   EXPECT_FALSE(Unproject(camera, {639.5 + 700.0 * 1.58, 359.5}));
-  camera.distortion[0] = -1.0 / 3.0;  // turns at 1 rad
+  camera.distortion[0] = -1.0 / 3.0;  // Maximum at 1 rad.
   EXPECT_TRUE(Project(camera, {std::tan(1.0 - 1e-6), 0.0, 1.0}));
   EXPECT_FALSE(Project(camera, {std::tan(1.0 + 1e-6), 0.0, 1.0}));
   EXPECT_TRUE(Unproject(camera, {639.5, 359.5 + 710.0 * 0.666}));
   EXPECT_FALSE(Unproject(camera, {639.5, 359.5 + 710.0 * 0.667}));
 }
 
-TEST(ValidateCamera, TakesWhatRealCalibrationsGive) {
+TEST(ValidateCamera, AcceptsRealCalibrations) {
   Random random(3);
   for (int trial = 0; trial < 200; ++trial) {
     for (const CameraModel model :
@@ -203,7 +204,7 @@ TEST(ValidateCamera, TakesWhatRealCalibrationsGive) {
   }
 }
 
-TEST(ValidateCamera, RefusesWhatNoLensIs) {
+TEST(ValidateCamera, RefusesImpossibleLenses) {
   const auto code = [](auto&& spoil) {
     Camera camera = PlainCamera(CameraModel::kBrownConrady);
     spoil(camera);

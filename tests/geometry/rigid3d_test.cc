@@ -61,7 +61,7 @@ TEST(So3, RotationBetweenTurnsOneDirectionToTheOther) {
     const Eigen::Vector3d to = RandomVector(random, 1.0);
     const Eigen::Quaterniond turn = RotationBetween(from, to);
     EXPECT_LT(((turn * from).normalized() - to.normalized()).norm(), 1e-14);
-    // The least: about the axis across both.
+    // The smallest rotation is about the axis perpendicular to both.
     EXPECT_LT(std::abs(LogSo3(turn).dot(from.normalized())), 1e-14);
     const Eigen::Vector3d back = RotationBetween(from, -2.0 * from) * from;
     EXPECT_LT((back + from).norm(), 1e-14 * from.norm());

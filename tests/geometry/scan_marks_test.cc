@@ -14,7 +14,7 @@ const Quadrilateral& Kite() {
   return kite;
 }
 
-TEST(ScanMarks, APixelIsInOrOutWhicheverWayRoundItIsDrawn) {
+TEST(ScanMarks, ContainsDoesNotDependOnTheDirectionOfDrawing) {
   for (const Quadrilateral& q : {Kite(), Reversed(Kite())}) {
     EXPECT_TRUE(Contains(q, {10, 10}));
     EXPECT_TRUE(Contains(q, {2, 1.5}));

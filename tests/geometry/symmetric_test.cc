@@ -55,8 +55,8 @@ TEST(Symmetric, SolutionFulfilsTheEquations) {
   EXPECT_LT((SolveSymmetric(large, long_right) - Eigen::VectorXd::Unit(20, 0)).norm(), 1e-12);
 }
 
-// Metres and radians may differ by any factor: only what is singular in every unit has no inverse.
-TEST(Symmetric, InverseDoesNotKnowUnits) {
+// Units may differ by any factor: only a matrix that is singular in every unit has no inverse.
+TEST(Symmetric, InverseDoesNotDependOnUnits) {
   Random random(3);
   const Matrix6d matrix = RandomCovariance<6>(random);
   Vector6d unit;
@@ -71,7 +71,7 @@ TEST(Symmetric, InverseDoesNotKnowUnits) {
   EXPECT_EQ(*plain, plain->transpose());
 }
 
-TEST(Symmetric, WhatIsSingularHasNoInverse) {
+TEST(Symmetric, ASingularMatrixHasNoInverse) {
   Random random(4);
   Matrix6d rank_five = Matrix6d::Zero();
   for (int i = 0; i < 5; ++i) {
@@ -87,7 +87,7 @@ TEST(Symmetric, WhatIsSingularHasNoInverse) {
   EXPECT_FALSE(InvertSymmetric(unknown));
 }
 
-// Of 2000 draws from N(0, C) the mean has the standard error sqrt(2 * 6 / 2000) = 0.08.
+// The mean of 2000 draws from N(0, C) has the standard error sqrt(2 * 6 / 2000) = 0.08.
 TEST(Symmetric, SquaredMahalanobisIsChiSquared) {
   constexpr int kDraws = 2000;
   Random random(5);

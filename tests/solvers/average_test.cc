@@ -22,7 +22,7 @@ struct AveragedSession {
   Rigid3d cam_from_lidar;
 };
 
-// Eight points a view; the views alternate from pair to pair, as nothing promises that they do not.
+// Eight points per view; the views alternate from pair to pair, as the order of pairs is arbitrary.
 AveragedSession MakeAveragedSession(int views, double sigma_m, Random& random) {
   AveragedSession session;
   session.cam_from_lidar = {ExpSo3(NormalVector(random)), NormalVector(random)};
@@ -102,13 +102,13 @@ TEST(Average, NamesEveryViewWhereNoneCanBeSolved) {
   EXPECT_NE(report.error().message.find("view 10:"), std::string::npos);
 }
 
-TEST(Average, RefusesSolversThatKnowNoViews) {
+TEST(Average, RefusesSolversOfDataWithoutViews) {
   EXPECT_EQ(BuiltinSolvers().Make("average(icp)").error().code, ErrorCode::kInvalidOption);
 }
 
-// Hotelling's T^2 of n views in p dimensions has the mean p (n - 1) / (n - p - 2); five standard
-// errors of the mean as the trials themselves show it.
-TEST(Average, StandardErrorFromTheScatterIsHonest) {
+// Hotelling's T^2 of n views in p dimensions has the mean p (n - 1) / (n - p - 2); the tolerance is
+// five empirical standard errors of the mean.
+TEST(Average, StandardErrorFromTheScatterIsConsistent) {
   constexpr int kTrials = 300;
   constexpr int kViews = 20;
   for (const char* spec : {"average(kabsch)", "average(kabsch,rotation=original_running)"}) {

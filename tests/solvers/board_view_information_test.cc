@@ -46,7 +46,7 @@ TEST(BoardViewResiduals, AreZeroForExactData) {
   }
 }
 
-// 300 returns and more a view: the mean square of what is stated as 1 has a standard error of
+// 300 returns and more per view: the mean square of unit variance residuals has a standard error of
 // sqrt(2 / n) for normal errors and sqrt(0.8 / n) for uniform ones.
 TEST(BoardViewResiduals, HaveTheVarianceThatIsStated) {
   const SimulatedViews session = CheckedViews({.views = 40});
@@ -88,7 +88,7 @@ TEST(BoardViewInformation, GradientIsThatOfTheCost) {
   }
 }
 
-// Where the data is exact the second derivatives of the residuals do not count.
+// With exact data the second derivatives of the residuals do not contribute.
 TEST(BoardViewInformation, NormalMatrixIsTheHessianOfTheCostForExactData) {
   const SimulatedViews session = CheckedViews({.seed = 4, .views = 1, .exact = true});
   const BoardView& view = session.problem.board_views[0];
@@ -118,7 +118,7 @@ TEST(BoardViewInformation, EliminationIsTheMarginalOfTheInverse) {
   EXPECT_LT((covariance - marginal).norm(), 1e-8 * marginal.norm());
 }
 
-TEST(BoardViewInformation, OfOneSensorIsNone) {
+TEST(BoardViewInformation, OneSensorAloneHasNone) {
   const SimulatedViews session = CheckedViews({.seed = 6, .views = 1});
   BoardView of_camera = session.problem.board_views[0];
   of_camera.face_in_lidar.clear();
@@ -157,7 +157,7 @@ struct Fault {
   const char* words;
 };
 
-TEST(CheckBoardViews, SaysWhatIsWrong) {
+TEST(CheckBoardViews, StatesTheFault) {
   const double nan = std::nan("");
   const std::vector<Fault> faults = {
       {"no views", [](auto& p) { p.board_views.clear(); }, ErrorCode::kMissingData, "raw views"},

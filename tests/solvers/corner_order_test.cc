@@ -44,12 +44,12 @@ TEST(CornerOrder, FindsEveryOrderFromTwoBoardsOn) {
     const Expected<CornerOrderFit> fit = ResolveCornerOrders(groups);
     ASSERT_TRUE(fit) << fit.error().message;
     EXPECT_EQ(fit->orders, orders) << trial;
-    // 12 residuals a board at 10 mm an axis: the RMSE of a point is below 17.3 mm + 5 sigma.
+    // 12 residuals per board at 10 mm per axis: the RMSE of a point is below 17.3 mm + 5 sigma.
     EXPECT_LT(fit->rmse_m, 0.030);
   }
 }
 
-TEST(CornerOrder, KeepsTheListedOrderWhereOneBoardLeavesItOpen) {
+TEST(CornerOrder, KeepsTheListedOrderWhereOneBoardDoesNotDetermineIt) {
   Random random(2);
   const Rigid3d truth{ExpSo3(NormalVector(random)), NormalVector(random)};
   const CornerOrder as_listed[] = {{.first = 0, .reversed = false}};
@@ -60,7 +60,7 @@ TEST(CornerOrder, KeepsTheListedOrderWhereOneBoardLeavesItOpen) {
   EXPECT_LT(fit->rmse_m, 1e-7);
 }
 
-TEST(CornerOrder, RefusesWhatHasNoAnswer) {
+TEST(CornerOrder, RefusesDegenerateBoards) {
   EXPECT_EQ(ResolveCornerOrders({}).error().code, ErrorCode::kTooFewPairs);
   CornerGroup uneven{.in_b = {3, Eigen::Vector3d::Zero()}, .in_a = {4, Eigen::Vector3d::Zero()}};
   EXPECT_EQ(ResolveCornerOrders({&uneven, 1}).error().code, ErrorCode::kInvalidInput);

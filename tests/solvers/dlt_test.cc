@@ -45,7 +45,7 @@ TEST_P(DltCounts, RecoversExactPoses) {
 
 INSTANTIATE_TEST_SUITE_P(FewToMany, DltCounts, testing::Values(7, 8, 20, 1000));
 
-// Six points leave one equation to spare, and some are close to a surface that leaves none.
+// Six points give one redundant equation, and some sets are close to a critical surface with none.
 TEST(Dlt, RecoversMostExactPosesFromSixPoints) {
   Random random(2);
   int lost = 0;
@@ -59,7 +59,7 @@ TEST(Dlt, RecoversMostExactPosesFromSixPoints) {
   EXPECT_LE(lost, 2);
 }
 
-TEST(Dlt, RefusesWhatItCannotSolve) {
+TEST(Dlt, RefusesDegenerateSets) {
   Random random(3);
   const auto code = [](const DltView& view) {
     const Expected<Rigid3d> pose = SolveDlt(view.image_points, view.points);
@@ -69,7 +69,7 @@ TEST(Dlt, RefusesWhatItCannotSolve) {
   EXPECT_EQ(code(ViewOf(test::MakeScene({.pairs = 12, .planar = true}, random))),
             ErrorCode::kDegenerate);
   DltView behind = ViewOf(test::MakeScene({.pairs = 12}, random));
-  // Seen through a lens that turns the image, as if the points were behind the camera.
+  // An image rotated by half a turn, as if the points were behind the camera.
   for (Eigen::Vector2d& point : behind.image_points) point = -point;
   for (Eigen::Vector3d& point : behind.points) point = -point;
   EXPECT_EQ(code(behind), ErrorCode::kMirrored);

@@ -31,7 +31,7 @@ using test::NormalPoints;
 
 using Points = std::vector<Eigen::Vector3d>;
 
-// Points of three faces of a cube of side 2, which leave no motion free.
+// Points of three faces of a cube of side 2, which determine every motion.
 Points Corner(int count, Random& random) {
   Points points;
   for (int i = 0; i < count; ++i) {
@@ -91,7 +91,7 @@ TEST(Icp, AgreesWithKabschOnTheMatchesItReports) {
   EXPECT_NEAR(fit->rmse_m, std::sqrt(kabsch->sum_squares / 30.0), 1e-12);
 }
 
-// A tenth of the source has no counterpart and lies far off: it pulls the plain fit by decimetres.
+// A tenth of the source has no counterpart and is far off: it shifts the plain fit by decimetres.
 TEST(Icp, TrimmingAndMaxDistanceEachSurviveOutliers) {
   Random random(4);
   Points source = NormalPoints(200, random);
@@ -124,7 +124,7 @@ TEST(Icp, MatchesAHundredThousandPoints) {
   ExpectSamePose(fit->target_from_source, truth, 1e-9);
 }
 
-TEST(Icp, SaysThatTheIterationsRanOut) {
+TEST(Icp, ReportsThatTheIterationsRanOut) {
   Random random(6);
   const Points source = NormalPoints(500, random);
   const Points target = Moved(SmallMotion(random, 0.2, 0.2), source);
@@ -134,7 +134,7 @@ TEST(Icp, SaysThatTheIterationsRanOut) {
   EXPECT_EQ(fit->iterations, 2);
 }
 
-TEST(Icp, RefusesWhatItCannotAnswer) {
+TEST(Icp, RefusesDegenerateInput) {
   Random random(7);
   const Points source = NormalPoints(8, random);
   const auto code = [](const Points& target, const Points& from, const IcpSettings& settings) {
@@ -161,8 +161,9 @@ TEST(Icp, RefusesWhatItCannotAnswer) {
 }
 
 // Mean NEES over its 6 degrees of freedom; five standard errors of sqrt(2 / (6 n)). With the true
-// start and noise far under the spacing the matches are right, so the covariance must be honest.
-TEST(Icp, CovarianceIsHonestWhereTheMatchesAreRight) {
+// start and noise far below the spacing the matches are right, so that the covariance must be
+// consistent.
+TEST(Icp, CovarianceIsConsistentWhereTheMatchesAreRight) {
   constexpr int kTrials = 300;
   double sum = 0.0;
   for (int trial = 0; trial < kTrials; ++trial) {
@@ -180,7 +181,7 @@ TEST(Icp, CovarianceIsHonestWhereTheMatchesAreRight) {
   EXPECT_NEAR(sum / kTrials, 114.0 / 112.0, 5.0 * std::sqrt(2.0 / (6.0 * kTrials)));
 }
 
-TEST(Icp, CovarianceOfPlanesIsHonest) {
+TEST(Icp, CovarianceOfPlanesIsConsistent) {
   constexpr int kTrials = 100;
   double sum = 0.0;
   for (int trial = 0; trial < kTrials; ++trial) {
@@ -198,7 +199,7 @@ TEST(Icp, CovarianceOfPlanesIsHonest) {
   EXPECT_NEAR(sum / kTrials, 84.0 / 82.0, 5.0 * std::sqrt(2.0 / (6.0 * kTrials)));
 }
 
-TEST(IcpSolver, StartsWhereItIsTold) {
+TEST(IcpSolver, StartsAtTheGivenPose) {
   Random random(10);
   CalibrationProblem problem;
   problem.point_sets.in_lidar = NormalPoints(8, random);
@@ -255,7 +256,7 @@ TEST(IcpSolver, FindsThePairingOfTheOriginalsCorners) {
   }
 }
 
-// Binary little-endian, four floats a vertex: the one form of these two files.
+// Binary little-endian, four floats per vertex: the format of these two files.
 Points ReadScan(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::size_t count = 0;
@@ -275,8 +276,8 @@ Points ReadScan(const std::filesystem::path& path) {
   return points;
 }
 
-// Means of the points in each cube of 25 cm, so that the ground near the sensor does not outweigh
-// all else.
+// Means of the points in each cube of 25 cm, so that the ground near the sensor does not
+// dominate.
 Points Thinned(const Points& points) {
   struct Cell {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();

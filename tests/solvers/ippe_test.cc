@@ -50,7 +50,7 @@ PlanarView MakePlanarView(const PlanarViewOptions& options, Random& random) {
   return view;
 }
 
-// The larger of rotation [rad] and translation over depth to the nearest of both answers.
+// The larger of rotation [rad] and translation over depth to the nearer of both answers.
 double ErrorOfBest(const PlanarView& view, const IppeFit& fit, double depth) {
   double best = std::numeric_limits<double>::infinity();
   for (int i = 0; i < fit.count; ++i) {
@@ -110,8 +110,8 @@ TEST(Ippe, FirstAnswerFitsBetter) {
   }
 }
 
-// Far away a tilt and its opposite look alike, and noise may prefer either.
-TEST(Ippe, ReportsBothLeaningsOfADistantBoard) {
+// Far away a tilt and its opposite have nearly the same image, and noise may favour either.
+TEST(Ippe, ReportsBothTiltsOfADistantBoard) {
   Random random(4);
   int both = 0;
   int first_wrong = 0;
@@ -130,7 +130,7 @@ TEST(Ippe, ReportsBothLeaningsOfADistantBoard) {
   EXPECT_LT(first_wrong, 100);
 }
 
-TEST(Ippe, TakesLidarNoiseAndRefusesPointsOffThePlane) {
+TEST(Ippe, AcceptsLidarNoiseAndRefusesPointsOffThePlane) {
   Random random(5);
   PlanarView view = MakePlanarView({.count = 20}, random);
   const Eigen::Vector3d normal =

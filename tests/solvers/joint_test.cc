@@ -38,7 +38,7 @@ double ErrorInSigmas(const SimulatedViews& session, const Rigid3d& cam_from_lida
 // The root of the 1 - 1e-6 quantile of chi-square with 6 degrees of freedom, 38.3.
 constexpr double kFarOff = 6.2;
 
-/// All whitened residuals of one view under two poses, for a solver that knows nothing of ours.
+/// All whitened residuals of one view under two poses, for an independent solver (Ceres).
 struct ViewCost {
   const BoardView& view;
   const CalibrationProblem& problem;
@@ -117,7 +117,7 @@ TEST(Joint, FindsTheMinimumAndCovarianceThatCeresFinds) {
   EXPECT_LT((*report->covariance - expected.covariance).norm(), 1e-4 * expected.covariance.norm());
 }
 
-TEST(Joint, SaysWhatItRestsOn) {
+TEST(Joint, ReportsItsObservationsAndInliers) {
   const SimulatedViews session = Views({.seed = 12, .views = 5});
   const auto report = Solve(session.problem, "joint(kabsch)");
   ASSERT_TRUE(report) << report.error().message;
@@ -137,9 +137,9 @@ TEST(Joint, SaysWhatItRestsOn) {
   }
 }
 
-// A third of the edges given to a side that is not theirs, a fifth of the face from something that
-// stands before or behind the board.
-TEST(Joint, BearsMislabelledEdgesAndReturnsOfSomethingElse) {
+// A third of the edges assigned to a wrong side, a fifth of the face returns from an object in
+// front of or behind the board.
+TEST(Joint, ResistsMislabelledEdgesAndReturnsOfOtherObjects) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SimulatedViews session = Views({.seed = seed, .views = 6});
     Random random(seed);
@@ -159,14 +159,14 @@ TEST(Joint, BearsMislabelledEdgesAndReturnsOfSomethingElse) {
 }
 
 // The board moved between image and scan in one of the views.
-TEST(Joint, LeavesOutAViewThatContradictsTheOthersAndNamesIt) {
+TEST(Joint, DropsAViewThatContradictsTheOthersAndNamesIt) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SimulatedViews session = Views({.seed = seed, .views = 6});
     const Rigid3d moved{ExpSo3({0.0, 0.0, 0.1}), {0.1, -0.05, 0.08}};
     BoardView& view = session.problem.board_views[3];
     for (Eigen::Vector3d& point : view.face_in_lidar) point = moved * point;
     for (EdgeRay& ray : view.edges) {
-      // Where the ray met the board, moved along.
+      // The intersection of the ray with the board, moved along.
       const BoardPlane plane(session.true_cam_from_lidar.Inverse() *
                              session.true_cam_from_board[3]);
       const double distance =
@@ -185,7 +185,7 @@ TEST(Joint, LeavesOutAViewThatContradictsTheOthersAndNamesIt) {
   }
 }
 
-TEST(Joint, TakesAViewOfOneSensorForWhatItIs) {
+TEST(Joint, DropsAViewOfOneSensor) {
   SimulatedViews session = Views({.seed = 13, .views = 4});
   session.problem.board_views[1].printed.clear();
   const auto report = Solve(session.problem, "joint(kabsch)");
@@ -194,7 +194,7 @@ TEST(Joint, TakesAViewOfOneSensorForWhatItIs) {
   EXPECT_THAT(report->warnings, Contains(HasSubstr("only one of the sensors")));
 }
 
-TEST(Joint, SaysThatTheNoiseIsLargerThanStated) {
+TEST(Joint, ReportsThatTheNoiseIsLargerThanStated) {
   SimulatedViews session = Views({.seed = 14, .views = 6});
   for (BoardView& view : session.problem.board_views) view.range_sigma_m *= 0.4;
   const auto report = Solve(session.problem, "joint(kabsch)");
@@ -258,8 +258,8 @@ TEST(Joint, EstimatesIntrinsics) {
   ExpectTold(report->camera->estimated, "cx_px", 639.5);
 }
 
-TEST(Joint, TakesAsGivenWhatTheViewsDoNotTell) {
-  // Where its sides are hardly known, the range alone says how far the board is.
+TEST(Joint, FixesUnobservableParameters) {
+  // With poorly determined sides, the range alone determines the distance of the board.
   SimulatedViews session = Views({.seed = 18, .views = 1});
   for (EdgeRay& ray : session.problem.board_views[0].edges) ray.sigma_m = 0.2;
   const auto plain = Solve(session.problem, "joint(kabsch)");
@@ -271,7 +271,7 @@ TEST(Joint, TakesAsGivenWhatTheViewsDoNotTell) {
   EXPECT_LT(PoseDifference(report->cam_from_lidar, plain->cam_from_lidar).norm(), 1e-8);
 }
 
-TEST(Joint, OtherCombinatorsSayWhereItBelongs) {
+TEST(Joint, OtherCombinatorsNameItsPlace) {
   const auto solver = BuiltinSolvers().Make("ransac(joint(kabsch))");
   ASSERT_FALSE(solver);
   EXPECT_THAT(solver.error().message, HasSubstr("joint"));

@@ -26,7 +26,7 @@ Eigen::Vector3d Noise(Random& random, double sigma) {
   return sigma * Eigen::Vector3d(x, y, z);
 }
 
-// Corners of a square board that hangs by chance before a sensor at the origin of a.
+// Corners of a square board at a random pose in front of a sensor at the origin of a.
 Points Square(Random& random) {
   const Eigen::Vector3d turn = Noise(random, 0.5);
   const double x = random.Uniform(1.5, 3.0);
@@ -59,10 +59,11 @@ Points From(const Points& corners, int first) {
 struct MatchedSession {
   Rigid3d b_from_a;
   std::vector<MatchView> views;
-  std::vector<std::set<std::size_t>> truth;  // Of each view, its true pairings.
+  std::vector<std::set<std::size_t>> truth;  // True pairings of each view.
 };
 
-// Every board of a view as every other, from every corner: 4 n^2 pairings of which n are true.
+// Every board of a view paired with every other, from every corner: 4 n^2 pairings of which n are
+// true.
 MatchView ViewOf(const std::vector<Points>& in_b, const std::vector<Points>& in_a) {
   MatchView view;
   for (std::size_t b = 0; b < in_b.size(); ++b) {
@@ -101,7 +102,7 @@ MatchedSession MakeMatchedSession(int views, std::size_t boards, Random& random)
   return session;
 }
 
-// How many of the true pairings the explanation takes as fitting, and whether it takes any other.
+// Number of true pairings that the explanation accepts, and whether it accepts any other.
 void ExpectTruth(const MatchedSession& session, const MatchExplanation& found,
                  std::size_t wrong_views) {
   std::vector<std::set<std::size_t>> fits(session.views.size());
@@ -125,7 +126,7 @@ class ManySessions : public testing::TestWithParam<int> {
 };
 INSTANTIATE_TEST_SUITE_P(Seeds, ManySessions, testing::Range(0, 20));
 
-TEST_P(ManySessions, OneSquareBoardAView) {
+TEST_P(ManySessions, OneSquareBoardPerView) {
   Random random = MakeRandom("one square");
   const MatchedSession session = MakeMatchedSession(4, 1, random);
   const auto found = MatchObjects(session.views, {.cap = kCap});
@@ -176,7 +177,7 @@ TEST(ObjectMatch, OneSquareBoardHasFourExplanations) {
   }
 }
 
-TEST(ObjectMatch, WhatSpeaksAgainstAPairingCounts) {
+TEST(ObjectMatch, PenaltiesOfPairingsCount) {
   Random random(3);
   MatchedSession session = MakeMatchedSession(1, 1, random);
   for (std::size_t i = 0; i < 4; ++i) session.views[0].pairings[i].penalty = i == 2 ? 0.0 : 30.0;
@@ -186,7 +187,7 @@ TEST(ObjectMatch, WhatSpeaksAgainstAPairingCounts) {
   EXPECT_GT((*found)[1].cost - (*found)[0].cost, 9.2);
 }
 
-TEST(ObjectMatch, ManyViewsAreNotAllTriedAndStillFound) {
+TEST(ObjectMatch, ManyViewsNeedNotAllBeStarts) {
   Random random(4);
   const MatchedSession session = MakeMatchedSession(100, 2, random);
   const auto found = MatchObjects(session.views, {.cap = kCap, .max_starts = 64});
@@ -194,7 +195,7 @@ TEST(ObjectMatch, ManyViewsAreNotAllTriedAndStillFound) {
   ExpectTruth(session, found->front(), 0);
 }
 
-TEST(ObjectMatch, NothingInCommonIsSaid) {
+TEST(ObjectMatch, ReportsThatNothingIsInCommon) {
   const std::vector<MatchView> views(3);
   const auto found = MatchObjects(views);
   ASSERT_FALSE(found);

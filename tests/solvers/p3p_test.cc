@@ -125,7 +125,7 @@ TEST(P3p, SolvesOnTheDangerCylinder) {
     }
     if (ErrorOfBest(SeenFrom(in_cam, random), 3.0) > 1e-5) ++far_off;
   }
-  EXPECT_LE(far_off, 5);  // triangles of three almost equal angles
+  EXPECT_LE(far_off, 5);  // Triangles of three almost equal angles.
 }
 
 TEST(P3p, SolvesCornersOfBoards) {

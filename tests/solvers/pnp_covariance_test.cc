@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The covariances of the direct solvers for pixels, against differences of every single pixel.
+// The covariances of the direct solvers for pixels, against differences by every single pixel.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,15 +30,16 @@ void PrintTo(const CovarianceCase& c, std::ostream* out) { *out << c.spec << ' '
 
 class PnpCovarianceOf : public testing::TestWithParam<CovarianceCase> {
  protected:
-  // Sigmas that differ from pair to pair, so that each must find its own.
+  // Sigmas differ from pair to pair, so that mixed-up indices would show.
   static PairScene NoisyScene(const CovarianceCase& c, Random& random) {
     PairScene scene = MakeScene({.pairs = c.pairs, .sigma_px = 0.5, .planar = c.planar}, random);
     for (Pair2d3d& pair : scene.problem.pairs_2d3d) pair.sigma_px = random.Uniform(0.2, 1.0);
     return scene;
   }
 
-  // False where the answer has no derivative. Differences truncate at 1e-10 and are rounded at
-  // 1e-8; the estimators stop up to 1e-9 short of their limit, 1e-4 of the displacements.
+  // False where the answer has no derivative. Differences have truncation errors of 1e-10 and
+  // rounding errors of 1e-8; the estimators stop up to 1e-9 before their limit, 1e-4 of the
+  // displacements.
   static bool DifferencesAgree(const PairScene& scene) {
     const Expected<SolverPtr> solver = BuiltinSolvers().Make(GetParam().spec);
     const Expected<SolveReport> report = (*solver)->Solve(scene.problem);
@@ -63,7 +64,7 @@ TEST_P(PnpCovarianceOf, AgreesWithDifferencesOfEveryPixel) {
   EXPECT_GE(compared, scenes - 1);
 }
 
-TEST_P(PnpCovarianceOf, HeedsTheLens) {
+TEST_P(PnpCovarianceOf, IncludesTheLens) {
   Random random(2);
   int compared = 0;
   for (int trial = 0; trial < 3; ++trial) {
@@ -80,8 +81,8 @@ TEST_P(PnpCovarianceOf, HeedsTheLens) {
   EXPECT_GE(compared, 2);
 }
 
-// Beyond 84 deg from the axis the kernel works in a view of its own, which moves with the noise:
-// an effect of second order.
+// Beyond 84 deg from the axis the kernel works in a rotated view, which depends on the noise: an
+// effect of second order.
 TEST(PnpCovarianceOfAFisheye, TurnsWithTheView) {
   Random random(3);
   const Rigid3d turned{ExpSo3({0.0, 1.36, 0.0}), Eigen::Vector3d::Zero()};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact pixels of random scenes: every solver of a whole pose finds every one of them.
+// Exact pixels of random scenes: every solver of a whole pose recovers all of them.
 #include <gtest/gtest.h>
 
 #include <algorithm>

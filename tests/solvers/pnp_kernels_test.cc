@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The algebraic kernels for pixels and points, epnp and sqpnp, held to the same promises.
+// The algebraic kernels for pixels and points, epnp and sqpnp, with the same requirements.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ struct Shape {
   double depth_m = 3.0;
 };
 
-// Points in a cube of side 2 m, or on a plane through it, `depth_m` before the camera.
+// Points in a cube of side 2 m, or on a plane through it, `depth_m` in front of the camera.
 PointScene MakePointScene(const Shape& shape, int count, double sigma, Random& random) {
   PointScene scene;
   const Eigen::Vector3d turn = UniformVector(random, 1.0);
@@ -51,7 +51,7 @@ PointScene MakePointScene(const Shape& shape, int count, double sigma, Random& r
   return scene;
 }
 
-// The inverse of the information that the image points hold on (dphi, dt).
+// The inverse of the information of the image points on (dphi, dt).
 Matrix6d CramerRaoBound(const PointScene& scene, double sigma) {
   Matrix6d information = Matrix6d::Zero();
   for (const Eigen::Vector3d& point : scene.points) {
@@ -143,14 +143,14 @@ TEST_P(PnpKernel, ErrorIsNearTheCramerRaoBound) {
                                limit.bottomRightCorner<3, 3>().trace());
     }
     const Eigen::Array2d ratio = (squares.array() / bound.array()).sqrt();
-    // Three standard errors of an RMS that one squared normal a trial dominates.
+    // Three standard errors of an RMS that is dominated by one squared normal per trial.
     const double tolerance = 3.0 / std::sqrt(2.0 * kTrials);
     EXPECT_LT(ratio.maxCoeff(), GetParam().max_rms_ratio + tolerance) << count << " points";
     EXPECT_GT(ratio.minCoeff(), 1.0 - tolerance) << count << " points";
   }
 }
 
-TEST_P(PnpKernel, RefusesWhatLeavesThePoseOpen) {
+TEST_P(PnpKernel, RefusesSetsThatDoNotDetermineThePose) {
   Random random(3);
   const auto code = [](const PointScene& scene) {
     const Expected<Rigid3d> pose = GetParam().solve(scene);
@@ -187,7 +187,7 @@ TEST_P(PnpKernel, RefusesWhatLeavesThePoseOpen) {
   EXPECT_EQ(code(behind), "mirrored");
 }
 
-TEST_P(PnpKernel, RefusesPointsBehindTheCameraWhateverTheirNumber) {
+TEST_P(PnpKernel, RefusesAnyNumberOfPointsBehindTheCamera) {
   Random random(4);
   for (int trial = 0; trial < 200; ++trial) {
     PointScene scene = MakePointScene({.name = "cube"}, 6 + trial % 20, 0.0, random);
@@ -201,7 +201,7 @@ TEST_P(PnpKernel, RefusesPointsBehindTheCameraWhateverTheirNumber) {
   }
 }
 
-TEST_P(PnpKernel, TakesNoNoiseForAMirrorImage) {
+TEST_P(PnpKernel, DoesNotMistakeNoiseForAMirrorImage) {
   Random random(7);
   int mirrored = 0;
   for (int trial = 0; trial < 2000; ++trial) {
@@ -244,7 +244,7 @@ TEST(Sqpnp, GivesTheTruthAmongTheSolutionsOfThreePoints) {
       const Rigid3d& pose = fit->cam_from_lidar[static_cast<std::size_t>(i)];
       nearest = std::min(nearest, DistanceBetween(pose, scene.cam_from_lidar).rotation_rad);
     }
-    // Where two solutions nearly merge they lose digits.
+    // Nearly merged solutions lose digits.
     EXPECT_LT(nearest, 1e-6) << trial;
   }
 }

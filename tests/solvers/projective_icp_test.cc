@@ -62,8 +62,8 @@ Errors ErrorsOver(const char* model, int rooms) {
   return errors;
 }
 
-// The mean of NEES over 20 rooms spreads by sqrt(2 / 6 / 20) = 0.13; how returns are shared between
-// planes is told to a third.
+// The mean NEES over 20 rooms has a standard error of sqrt(2 / 6 / 20) = 0.13; the covariance is
+// accurate to a third, as returns are shared between planes.
 TEST(ProjectiveIcp, FindsThePoseBetweenScansOfSixteenRings) {
   const Errors errors = ErrorsOver("vlp16", 20);
   EXPECT_LT(errors.worst_deg, 0.025);
@@ -75,9 +75,9 @@ TEST(ProjectiveIcp, FindsThePoseBetweenScansOfSixtyFourRings) {
   EXPECT_LT(errors.worst_deg, 0.008);
 }
 
-// 9.5 mm a ring, as one unit was measured: of 200 rooms the median is 0.0053 degrees and one in a
-// hundred beyond 0.025; with the offsets left in, the median is 0.019 and four in ten are beyond.
-TEST(ProjectiveIcp, RingsMayEachHaveAnErrorOfTheirOwn) {
+// 9.5 mm per ring, as measured for one unit: over 200 rooms the median error is 0.0053 degrees and
+// 1 percent are above 0.025; without the correction, the median is 0.019 and 40 percent are above.
+TEST(ProjectiveIcp, CorrectsOffsetsOfRings) {
   constexpr int kRooms = 12;
   LidarModel model = ModelOf("vlp16");
   model.ring_bias_sigma_m = 0.0095;
@@ -97,7 +97,7 @@ TEST(ProjectiveIcp, RingsMayEachHaveAnErrorOfTheirOwn) {
 }
 
 // Rows may hold several rings, and offsets in azimuth do not matter.
-TEST(ProjectiveIcp, TakesScansOfTwoSensors) {
+TEST(ProjectiveIcp, AlignsScansOfTwoSensors) {
   ScanPair pair = RoomTwice("vlp16", 0);
   pair.in_target = RoomTwice("os1_64", 0).in_target;
   const Expected<ProjectiveIcpFit> fit = Fit(pair);
@@ -122,7 +122,7 @@ TEST(ProjectiveIcp, SwappedScansGiveTheInverse) {
   ExpectSamePose(there->target_from_source, back->target_from_source.Inverse(), 1e-9);
 }
 
-// Axes of a camera: the azimuth goes about y, and cells are counted from elsewhere.
+// Camera axes: the azimuth is about y, and the cells have another origin.
 TEST(ProjectiveIcp, AxesAndOrderDoNotMatter) {
   ScanPair pair = RoomTwice("vlp16", 2);
   const Expected<ProjectiveIcpFit> fit = Fit(pair);
@@ -137,7 +137,7 @@ TEST(ProjectiveIcp, AxesAndOrderDoNotMatter) {
   ExpectSamePose(other->target_from_source, turned * fit->target_from_source, kNoise / 5.0);
 }
 
-TEST(ProjectiveIcp, ACorridorAndAFieldLeaveAMotionFree) {
+TEST(ProjectiveIcp, ACorridorAndAFieldLeaveAMotionUndetermined) {
   Random random(3);
   Scene room = FurnishedRoom(random);
   room.boxes.clear();
@@ -157,7 +157,7 @@ TEST(ProjectiveIcp, ACorridorAndAFieldLeaveAMotionFree) {
   }
 }
 
-TEST(ProjectiveIcp, RefusesWhatIsNoScan) {
+TEST(ProjectiveIcp, RefusesPointsThatAreNoScan) {
   Random random(5);
   Points cloud(5000);
   for (Eigen::Vector3d& point : cloud) {

@@ -41,9 +41,10 @@ void PrintTo(const CameraCase& c, std::ostream* out) {
 
 class RefineCamera : public testing::TestWithParam<CameraCase> {};
 
-// The pose's NEES / 6 is chi-square(6) / 6 where the noise is stated, and F(6, f) where f spare
-// residuals tell it; a focal length's squared error in sigmas is chi-square(1) or F(1, f). Five
-// standard errors of the trials are allowed, and 3 percent for what first order leaves out.
+// The pose's NEES / 6 is chi-square(6) / 6 where the noise is stated, and F(6, f) where it is
+// estimated from f redundant residuals; a focal length's squared error in sigmas is chi-square(1)
+// or F(1, f). The tolerance is five standard errors of the trials, and 3 percent for effects of
+// second order.
 TEST_P(RefineCamera, RecoversTheTruthWithinItsSigmas) {
   constexpr int kTrials = 500;
   constexpr int kPairs = 40;
@@ -91,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(Every, RefineCamera,
                                          CameraCase{"focal+center", false, true},
                                          CameraCase{"focal+center+distortion", false, true}));
 
-TEST(RefineCamera, WrongFocalLengthsSpoilThePoseThatKeepsThem) {
+TEST(RefineCamera, WrongFocalLengthsBiasThePoseIfFixed) {
   const SolverPtr keeps = MakeSolver("refine(epnp)");
   const SolverPtr frees = MakeSolver("refine(epnp,intrinsics=focal)");
   double kept = 0.0;
@@ -105,7 +106,7 @@ TEST(RefineCamera, WrongFocalLengthsSpoilThePoseThatKeepsThem) {
     EXPECT_FALSE(a->camera);
     kept += DistanceBetween(a->cam_from_lidar, scene.cam_from_lidar).translation_m;
     freed += DistanceBetween(b->cam_from_lidar, scene.cam_from_lidar).translation_m;
-    // The answer is judged with its own camera: the noise, not the wrong focal lengths.
+    // Residuals use the estimated camera: they show the noise, not the wrong focal lengths.
     EXPECT_LT(*b->evaluation.rmse_px, 1.5);
   }
   EXPECT_LT(freed, 0.2 * kept);
@@ -124,8 +125,8 @@ TEST(RefineCamera, RobustLossesApply) {
   EXPECT_LT(error(",loss=cauchy,max_iterations=200"), 0.3 * error(""));
 }
 
-// One plane that faces the camera, and one plane of any tilt for more than focal lengths.
-TEST(RefineCamera, RefusesWhatTheDataDoesNotTell) {
+// One plane that faces the camera, and for more than the focal lengths one plane of any tilt.
+TEST(RefineCamera, RefusesUnobservableIntrinsics) {
   Random random(4);
   int refused = 0;
   for (int trial = 0; trial < 20; ++trial) {
@@ -151,7 +152,7 @@ TEST(RefineCamera, RefusesWhatTheDataDoesNotTell) {
   const auto all = MakeSolver("refine(epnp,intrinsics=focal+center)")->Solve(plane.problem);
   ASSERT_FALSE(all);
   EXPECT_EQ(all.error().code, ErrorCode::kDegenerate) << all.error().message;
-  // Points in both frames tell where the plane is, and so the camera.
+  // Points in both frames determine the plane, and so the camera.
   RandomScene both =
       MakeRandomScene({.pairs = 40, .sigma_m = 0.01, .sigma_px = 1.0, .planar = true}, random);
   EXPECT_TRUE(MakeSolver("refine(kabsch,on=both,intrinsics=focal)")->Solve(both.problem));

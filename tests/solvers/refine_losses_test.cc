@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every robust loss on every kind of residual: accepted, and with a covariance that is honest.
+// Every robust loss on every kind of residual: accepted, and with a consistent covariance.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 // V = E[w^2 s] / k / E[w + 2 w' s / k]^2 and H the information of least squares (Huber 1981,
 // section 6.3); refine states 1 / E[w]. NEES / 6 is therefore V E[w]: the figures below, for the
 // default scales, from 200000 draws (standard error under 0.003). Never above 1: downweighting
-// makes the statement careful.
+// makes the stated covariance conservative.
 struct LossCase {
   const char* loss;
   double pixels;  // k = 2
@@ -55,7 +55,7 @@ TEST_P(RefineLosses, CovarianceIsThatOfTheEstimate) {
   }
   const double low = std::min(kind.pixels ? loss.pixels : 1.0, kind.points ? loss.points : 1.0);
   const double high = std::max(kind.pixels ? loss.pixels : 0.0, kind.points ? loss.points : 0.0);
-  // Five standard errors, and 3 percent for what 50 pairs are short of infinity.
+  // Five standard errors, and 3 percent for the finite number of 50 pairs.
   const double error = 5.0 * std::sqrt(2.0 / 6.0 / kTrials);
   EXPECT_GT(nees, low * (1.0 - error - 0.03)) << spec;
   EXPECT_LT(nees, high * (1.0 + error + 0.03)) << spec;

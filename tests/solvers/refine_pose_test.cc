@@ -23,7 +23,7 @@ Vector6d NormalTwist(Random& random, double sigma) {
   return v;
 }
 
-// Noise along the viewing ray ten times that across it, as of a tag's depth, stated as such.
+// Stated noise along the viewing ray ten times that across it, as for the depth of a tag.
 void MakeDepthUncertain(Random& random, PairScene& scene) {
   for (Pair3d3d& pair : scene.problem.pairs_3d3d) {
     const Eigen::Vector3d ray = pair.point_in_cam.normalized();
@@ -125,7 +125,7 @@ TEST(RefinePose, AgreesWithCeresOnEveryKindAndCamera) {
   }
 }
 
-TEST(RefinePose, EndsNowhereWorseThanItStarted) {
+TEST(RefinePose, NeverEndsWorseThanItStarted) {
   Random random(3);
   int converged = 0;
   for (int trial = 0; trial < 500; ++trial) {
@@ -181,10 +181,10 @@ struct NeesCase {
 
 class RefinePoseNees : public testing::TestWithParam<NeesCase> {};
 
-// NEES / 6 is chi-square(6) / 6 with stated noise, and F(6, f) with f residuals to spare where the
+// NEES / 6 is chi-square(6) / 6 with stated noise, and F(6, f) with f redundant residuals where the
 // scale is estimated: mean f / (f - 2), variance 2 f^2 (f + 4) / (6 (f - 2)^2 (f - 4)). Five
-// standard errors of 2000 trials are allowed, and 1 percent for what first order leaves out.
-TEST_P(RefinePoseNees, IsThatOfAnHonestCovariance) {
+// standard errors of 2000 trials are allowed, and 1 percent for effects of second order.
+TEST_P(RefinePoseNees, IsThatOfAConsistentCovariance) {
   constexpr int kTrials = 2000;
   const auto [kinds, state_noise] = GetParam();
   double sum = 0.0;

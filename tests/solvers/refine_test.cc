@@ -55,8 +55,8 @@ TEST(Refine, AgreesWithKabschOnRealData) {
   }
 }
 
-// Both kinds together must beat each alone: RMS over 200 scenes, whose standard error of about 3
-// percent is far below the difference.
+// Both kinds together must be more accurate than each alone: RMS over 200 scenes, whose standard
+// error of about 3 percent is far below the difference.
 TEST(Refine, BothKindsTogetherAreMorePreciseThanEither) {
   const auto rms_error = [](const std::string& on) {
     double sum = 0.0;
@@ -77,7 +77,7 @@ TEST(Refine, BothKindsTogetherAreMorePreciseThanEither) {
   EXPECT_LT(both, 0.9 * rms_error("2d3d"));
 }
 
-// Redescending losses see nothing from far away, so they start from huber's answer.
+// Redescending losses have no gradient far away, so they start from huber's answer.
 TEST(Refine, LossesResistOutliersThatLeastSquaresFollows) {
   const SceneOptions options{.pairs = 40, .sigma_m = 0.005};
   const std::string huber = "refine(kabsch,loss=huber,max_iterations=1000)";
@@ -102,7 +102,7 @@ TEST(Refine, LossesResistOutliersThatLeastSquaresFollows) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_LT(robust[i], 0.3 * plain) << specs[i];
 }
 
-TEST(Refine, RestsOnTheInliersOfTheInnerSolver) {
+TEST(Refine, UsesTheInliersOfTheInnerSolver) {
   Random random(3);
   const SceneOptions options{.pairs = 30, .sigma_m = 0.01};
   PairScene scene = MakeScene(options, random);
@@ -117,7 +117,7 @@ TEST(Refine, RestsOnTheInliersOfTheInnerSolver) {
   EXPECT_LT(DistanceBetween(refined->cam_from_lidar, inner->cam_from_lidar).translation_m, 1e-8);
 }
 
-TEST(Refine, LeavesOutTheSameCornersOfBothKinds) {
+TEST(Refine, DropsTheSameCornersOfBothKinds) {
   Random random(6);
   const SceneOptions options{.pairs = 30, .sigma_m = 0.01, .sigma_px = 1.0};
   PairScene scene = MakeScene(options, random);
@@ -134,7 +134,7 @@ TEST(Refine, LeavesOutTheSameCornersOfBothKinds) {
   }
 }
 
-TEST(Refine, SaysWhenItDoesNotConverge) {
+TEST(Refine, ReportsWhenItDoesNotConverge) {
   Random random(4);
   const PairScene scene = MakeScene({.pairs = 10, .sigma_m = 0.05}, random);
   const Expected<SolveReport> report =
@@ -143,7 +143,7 @@ TEST(Refine, SaysWhenItDoesNotConverge) {
   EXPECT_EQ(report.error().code, ErrorCode::kNoConvergence);
 }
 
-TEST(Refine, RefusesWhatItCannotWorkOn) {
+TEST(Refine, RefusesUnsuitableData) {
   const SolverRegistry registry = BuiltinSolvers();
   EXPECT_EQ(registry.Make("refine(icp)").error().code, ErrorCode::kInvalidOption);
   EXPECT_TRUE(registry.Make("refine(icp,on=3d3d)"));

@@ -33,7 +33,7 @@ TEST(ReprojectionJacobian, IsTheDerivativeByThePose) {
   }
 }
 
-TEST(ReprojectionCovariance, TakesUnstatedNoiseFromTheResiduals) {
+TEST(ReprojectionCovariance, EstimatesUnstatedNoiseFromTheResiduals) {
   Random random(3);
   PairScene scene = MakeScene({.pairs = 500, .sigma_px = 0.7}, random);
   std::vector<Pair2d3d>& pairs = scene.problem.pairs_2d3d;
@@ -47,7 +47,7 @@ TEST(ReprojectionCovariance, TakesUnstatedNoiseFromTheResiduals) {
   EXPECT_NEAR(measured->trace() / stated->trace(), 1.0, 5.0 * std::sqrt(2.0 / 1000.0));
 }
 
-TEST(ReprojectionCovariance, IsNoneWhereNothingCanBeSaid) {
+TEST(ReprojectionCovariance, IsNoneWhereUndetermined) {
   Random random(4);
   PairScene scene = MakeScene({.pairs = 3}, random);
   std::vector<Pair2d3d>& pairs = scene.problem.pairs_2d3d;

@@ -33,7 +33,7 @@ ScanPair Room(std::uint64_t seed, double ring_bias_sigma_m) {
   return pair.value_or(ScanPair());
 }
 
-// Root mean square over the rings that see walls of what a parabola over the rings cannot take up.
+// RMS, over the rings that see walls, of the residual of a parabola fitted over the rings.
 double Rms(const std::vector<double>& offsets_m) {
   constexpr int kSeen = kRings - kFloorRings;
   Eigen::MatrixXd powers(kSeen, 3);
@@ -51,8 +51,8 @@ std::vector<double> Difference(std::vector<double> a, const std::vector<double>&
   return a;
 }
 
-// The weakest direction that is told has a sigma of 5 mm over all rings, 1.4 mm a ring.
-TEST(RingOffsets, AreToldBesideWhatPlanesTakeUp) {
+// The weakest observable direction has a sigma of 5 mm over all rings, 1.4 mm per ring.
+TEST(RingOffsets, AreFoundExceptWhatPlanesAbsorb) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const ScanPair pair = Room(seed, kRingSigma_m);
     const RingOffsets told = EstimateRingOffsets(ScanWindows(pair.in_target, kCell_rad),
@@ -65,7 +65,7 @@ TEST(RingOffsets, AreToldBesideWhatPlanesTakeUp) {
   }
 }
 
-TEST(RingOffsets, OfTwoUnitsAreToldApart) {
+TEST(RingOffsets, OfTwoUnitsAreSeparated) {
   const ScanPair one = Room(1, kRingSigma_m);
   const ScanPair other = Room(2, kRingSigma_m);
   const RingOffsets told = EstimateRingOffsets(ScanWindows(one.in_target, kCell_rad),
@@ -76,7 +76,7 @@ TEST(RingOffsets, OfTwoUnitsAreToldApart) {
   EXPECT_LT(Rms(Difference(told.source_m, TrueOffsets(2))), 0.002);
 }
 
-TEST(RingOffsets, WithoutThemNothingIsTold) {
+TEST(RingOffsets, AreEmptyWithoutAny) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const ScanPair pair = Room(seed, 0.0);
     const RingOffsets told = EstimateRingOffsets(ScanWindows(pair.in_target, kCell_rad),
@@ -86,7 +86,7 @@ TEST(RingOffsets, WithoutThemNothingIsTold) {
 }
 
 // Fewer windows than a row needs, and no surface at all.
-TEST(RingOffsets, OfWhatIsNoScanAreNone) {
+TEST(RingOffsets, AreEmptyForPointsThatAreNoScan) {
   Random random(3);
   std::vector<Eigen::Vector3d> cloud(2000);
   for (Eigen::Vector3d& point : cloud) {

@@ -16,7 +16,8 @@ namespace {
 
 using Rotations = std::vector<Eigen::Quaterniond>;
 
-// Turns by `spread` rad per axis about a common one, with signs of the quaternions at random.
+// Rotations scattered by `spread` rad per axis about a common one, with random signs of the
+// quaternions.
 Rotations Around(const Eigen::Quaterniond& centre, int count, double spread, Random& random) {
   Rotations rotations;
   for (int i = 0; i < count; ++i) {
