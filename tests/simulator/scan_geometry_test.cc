@@ -111,6 +111,7 @@ double WrapAngle(double angle) { return std::remainder(angle, 2.0 * kPi); }
 TEST(ScanGeometry, RingsAndAzimuthsMatchTheModel) {
   const LidarModel model = Model("pandar40p");
   const SimulatedScan scan = Scan(FullRoom(), model, Noiseless());
+  ASSERT_GT(scan.cloud.points.size(), 1000U);
   for (std::size_t i = 0; i < scan.cloud.points.size(); ++i) {
     const Eigen::Vector3d& p = scan.cloud.points[i];
     const LidarRing& ring = model.rings[scan.cloud.ring[i]];
@@ -124,6 +125,7 @@ TEST(ScanGeometry, RingsAndAzimuthsMatchTheModel) {
 TEST(ScanGeometry, BeamOriginsMatchTheManual) {
   const LidarModel vlp = Model("vlp16");
   const SimulatedScan scan = Scan(FullRoom(), vlp, Noiseless());
+  ASSERT_GT(scan.cloud.points.size(), 1000U);
   for (std::size_t i = 0; i < scan.cloud.points.size(); ++i) {
     const Eigen::Vector3d& p = scan.cloud.points[i];
     const LidarRing& ring = vlp.rings[scan.cloud.ring[i]];

@@ -40,7 +40,9 @@ std::map<std::string, std::vector<double>> Try(const std::string& text, const st
 
 std::vector<double> TryOne(const std::string& text, const std::string& metric, int trials,
                            const std::string& subject) {
-  return Try(text, metric, trials)[subject];
+  std::vector<double> values = Try(text, metric, trials)[subject];
+  EXPECT_GE(values.size(), static_cast<std::size_t>(trials)) << subject;
+  return values;
 }
 
 TEST(PaperKinds, SceneWithoutNoiseGivesTheTruth) {
@@ -89,12 +91,15 @@ TEST(PaperKinds, BoardsInScansAndImagesAreFound) {
   const std::string scan = "kind: board_scan\ntrials: 1\n";
   auto corners = Try(scan, "corner_mm", 4);
   for (const char* extractor : {"lines3d_raw", "plane_lines", "rectangle"}) {
+    EXPECT_EQ(corners[extractor].size(), 4U) << extractor;
     for (const double off : corners[extractor]) EXPECT_LT(off, 150.0) << extractor;
   }
   for (const double gap : TryOne(scan, "gap_mm", 4, "rectangle")) EXPECT_EQ(gap, 0.0);
   const std::string image =
       "kind: board_image\ntrials: 1\nparameters: {camera_model: pinhole, distance_m: 1.5}\n";
-  for (const auto& [print, errors] : Try(image, "corner_mm", 1)) {
+  const auto prints = Try(image, "corner_mm", 1);
+  EXPECT_EQ(prints.size(), 3U);
+  for (const auto& [print, errors] : prints) {
     for (const double off : errors) EXPECT_LT(off, 10.0) << print;
   }
 }
