@@ -8,8 +8,8 @@
 
 namespace sextant::cli {
 
-/// What a command line asks for: a command to run, or a text to print (help, version, an error)
-/// and the exit code to end with.
+/// The result of parsing a command line: a command to run, or a text to print (help, version,
+/// error) and the exit code to end with.
 struct ParsedLine {
   std::function<int()> run{};  ///< Empty: there is only text.
   int exit_code = 0;

@@ -147,7 +147,7 @@ Command MarkCommand() {
       "the\n"
       "top-left edge first, then clockwise, boards from left to right. h shows the keys. Unsaved "
       "marks\n"
-      "are kept beside --out, and the next start continues with them.\n"
+      "are kept next to the file of --out, and the next start continues with them.\n"
       "Examples:\n"
       "  sextant mark --cloud scan.pcd --yaw 90\n"
       "  sextant mark --cloud scan.pcd --image photo.png --camera camera.yaml --out session.yaml";

@@ -12,7 +12,7 @@
 namespace sextant::cli {
 
 enum class MarkMode {
-  kEdges,    ///< Quadrilaterals round the edges, in the projected scan.
+  kEdges,    ///< Quadrilaterals around the edges, in the projected scan.
   kCorners,  ///< Corners of the boards, in the photo.
 };
 
