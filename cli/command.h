@@ -28,8 +28,8 @@ struct ArgumentRange {
 struct ArgumentRules {
   bool required = false;
   bool shows_default = false;            ///< The help shows the variable's initial value.
-  std::optional<ArgumentRange> range{};  ///< Of a number, both ends included.
-  int min_values = 0;                    ///< Of a vector; 0: as many as there are.
+  std::optional<ArgumentRange> range{};  ///< For a number, both ends included.
+  int min_values = 0;                    ///< For a vector; 0: as many as there are.
   int max_values = 0;                    ///< The same as min_values if 0.
   char separator = '\0';                 ///< Splits one value into several.
   std::vector<std::string> choices{};    ///< The only values allowed, in any case.

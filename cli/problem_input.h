@@ -32,7 +32,7 @@ void DeclareProblemInput(ProblemInputOptions& options, Arguments& arguments);
 /// The input, ready for the solvers.
 struct LoadedProblem {
   ProblemFile file;
-  PairDiagnostics diagnostics;     ///< Of the pairs in the file's own order.
+  PairDiagnostics diagnostics;     ///< For the pairs in the file's own order.
   std::vector<std::string> notes;  ///< What was corrected while reading.
   ResultInput summary;
 };

@@ -16,11 +16,11 @@ struct MarkOptions {
   std::string image_path{};                   ///< Empty: none.
   std::string camera_path{};                  ///< Empty: an assumed camera.
   std::vector<std::string> cam_from_lidar{};  ///< A file, or x y z qw qx qy qz; empty: the axes.
-  double yaw_deg = 0.0;                       ///< Of the assumed camera, to the left.
-  std::vector<int> ids{};                     ///< Of the boards, from left to right.
+  double yaw_deg = 0.0;                       ///< The assumed camera, to the left.
+  std::vector<int> ids{};                     ///< The boards, from left to right.
   std::string out_path = "polygons.yaml";
   std::string render_path{};  ///< A picture of the window to write instead of opening it.
-  int width_px = 1280;        ///< Of the window.
+  int width_px = 1280;        ///< The window.
   int height_px = 800;
 };
 

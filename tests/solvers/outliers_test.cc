@@ -25,7 +25,7 @@ struct OutlierCase {
   std::string spec;
   std::string oracle;  ///< Solved on the true inliers.
   int pairs;
-  double share;  ///< Of outliers.
+  double share;  ///< Share of outliers.
   int trials;
   double lost_pairs = 2.0;  ///< Share of the error allowed for pairs beyond the threshold.
 };
