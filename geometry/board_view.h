@@ -32,7 +32,7 @@ struct BoardView {
   int board = 0;  ///< Board::id.
   std::vector<BoardPoints> printed{};
   std::vector<Eigen::Vector3d> face_in_lidar{};  ///< Returns from the face, as measured [m].
-  double range_sigma_m = 0.0;                    ///< Of each return, along its ray.
+  double range_sigma_m = 0.0;                    ///< Each return, along its ray.
   std::vector<EdgeRay> edges{};
   Rigid3d cam_from_board{};    ///< From the image alone.
   Rigid3d lidar_from_board{};  ///< From the scan alone.

@@ -12,7 +12,7 @@ struct RunningAverageRow {
   int iteration = 0;  ///< Counts from 1.
   Eigen::Vector3d mean_translation_m = Eigen::Vector3d::Zero();
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  double rmse_m = 0.0;  ///< Of this iteration's scan under the running average.
+  double rmse_m = 0.0;  ///< This iteration's scan under the running average.
 };
 
 }  // namespace sextant

@@ -19,7 +19,7 @@ struct BagSource {
   std::string image_topic{};    ///< Empty: the only topic of images.
   std::string cloud_topic{};    ///< Empty: the only topic of scans.
   double tolerance_s = 0.05;    ///< Largest difference in time between an image and its scan.
-  std::size_t max_views = 400;  ///< Of more pairs, this many are selected evenly.
+  std::size_t max_views = 400;  ///< If there are more, they are selected evenly.
 };
 
 /// An image and a scan of a recording that form a view.

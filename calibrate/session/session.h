@@ -25,7 +25,7 @@ struct Session {
   std::string image_topic{};    ///< In the recording; empty: the only one.
   std::string cloud_topic{};
   std::optional<Rigid3d> initial_cam_from_lidar{};
-  std::optional<Rigid3d> true_cam_from_lidar{};  ///< Of a simulated session; not given to solvers.
+  std::optional<Rigid3d> true_cam_from_lidar{};  ///< Simulated sessions; not given to solvers.
 };
 
 /// Reads a session by its path:

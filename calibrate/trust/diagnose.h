@@ -16,7 +16,7 @@ namespace sextant {
 struct ScaleFit {
   double excess = 0.0;
   double sigma = 0.0;        ///< One standard deviation, from the residuals.
-  double sum_squares = 0.0;  ///< Of the remaining differences, whitened by their noise.
+  double sum_squares = 0.0;  ///< Remaining differences, whitened by their noise.
 };
 
 /// Two models of boards that appear too far away in images: a print smaller than the board file

@@ -62,7 +62,7 @@ struct Estimate {
   /// Indices, ascending, of the pairs that the answer is based on (the 3D-3D ones where the solver
   /// needs both kinds); empty for point sets.
   std::vector<int> inliers;
-  /// Of (dphi [rad], dt [m]); see Perturb. None where there is no redundant data to estimate it.
+  /// For (dphi [rad], dt [m]); see Perturb. None where there is no redundant data to estimate it.
   std::optional<Matrix6d> covariance;
   /// Set where the solver estimates the camera too; the covariance of the pose then accounts for
   /// it.
@@ -82,7 +82,7 @@ struct Estimate {
 struct SolveReport : Estimate {
   std::string solver;
   double wall_time_us = 0.0;
-  Evaluation evaluation;  ///< Of the pose with its camera, over all data of the problem.
+  Evaluation evaluation;  ///< The pose with its camera, over all data of the problem.
 };
 
 /// A method that finds cam_from_lidar. Immutable, deterministic, thread-safe.

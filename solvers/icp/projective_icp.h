@@ -12,7 +12,7 @@ namespace sextant {
 
 struct ProjectiveIcpSettings {
   double cell_rad = std::numbers::pi / 90.0;  ///< Height and width of the cells of a scan.
-  double max_distance_m = 0.5;                ///< Of a patch from its plane, at the start.
+  double max_distance_m = 0.5;                ///< From a patch to its plane, at the start.
   int max_iterations = 100;
   double rotation_tolerance_rad = 1e-6;
   double translation_tolerance_m = 1e-6;

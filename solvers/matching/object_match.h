@@ -17,7 +17,7 @@ struct ObjectPairing {
   int in_a = 0;                                ///< Index among a's.
   std::vector<Eigen::Vector3d> points_in_b{};  ///< At least 3, not on a line [m].
   std::vector<Eigen::Vector3d> points_in_a{};  ///< As many [m].
-  double sigma_m = 1.0;                        ///< Of each point's difference, per axis.
+  double sigma_m = 1.0;                        ///< Each point's difference, per axis.
   double penalty = 0.0;  ///< Additional chi-square from other evidence against this association.
 };
 
@@ -32,7 +32,7 @@ struct MatchOptions {
   /// under which a single object fits well. Infinite: every object has a partner.
   double cap = std::numeric_limits<double>::infinity();
   std::vector<Rigid3d> starts{};  ///< b_from_a, tried before those of single pairings.
-  std::size_t max_starts = 512;   ///< Of many views, an evenly spread subset is used.
+  std::size_t max_starts = 512;   ///< With many views, an evenly spread subset is used.
 };
 
 /// A pairing chosen in an explanation.

@@ -24,7 +24,7 @@ namespace {
 /// A fenced block of a page.
 struct Block {
   std::string text;
-  std::string first_word;  ///< Of the first line, up to a colon or a comma.
+  std::string first_word;  ///< First line, up to a colon or a comma.
   int line = 0;            ///< Line of the page on which the text begins.
 };
 

@@ -21,7 +21,8 @@ namespace {
 using test::ExpectSamePose;
 
 using Points = std::vector<Eigen::Vector3d>;
-constexpr double kNoise = 5e-5;  ///< Of a room's pose [rad], about: what is below is the same pose.
+constexpr double kNoise =
+    5e-5;  ///< About that of a room's pose [rad]: below it, poses are the same.
 
 LidarModel ModelOf(const char* name) {
   LidarModel model = *FindLidarModel(name);

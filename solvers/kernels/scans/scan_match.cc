@@ -6,7 +6,7 @@
 namespace sextant {
 namespace {
 
-constexpr double kMinCosine = 0.85;  ///< Of the angle between the normals of a match.
+constexpr double kMinCosine = 0.85;  ///< Angle between the normals of a match.
 constexpr double kEndOfWeights2 = 9.0;
 constexpr double kCellsOfAPlane = 9.0;
 /// Added to the known variance of a match, in noise variances: planes are not quite flat.
