@@ -19,7 +19,7 @@ namespace sextant {
 namespace {
 
 constexpr const char* kRefined = "refined";
-constexpr const char* kExperiment = "detectors";
+constexpr const char* kDetectorExperiment = "detectors";
 constexpr double kLarge_px = 100.0;
 constexpr double kNotThisTag_px = 8.0;
 
@@ -33,7 +33,7 @@ struct Answer {
   double nees = 0.0;
 };
 
-struct Trial {
+struct TagTrial {
   bool is_large = false;
   std::vector<Answer> answers;
 };
@@ -93,8 +93,9 @@ Answer RefinedAnswer(const std::optional<Quad>& start, const TagPicture& picture
   return answer;
 }
 
-TagPictureOptions Draw(const DetectorStudyOptions& options, int trial) {
-  Random random(DeriveSeed(options.seed, kExperiment, 0, static_cast<std::uint64_t>(trial)));
+TagPictureOptions DrawTagPicture(const DetectorStudyOptions& options, int trial) {
+  Random random(
+      DeriveSeed(options.seed, kDetectorExperiment, 0, static_cast<std::uint64_t>(trial)));
   TagPictureOptions picture;
   picture.family = options.family;
   picture.id = static_cast<int>(random.Below(30));
@@ -102,19 +103,22 @@ TagPictureOptions Draw(const DetectorStudyOptions& options, int trial) {
       random.Uniform(std::log(options.min_side_px), std::log(options.max_side_px));
   picture.side_px = std::exp(log_side);
   picture.tilt_rad = random.Uniform(0.0, options.max_tilt_rad);
-  picture.seed = DeriveSeed(options.seed, kExperiment, 1, static_cast<std::uint64_t>(trial));
+  picture.seed =
+      DeriveSeed(options.seed, kDetectorExperiment, 1, static_cast<std::uint64_t>(trial));
   picture.field = 0.35;  // The largest board must be completely in the image.
-  picture.image.seed = DeriveSeed(options.seed, kExperiment, 2, static_cast<std::uint64_t>(trial));
+  picture.image.seed =
+      DeriveSeed(options.seed, kDetectorExperiment, 2, static_cast<std::uint64_t>(trial));
   picture.image.blur_sigma_px = options.blur_px;
   picture.image.noise_sigma_grey = options.noise_grey;
   return picture;
 }
 
-Expected<Trial> RunTrial(const TagPictureOptions& drawn,
-                         const std::vector<TagDetectorPtr>& detectors, std::size_t first_of_ours) {
+Expected<TagTrial> RunTagTrial(const TagPictureOptions& drawn,
+                               const std::vector<TagDetectorPtr>& detectors,
+                               std::size_t first_of_ours) {
   SEXTANT_ASSIGN_OR_RETURN(const TagPicture picture, RenderTagPicture(drawn));
   SEXTANT_ASSIGN_OR_RETURN(const TagPattern pattern, MakeTagPattern(drawn.family, drawn.id));
-  Trial trial{.is_large = drawn.side_px >= kLarge_px, .answers = {}};
+  TagTrial trial{.is_large = drawn.side_px >= kLarge_px, .answers = {}};
   std::optional<Quad> start;
   for (std::size_t i = 0; i < detectors.size(); ++i) {
     const std::optional<Quad> corners = FindTag(*detectors[i], picture, drawn.id, pattern);
@@ -125,13 +129,13 @@ Expected<Trial> RunTrial(const TagPictureOptions& drawn,
   return trial;
 }
 
-DetectorRow Summarise(const std::string& detector, const std::vector<Trial>& trials,
-                      std::size_t index) {
+DetectorRow SummariseDetector(const std::string& detector, const std::vector<TagTrial>& trials,
+                              std::size_t index) {
   DetectorRow row{.detector = detector};
   double squares = 0.0;
   double large_squares = 0.0;
   std::vector<double> distances;
-  for (const Trial& trial : trials) {
+  for (const TagTrial& trial : trials) {
     const Answer& answer = trial.answers[index];
     if (!answer.is_found) continue;
     ++row.found;
@@ -181,17 +185,18 @@ Expected<std::vector<DetectorRow>> StudyDetectors(const DetectorStudyOptions& op
     SEXTANT_ASSIGN_OR_RETURN(TagDetectorPtr detector, MakeTagDetector(names[i]));
     detectors.push_back(std::move(detector));
   }
-  std::vector<Expected<Trial>> results(static_cast<std::size_t>(options.trials));
+  std::vector<Expected<TagTrial>> results(static_cast<std::size_t>(options.trials));
   tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
-    results[i] = RunTrial(Draw(options, static_cast<int>(i)), detectors, kStart);
+    results[i] = RunTagTrial(DrawTagPicture(options, static_cast<int>(i)), detectors, kStart);
   });
-  std::vector<Trial> trials;
-  for (Expected<Trial>& trial : results) {
+  std::vector<TagTrial> trials;
+  for (Expected<TagTrial>& trial : results) {
     if (!trial) return tl::unexpected<Error>(trial.error());
     trials.push_back(std::move(*trial));
   }
   std::vector<DetectorRow> rows;
-  for (std::size_t i = 0; i < names.size(); ++i) rows.push_back(Summarise(names[i], trials, i));
+  for (std::size_t i = 0; i < names.size(); ++i)
+    rows.push_back(SummariseDetector(names[i], trials, i));
   return rows;
 }
 

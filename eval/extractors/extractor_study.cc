@@ -21,13 +21,13 @@
 namespace sextant {
 namespace {
 
-constexpr const char* kExperiment = "extractors";
+constexpr const char* kExtractorExperiment = "extractors";
 constexpr double kNearest_m = 1.2;
 constexpr double kFurthest_m = 4.2;  // The rooms' walls are 5 m away.
 constexpr double kMaxOff = 1.0 / 3.0;
 enum Part : std::uint64_t { kAccuracy, kPlacement, kRoom };
 
-struct Trial {
+struct ScanTrial {
   Part part = kAccuracy;
   int index = 0;
 };
@@ -40,7 +40,7 @@ struct CornerError {
   double nees = 0.0;
 };
 
-struct Outcome {
+struct ScanOutcome {
   int due = 0;
   int found = 0;
   int misplaced = 0;
@@ -76,9 +76,9 @@ class Study {
     model_.ring_bias_sigma_m = 0.0;
   }
 
-  Expected<Outcome> Run(const Trial& trial) const {
+  Expected<ScanOutcome> Run(const ScanTrial& trial) const {
     const auto index = static_cast<std::uint64_t>(trial.index);
-    Random random(DeriveSeed(options_.seed, kExperiment, trial.part, index));
+    Random random(DeriveSeed(options_.seed, kExtractorExperiment, trial.part, index));
     const Scene scene = Draw(trial.part, random);
     SEXTANT_ASSIGN_OR_RETURN(
         const SimulatedScan scan,
@@ -91,7 +91,7 @@ class Study {
     const std::vector<Board> boards =
         trial.part == kRoom ? BoardsIn(TwoBoardsInRoom({}, random)) : BoardsIn(scene);
     SEXTANT_ASSIGN_OR_RETURN(const BoardSearch found, FindBoards(rings, boards, search));
-    Outcome outcome;
+    ScanOutcome outcome;
     if (trial.part == kRoom) outcome.boards = static_cast<int>(found.found.size());
     if (trial.part == kPlacement) Count(scene, scan, found, outcome);
     if (trial.part == kAccuracy) Measure(scene, found, outcome);
@@ -119,7 +119,7 @@ class Study {
   }
 
   static void Count(const Scene& scene, const SimulatedScan& scan, const BoardSearch& search,
-                    Outcome& outcome) {
+                    ScanOutcome& outcome) {
     const std::vector<bool> due = AreDue(scan, scene.boards.size());
     outcome.due = static_cast<int>(std::ranges::count(due, true));
     for (const BoardPatch& patch : search.found) {
@@ -131,7 +131,7 @@ class Study {
     }
   }
 
-  static void Measure(const Scene& scene, const BoardSearch& search, Outcome& outcome) {
+  static void Measure(const Scene& scene, const BoardSearch& search, ScanOutcome& outcome) {
     for (const BoardPatch& patch : search.found) {
       if (!IsPlaced(scene, patch)) continue;
       const SceneBoard& board = scene.boards[static_cast<std::size_t>(patch.board)];
@@ -157,10 +157,11 @@ class Study {
   LidarBeam beam_;
 };
 
-ExtractorErrors Summarise(std::size_t extractor, const std::vector<Outcome>& outcomes) {
+ExtractorErrors SummariseExtractor(std::size_t extractor,
+                                   const std::vector<ScanOutcome>& outcomes) {
   ExtractorErrors errors{.extractor = CornerExtractors()[extractor].name};
   std::vector<double> distances;
-  for (const Outcome& outcome : outcomes) {
+  for (const ScanOutcome& outcome : outcomes) {
     for (const CornerError& error : outcome.errors) {
       if (error.extractor != extractor) continue;
       if (error.refused) {
@@ -188,16 +189,16 @@ Expected<ExtractorStudyRow> StudyModel(const ExtractorStudyOptions& options,
   SEXTANT_ASSIGN_OR_RETURN(const LidarModel model, FindLidarModel(name));
   SEXTANT_ASSIGN_OR_RETURN(const LidarBeam beam, FindLidarBeam(name));
   const Study study(options, model, beam);
-  std::vector<Trial> trials;
+  std::vector<ScanTrial> trials;
   for (int i = 0; i < options.trials; ++i) trials.push_back({kAccuracy, i});
   for (int i = 0; i < options.placements; ++i) trials.push_back({kPlacement, i});
   for (int i = 0; i < options.rooms; ++i) trials.push_back({kRoom, i});
-  std::vector<Expected<Outcome>> results(trials.size());
+  std::vector<Expected<ScanOutcome>> results(trials.size());
   tbb::parallel_for(std::size_t{0}, trials.size(),
                     [&](std::size_t i) { results[i] = study.Run(trials[i]); });
   ExtractorStudyRow row{.model = name};
-  std::vector<Outcome> outcomes;
-  for (Expected<Outcome>& result : results) {
+  std::vector<ScanOutcome> outcomes;
+  for (Expected<ScanOutcome>& result : results) {
     if (!result) return tl::unexpected<Error>(result.error());
     row.due += result->due;
     row.found += result->found;
@@ -206,7 +207,7 @@ Expected<ExtractorStudyRow> StudyModel(const ExtractorStudyOptions& options,
     outcomes.push_back(std::move(*result));
   }
   for (std::size_t e = 0; e < CornerExtractors().size(); ++e) {
-    row.extractors.push_back(Summarise(e, outcomes));
+    row.extractors.push_back(SummariseExtractor(e, outcomes));
   }
   return row;
 }
