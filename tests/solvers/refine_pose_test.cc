@@ -155,25 +155,6 @@ TEST(RefinePose, RefusesAStartThatDoesNotProject) {
             RefineOutcome::kNotProjected);
 }
 
-TEST(InvertSymmetric, DoesNotDependOnTheUnits) {
-  Random random(5);
-  const PairScene scene = MakeScene({.pairs = 8, .sigma_m = 0.01}, random);
-  const PairTerms terms = TermsOf(scene.problem, Kinds::kPoints);
-  const Matrix6d information = RefinePose(terms.View(), scene.cam_from_lidar, {}).information;
-  Vector6d units;
-  units << 1e8, 1e8, 1e8, 1e-8, 1e-8, 1e-8;
-  const Matrix6d scaled = units.asDiagonal() * information * units.asDiagonal();
-  const std::optional<Matrix6d> inverse = InvertSymmetric(scaled);
-  ASSERT_TRUE(inverse);
-  const Matrix6d back = units.asDiagonal() * *inverse * units.asDiagonal();
-  EXPECT_TRUE(back.isApprox(*InvertSymmetric(information), 1e-9));
-  Matrix6d singular = information;
-  singular.row(2) = singular.row(1);
-  singular.col(2) = singular.col(1);
-  EXPECT_FALSE(InvertSymmetric(singular));
-  EXPECT_FALSE(InvertSymmetric(Matrix6d::Zero()));
-}
-
 struct NeesCase {
   Kinds kinds;
   bool state_noise;
