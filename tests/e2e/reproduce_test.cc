@@ -90,8 +90,8 @@ TEST(Reproduce, FewTrialsDoNotRefuteASingleMeasurement) {
   WriteText(TestFolder() / "experiments" / "points.yaml", experiment);
   ASSERT_EQ(RunSextant(arguments + " --quick").exit_code, 0);
   EXPECT_THAT(ReadText(TestFolder() / "paper" / "REPRODUCTION.md"),
-              HasSubstr("4 claims: 1 direction reproduced, 1 refuted, 1 undecided at so many "
-                        "trials, 1 not testable."));
+              HasSubstr("4 claims: 1 direction reproduced, 1 refuted, 1 undecided with this "
+                        "number of trials, 1 not testable."));
 }
 
 TEST(Reproduce, ReportsWhatIsWrong) {
