@@ -21,7 +21,7 @@ namespace sextant {
 /// A calibration with every intermediate product. Members behind the first stage that failed keep
 /// their defaults, and `result` has that stage's error.
 struct Calibration {
-  ObservedSession observed{};  ///< Views with what was seen in them, or why nothing was.
+  ObservedSession observed{};  ///< Views with the boards in them, or their errors.
   Assembly assembly{};         ///< The solvers' problem, and what became of each board.
   /// One row per solver, in the order of CalibrateOptions::solvers, with the distances to the first
   /// solver's pose and to the session's true pose, where known.

@@ -70,14 +70,14 @@ class BoardOverTime {
  private:
   void Thin(const std::vector<CameraSighting*>& place) const {
     const std::size_t count = place.size();
-    const auto most = static_cast<std::size_t>(options_.max_per_place);
-    if (count <= most) return;
+    const auto max = static_cast<std::size_t>(options_.max_per_place);
+    if (count <= max) return;
     std::vector<bool> is_kept(count, false);
-    for (std::size_t k = 0; k < most; ++k) is_kept[k * count / most] = true;
+    for (std::size_t k = 0; k < max; ++k) is_kept[k * count / max] = true;
     for (std::size_t i = 0; i < count; ++i) {
       if (is_kept[i]) continue;
       place[i]->left_out =
-          fmt::format("it has not moved since: {} of {} views of this place are used", most, count);
+          fmt::format("it has not moved since: {} of {} views of this place are used", max, count);
     }
   }
 

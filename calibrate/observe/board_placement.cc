@@ -67,10 +67,10 @@ Board OutlineOf(const BoardPlacement& placement, std::span<const Board> boards) 
 }
 
 bool AreSimilar(const Board& a, const Board& b) {
-  const auto alike = [](double x, double y) {
+  const auto similar = [](double x, double y) {
     return std::abs(x - y) < kOtherSize * std::max(x, y);
   };
-  return alike(a.top_right_m, b.top_right_m) && alike(a.right_bottom_m, b.right_bottom_m);
+  return similar(a.top_right_m, b.top_right_m) && similar(a.right_bottom_m, b.right_bottom_m);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ std::string NaturalKey(std::string_view text) {
   return key;
 }
 
-// Whether the name matches a pattern in which each `*` stands for any text.
+// Whether the name matches a pattern in which each `*` matches any text.
 bool Matches(std::string_view name, std::string_view pattern) {
   const std::size_t star = pattern.find('*');
   if (star == std::string_view::npos) return name == pattern;

@@ -92,7 +92,7 @@ void DiagnoseScale(const CalibrationProblem& problem, const Rigid3d& pose,
                         percent, sign, 100.0 * fit.sigma, size)
           : fmt::format("intrinsics: boards are {:.1f} percent {} away in the images than in the "
                         "scans, in depth only (1 sigma {:.1f}): the focal length is too {}, or the "
-                        "print is not of the size that the board file says",
+                        "print does not have the size in the board file",
                         percent, fit.excess > 0.0 ? "further" : "less far", 100.0 * fit.sigma,
                         focal));
 }

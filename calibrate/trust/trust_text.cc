@@ -19,7 +19,7 @@ std::string SigmaText(const Vector6d& sigma) {
 
 std::string ErrorText(const std::optional<double>& metres, const std::optional<double>& pixels) {
   if (metres) return fmt::format("{:.1f} mm", *metres * 1e3);
-  return pixels ? fmt::format("{:.2f} px", *pixels) : "nothing";
+  return pixels ? fmt::format("{:.2f} px", *pixels) : "unknown";
 }
 
 std::string CrossValidationText(const TrustFigures& figures) {
@@ -51,7 +51,7 @@ std::string ComparisonText(const TrustFigures& figures, int views) {
   const double band = 1.0 + 2.0 / std::sqrt(2.0 * std::max(1, views - 1));
   const double largest =
       std::max(*figures.bootstrap_over_covariance, figures.jackknife_over_covariance.value_or(0.0));
-  const double least =
+  const double smallest =
       std::min(*figures.bootstrap_over_covariance,
                figures.jackknife_over_covariance.value_or(*figures.bootstrap_over_covariance));
   if (largest > band) {
@@ -61,11 +61,11 @@ std::string ComparisonText(const TrustFigures& figures, int views) {
         "not belong.",
         largest);
   }
-  if (least < 1.0 / band) {
+  if (smallest < 1.0 / band) {
     return fmt::format(
         "The views agree {:.1f} times better than their stated noise: the covariance is cautious, "
         "or the views are too similar to show an error that they share.",
-        1.0 / least);
+        1.0 / smallest);
   }
   return "They agree within the statistical uncertainty of so many views.";
 }

@@ -2,11 +2,10 @@
 // The programs of examples/ run, and docs/library.md shows them as they are.
 #include <gmock/gmock.h>
 
-#include <opencv2/imgcodecs.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "io/images/image_codec.h"
 #include "io/results/calibration_result.h"
 #include "simulator/scene/scene_file.h"
 #include "simulator/session/session.h"
@@ -37,11 +36,7 @@ walls:
   - {name: back, width_m: 8, height_m: 4, pose: {position_m: [4.5, 0, 1.5]}}
 )";
 
-Expected<std::string> EncodePng(const cv::Mat& image) {
-  std::vector<unsigned char> png;
-  cv::imencode(".png", image, png);
-  return std::string(png.begin(), png.end());
-}
+Expected<std::string> EncodePng(const cv::Mat& image) { return EncodeImage(".png", image); }
 
 std::filesystem::path SimulatedSession() {
   const Expected<Scene> scene = ParseScene(kScene, "example.yaml");
