@@ -50,7 +50,8 @@ void SetRules(const ArgumentRules& rules, CLI::App& app, CLI::Option& option) {
     option.expected(rules.min_values, std::max(rules.min_values, rules.max_values));
   }
   if (rules.separator != '\0') option.delimiter(rules.separator);
-  if (!rules.choices.empty()) option.check(CLI::IsMember(rules.choices, CLI::ignore_case));
+  // transform() because check() would keep the case that the user wrote.
+  if (!rules.choices.empty()) option.transform(CLI::IsMember(rules.choices, CLI::ignore_case));
   if (!rules.excludes.empty()) option.excludes(app.get_option(rules.excludes));
 }
 
