@@ -154,7 +154,7 @@ class Batches {
     if (found == views.end()) return;
     PendingMoment& moment = waiting_[found->second];
     moment.view = found->second;
-    (is_image ? moment.image : moment.cloud) = KeptMessage{message, std::string(message.data)};
+    (is_image ? moment.image : moment.cloud) = MessageCopy{message, std::string(message.data)};
     if (!moment.image || !moment.cloud) return;
     whole_.push_back(std::move(moment));
     waiting_.erase(found->second);
