@@ -16,7 +16,7 @@
 namespace sextant {
 namespace {
 
-constexpr double kMaxSquared = 4.0;
+constexpr double kMaxSquaredSigmas = 4.0;
 
 struct SumsCase {
   PairTerms terms;
@@ -72,7 +72,8 @@ void ExpectSameSlopes(const PixelSums& sums, const PixelSums& wanted) {
 
 double TruncatedOneByOne(const SumsCase& c) {
   double cost = 0.0;
-  for (const PixelTerm term : c.terms.pixels) cost += std::min(kMaxSquared, SquaredOf(term, c));
+  for (const PixelTerm term : c.terms.pixels)
+    cost += std::min(kMaxSquaredSigmas, SquaredOf(term, c));
   return cost;
 }
 
@@ -96,11 +97,12 @@ TEST(PixelSums, LeaveOutOutliers) {
     if (pairs % 3 == 0) c.pose.translation.z() -= 3.0;
     PixelSums sums;
     const int within =
-        SumPixelsWithin(c.terms.pixels.View(), c.Pose(), kMaxSquared, kMaxSquared, sums);
+        SumPixelsWithin(c.terms.pixels.View(), c.Pose(), kMaxSquaredSigmas, kMaxSquared, sums);
     int wanted = 0;
-    for (const PixelTerm term : c.terms.pixels) wanted += SquaredOf(term, c) <= kMaxSquared ? 1 : 0;
+    for (const PixelTerm term : c.terms.pixels)
+      wanted += SquaredOf(term, c) <= kMaxSquaredSigmas ? 1 : 0;
     EXPECT_EQ(within, wanted);
-    ExpectSameSlopes(sums, OneByOne(c, kMaxSquared));
+    ExpectSameSlopes(sums, OneByOne(c, kMaxSquaredSigmas));
     EXPECT_NEAR(sums.squares, TruncatedOneByOne(c), 1e-11 * (1.0 + sums.squares));
   }
 }
@@ -123,10 +125,11 @@ TEST(PixelSums, SquaresAndCostAreThoseOfEveryTerm) {
     }
     const double cost = TruncatedOneByOne(c);
     constexpr double kNever = std::numeric_limits<double>::infinity();
-    EXPECT_NEAR(TruncatedPixelCost(blocks, c.Pose(), kMaxSquared, kNever), cost, 1e-11 * cost);
-    EXPECT_NEAR(ScreenedPixelCost(blocks, c.Pose(), kMaxSquared, kNever, PixelScreen()), cost,
+    EXPECT_NEAR(TruncatedPixelCost(blocks, c.Pose(), kMaxSquaredSigmas, kNever), cost,
                 1e-11 * cost);
-    EXPECT_GE(TruncatedPixelCost(blocks, c.Pose(), kMaxSquared, 0.5 * cost), 0.5 * cost);
+    EXPECT_NEAR(ScreenedPixelCost(blocks, c.Pose(), kMaxSquaredSigmas, kNever, PixelScreen()), cost,
+                1e-11 * cost);
+    EXPECT_GE(TruncatedPixelCost(blocks, c.Pose(), kMaxSquaredSigmas, 0.5 * cost), 0.5 * cost);
   }
 }
 
