@@ -92,7 +92,7 @@ TEST(Calibrate, FramesGiveThePoseAndEveryProductOfThePipeline) {
   EXPECT_EQ(calibration->report(), &*calibration->comparison[0].report);
   EXPECT_EQ(reported.front(), 0U);
   EXPECT_EQ(reported.back(), 3U);
-  const std::string text = cli::DescribeCalibration(*calibration);
+  const std::string text = DescribeCalibration(*calibration);
   for (const char* part : {"frame 2", "kept", "1 sigma, along x y z", "It rests on"}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
@@ -113,7 +113,7 @@ TEST(Calibrate, TheFirstSolverGivesTheResultAndTheOthersAreCompared) {
   EXPECT_FALSE(calibration->trust);
   EXPECT_FALSE(calibration->result->trust);
   EXPECT_THAT(calibration->warnings, Contains(HasSubstr("one view only")));
-  EXPECT_THAT(cli::DescribeCalibration(*calibration), HasSubstr("to first [mm]"));
+  EXPECT_THAT(DescribeCalibration(*calibration), HasSubstr("to first [mm]"));
 }
 
 TEST(Calibrate, ASessionOfFilesGivesTheSameAsItsFramesInMemory) {
@@ -143,7 +143,7 @@ TEST(Calibrate, ASessionOfFilesGivesTheSameAsItsFramesInMemory) {
 
   ASSERT_TRUE(calibration->comparison.front().from_truth);
   EXPECT_LT(calibration->comparison.front().from_truth->translation_m, 0.02);
-  EXPECT_THAT(cli::DescribeCalibration(*calibration), HasSubstr("error against the truth"));
+  EXPECT_THAT(DescribeCalibration(*calibration), HasSubstr("error against the truth"));
   EXPECT_EQ(calibration->assembly.rows.back().fate, BoardFate::kUnreadable);
   EXPECT_THAT(calibration->assembly.rows.back().why, HasSubstr("no.png"));
   EXPECT_THAT(calibration->warnings, Contains("without a partner: lonely.png"));
@@ -164,7 +164,7 @@ TEST(Calibrate, WithoutACommonBoardTheViewsAreThereAndTheResultSaysWhy) {
   ASSERT_EQ(calibration->observed.views.size(), 1U);
   EXPECT_EQ(calibration->observed.views[0].seen->in_scan.size(), 2U);
   EXPECT_EQ(calibration->report(), nullptr);
-  EXPECT_EQ(cli::DescribeCalibration(*calibration), "");
+  EXPECT_EQ(DescribeCalibration(*calibration), "");
 }
 
 TEST(Calibrate, ASolverWithoutAnAnswerLeavesTheAssemblyAndTheWarnings) {
@@ -178,7 +178,7 @@ TEST(Calibrate, ASolverWithoutAnAnswerLeavesTheAssemblyAndTheWarnings) {
   EXPECT_EQ(calibration->assembly.problem.pairs_3d3d.size(), 4U);
   EXPECT_TRUE(calibration->comparison[1].report);
   EXPECT_THAT(calibration->warnings, Contains(HasSubstr("one view only")));
-  const std::string text = cli::DescribeCalibration(*calibration);
+  const std::string text = DescribeCalibration(*calibration);
   EXPECT_THAT(text, HasSubstr("kept"));
   EXPECT_THAT(text, HasSubstr("one view only"));
 }
@@ -200,7 +200,7 @@ TEST(Calibrate, ThePoseOfTheOptionsComesBeforeThatOfTheSession) {
   const Calibration by_options = CalibrateObserved(*observed, options);
   ASSERT_TRUE(by_options.result);
   EXPECT_THAT(by_options.result->configuration,
-              Not(Contains("initial_quaternion_wxyz: 0.5 0.5 -0.5 0.5")));
+              testing::Not(Contains("initial_quaternion_wxyz: 0.5 0.5 -0.5 0.5")));
   EXPECT_THAT(by_options.result->configuration, Contains("lidar: mine"));
 }
 
