@@ -23,9 +23,9 @@ namespace {
 
 /// A fenced block of a page.
 struct Block {
-  std::string text;
-  std::string first_word;  ///< First line, up to a colon or a comma.
-  int line = 0;            ///< Line of the page on which the text begins.
+  std::string text{};
+  std::string first_word{};  ///< First line, up to a colon or a comma.
+  int line = 0;              ///< Line of the page on which the text begins.
 };
 
 std::vector<Block> FencedBlocks(const std::string& page) {
