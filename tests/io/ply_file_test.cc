@@ -108,14 +108,14 @@ INSTANTIATE_TEST_SUITE_P(
                 "s.ply:4: unknown type 'half'"},
         BadText{"ListOfReals",
                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty list float int x\n", kParse,
-                "s.ply:4: expected a length of a whole type"},
+                "s.ply:4: expected a length of an integer type"},
         BadText{"EndlessLine", "ply\nformat ascii 1.0\ncomment " + std::string(100'000, 'x'),
                 kParse, "s.ply:3: expected a line of at most 1000 bytes"},
         BadText{"NegativeCount", Xyz("-1", ""), kParse,
                 "s.ply:3: field 3 (count): expected a whole number"},
         BadText{
             "LyingCount", Xyz("4000000000", "1 2 3\n"), kParse,
-            "s.ply:8: vertex 0: the header states 4000000000 rows, the 6 bytes that follow have "
+            "s.ply:8: vertex 0: the header states 4000000000 rows, but the 6 bytes that follow have "
             "room for 1"},
         BadText{"OneRowMissing", Xyz("2", "1.25 2.25 3.25\n"), kParse,
                 "s.ply:9: vertex 1: x: the file ends here"},

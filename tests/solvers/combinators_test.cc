@@ -156,8 +156,8 @@ TEST(IsotropicPairs, ColumnsAndCovariancesGiveTheSameAnswer) {
         EXPECT_EQ(in_columns->iterations, by_covariances->iterations);
         const PoseDistance apart =
             DistanceBetween(in_columns->cam_from_lidar, by_covariances->cam_from_lidar);
-        EXPECT_LT(apart.rotation_rad, 1e-9);
-        EXPECT_LT(apart.translation_m, 1e-9);
+        EXPECT_LT(apart.rotation_rad, 1e-9) << spec << ", " << pairs << " pairs, " << share;
+        EXPECT_LT(apart.translation_m, 1e-9) << spec << pairs << share;
       }
     }
   }

@@ -230,7 +230,7 @@ INSTANTIATE_TEST_SUITE_P(
                  [](ScanMarks& m, std::vector<Board>&) {
                    for (Quadrilateral& area : m.boards[0].edges) Shift(area, {0, -5000});
                  },
-                 ErrorCode::kDegenerate, "board 0: the 0 returns within its areas have no plane"},
+                 ErrorCode::kDegenerate, "board 0: no plane of the 0 returns within its areas"},
         BadMarks{"OnTheWall",
                  [](ScanMarks& m, std::vector<Board>&) {
                    for (Quadrilateral& area : m.boards[0].edges) Shift(area, {180, 0});
