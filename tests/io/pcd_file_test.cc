@@ -188,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"HugeProduct", Changed(Xyz(100000, "ascii"), "HEIGHT 1", "HEIGHT 100000"), kParse,
                 "expected at most 1000000000 points"},
         BadText{"AsciiPromise", Xyz(1000000000, "ascii") + "1 2 3\n", kParse,
-                "the header states 1000000000 points, the file has room for 1 at most"},
+                "the header states 1000000000 points, but the file has room for at most 1"},
         BadText{"AsciiShort", Xyz(2, "ascii") + "1.0000001 2.0000001 3\n", kParse,
                 "the file ends here, expected the 3 values of a point"},
         BadText{"AsciiLong", Xyz(1, "ascii") + "1 2 3\n4 5 6\n", kParse,

@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "s.ply:4: unknown type 'half'"},
         BadText{"ListOfReals",
                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty list float int x\n", kParse,
-                "s.ply:4: expected a length of a whole type"},
+                "s.ply:4: expected a length of an integer type"},
         BadText{"EndlessLine", "ply\nformat ascii 1.0\ncomment " + std::string(100'000, 'x'),
                 kParse, "s.ply:3: expected a line of at most 1000 bytes"},
         BadText{"NegativeCount", Xyz("-1", ""), kParse,

@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadText{"Empty", "", kParse, "p:1"},
         BadText{"Problem", "sextant_problem: 1\n", kParse,
-                "expected polygons that sextant mark wrote"},
+                "expected a polygon file of sextant mark"},
         BadText{"LaterVersion", "sextant_polygons: 2\n", kParse, "p:1: sextant_polygons"},
         BadText{"NoCamera", "sextant_polygons: 1\n", kParse, "camera: expected this key"},
         BadText{"UnknownKey", PolygonsWith("board: []\n"), kParse, "did you mean 'boards'?"},

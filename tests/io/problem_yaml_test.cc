@@ -195,7 +195,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadText{"Empty", "", kParse, "p.yaml:1: the file is empty"},
         BadText{"NotAMap", "[1, 2]", kParse, "p.yaml:1: sextant_problem: expected a map"},
-        BadText{"NoHeader", "camera_matrix: 1", kParse, "expected a problem file with the key"},
+        BadText{"NoHeader", "camera_matrix: 1", kParse, "expected a problem file, with the key"},
         BadText{"WrongVersion", "sextant_problem: 2", kParse, "from 1 to 1, got '2'"},
         BadText{"UnknownKey", Problem("pairs_3d2d: []"), kParse,
                 "p.yaml:2: sextant_problem: unknown key 'pairs_3d2d'; did you mean 'pairs_3d3d'?"},
@@ -220,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"OddPixels",
                 View("    printed:\n      - {in_board_m: [0, 0], pixels: [1, 2, 3], "
                      "covariance_px2: [1, 0, 0, 1]}"),
-                kParse, "p.yaml:10: pixels: expected two numbers a point, got 3 numbers"},
+                kParse, "p.yaml:10: pixels: expected two numbers per point, got 3 numbers"},
         BadText{"SmallCovariance",
                 View("    printed:\n      - {in_board_m: [0, 0], pixels: [1, 2], "
                      "covariance_px2: [1, 0]}"),

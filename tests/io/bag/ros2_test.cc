@@ -123,7 +123,7 @@ TEST(Ros2, InconsistentMessagesAreRefusedWithTheField) {
       "\1\0\0\0"
       "\0\0\0\x80",
       32);
-  EXPECT_THAT(refusal(lying), HasSubstr("fields: states 2147483648 entries"));
+  EXPECT_THAT(refusal(lying), HasSubstr("fields: has 2147483648 entries"));
 }
 
 TEST(Ros2, AFolderIsTheOneRecordingInIt) {

@@ -205,7 +205,7 @@ TEST(Rosbag1, WriterRefusesWhatAToolOfRosCouldNotRead) {
     Require(writer->Write("/a", kStart, SomeImage()));
     const Expected<void> other = writer->Write("/a", kStart, SomeScan(1, 2));
     ASSERT_FALSE(other);
-    EXPECT_THAT(other.error().message, HasSubstr("carries sensor_msgs/Image"));
+    EXPECT_THAT(other.error().message, HasSubstr("its type is sensor_msgs/Image"));
     EXPECT_EQ(writer->Write("/b", -1, SomeImage()).error().code, ErrorCode::kInvalidInput);
     ImageMessage cut = SomeImage();
     cut.data.pop_back();
