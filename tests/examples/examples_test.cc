@@ -97,8 +97,8 @@ TEST(Examples, ThePageShowsThemAsTheyAre) {
     ++examples;
     EXPECT_LT(file.lines.size(), 60U) << file.path;
     // All but the licence line.
-    EXPECT_THAT(page, HasSubstr("```cpp\n" + TextOf(file, 1) + "```\n"))
-        << file.path << ": copy it into docs/library.md";
+    const std::string block = "```cpp\n" + TextOf(file, 1) + "```\n";
+    EXPECT_NE(page.find(block), std::string::npos) << file.path << ": copy it into docs/library.md";
   }
   EXPECT_EQ(examples, 3);
 }

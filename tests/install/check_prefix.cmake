@@ -23,9 +23,11 @@ expect_installed(docs/* ${doc})
 expect_installed(examples/*.cc ${doc})
 
 file(READ ${doc}/README.md readme)
-string(REGEX MATCHALL "\\]\\(docs/[^)#]+" links "${readme}")
+# A lone bracket in an item would join it with the next one of the list.
+string(REPLACE "](" "link:" readme "${readme}")
+string(REGEX MATCHALL "link:docs/[^)#]+" links "${readme}")
 foreach(link IN LISTS links)
-  string(REPLACE "](" "" page "${link}")
+  string(REPLACE "link:" "" page "${link}")
   if(NOT EXISTS ${doc}/${page})
     list(APPEND missing ${doc}/${page})
   endif()
