@@ -61,6 +61,16 @@ int Run(const Everything& options) {
   return 5;
 }
 
+struct OptionalFile {
+  std::string file{};
+};
+
+void DeclareFile(OptionalFile& options, Arguments& arguments) {
+  arguments.Add("FILE", options.file, "A file, optional because there is a subcommand");
+}
+
+int RunFile(const OptionalFile& options) { return options.file == "a.txt" ? 5 : -1; }
+
 Program TestedProgram() {
   const auto fixed = [](std::string name, int code) {
     return Command{.name = std::move(name),
@@ -68,7 +78,8 @@ Program TestedProgram() {
                    .footer = "Example: of a subcommand",
                    .run = [code] { return code; }};
   };
-  Command simulate = MakeCommand<Everything>("simulate", "Has a subcommand", "", Declare, Run);
+  Command simulate =
+      MakeCommand<OptionalFile>("simulate", "Has a subcommand", "", DeclareFile, RunFile);
   simulate.subcommands = {fixed("pairs", 6)};
   const Command list{.name = "list",
                      .summary = "Needs a subcommand",
@@ -180,8 +191,8 @@ TEST(Parse, HelpShowsGroupsOptionsAndExamples) {
                              HasSubstr("Second group:"), HasSubstr("Has every kind of option"),
                              HasSubstr("The footer"), Not(HasSubstr("--region"))));
   const ParsedLine all = Parse({"all", "--help"});
-  EXPECT_THAT(all.out, AllOf(HasSubstr("--name TEXT [kabsch]"), HasSubstr("A length [m]"),
-                             HasSubstr("[7]"), HasSubstr("Example: all")));
+  EXPECT_THAT(all.out, AllOf(HasSubstr("--name TEXT"), HasSubstr("kabsch"),
+                             HasSubstr("A length [m]"), HasSubstr("Example: all")));
   EXPECT_THAT(Parse({"list", "--help"}).out, HasSubstr("solvers"));
   EXPECT_THAT(Parse({"list", "lidars", "--help"}).out, HasSubstr("Example: of a subcommand"));
   EXPECT_THAT(Parse({"--help-all"}).out, AllOf(HasSubstr("--region"), HasSubstr("lidars")));
