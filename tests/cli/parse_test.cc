@@ -62,6 +62,16 @@ int Run(const Everything& options) {
   return 5;
 }
 
+struct OptionalFile {
+  std::string file{};
+};
+
+void DeclareFile(OptionalFile& options, Arguments& arguments) {
+  arguments.Add("FILE", options.file, "A file, optional because there is a subcommand");
+}
+
+int RunFile(const OptionalFile& options) { return options.file == "a.txt" ? 5 : -1; }
+
 Program TestedProgram() {
   const auto fixed = [](std::string name, int code) {
     return Command{.name = std::move(name),
@@ -69,7 +79,8 @@ Program TestedProgram() {
                    .footer = "Example: of a subcommand",
                    .run = [code] { return code; }};
   };
-  Command simulate = MakeCommand<Everything>("simulate", "Has a subcommand", "", Declare, Run);
+  Command simulate =
+      MakeCommand<OptionalFile>("simulate", "Has a subcommand", "", DeclareFile, RunFile);
   simulate.subcommands = {fixed("pairs", 6)};
   const Command list{.name = "list",
                      .summary = "Needs a subcommand",
