@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "base/random.h"
@@ -82,7 +81,7 @@ class SampleSearch {
                                                 options_.sample_size, options_.confidence));
       }
     }
-    if (found_) Converge();
+    if (found_) Optimise({.max_iterations = 30, .step_tolerance = 1e-10});
   }
 
   bool found() const { return found_; }
@@ -90,18 +89,6 @@ class SampleSearch {
   int iterations() const { return iterations_; }
 
  private:
-  // The optimisation within the search stops early. Near the minimum its cost differs from the
-  // converged one by rounding only, so that the last fit counts unless the cost really rises.
-  void Converge() {
-    constexpr double kCostRounding = 1e-12;
-    constexpr RefineLimits kConverged = {.max_iterations = 30, .step_tolerance = 1e-10};
-    Optimise(kConverged);
-    if (!inner_.spec().estimates_rotation || options_.local_optimisation == 0) return;
-    const std::optional<Rigid3d> fit = scorer_.FitInliers(best_, max_squared_, kConverged);
-    if (!fit || !fit->IsFinite()) return;
-    if (scorer_.Cost(*fit, max_squared_) <= (1.0 + kCostRounding) * best_cost_) best_ = *fit;
-  }
-
   void Optimise(const RefineLimits& limits) {
     if (!inner_.spec().estimates_rotation) return;
     TakeIfCheaper(
