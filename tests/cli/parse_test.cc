@@ -10,6 +10,7 @@ namespace sextant::cli {
 namespace {
 
 using testing::AllOf;
+using testing::AnyOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -136,6 +137,11 @@ TEST(Parse, SetsOptionsOfEveryType) {
   EXPECT_THAT(seen.ids, ElementsAre(4, 5));
   EXPECT_THAT(seen.region, ElementsAre(0.0, 1.0, 2.0, 3.0, 4.0, 5.0));
   EXPECT_THAT(seen.models, ElementsAre("a", "b"));
+}
+
+// CLI11 2.1 writes a default as "=7", 2.4 as "[7]".
+auto ShowsDefault(const std::string& option, const std::string& value) {
+  return AllOf(HasSubstr(option), AnyOf(HasSubstr("=" + value), HasSubstr("[" + value + "]")));
 }
 
 TEST(Parse, KeepsDefaults) {
