@@ -22,7 +22,7 @@ namespace sextant {
 /// their defaults, and `result` has that stage's error.
 struct Calibration {
   ObservedSession observed{};  ///< Views with the boards in them, or their errors.
-  Assembly assembly{};         ///< The solvers' problem, and what became of each board.
+  Assembly assembly{};         ///< The solvers' problem, and the status of each board.
   /// One row per solver, in the order of CalibrateOptions::solvers, with the distances to the first
   /// solver's pose and to the session's true pose, where known.
   std::vector<ComparisonRow> comparison{};

@@ -140,8 +140,10 @@ std::string DescribeScans(const std::vector<ScanReport>& reports, const std::vec
     text += DescribeFound(report, boards) + DescribeMissing(report, boards);
     found += report.search.found.size();
   }
-  return text + fmt::format("{} of {} boards found in {} scans, corners by {}\n", found,
-                            boards.size() * reports.size(), reports.size(), extractor);
+  const std::size_t due = boards.size() * reports.size();
+  return text + fmt::format("{} of {} {} found in {} {}, corners by {}\n", found, due,
+                            due == 1 ? "board" : "boards", reports.size(),
+                            reports.size() == 1 ? "scan" : "scans", extractor);
 }
 
 std::string ScansJson(const std::vector<ScanReport>& reports, const std::vector<Board>& boards,

@@ -9,8 +9,8 @@
 namespace sextant {
 
 /// All that `sextant calibrate` prints: the boards of each view, the answer with its error against
-/// the truth where known, the other solvers' answers, the warnings, and the closing words. Without
-/// a result: what became of the boards, and the warnings.
+/// the truth where known, the other solvers' answers, the warnings, and the summary. Without
+/// a result: the status of the boards, and the warnings.
 std::string DescribeCalibration(const Calibration& calibration);
 
 /// The text in lines of at most `width` characters, broken at blanks.

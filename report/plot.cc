@@ -69,7 +69,7 @@ Expected<void> DrawPlot(const std::string& commands, const std::filesystem::path
   temporary += ".part";
   const std::string script = fmt::format("set terminal {}\nset output {}\n{}\nset output\n",
                                          terminal, Quote(temporary.string()), commands);
-  FILE* gnuplot = popen("gnuplot", "w");
+  FILE* gnuplot = popen("exec gnuplot >/dev/null 2>&1", "w");
   const bool written =
       gnuplot != nullptr && std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
   const int status = gnuplot != nullptr ? pclose(gnuplot) : -1;

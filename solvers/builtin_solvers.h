@@ -5,7 +5,7 @@
 
 namespace sextant {
 
-/// Every solver of this library; the table stands in builtin_solvers.cc.
+/// Every solver of this library; the table is in builtin_solvers.cc.
 SolverRegistry BuiltinSolvers();
 
 }  // namespace sextant

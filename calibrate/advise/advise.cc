@@ -168,7 +168,7 @@ Expected<Advice> Advise(const CalibrationResult& result, const SensorPair& senso
   if (!best) {
     return MakeError(ErrorCode::kDegenerate,
                      "nowhere from 1.2 to 5 m would both sensors see a board, with four rings on "
-                     "it: do their fields of view meet, and is it large enough?");
+                     "it: do their fields of view overlap, and is it large enough?");
   }
   const Candidate& chosen = grid[*best];
   const Board& board = result.boards[chosen.board];

@@ -43,7 +43,7 @@ std::string DescribePlacement(const Board& board, const Rigid3d& cam_from_board)
   const std::string name = board.name.empty() ? fmt::format("board {}", board.id)
                                               : fmt::format("board {} ({})", board.id, board.name);
   std::string text =
-      fmt::format("Hold {} {:.1f} m in front of the camera, {} and {}, hung from a corner", name,
+      fmt::format("Hold {} {:.1f} m in front of the camera, {} and {}, with one corner up", name,
                   t.z(), Sideways(t.x(), "to its right", "to its left", "straight ahead"),
                   Sideways(t.y(), "below it", "above it", "at its height"));
   if (std::abs(turn_deg) >= 5.0) {

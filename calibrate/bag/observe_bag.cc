@@ -64,10 +64,11 @@ tl::unexpected<Error> NoCommonStamps(const BagStream& images, const BagStream& s
   }
   return MakeError(
       ErrorCode::kMissingData,
-      fmt::format("the time stamps never meet: no image is within {} s of a scan, the nearest are "
-                  "{:.3f} s apart. Are both sensors' clocks the same? A wider --tolerance pairs "
-                  "them, which is right only if the board is still",
-                  tolerance_s, Seconds(NearestGap(images.stamps_ns, scans.stamps_ns))));
+      fmt::format(
+          "the time stamps do not match: no image is within {} s of a scan, the nearest are "
+          "{:.3f} s apart. Are both sensors' clocks the same? A wider --tolerance pairs "
+          "them, which is right only if the board is still",
+          tolerance_s, Seconds(NearestGap(images.stamps_ns, scans.stamps_ns))));
 }
 
 // The CameraInfo topic in the namespace of the images, or the only one.

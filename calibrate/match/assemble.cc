@@ -24,11 +24,11 @@ class Rows {
   Rows(std::span<const SessionView> views, std::span<const Board> boards, const Matching& matching)
       : views_(views), boards_(boards) {
     for (const MatchedBoard& kept : matching.kept) {
-      fates_[{Index(kept.view), BoardOf(kept)}] = {.fate = BoardFate::kKept};
+      fates_[{Index(kept.view), BoardOf(kept)}] = {.fate = BoardStatus::kKept};
     }
     for (const DroppedBoard& dropped : matching.dropped) {
       fates_[{Index(dropped.match.view), BoardOf(dropped.match)}] = {
-          .fate = BoardFate::kDisagrees,
+          .fate = BoardStatus::kDisagrees,
           .why = fmt::format(
               "its corners are {:.0f} mm and its face {:.1f} deg off the pose of the other views: "
               "image and scan of different moments, or not this board",
@@ -41,7 +41,7 @@ class Rows {
     for (std::size_t i = 0; i < views_.size(); ++i) {
       const SessionView& view = views_[i];
       if (!view.seen) {
-        rows.push_back({i, -1, BoardFate::kUnreadable, view.seen.error().message});
+        rows.push_back({i, -1, BoardStatus::kUnreadable, view.seen.error().message});
       } else {
         for (int b = 0; b < static_cast<int>(boards_.size()); ++b) rows.push_back(RowOf(i, b));
       }
@@ -68,11 +68,11 @@ class Rows {
     const auto sighting = std::ranges::find(seen.in_image, board, &CameraSighting::board);
     const bool in_image = sighting != seen.in_image.end();
     if (in_image && !sighting->left_out.empty()) {
-      row.fate = BoardFate::kLeftOut;
+      row.fate = BoardStatus::kLeftOut;
       row.why = sighting->left_out;
       return row;
     }
-    row.fate = in_image ? BoardFate::kNotInScan : BoardFate::kNotInImage;
+    row.fate = in_image ? BoardStatus::kNotInScan : BoardStatus::kNotInImage;
     row.why = WhyMissing(seen, board, !in_image);
     return row;
   }
@@ -102,19 +102,19 @@ std::string DescribeMissing(std::span<const SessionView> views, std::span<const 
 
 }  // namespace
 
-std::string_view ToString(BoardFate fate) {
+std::string_view ToString(BoardStatus fate) {
   switch (fate) {
-    case BoardFate::kKept:
+    case BoardStatus::kKept:
       return "kept";
-    case BoardFate::kUnreadable:
+    case BoardStatus::kUnreadable:
       return "unreadable";
-    case BoardFate::kLeftOut:
+    case BoardStatus::kLeftOut:
       return "left out";
-    case BoardFate::kNotInImage:
+    case BoardStatus::kNotInImage:
       return "not in the image";
-    case BoardFate::kNotInScan:
+    case BoardStatus::kNotInScan:
       return "not in the scan";
-    case BoardFate::kDisagrees:
+    case BoardStatus::kDisagrees:
       return "disagrees";
   }
   return "unknown";

@@ -24,7 +24,7 @@ struct SessionView {
   Expected<Observation> seen{};  ///< Or the error that prevented its observation.
 };
 
-enum class BoardFate {
+enum class BoardStatus {
   kKept,
   kUnreadable,  ///< The view's image or scan cannot be read.
   kLeftOut,     ///< Excluded before matching; see CameraSighting::left_out.
@@ -32,13 +32,13 @@ enum class BoardFate {
   kNotInScan,
   kDisagrees,  ///< Its pose contradicts the other views.
 };
-std::string_view ToString(BoardFate fate);
+std::string_view ToString(BoardStatus fate);
 
-/// What became of a board in a view.
+/// Status of a board in a view.
 struct BoardRow {
   std::size_t view = 0;
   int board = -1;  ///< Index into the boards; -1: the view as a whole.
-  BoardFate fate = BoardFate::kKept;
+  BoardStatus fate = BoardStatus::kKept;
   std::string why{};  ///< The reason, in one line, where it was not kept.
 };
 

@@ -85,7 +85,7 @@ double NoiseScale(const MatchExplanation& explanation) {
   for (const TakenPairing& taken : explanation.taken) {
     if (taken.fits) costs.push_back(taken.cost / kNumbersPerBoard);
   }
-  // Two boards nearly always fit each other, so their median is no measure of the noise.
+  // Two boards nearly always fit each other, so their median does not measure the noise.
   if (costs.size() < 3) return 1.0;
   return std::max(1.0, UpperMedian(costs));
 }

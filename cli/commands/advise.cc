@@ -92,7 +92,8 @@ std::string NameOf(const CalibrationResult& result, int view) {
 // What the existing views determine, from the first advice.
 std::string ViewsText(const CalibrationResult& result, const Advice& advice) {
   std::string text =
-      fmt::format("cam_from_lidar after the {} views, predicted 1 sigma:\n", advice.views);
+      fmt::format("cam_from_lidar after {}, predicted 1 sigma:\n",
+                  advice.views == 1 ? "the one view" : fmt::format("the {} views", advice.views));
   for (const KnownAfter& after : advice.after) {
     text +=
         fmt::format("  after {:<12} {}\n", NameOf(result, after.view), SigmaText(after.covariance));

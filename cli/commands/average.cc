@@ -72,7 +72,7 @@ std::string Text(const RunningAverageAnalysis& analysis) {
          Spread("1 sigma of a scan", analysis.standard_deviation) +
          Spread("1 sigma of the mean", analysis.standard_error) +
          fmt::format("{:<24}  {:.8f} m\n", "last RMSE in the log", analysis.last_rmse_m) +
-         "\nThe rotation in the log is no mean: its newest scan has the weight one half. The "
+         "\nThe rotation in the log is not a mean: its newest scan has the weight one half. The "
          "spread\n"
          "is over the distinct scans, about x y z and along x y z; a repeated scan adds nothing.\n";
 }

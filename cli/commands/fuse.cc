@@ -110,8 +110,8 @@ int Run(const FuseOptions& options) {
     return Refuse("fuse", {ErrorCode::kInvalidOption, "expected two clouds or more"});
   }
   if (!options.out.ends_with(".pcd") && !options.out.ends_with(".ply")) {
-    return Refuse("fuse",
-                  {ErrorCode::kInvalidOption, options.out + ": expected a name in .ply or .pcd"});
+    return Refuse("fuse", {ErrorCode::kInvalidOption,
+                           options.out + ": expected a name that ends in .ply or .pcd"});
   }
   const Expected<std::vector<Rigid3d>> sensors = SensorsFromLidar(options);
   if (!sensors) return Refuse("fuse", sensors.error());

@@ -99,7 +99,8 @@ std::string SummaryOf(const ScanMarks& marks) {
 
 int Render(const std::string& path, const MarkController& controller, MarkCanvas& canvas) {
   if (!path.ends_with(".png")) {
-    return Refuse("mark", {ErrorCode::kInvalidOption, path + ": expected a name in .png"});
+    return Refuse("mark",
+                  {ErrorCode::kInvalidOption, path + ": expected a name that ends in .png"});
   }
   const Expected<void> ok = WriteImage(canvas.Draw(controller), path);
   return ok ? kAnswered : Refuse("mark", ok.error());

@@ -51,7 +51,7 @@ struct RunningAverageAnalysis {
 /// Translation: t_k = k m_k - (k - 1) m_(k-1). Rotation: RecoverOriginalRotation; the first row is
 /// the first scan. Two scans are equal if they differ by no more than the rounding of the printed
 /// digits. Errors: kMissingData (no rows); kInvalidInput (iterations that do not count 1, 2, 3 ...,
-/// a matrix that is no rotation; names the row); kNonFinite; kDegenerate (no mean rotation).
+/// a matrix that is not a rotation; names the row); kNonFinite; kDegenerate (no mean rotation).
 Expected<RunningAverageAnalysis> AnalyseRunningAverage(std::span<const RunningAverageRow> rows);
 
 }  // namespace sextant

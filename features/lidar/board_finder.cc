@@ -131,7 +131,7 @@ class Finder {
     });
   }
 
-  // Adds the boards that the patch may be to the proposals; false if it is none.
+  // Adds the boards that could be this patch to the proposals; false if none could.
   bool Propose(const LidarPlane& plane, const std::vector<std::size_t>& on_plane) {
     std::string why;
     std::vector<BoardPatch> accepted;

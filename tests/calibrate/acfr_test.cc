@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The seven real pairs of acfr/cam_lidar_calibration, nobody clicking.
+// The seven real pairs of acfr/cam_lidar_calibration, without manual marking.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -96,7 +96,7 @@ TEST(AcfrPairs, TheBoardOfEveryPairIsMatchedAndThePoseIsThePublishedOne) {
   const Expected<Assembly> assembly = Assemble(views, boards, camera);
   ASSERT_TRUE(assembly) << assembly.error().message;
   for (const BoardRow& row : assembly->rows) {
-    EXPECT_EQ(row.fate, BoardFate::kKept) << views[row.view].name << ": " << row.why;
+    EXPECT_EQ(row.fate, BoardStatus::kKept) << views[row.view].name << ": " << row.why;
   }
   EXPECT_TRUE(assembly->matching.alternatives.empty());
   const Rigid3d published = PublishedCamFromLidar(folder / "calibration_quickstart.csv");

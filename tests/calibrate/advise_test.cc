@@ -166,7 +166,7 @@ TEST(Advise, BeginsFromNothing) {
   EXPECT_GT(advice->considered, 100);
 }
 
-TEST(Advise, SaysWhatItLacks) {
+TEST(Advise, NamesTheMissingInput) {
   const SimulatedViews session = Simulate(1, 5);
   CalibrationResult result = ResultOf(session, 1);
   SensorPair sensors = SensorsOf(session);
@@ -232,7 +232,7 @@ TEST(DescribePlacement, SidesAndTopAreAsSaid) {
   EXPECT_THAT(DescribePlacement(board, turned(-25.0, -10.0)),
               HasSubstr("right side is farther away by 25 deg, its top leaning away from"));
   EXPECT_THAT(DescribePlacement(board, {Eigen::Quaterniond::Identity(), {0.0, 0.01, 2.0}}),
-              HasSubstr("straight ahead and at its height, hung from a corner, facing the camera"));
+              HasSubstr("straight ahead and at its height, with one corner up, facing the camera"));
 }
 
 TEST(DegenerateSets, EachIsNamedAndASpreadSetIsNot) {

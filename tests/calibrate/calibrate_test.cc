@@ -144,7 +144,7 @@ TEST(Calibrate, ASessionOfFilesGivesTheSameAsItsFramesInMemory) {
   ASSERT_TRUE(calibration->comparison.front().from_truth);
   EXPECT_LT(calibration->comparison.front().from_truth->translation_m, 0.02);
   EXPECT_THAT(DescribeCalibration(*calibration), HasSubstr("error against the truth"));
-  EXPECT_EQ(calibration->assembly.rows.back().fate, BoardFate::kUnreadable);
+  EXPECT_EQ(calibration->assembly.rows.back().fate, BoardStatus::kUnreadable);
   EXPECT_THAT(calibration->assembly.rows.back().why, HasSubstr("no.png"));
   EXPECT_THAT(calibration->warnings, Contains("without a partner: lonely.png"));
   const ProblemFile problem = ProblemFileOf(*calibration);

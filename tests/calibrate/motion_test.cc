@@ -56,7 +56,7 @@ TEST(Motion, AMovingBoardIsLeftOutAndAStillOneKept) {
   }
 }
 
-TEST(Motion, ViewsFarApartSayNothingOfMotion) {
+TEST(Motion, ViewsFarApartDoNotTestMotion) {
   std::vector<SessionView> views = {ViewAt(0.0), ViewAt(0.5), ViewAt(1.0)};
   LeaveOutMotion(views, std::vector<double>{0.0, 10.0, 20.0}, kCamera);
   EXPECT_THAT(Reasons(views), testing::Each(""));

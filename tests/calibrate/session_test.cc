@@ -19,7 +19,7 @@ std::vector<std::string> NamesOf(const FilePairs& found) {
   return names;
 }
 
-TEST(PairFiles, ByWhatNamesHaveOfTheirOwn) {
+TEST(PairFiles, ByTheDistinguishingPartOfTheirNames) {
   const FilePairs found = PairFiles({"i/pose2.png", "i/pose10.png", "i/pose9.png"},
                                     {"c/pose10.pcd", "c/pose2.pcd", "c/pose9.pcd"});
   EXPECT_THAT(NamesOf(found),
@@ -117,7 +117,7 @@ TEST_F(SessionFiles, WhatIsWrongIsSaidWithItsLine) {
   }
 }
 
-TEST_F(SessionFiles, ASimulatedSessionAsItStands) {
+TEST_F(SessionFiles, AFolderOfASimulatedSession) {
   for (const char* name :
        {"boards.yaml", "cam_info.yaml", "cam_right_info.yaml", "cam_000.png", "cam_001.png",
         "cam_right_000.png", "cam_right_001.png", "scan_000.pcd", "scan_001.pcd"}) {

@@ -120,7 +120,7 @@ TEST(Trust, GoodViewsAreNotCalledOutliers) {
   EXPECT_LE(marked, 3U);
 }
 
-TEST(Trust, FewViewsAreToldWhatTheyCannot) {
+TEST(Trust, TooFewViewsGiveAWarning) {
   const Trust one = TrustOf(SomeViews(1, 1));
   EXPECT_EQ(one.figures.folds, 0);
   EXPECT_FALSE(one.figures.bootstrap || one.figures.held_out_rmse_m);

@@ -74,7 +74,8 @@ TEST(Fuse, ReportsWhatIsMissing) {
       {a + b + "--from " + TestPath("one.txt"), "expected a transform for each of the 2 clouds"},
       {a + b + a + "--rts " + TestPath("rts.txt"), "expected a transform for each of the 3 clouds"},
       {a + b + "--rts " + TestPath("rts.txt") + " --to " + TestPath("one.txt"), "leave out --from"},
-      {a + b + "--rts " + TestPath("rts.txt") + " --out x.xyz", "expected a name in .ply or .pcd"},
+      {a + b + "--rts " + TestPath("rts.txt") + " --out x.xyz",
+       "expected a name that ends in .ply or .pcd"},
       {a + b + "--rts " + TestPath("nowhere.txt"), "nowhere.txt"},
       {a + TestPath("nowhere.pcd") + " --rts " + TestPath("rts.txt"), "nowhere.pcd"},
   };

@@ -104,12 +104,12 @@ TEST_F(Recording, StillBoardsAreKeptAndMovingOnesLeftOut) {
   ASSERT_TRUE(assembly) << assembly.error().message;
   for (const BoardRow& row : assembly->rows) {
     const bool moves = row.view == 2 || row.view == 3;
-    EXPECT_EQ(row.fate, moves ? BoardFate::kLeftOut : BoardFate::kKept) << row.view << row.why;
+    EXPECT_EQ(row.fate, moves ? BoardStatus::kLeftOut : BoardStatus::kKept) << row.view << row.why;
     EXPECT_THAT(row.why, HasSubstr(moves ? "it moves" : ""));
   }
 }
 
-TEST_F(Recording, StampsThatNeverMeetAreSaidWithHowFarApartTheyAre) {
+TEST_F(Recording, StampsThatDoNotMatchAreReportedWithTheirDistance) {
   Record({0.0});
   std::vector<Frame> frames = TenthsOfASecond({0, 0, 0});
   for (Frame& frame : frames) frame.image_ns += 3'200'000'000;
@@ -117,7 +117,7 @@ TEST_F(Recording, StampsThatNeverMeetAreSaidWithHowFarApartTheyAre) {
   const Expected<BagPlan> plan = PlanBag(*bag, {});
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().code, ErrorCode::kMissingData);
-  EXPECT_THAT(plan.error().message, HasSubstr("the time stamps never meet"));
+  EXPECT_THAT(plan.error().message, HasSubstr("the time stamps do not match"));
   // From the last scan at 0.2 s to the first image at 3.21 s.
   EXPECT_THAT(plan.error().message, HasSubstr("the nearest are 3.010 s apart"));
 }
@@ -167,7 +167,7 @@ TEST_F(Recording, IsCalibratedAsASessionWithItsOwnCamera) {
   const Expected<Calibration> unpaired =
       Calibrate(session, {.boards = boards_, .tolerance_s = 0.001});
   ASSERT_FALSE(unpaired);
-  EXPECT_THAT(unpaired.error().message, HasSubstr("session.bag: the time stamps never meet"));
+  EXPECT_THAT(unpaired.error().message, HasSubstr("session.bag: the time stamps do not match"));
 }
 
 }  // namespace
