@@ -223,8 +223,8 @@ TEST(DescribePlacement, SidesAndTopAreAsSaid) {
   const Rigid3d right_near = turned(30.0, 0.0);
   EXPECT_LT(depth(right_near, 0.25, 0.0), depth(right_near, -0.25, 0.0));
   EXPECT_EQ(DescribePlacement(board, right_near),
-            "Hold board 4 1.8 m in front of the camera, 0.4 m to its left and 0.3 m below it, hung "
-            "from a corner, turned so that its left side is farther away by 30 deg.");
+            "Hold board 4 1.8 m in front of the camera, 0.4 m to its left and 0.3 m below it, with "
+            "one corner up, turned so that its left side is farther away by 30 deg.");
   const Rigid3d top_near = turned(0.0, 20.0);
   EXPECT_LT(depth(top_near, 0.0, -0.25), depth(top_near, 0.0, 0.25));
   EXPECT_THAT(DescribePlacement(board, top_near),

@@ -165,7 +165,7 @@ TEST_F(ResultCommands, AdviseProposesAndDraws) {
   const ProgramRun run =
       RunSextant("advise " + Result() + " --count 2 --lidar os1_64 --picture " + Picture());
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, AllOf(HasSubstr("cam_from_lidar after the 1 views"),
+  EXPECT_THAT(run.out, AllOf(HasSubstr("cam_from_lidar after the one view"),
                              HasSubstr("after first"), HasSubstr("Hold board 0 (left) "),
                              HasSubstr("rings would cross it; predicted 1 sigma then")));
   const cv::Mat picture = test::ReadPicture(Picture());
