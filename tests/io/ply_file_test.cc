@@ -113,10 +113,10 @@ INSTANTIATE_TEST_SUITE_P(
                 kParse, "s.ply:3: expected a line of at most 1000 bytes"},
         BadText{"NegativeCount", Xyz("-1", ""), kParse,
                 "s.ply:3: field 3 (count): expected a whole number"},
-        BadText{
-            "LyingCount", Xyz("4000000000", "1 2 3\n"), kParse,
-            "s.ply:8: vertex 0: the header states 4000000000 rows, but the 6 bytes that follow have "
-            "room for 1"},
+        BadText{"LyingCount", Xyz("4000000000", "1 2 3\n"), kParse,
+                "s.ply:8: vertex 0: the header states 4000000000 rows, but the 6 bytes that follow "
+                "have "
+                "room for 1"},
         BadText{"OneRowMissing", Xyz("2", "1.25 2.25 3.25\n"), kParse,
                 "s.ply:9: vertex 1: x: the file ends here"},
         BadText{"NotANumber", Xyz("1", "1 two 3"), kParse,
