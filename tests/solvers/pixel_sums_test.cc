@@ -96,8 +96,8 @@ TEST(PixelSums, LeaveOutOutliers) {
     // In some cases half of the points are behind the camera.
     if (pairs % 3 == 0) c.pose.translation.z() -= 3.0;
     PixelSums sums;
-    const int within =
-        SumPixelsWithin(c.terms.pixels.View(), c.Pose(), kMaxSquaredSigmas, kMaxSquaredSigmas, sums);
+    const int within = SumPixelsWithin(c.terms.pixels.View(), c.Pose(), kMaxSquaredSigmas,
+                                       kMaxSquaredSigmas, sums);
     int wanted = 0;
     for (const PixelTerm term : c.terms.pixels)
       wanted += SquaredOf(term, c) <= kMaxSquaredSigmas ? 1 : 0;
