@@ -25,8 +25,8 @@ struct SymmetricEigen {
 template <int kSize>
 SymmetricEigen<kSize> EigenOf(const SquareMatrix<kSize>& symmetric);
 
-/// Solves symmetric x = right by LDLT. Not finite, or meaningless, where the matrix is singular.
-/// Sizes 3, 6 and any.
+/// Solves symmetric x = right for a positive semi-definite matrix. Where it is singular to 1e-13
+/// (after scaling to a unit diagonal), components without information are 0. Sizes 3, 6 and any.
 template <int kSize>
 ColumnVector<kSize> SolveSymmetric(const SquareMatrix<kSize>& symmetric,
                                    const ColumnVector<kSize>& right);

@@ -55,6 +55,16 @@ TEST(Symmetric, SolutionFulfilsTheEquations) {
   EXPECT_LT((SolveSymmetric(large, long_right) - Eigen::VectorXd::Unit(20, 0)).norm(), 1e-12);
 }
 
+// A direction without information stays where it is; the others are solved.
+TEST(Symmetric, SolvesASemidefiniteSystem) {
+  Random random(5);
+  const Eigen::Matrix<double, 6, 3> root = RandomMatrix<6>(random).leftCols<3>();
+  const Matrix6d matrix = root * root.transpose();
+  const Vector6d right = matrix * RandomMatrix<6>(random).col(0);
+  EXPECT_LT((matrix * SolveSymmetric(matrix, right) - right).norm(), 1e-9);
+  EXPECT_TRUE(SolveSymmetric<6>(Matrix6d::Zero(), right).isZero());
+}
+
 // Units may differ by any factor: only a matrix that is singular in every unit has no inverse.
 TEST(Symmetric, InverseDoesNotDependOnUnits) {
   Random random(3);
