@@ -48,8 +48,8 @@ std::string Heading(const LineReader& in) {
 }  // namespace
 
 Expected<Camera> ParseCameraIni(std::string_view text, const std::string& file) {
-  static const std::vector<std::string> kHeadings = {"width",      "height",        "camera matrix",
-                                                     "distortion", "rectification", "projection"};
+  static const std::vector<std::string> kHeadings = {
+      "width", "height", "camera matrix", "intrinsic", "distortion", "rectification", "projection"};
   LineReader in(file, text);
   CameraParts parts;
   std::vector<double> matrix;
@@ -61,7 +61,7 @@ Expected<Camera> ParseCameraIni(std::string_view text, const std::string& file) 
       parts.width_px = ReadSize(in, heading);
     } else if (heading == "height") {
       parts.height_px = ReadSize(in, heading);
-    } else if (heading == "camera matrix") {
+    } else if (heading == "camera matrix" || heading == "intrinsic") {
       matrix = ReadRows(in, 3, 3, heading);
     } else if (heading == "distortion") {
       distortion = ReadDistortion(in);

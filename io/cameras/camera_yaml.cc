@@ -2,11 +2,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <initializer_list>
 
 #include "io/blocks/camera_block.h"
 #include "io/cameras/camera_file.h"
 #include "io/cameras/camera_parts.h"
+#include "io/cameras/camera_tree.h"
 #include "io/text/number_text.h"
 #include "io/text/yaml_fields.h"
 
@@ -14,84 +16,212 @@ namespace sextant {
 namespace {
 
 constexpr int kMaxPixels = 1'000'000;
+constexpr std::size_t kMaxCoefficients = 14;
 
-// Tools use different names for the same key.
-const YamlNode* FindAny(const YamlNode& map, std::initializer_list<std::string_view> keys) {
+// Kalibr's camera models, and what precedes fx, fy, cx, cy in `intrinsics`.
+struct KalibrModel {
+  std::string_view name;
+  std::size_t extra;
+};
+constexpr KalibrModel kKalibrModels[] = {
+    {"pinhole", 0}, {"omni", 1}, {"ds", 2}, {"eucm", 2}, {"fov", 1}};
+
+std::string TextOf(const YamlNode* node) {
+  std::string text = node == nullptr ? std::string{} : node->text;
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+// The distortion model in ROS's terms, from the two names that other programs use.
+std::string ModelOf(const YamlNode& camera) {
+  const std::string projection =
+      TextOf(FindCameraKey(camera, {"camera_model", "cam_model", "model_type", "Camera.type"}));
+  const std::string distortion =
+      TextOf(FindCameraKey(camera, {"distortion_model", "distortion_type"}));
+  if (projection == "mei" || projection == "omni") return "mei";
+  if (projection == "ds") return "double_sphere";
+  if (projection == "kannala_brandt" || projection == "kannalabrandt8" ||
+      projection == "equidistantcamera" || projection == "fisheye") {
+    return "equidistant";
+  }
+  if (!projection.empty() && projection != "pinhole" && projection != "perspective") {
+    return projection;
+  }
+  if (distortion == "radtan" || distortion == "radial-tangential") return "plumb_bob";
+  if (distortion == "equi") return "equidistant";
+  if (distortion == "none") return "plumb_bob";
+  return distortion;
+}
+
+int ReadSize(YamlFields& in, const YamlNode& camera, std::size_t index,
+             std::initializer_list<std::string_view> keys) {
+  if (const YamlNode* both = camera.Find("resolution")) {
+    const std::vector<double> size = CameraNumbers(in, *both, "resolution", 2);
+    if (in.ok() && size.size() != 2) in.Fail(both->line, "resolution", "expected width and height");
+    return in.ok() ? static_cast<int>(std::clamp<double>(size[index], 0, kMaxPixels)) : 0;
+  }
   for (const std::string_view key : keys) {
-    if (const YamlNode* found = map.Find(key)) return found;
+    if (camera.Find(key) != nullptr) return in.IntegerAt(camera, key, 0, kMaxPixels);
   }
-  return nullptr;
+  return 0;
 }
 
-// A list of numbers, or a matrix {rows, cols, data}.
-std::vector<double> ReadNumbers(YamlFields& in, const YamlNode& node, std::string_view name) {
-  constexpr std::size_t kMax = 14;
-  const bool is_matrix = node.kind == YamlNode::Kind::kMap;
-  return in.RealList(is_matrix ? in.Require(node, "data") : node, name, kMax);
+double RealOf(YamlFields& in, const YamlNode& camera,
+              std::initializer_list<std::string_view> keys) {
+  const YamlNode* node = FindCameraKey(camera, keys);
+  return in.Real(node == nullptr ? in.Require(camera, *keys.begin()) : *node, *keys.begin());
 }
 
-int ReadSize(YamlFields& in, const YamlNode& root, std::string_view key, std::string_view other) {
-  const std::string_view present = root.Find(key) != nullptr ? key : other;
-  return root.Find(present) != nullptr ? in.IntegerAt(root, present, 0, kMaxPixels) : 0;
+// fx, fy, cx, cy as separate keys.
+void ReadFocals(YamlFields& in, const YamlNode& camera, CameraParts& parts) {
+  const double fx = RealOf(in, camera, {"fx", "f_x", "cam_fx", "Camera.fx", "gamma1", "mu"});
+  const double fy = RealOf(in, camera, {"fy", "f_y", "cam_fy", "Camera.fy", "gamma2", "mv"});
+  const double cx = RealOf(in, camera, {"cx", "c_x", "cam_cx", "Camera.cx", "u0"});
+  const double cy = RealOf(in, camera, {"cy", "c_y", "cam_cy", "Camera.cy", "v0"});
+  parts.matrix = {fx, 0, cx, 0, fy, cy, 0, 0, 1};
 }
 
-// fx, fy, cx, cy, k1, k2, p1, p2, k3 as separate keys.
-void ReadFlat(YamlFields& in, const YamlNode& root, CameraParts& parts,
-              std::vector<double>& distortion) {
-  parts.matrix = {in.RealAt(root, "fx"),
-                  0,
-                  in.RealAt(root, "cx"),
-                  0,
-                  in.RealAt(root, "fy"),
-                  in.RealAt(root, "cy"),
-                  0,
-                  0,
-                  1};
-  for (const std::string_view key : {"k1", "k2", "p1", "p2", "k3"}) {
-    distortion.push_back(in.RealAt(root, key, 0.0));
-  }
-}
-
-void ReadMatrices(YamlFields& in, const YamlNode& root, const YamlNode& matrix, CameraParts& parts,
-                  std::vector<double>& distortion) {
-  const std::vector<double> k = ReadNumbers(in, matrix, "camera matrix");
+void ReadMatrix(YamlFields& in, const YamlNode& matrix, CameraParts& parts) {
+  constexpr std::string_view kName = "camera matrix";
+  const std::vector<double> k = CameraNumbers(in, matrix, kName, kMaxCoefficients);
   if (in.ok() && k.size() != parts.matrix.size()) {
-    in.Fail(matrix.line, "camera matrix", fmt::format("expected 9 numbers, got {}", k.size()));
+    in.Fail(matrix.line, kName, fmt::format("expected 9 numbers, got {}", k.size()));
   }
   if (in.ok()) std::copy(k.begin(), k.end(), parts.matrix.begin());
-  if (const YamlNode* d = FindAny(root, {"distortion_coefficients", "D", "d"})) {
-    distortion = ReadNumbers(in, *d, "distortion coefficients");
+}
+
+// Kalibr's `intrinsics`: the parameters of the model, then fx, fy, cx, cy.
+void ReadKalibr(YamlFields& in, const YamlNode& camera, const YamlNode& list, CameraParts& parts) {
+  const std::string model = TextOf(camera.Find("camera_model"));
+  const auto* known = std::find_if(std::begin(kKalibrModels), std::end(kKalibrModels),
+                                   [&](const KalibrModel& m) { return m.name == model; });
+  const std::size_t extra = known == std::end(kKalibrModels) ? 0 : known->extra;
+  const std::vector<double> k = CameraNumbers(in, list, "intrinsics", kMaxCoefficients);
+  if (in.ok() && k.size() != extra + 4) {
+    in.Fail(list.line, "intrinsics",
+            fmt::format("expected {} numbers for the camera model {}, got {}", extra + 4,
+                        Quoted(model), k.size()));
   }
+  if (!in.ok()) return;
+  parts.matrix = {k[extra], 0, k[extra + 2], 0, k[extra + 1], k[extra + 3], 0, 0, 1};
+}
+
+// P = K [I | t]: the camera's own matrix is its left part.
+void ReadProjection(YamlFields& in, const YamlNode& projection, CameraParts& parts) {
+  const std::vector<double> p = CameraNumbers(in, projection, "projection", kMaxCoefficients);
+  if (in.ok() && p.size() != 12) {
+    in.Fail(projection.line, "projection", fmt::format("expected 12 numbers, got {}", p.size()));
+  }
+  if (!in.ok()) return;
+  for (std::size_t row = 0; row < 3; ++row) {
+    std::copy_n(p.begin() + 4 * static_cast<long>(row), 3,
+                parts.matrix.begin() + 3 * static_cast<long>(row));
+  }
+}
+
+std::vector<double> ReadDistortion(YamlFields& in, const YamlNode& camera, std::string_view model) {
+  if (const YamlNode* list =
+          FindCameraKey(camera, {"distortion_coefficients", "D", "d", "dist_coeffs", "distCoeffs",
+                                 "distortion_coeffs", "cam_dist"})) {
+    return CameraNumbers(in, *list, "distortion coefficients", kMaxCoefficients);
+  }
+  using Names = std::initializer_list<std::string_view>;
+  const bool is_camodocal_fisheye = FindCameraKey(camera, {"mu"}) != nullptr;
+  static const std::vector<Names> kRadialTangential = {{"k1", "k_1", "Camera.k1", "cam_d0"},
+                                                       {"k2", "k_2", "Camera.k2", "cam_d1"},
+                                                       {"p1", "p_1", "Camera.p1", "cam_d2"},
+                                                       {"p2", "p_2", "Camera.p2", "cam_d3"},
+                                                       {"k3", "k_3", "Camera.k3", "cam_d4"}};
+  static const std::vector<Names> kFisheye = {
+      {"k1", "Camera.k1"}, {"k2", "Camera.k2"}, {"k3", "Camera.k3"}, {"k4", "Camera.k4"}};
+  static const std::vector<Names> kCamodocal = {{"k2"}, {"k3"}, {"k4"}, {"k5"}};
+  const std::vector<Names>& names = model != "equidistant" ? kRadialTangential
+                                    : is_camodocal_fisheye ? kCamodocal
+                                                           : kFisheye;
+  std::vector<double> distortion;
+  for (const Names& keys : names) {
+    const YamlNode* node = FindCameraKey(camera, keys);
+    distortion.push_back(node == nullptr ? 0.0 : in.Real(*node, *keys.begin()));
+  }
+  return distortion;
+}
+
+Expected<Camera> ReadCameraNode(const CameraNode& node, const std::string& file) {
+  YamlFields in(file);
+  const YamlNode& camera = *node.map;
+  CameraParts parts;
+  if (node.projection != nullptr) {
+    ReadProjection(in, *node.projection, parts);
+    if (!in.ok()) return in.TakeError();
+    return AtPlace(CameraFromParts(parts), {.file = file, .name = node.name});
+  }
+  const std::string model = ModelOf(camera);
+  const YamlNode* matrix =
+      FindCameraKey(camera, {"camera_matrix", "K", "k", "cameraMatrix", "cam_K"});
+  const YamlNode* list = camera.Find("intrinsics");
+  if (matrix != nullptr) {
+    ReadMatrix(in, *matrix, parts);
+  } else if (list != nullptr) {
+    ReadKalibr(in, camera, *list, parts);
+  } else {
+    ReadFocals(in, camera, parts);
+  }
+  const std::vector<double> distortion = ReadDistortion(in, camera, model);
+  parts.width_px =
+      ReadSize(in, camera, 0, {"width", "image_width", "cam_width", "Camera.width", "img_dist_w"});
+  parts.height_px = ReadSize(
+      in, camera, 1, {"height", "image_height", "cam_height", "Camera.height", "img_dist_h"});
+  if (!in.ok()) return in.TakeError();
+  parts.distortion = distortion;
+  parts.model = model;
+  return AtPlace(CameraFromParts(parts), {.file = file, .name = node.name});
+}
+
+// "the file holds 2 cameras: cam0, cam1".
+std::string Names(const std::vector<CameraNode>& cameras) {
+  std::string names;
+  for (const CameraNode& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
+  return names;
 }
 
 }  // namespace
 
-Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file) {
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
-  YamlFields in(file);
-  if (const YamlNode* block = root.Find("camera")) {
+Expected<Camera> CameraOfTree(const YamlNode& root, const std::string& file,
+                              std::string_view name) {
+  const YamlNode* block = root.Find("camera");
+  if (name.empty() && block != nullptr && FindCameras(*block).empty()) {
+    YamlFields in(file);
     const Camera camera = ReadCameraBlock(in, *block);
     if (!in.ok()) return in.TakeError();
     return camera;
   }
-  CameraParts parts;
-  std::vector<double> distortion;
-  if (const YamlNode* matrix = FindAny(root, {"camera_matrix", "K", "k"})) {
-    ReadMatrices(in, root, *matrix, parts, distortion);
-  } else if (root.Find("fx") != nullptr) {
-    ReadFlat(in, root, parts, distortion);
-  } else {
-    in.Fail(root.line, {},
-            "expected a camera: camera_matrix, K, fx or camera; none of these keys is present");
+  const std::vector<CameraNode> cameras = FindCameras(root);
+  const auto place = fmt::format("{}:{}", file, root.line);
+  if (cameras.empty()) {
+    return MakeError(ErrorCode::kParse,
+                     place +
+                         ": expected a camera: camera_matrix, K, fx, intrinsics or camera; "
+                         "none of these keys is present");
   }
-  parts.width_px = ReadSize(in, root, "width", "image_width");
-  parts.height_px = ReadSize(in, root, "height", "image_height");
-  std::string model;
-  if (root.Find("distortion_model") != nullptr) model = in.TextAt(root, "distortion_model");
-  if (!in.ok()) return in.TakeError();
-  parts.distortion = distortion;
-  parts.model = model;
-  return AtPlace(CameraFromParts(parts), {.file = file});
+  if (name.empty()) {
+    if (cameras.size() == 1) return ReadCameraNode(cameras.front(), file);
+    return MakeError(
+        ErrorCode::kParse,
+        fmt::format("{}: the file holds {} cameras: {}; name one of them, as in {}:{}", place,
+                    cameras.size(), Names(cameras), file, cameras.front().name));
+  }
+  for (const CameraNode& camera : cameras) {
+    if (camera.name == name) return ReadCameraNode(camera, file);
+  }
+  return MakeError(ErrorCode::kParse, fmt::format("{}: the file has no camera {}; it has {}", place,
+                                                  Quoted(std::string(name)), Names(cameras)));
+}
+
+Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file,
+                                 std::string_view name) {
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  return CameraOfTree(root, file, name);
 }
 
 }  // namespace sextant

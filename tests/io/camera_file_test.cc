@@ -109,7 +109,14 @@ INSTANTIATE_TEST_SUITE_P(
     Inputs, BadCameraTest,
     testing::Values(
         BadText{"Empty", "", kParse, "c:1: the file is empty"},
-        BadText{"NoCamera", "a: 1", kParse, "expected a camera: camera_matrix, K, fx or camera"},
+        BadText{"NoCamera", "a: 1", kParse,
+                "expected a camera: camera_matrix, K, fx, intrinsics or camera"},
+        BadText{"TwoCameras", "cam0: {intrinsics: [1, 1, 1, 1]}\ncam1: {intrinsics: [1, 1, 1, 1]}",
+                kParse, "the file holds 2 cameras: cam0, cam1; name one of them, as in c:cam0"},
+        BadText{"KalibrCount", "cam0: {camera_model: omni, intrinsics: [1, 1, 1, 1]}", kParse,
+                "expected 5 numbers for the camera model 'omni', got 4"},
+        BadText{"Projection", "P2: 1 0 0 0", kParse, "expected 12 numbers, got 4"},
+        BadText{"Xml", "<?xml version=\"1.0\"?>\n<opencv_storage><a>", kParse, "opencv_storage"},
         BadText{"BlockWithoutFocal", "sextant_problem: 1\ncamera:\n  model: pinhole\n", kParse,
                 "fx_px"},
         BadText{"EightNumbers", "K: [1, 0, 1, 0, 1, 1, 0, 0]", kParse,
@@ -136,6 +143,22 @@ INSTANTIATE_TEST_SUITE_P(
                 "expected the heading camera matrix"},
         BadText{"IniComma", "[image]\nwidth\n640,5\n", kParse, "c:3: field 1 (width)"}),
     [](const auto& bad) { return bad.param.name; });
+
+TEST(CameraFile, OneOfSeveralIsChosenByName) {
+  const std::string text =
+      "cam0: {camera_model: pinhole, intrinsics: [600, 601, 320, 240]}\n"
+      "cam1: {camera_model: pinhole, intrinsics: [700, 701, 320, 240], resolution: [640, 480],\n"
+      "  distortion_model: equidistant, distortion_coeffs: [0.1, 0.02, 0, 0]}\n";
+  const Expected<Camera> camera = ParseCamera(text, "chain.yaml", "cam1");
+  ASSERT_TRUE(camera) << camera.error().message;
+  EXPECT_EQ(camera->fx_px, 700.0);
+  EXPECT_EQ(camera->fy_px, 701.0);
+  EXPECT_EQ(camera->height_px, 480);
+  EXPECT_EQ(camera->model, CameraModel::kEquidistant);
+  const Expected<Camera> absent = ParseCamera(text, "chain.yaml", "cam2");
+  ASSERT_FALSE(absent);
+  EXPECT_THAT(absent.error().message, testing::HasSubstr("no camera 'cam2'; it has cam0, cam1"));
+}
 
 TEST(CameraFile, ReadsTheRealFilesOfEveryForm) {
   SEXTANT_REAL_DATA(path, ".");
@@ -164,6 +187,29 @@ TEST(CameraFile, ReadsTheRealFilesOfEveryForm) {
        0.0},
       {"dhall/geniusF100.ini", CameraModel::kBrownConrady, 640, 316.172746, 241.691715, 0.003758,
        0.0},
+      {"field/cameras/camodocal_pinhole.yaml", CameraModel::kBrownConrady, 1280, 800.0, 360.0, -0.2,
+       0.0},
+      {"field/cameras/dkt_K_D_opencv.yml", CameraModel::kBrownConrady, 0, 998.3102608778569,
+       525.8780909920658, -0.3701312603632176, -0.03852738839233336},
+      {"field/cameras/fastcalib_ros2_params.yaml", CameraModel::kBrownConrady, 0,
+       1794.9718035517628, 553.755812727975, -0.06285874342909396, 0.0},
+      {"field/cameras/fastlivo_pinhole.yaml", CameraModel::kPinhole, 3840, 1106.460965921334,
+       1920.0, 0.0, 0.0},
+      {"field/cameras/ilcc2_pointgrey.yaml", CameraModel::kBrownConrady, 1920, 1061.37439737547,
+       601.685030610243, -0.149007007770170, 0.0},
+      {"field/cameras/jianbu_f_x.yaml", CameraModel::kBrownConrady, 0, 1031.01, 512.991, -0.334082,
+       0.0},
+      {"field/cameras/kalibr_camchain.yaml", CameraModel::kBrownConrady, 640, 343.848199580684,
+       265.57285031082563, 0.005984652915192181, 0.0},
+      {"field/cameras/kitti_calib.txt", CameraModel::kPinhole, 0, 718.856, 185.2157, 0.0, 0.0},
+      {"field/cameras/livox_intrinsic.txt", CameraModel::kPinhole, 0, 908.524, 352.982, 0.0, 0.0},
+      {"field/cameras/opencalib_intrinsic.json", CameraModel::kBrownConrady, 1920, 2117.31, 656.457,
+       -0.102933, 0.429959},
+      {"field/cameras/opencv.xml", CameraModel::kBrownConrady, 0, 800.0, 360.0, -0.2, 0.01},
+      {"field/cameras/ost.txt", CameraModel::kBrownConrady, 1920, 1774.694944, 509.994361,
+       -0.034137, 0.0},
+      {"field/cameras/armando_fisheye.yaml", CameraModel::kEquidistant, 1920, 1025.060446336901,
+       529.0830154465287, 0.048722742730037225, -0.11457851175852587},
   };
   for (const Row& row : rows) {
     const Expected<Camera> camera = ReadCamera(path / row.path);
