@@ -43,6 +43,8 @@ void RemoveLeftovers(const fs::path& path, int folder) {
   }
 }
 
+}  // namespace
+
 Expected<void> MakeFolder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
@@ -52,8 +54,6 @@ Expected<void> MakeFolder(const fs::path& path) {
                    fmt::format("cannot make the folder '{}': {}; name another with --out",
                                Printable(path.string(), 300), error.message()));
 }
-
-}  // namespace
 
 class OutputFolder::Lock {
  public:
@@ -136,13 +136,6 @@ Expected<OutputFolder> OutputFolder::Open(const fs::path& path, Sharing sharing)
 
 bool OutputFolder::IsPassing(const std::string& name) {
   return name == kLockFile || IsTemporaryName(name);
-}
-
-Expected<void> RemoveFile(const fs::path& path) {
-  if (unlink(path.c_str()) == 0 || errno == ENOENT) return {};
-  return MakeError(ErrorCode::kUnwritable,
-                   fmt::format("cannot remove '{}': {}", Printable(path.string(), 300),
-                               std::generic_category().message(errno)));
 }
 
 }  // namespace sextant

@@ -9,6 +9,9 @@
 
 namespace sextant {
 
+/// Creates the folder with its parents if it does not exist. Error: kUnwritable.
+Expected<void> MakeFolder(const std::filesystem::path& path);
+
 /// Who may write into a folder at the same time.
 enum class Sharing {
   kAlone,       ///< Nobody else.
@@ -40,8 +43,5 @@ class OutputFolder {
   std::filesystem::path path_;
   std::unique_ptr<Lock> lock_;
 };
-
-/// Removes a file that this program wrote. No error if there is none. Error: kUnwritable.
-Expected<void> RemoveFile(const std::filesystem::path& path);
 
 }  // namespace sextant

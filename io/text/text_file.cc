@@ -28,6 +28,14 @@ tl::unexpected<Error> SystemError(const std::filesystem::path& path) {
 
 }  // namespace
 
+Expected<void> CheckInput(const std::filesystem::path& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) return {};
+  const std::string why = NoteInput(status);
+  if (!why.empty()) return ReadError(path, why, ErrorCode::kInvalidOption);
+  return {};
+}
+
 Expected<std::string> ReadTextFile(const std::filesystem::path& path) {
   // Without O_NONBLOCK, opening a pipe without a writer would block.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));

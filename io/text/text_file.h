@@ -19,6 +19,10 @@ inline constexpr std::size_t kMaxTextBytes = std::size_t{256} << 20;
 /// for a file that is also an output of the call (base/call_files.h).
 Expected<std::string> ReadTextFile(const std::filesystem::path& path);
 
+/// Refuses an input that is also an output of the call, without reading it. Whether it can be read
+/// is seen later. Error: kInvalidOption.
+Expected<void> CheckInput(const std::filesystem::path& path);
+
 /// Reads the file and returns parse(content, path); error messages name the path as given.
 template <class Parse>
 std::invoke_result_t<Parse, std::string_view, std::string> ReadWith(
