@@ -4,11 +4,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <fstream>
 #include <system_error>
 
 #include "eval/experiment/run/row_file.h"
 #include "io/output/remove_file.h"
+#include "io/text/text_file.h"
 
 namespace sextant {
 namespace {
@@ -40,10 +40,8 @@ bool HoldsNothing(const std::filesystem::path& path, const std::string& configur
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error || size >= header.size()) return false;
-  std::string begun(size, '\0');
-  std::ifstream stream(path, std::ios::binary);
-  stream.read(begun.data(), static_cast<std::streamsize>(size));
-  return stream && header.starts_with(begun);
+  const Expected<std::string> begun = ReadTextFile(path);
+  return begun && header.starts_with(*begun);
 }
 
 std::string PartFileName(const Shard& shard) {
