@@ -6,9 +6,13 @@
 
 namespace sextant::cli {
 
+int ExitCodeOf(const Error& error, int exit_code) {
+  return error.code == ErrorCode::kUnwritable ? kNotWritten : exit_code;
+}
+
 int Refuse(const char* command, const Error& error, int exit_code) {
   PrintError("sextant {}: {}\n", command, error.message);
-  return error.code == ErrorCode::kUnwritable ? kNotWritten : exit_code;
+  return ExitCodeOf(error, exit_code);
 }
 
 int Deliver(const char* command, const std::string& json_path, const std::string& text,

@@ -14,8 +14,10 @@ inline constexpr int kWrongUse = 2;    ///< Wrong usage, or an input that cannot
 inline constexpr int kFailed = 3;      ///< Out of memory, or an error in sextant itself.
 inline constexpr int kNotWritten = 4;  ///< A file or standard output could not be written.
 
-/// Prints "sextant <command>: <message>" on standard error. Returns `exit_code`, or kNotWritten for
-/// the error kUnwritable.
+/// kNotWritten for the error kUnwritable, else `exit_code`.
+int ExitCodeOf(const Error& error, int exit_code = kWrongUse);
+
+/// Prints "sextant <command>: <message>" on standard error. Returns ExitCodeOf the error.
 int Refuse(const char* command, const Error& error, int exit_code = kWrongUse);
 
 /// Prints the text, or writes the results to the file of --json; text and JSON never share standard

@@ -120,7 +120,7 @@ int Finish(const Plan& plan, const ExperimentOptions& options) {
 }
 
 int End(const Ranks& ranks, const Error& error) {
-  return ranks.is_first() ? Refuse(kCommand, error) : kWrongUse;
+  return ranks.is_first() ? Refuse(kCommand, error) : ExitCodeOf(error);
 }
 
 }  // namespace
