@@ -29,6 +29,8 @@ std::string_view ToString(ErrorCode code) {
       return "parse";
     case ErrorCode::kIo:
       return "io";
+    case ErrorCode::kUnwritable:
+      return "unwritable";
   }
   return "unknown";
 }

@@ -21,7 +21,8 @@ enum class ErrorCode {
   kUnknownName,    ///< No solver, option or choice has that name.
   kInvalidOption,  ///< An option's value is outside its range or of the wrong type.
   kParse,          ///< The content of a file or text violates its format.
-  kIo,             ///< A file cannot be opened, read or written.
+  kIo,             ///< A file cannot be opened or read.
+  kUnwritable,     ///< A file or standard output cannot be written.
 };
 
 /// "too_few_pairs" and so on: stable, for logs and JSON.

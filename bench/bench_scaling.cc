@@ -16,7 +16,7 @@
 #include "eval/synthetic/mismatched_pairs.h"
 #include "eval/synthetic/random_scene.h"
 #include "eval/synthetic/simulate_views.h"
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
 #include "solvers/builtin_solvers.h"
 #include "solvers/core/registry.h"
 

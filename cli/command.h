@@ -25,6 +25,17 @@ struct ArgumentRange {
   double high = 0.0;
 };
 
+/// What an argument names for the command to write. The paths of a call are checked before it runs:
+/// none is empty, an input or another output, and no file is replaced that sextant did not write,
+/// unless --overwrite is given, which every command that writes has.
+enum class Writes {
+  kNothing,
+  kFile,                  ///< A file; of several values the last.
+  kFileOrStandardOutput,  ///< "-" is standard output.
+  kCheckedByCommand,  ///< Files whose names the command forms, or that it continues (ClaimOutput).
+  kFolder,
+};
+
 struct ArgumentRules {
   bool required = false;
   bool shows_default = false;            ///< The help shows the variable's initial value.
@@ -34,6 +45,7 @@ struct ArgumentRules {
   char separator = '\0';                 ///< Splits one value into several.
   std::vector<std::string> choices{};    ///< The only values allowed, in any case.
   std::string excludes{};                ///< Name of an option that may not be given as well.
+  Writes writes = Writes::kNothing;      ///< Only for strings.
 };
 
 /// An option ("--json") or a positional argument ("FILE").

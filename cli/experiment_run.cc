@@ -1,52 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/experiment_run.h"
 
-#include <fmt/core.h>
-
 #include <memory>
-#include <system_error>
+#include <vector>
 
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "eval/experiment/definition/timing.h"
 #include "eval/experiment/report/write_report.h"
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
+#include "io/output/standard_output.h"
 #include "solvers/all/all_solvers.h"
 
 namespace sextant::cli {
 namespace {
+
+constexpr const char* kTimingJson = "timing.json";
+constexpr const char* kTimingPage = "timing.md";
+
+ReportSettings ReportSettingsOf(const ExperimentOptions& options) {
+  return {.csv = !options.no_csv, .plots = true};
+}
 
 Expected<void> WriteTiming(const Experiment& experiment, const std::filesystem::path& folder) {
   if (experiment.timed_trials == 0) return {};
   Progress progress("timing",
                     static_cast<long>(experiment.timed_trials * experiment.conditions.size()));
   const std::vector<TimingRow> rows = TimeSubjects(experiment, [&progress] { progress.Step(); });
-  if (Expected<void> ok = WriteFileAtomically(folder / "timing.json", FormatTimingJson(rows));
-      !ok) {
+  if (Expected<void> ok = WriteFileAtomically(folder / kTimingJson, FormatTimingJson(rows)); !ok) {
     return ok;
   }
-  return WriteFileAtomically(folder / "timing.md", FormatTimingMarkdown(experiment, rows));
+  return WriteFileAtomically(folder / kTimingPage, FormatTimingMarkdown(experiment, rows));
 }
 
 }  // namespace
 
-void DeclareRun(ExperimentOptions& options, Arguments& arguments) {
+void DeclareExperiment(ExperimentOptions& options, Arguments& arguments) {
   arguments.Add("EXPERIMENT", options.experiment_path, "Experiment file (YAML)",
                 {.required = true});
   arguments.Add("--out", options.out,
                 "Folder to write; a run that was stopped continues where it was.\n"
-                "Default: results/NAME");
+                "Default: results/NAME",
+                {.writes = Writes::kFolder});
   arguments.Add("--solvers", options.solvers,
                 "Instead of the file's, separated by commas; conditions without data for them are\n"
                 "skipped");
-  arguments.Add("--threads", options.threads,
-                "Default: as many as the machine has; an MPI rank takes its share of them",
-                {.range = {{1, 1024}}});
   arguments.Add("--trials", options.trials, "Instead of the file's", {.range = {{1, 1e9}}});
   arguments.Add("--seed", options.seed, "Instead of the file's");
   arguments.Add("--quick", options.quick, "The file's quick_trials instead of its trials");
-  arguments.Add("--fresh", options.fresh, "Delete existing rows first");
   arguments.Add("--no-csv", options.no_csv, "Without rows.csv, which is large for many trials");
+}
+
+void DeclareRun(ExperimentOptions& options, Arguments& arguments) {
+  DeclareExperiment(options, arguments);
+  arguments.Add("--threads", options.threads,
+                "Default: as many as the machine has; an MPI rank takes its share of them",
+                {.range = {{1, 1024}}});
+  arguments.Add("--fresh", options.fresh, "Delete existing rows first");
 }
 
 Expected<Experiment> LoadExperiment(const ExperimentOptions& options) {
@@ -64,13 +74,16 @@ std::filesystem::path FolderOf(const ExperimentOptions& options, const Experimen
   return std::filesystem::path("results") / (experiment.name + (options.quick ? "-quick" : ""));
 }
 
-Expected<void> MakeFolder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!error && std::filesystem::is_directory(folder, error)) return {};
-  return MakeError(ErrorCode::kIo, fmt::format("cannot make the folder '{}': {}; name another "
-                                               "with --out",
-                                               folder.string(), error.message()));
+Expected<void> ClaimReport(const ExperimentOptions& options, const Experiment& experiment,
+                           const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files =
+      ReportFiles(experiment, folder, ReportSettingsOf(options));
+  if (experiment.timed_trials > 0) {
+    files.push_back(folder / kTimingJson);
+    files.push_back(folder / kTimingPage);
+  }
+  for (const std::filesystem::path& file : files) SEXTANT_RETURN_IF_ERROR(ClaimOutput(file));
+  return {};
 }
 
 Expected<RunOutcome> RunWithProgress(const Experiment& experiment, RunSettings settings) {
@@ -90,10 +103,10 @@ int WriteAll(const char* command, const ExperimentOptions& options, const Experi
 
 int WriteTables(const char* command, const ExperimentOptions& options, const Experiment& experiment,
                 const std::filesystem::path& folder) {
-  const Expected<std::string> tables = WriteReport(experiment, folder / "rows.sxtrows", folder,
-                                                   {.csv = !options.no_csv, .plots = true});
+  const Expected<std::string> tables =
+      WriteReport(experiment, folder / "rows.sxtrows", folder, ReportSettingsOf(options));
   if (!tables) return Refuse(command, tables.error());
-  fmt::print("{}{}written to {}\n", *tables, tables->empty() ? "" : "\n", folder.string());
+  Print("{}{}written to {}\n", *tables, tables->empty() ? "" : "\n", folder.string());
   return kAnswered;
 }
 

@@ -24,7 +24,9 @@ struct ExperimentOptions {
   bool no_csv = false;
 };
 
-/// The arguments of a run, of one process or of one MPI rank.
+/// Which experiment is run or merged, and the folder of its results.
+void DeclareExperiment(ExperimentOptions& options, Arguments& arguments);
+/// The same, and how it is run, by one process or by MPI ranks.
 void DeclareRun(ExperimentOptions& options, Arguments& arguments);
 
 /// The experiment of the file, modified by the options. Errors: those of ReadExperiment.
@@ -33,8 +35,10 @@ Expected<Experiment> LoadExperiment(const ExperimentOptions& options);
 /// The folder that the options name, else results/NAME.
 std::filesystem::path FolderOf(const ExperimentOptions& options, const Experiment& experiment);
 
-/// Error: kIo.
-Expected<void> MakeFolder(const std::filesystem::path& folder);
+/// Checks before any trial that the files of the report can be written into the folder. Errors:
+/// those of ClaimOutput.
+Expected<void> ClaimReport(const ExperimentOptions& options, const Experiment& experiment,
+                           const std::filesystem::path& folder);
 
 /// RunTrials with a progress bar.
 Expected<RunOutcome> RunWithProgress(const Experiment& experiment, RunSettings settings);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands/commands.h"
-#include "cli/parse.h"
+#include "cli/run_program.h"
 
 namespace sextant::cli {
 namespace {
@@ -22,7 +22,9 @@ constexpr const char* kFooter =
     "point_in_cam = cam_from_lidar * point_in_lidar. Camera: x right, y down, z forward.\n"
     "LiDAR: x forward, y left, z up. Metres and degrees.\n"
     "'sextant COMMAND --help' has the options of a command and examples.\n"
-    "Exit codes: 0 answered, 1 no answer (with the reason), 2 wrong usage or unreadable input.";
+    "An existing file is replaced only if sextant wrote it; --overwrite replaces any.\n"
+    "Exit codes: 0 answered, 1 no answer (with the reason), 2 wrong usage or unreadable input,\n"
+    "3 out of memory or an error in sextant, 4 an output could not be written.";
 
 Program Sextant() {
   return {.name = "sextant",
@@ -49,5 +51,6 @@ Program Sextant() {
 }  // namespace sextant::cli
 
 int main(int argc, char** argv) {
+  sextant::cli::PrepareProcess();
   return sextant::cli::RunProgram(sextant::cli::Sextant(), argc, argv);
 }

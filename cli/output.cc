@@ -1,29 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/output.h"
 
-#include <fmt/core.h>
-
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
+#include "io/output/standard_output.h"
 
 namespace sextant::cli {
 
+int ExitCodeOf(const Error& error, int exit_code) {
+  return error.code == ErrorCode::kUnwritable ? kNotWritten : exit_code;
+}
+
 int Refuse(const char* command, const Error& error, int exit_code) {
-  fmt::print(stderr, "sextant {}: {}\n", command, error.message);
-  return exit_code;
+  PrintError("sextant {}: {}\n", command, error.message);
+  return ExitCodeOf(error, exit_code);
 }
 
 int Deliver(const char* command, const std::string& json_path, const std::string& text,
             const std::string& json, int exit_code) {
   if (json_path == "-") {
-    fmt::print("{}", json);
+    PrintText(json);
     return exit_code;
   }
-  fmt::print("{}", text);
-  if (json_path.empty()) return exit_code;
-  if (Expected<void> ok = WriteFileAtomically(json_path, json); !ok) {
-    return Refuse(command, ok.error());
-  }
-  return exit_code;
+  const Expected<void> written =
+      json_path.empty() ? Expected<void>() : WriteFileAtomically(json_path, json);
+  PrintText(text);
+  return written ? exit_code : Refuse(command, written.error());
 }
 
 }  // namespace sextant::cli

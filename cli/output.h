@@ -9,15 +9,20 @@ namespace sextant::cli {
 
 /// Exit codes, on which scripts rely.
 inline constexpr int kAnswered = 0;
-inline constexpr int kNoAnswer = 1;  ///< The input was read, and no solver answered.
-inline constexpr int kWrongUse = 2;  ///< Wrong usage, or an input or output that fails.
+inline constexpr int kNoAnswer = 1;    ///< The input was read, and no solver answered.
+inline constexpr int kWrongUse = 2;    ///< Wrong usage, or an input that cannot be read.
+inline constexpr int kFailed = 3;      ///< Out of memory, or an error in sextant itself.
+inline constexpr int kNotWritten = 4;  ///< A file or standard output could not be written.
 
-/// Prints "sextant <command>: <message>" on standard error; returns `exit_code`.
+/// kNotWritten for the error kUnwritable, else `exit_code`.
+int ExitCodeOf(const Error& error, int exit_code = kWrongUse);
+
+/// Prints "sextant <command>: <message>" on standard error. Returns ExitCodeOf the error.
 int Refuse(const char* command, const Error& error, int exit_code = kWrongUse);
 
 /// Prints the text, or writes the results to the file of --json; text and JSON never share standard
-/// output. `json_path`: empty for none, "-" for standard output. Returns the exit code:
-/// `exit_code`, or kWrongUse if the file cannot be written.
+/// output. `json_path`: empty for none, "-" for standard output. Returns `exit_code`,
+/// or that of Refuse if the file cannot be written.
 int Deliver(const char* command, const std::string& json_path, const std::string& text,
             const std::string& json, int exit_code);
 

@@ -5,8 +5,10 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <sstream>
 #include <type_traits>
+#include <utility>
 
 #include "base/nearest_name.h"
 #include "base/version.h"
@@ -55,7 +57,18 @@ void SetRules(const ArgumentRules& rules, CLI::App& app, CLI::Option& option) {
   if (!rules.excludes.empty()) option.excludes(app.get_option(rules.excludes));
 }
 
-void AddCommand(const Command& command, const std::string& group, CLI::App& parent) {
+constexpr const char* kOverwrite = "--overwrite";
+constexpr const char* kOverwriteHelp =
+    "Replace also files that sextant did not write, or that were changed since";
+
+bool HasOutputs(const Arguments& arguments) {
+  return std::ranges::any_of(arguments.all(), [](const Argument& argument) {
+    return argument.rules.writes != Writes::kNothing;
+  });
+}
+
+void AddCommand(const Command& command, const std::string& group, bool& overwrites,
+                CLI::App& parent) {
   CLI::App& app = *parent.add_subcommand(command.name, command.summary);
   app.group(group);
   app.footer(command.footer);
@@ -66,7 +79,8 @@ void AddCommand(const Command& command, const std::string& group, CLI::App& pare
         [&](auto* value) { SetRules(argument.rules, app, AddOption(argument, *value, app)); },
         argument.target);
   }
-  for (const Command& sub : command.subcommands) AddCommand(sub, "Subcommands", app);
+  if (HasOutputs(arguments)) app.add_flag(kOverwrite, overwrites, kOverwriteHelp);
+  for (const Command& sub : command.subcommands) AddCommand(sub, "Subcommands", overwrites, app);
   if (!command.run) app.require_subcommand(1);
 }
 
@@ -110,34 +124,79 @@ std::string UnknownCommand(const Program& program, int argc, const char* const* 
   return {};
 }
 
-// The run of the command, or of the subcommand, that the parsed line names.
-std::function<int()> ChosenRun(const CLI::App& app, const std::vector<const Command*>& commands) {
-  const std::vector<const CLI::App*> chosen = app.get_subcommands(nullptr);
+// The command, or the subcommand, that the parsed line names.
+struct Chosen {
+  const Command* command = nullptr;
+  const CLI::App* app = nullptr;
+  std::string name;
+};
+
+Chosen FindChosen(const CLI::App& app, const std::vector<const Command*>& commands) {
   for (const Command* command : commands) {
-    for (const CLI::App* sub : chosen) {
+    for (const CLI::App* sub : app.get_subcommands(nullptr)) {
       if (!sub->parsed() || sub->get_name() != command->name) continue;
       std::vector<const Command*> subcommands;
       for (const Command& one : command->subcommands) subcommands.push_back(&one);
-      const std::function<int()> run = ChosenRun(*sub, subcommands);
-      return run ? run : command->run;
+      Chosen chosen = FindChosen(*sub, subcommands);
+      if (chosen.command == nullptr) return {command, sub, command->name};
+      chosen.name = command->name + " " + chosen.name;
+      return chosen;
     }
   }
   return {};
+}
+
+// The path that an argument gives; of several values the last.
+std::string PathOf(const ArgumentTarget& target) {
+  if (std::string* const* path = std::get_if<std::string*>(&target)) return **path;
+  const auto* const paths = std::get_if<std::vector<std::string>*>(&target);
+  return paths == nullptr || (*paths)->empty() ? std::string() : (*paths)->back();
+}
+
+// Appends the output that the argument names, if any; returns what is wrong with it.
+std::string AddOutput(const Argument& argument, const CLI::App& app,
+                      std::vector<OutputArgument>& outputs) {
+  const Writes writes = argument.rules.writes;
+  if (writes == Writes::kNothing) return {};
+  OutputArgument output{.option = argument.name, .path = PathOf(argument.target), .writes = writes};
+  if (output.path == "-" && writes != Writes::kFileOrStandardOutput) {
+    return fmt::format("{}: expected a path, got '-'; it does not write to standard output\n",
+                       argument.name);
+  }
+  const bool is_given = app.get_option(argument.name)->count() > 0;
+  if (output.path.empty() && is_given) {
+    return fmt::format("{}: expected a path, got an empty text\n", argument.name);
+  }
+  if (!output.path.empty()) outputs.push_back(std::move(output));
+  return {};
+}
+
+ParsedLine LineOf(const Chosen& chosen, bool overwrites) {
+  ParsedLine line{.run = chosen.command->run, .command = chosen.name, .overwrites = overwrites};
+  // Declaring again gives the variables, which now hold the values of the line.
+  Arguments arguments;
+  if (chosen.command->declare) chosen.command->declare(arguments);
+  for (const Argument& argument : arguments.all()) {
+    const std::string error = AddOutput(argument, *chosen.app, line.outputs);
+    if (!error.empty()) return {.exit_code = kWrongUse, .err = error};
+  }
+  return line;
 }
 
 }  // namespace
 
 ParsedLine ParseLine(const Program& program, int argc, const char* const* argv) {
   if (std::string error = UnknownCommand(program, argc, argv); !error.empty()) {
-    return {.run = {}, .exit_code = kWrongUse, .out = {}, .err = std::move(error)};
+    return {.exit_code = kWrongUse, .err = std::move(error)};
   }
   CLI::App app(program.introduction, program.name);
   app.set_version_flag("--version", std::string(Version()));
   app.set_help_all_flag("--help-all", "The help of every command");
   app.require_subcommand(1);
   app.footer(program.footer);
+  bool overwrites = false;
   for (const CommandGroup& group : program.groups) {
-    for (const Command& command : group.commands) AddCommand(command, group.title, app);
+    for (const Command& command : group.commands) AddCommand(command, group.title, overwrites, app);
   }
   try {
     app.parse(argc, argv);
@@ -145,20 +204,9 @@ ParsedLine ParseLine(const Program& program, int argc, const char* const* argv) 
     std::ostringstream out;
     std::ostringstream err;
     const int code = app.exit(error, out, err);
-    return {.run = {},
-            .exit_code = code == 0 ? kAnswered : kWrongUse,
-            .out = out.str(),
-            .err = err.str()};
+    return {.exit_code = code == 0 ? kAnswered : kWrongUse, .out = out.str(), .err = err.str()};
   }
-  return {
-      .run = ChosenRun(app, AllCommands(program)), .exit_code = kAnswered, .out = {}, .err = {}};
-}
-
-int RunProgram(const Program& program, int argc, const char* const* argv) {
-  const ParsedLine line = ParseLine(program, argc, argv);
-  fmt::print("{}", line.out);
-  fmt::print(stderr, "{}", line.err);
-  return line.run ? line.run() : line.exit_code;
+  return LineOf(FindChosen(app, AllCommands(program)), overwrites);
 }
 
 }  // namespace sextant::cli

@@ -3,15 +3,26 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "cli/command.h"
 
 namespace sextant::cli {
 
+/// What the chosen command is to write.
+struct OutputArgument {
+  std::string option{};  ///< Its name, as "--json".
+  std::string path{};
+  Writes writes = Writes::kNothing;
+};
+
 /// The result of parsing a command line: a command to run, or a text to print (help, version,
 /// error) and the exit code to end with.
 struct ParsedLine {
   std::function<int()> run{};  ///< Empty: there is only text.
+  std::string command{};       ///< Its name, as "simulate pairs".
+  std::vector<OutputArgument> outputs{};
+  bool overwrites = false;  ///< --overwrite.
   int exit_code = 0;
   std::string out{};  ///< For standard output.
   std::string err{};  ///< For standard error.
@@ -19,8 +30,5 @@ struct ParsedLine {
 
 /// Reads the arguments into the options of the chosen command. Wrong usage gives kWrongUse.
 ParsedLine ParseLine(const Program& program, int argc, const char* const* argv);
-
-/// Parses, prints, and runs the command. Returns the exit code.
-int RunProgram(const Program& program, int argc, const char* const* argv);
 
 }  // namespace sextant::cli

@@ -10,6 +10,7 @@
 #include "io/boards/board_file.h"
 #include "io/boards/marker_files.h"
 #include "io/cameras/camera_file.h"
+#include "io/output/standard_output.h"
 #include "io/problems/read_problem.h"
 
 namespace sextant::cli {
@@ -63,7 +64,8 @@ void DeclareProblemInput(ProblemInputOptions& options, Arguments& arguments) {
   arguments.Add("--reorder", options.reorder,
                 "Use the order of corners and boards that fits best, if it fits far better than\n"
                 "the order of the file");
-  arguments.Add("--json", options.json_path, "Write the results as JSON; - for standard output");
+  arguments.Add("--json", options.json_path, "Write the results as JSON; - for standard output",
+                {.writes = Writes::kFileOrStandardOutput});
 }
 
 Expected<LoadedProblem> LoadProblem(const ProblemInputOptions& options) {
@@ -107,7 +109,7 @@ int DeliverAnswers(const char* command, const ProblemInputOptions& options,
                    const LoadedProblem& input, const std::vector<ComparisonRow>& rows,
                    const std::string& text, bool answered) {
   const std::string diagnostics = DiagnosticsText(input, options.reorder);
-  if (options.json_path == "-") fmt::print(stderr, "{}", diagnostics);
+  if (options.json_path == "-") PrintError("{}", diagnostics);
   return Deliver(command, options.json_path, text + diagnostics, ResultsJson(input, rows),
                  answered ? kAnswered : kNoAnswer);
 }

@@ -13,7 +13,8 @@
 #include "cli/recording_summary.h"
 #include "io/cameras/camera_file.h"
 #include "io/clouds/pcd_file.h"
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
+#include "io/output/output_folder.h"
 
 namespace sextant::cli {
 namespace {
@@ -53,12 +54,7 @@ class Extractor {
     SEXTANT_ASSIGN_OR_RETURN(const std::optional<Extracted> file, Convert(message));
     if (!file) return {};
     const std::filesystem::path folder = FolderOf(message.topic_index);
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) {
-      return MakeError(ErrorCode::kIo, fmt::format("cannot make the folder '{}': {}",
-                                                   folder.string(), error.message()));
-    }
+    SEXTANT_RETURN_IF_ERROR(MakeFolder(folder));
     extensions_[message.topic_index] = file->extension;
     ++files_;
     return WriteFileAtomically(folder / (name + file->extension), file->bytes);
@@ -135,6 +131,9 @@ std::string PairsText(const BagStreams& all, Extractor& files) {
 }
 
 Expected<int> ExtractBag(const Bag& bag, const BagStreams& streams, const std::string& folder) {
+  SEXTANT_ASSIGN_OR_RETURN(const OutputFolder locked, OutputFolder::Open(folder));
+  const std::filesystem::path pairs = std::filesystem::path(folder) / "pairs.csv";
+  SEXTANT_RETURN_IF_ERROR(ClaimOutput(pairs));
   Extractor files(bag, folder);
   std::vector<std::size_t> topics;
   for (std::size_t i = 0; i < bag.topics().size(); ++i) {
@@ -146,11 +145,7 @@ Expected<int> ExtractBag(const Bag& bag, const BagStreams& streams, const std::s
   if (files.files() == 0) {
     return MakeError(ErrorCode::kMissingData, "there is nothing in it to extract");
   }
-  if (Expected<void> ok = WriteFileAtomically(std::filesystem::path(folder) / "pairs.csv",
-                                              PairsText(streams, files));
-      !ok) {
-    return tl::unexpected<Error>(std::move(ok.error()));
-  }
+  SEXTANT_RETURN_IF_ERROR(WriteFileAtomically(pairs, PairsText(streams, files)));
   return files.files() + 1;
 }
 

@@ -19,8 +19,8 @@ struct OpenedRecording {
   std::string summary{};  ///< The topics and which scans and images are pairs, for people.
   /// Writes scans (PCD), images (encoded ones unchanged, others as PNG), cameras (camera_info YAML,
   /// if different from the one before) and pairs.csv into the folder, a folder for each topic.
-  /// Returns the number of files. Errors: kIo; kMissingData if there is nothing to extract; those
-  /// of the messages.
+  /// Returns the number of files. Errors: those of io/output; kMissingData if there is nothing to
+  /// extract; those of the messages.
   std::function<Expected<int>(const std::string& folder)> extract{};
 };
 
@@ -34,7 +34,8 @@ Expected<void> CheckSessionBag(const SessionOptions& options);
 
 /// Writes session.bag (ROS 1) into the folder of a complete session, from its files, whole or not
 /// at all: /lidar/points, /<camera>/image_raw and /<camera>/camera_info (docs/formats.md). The same
-/// files give the same bytes. Errors: those of the files' readers, with the file; kIo.
+/// files give the same bytes. Errors: those of the files' readers, with the file, and of
+/// OutputFile.
 Expected<void> WriteSessionBag(const std::filesystem::path& folder, const Scene& scene,
                                const std::vector<ScanTruth>& scans);
 

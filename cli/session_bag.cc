@@ -112,7 +112,7 @@ Expected<void> CheckSessionBag(const SessionOptions& options) {
 
 Expected<void> WriteSessionBag(const std::filesystem::path& folder, const Scene& scene,
                                const std::vector<ScanTruth>& scans) {
-  SEXTANT_ASSIGN_OR_RETURN(Rosbag1Writer writer, Rosbag1Writer::Create(folder / "session.bag"));
+  SEXTANT_ASSIGN_OR_RETURN(Rosbag1Writer writer, Rosbag1Writer::Create(folder / kSessionBag));
   return SessionRecorder(folder, scene, std::move(writer)).Record(scans);
 }
 

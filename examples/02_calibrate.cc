@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "calibrate/calibrate.h"
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
 
 int Fail(const sextant::Error& error) {
   std::fprintf(stderr, "%s\n", error.message.c_str());

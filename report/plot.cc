@@ -6,7 +6,8 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <system_error>
+
+#include "io/output/output_file.h"
 
 namespace sextant {
 namespace {
@@ -65,20 +66,15 @@ std::string Ticks(const std::vector<PairId>& ids) {
 
 Expected<void> DrawPlot(const std::string& commands, const std::filesystem::path& path) {
   SEXTANT_ASSIGN_OR_RETURN(const std::string terminal, TerminalFor(path));
-  std::filesystem::path temporary = path;
-  temporary += ".part";
+  SEXTANT_ASSIGN_OR_RETURN(OutputFile file, OutputFile::Open(path));
+  const std::filesystem::path temporary = file.temporary().empty() ? path : file.temporary();
   const std::string script = fmt::format("set terminal {}\nset output {}\n{}\nset output\n",
                                          terminal, Quote(temporary.string()), commands);
   FILE* gnuplot = popen("exec gnuplot >/dev/null 2>&1", "w");
   const bool written =
       gnuplot != nullptr && std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
   const int status = gnuplot != nullptr ? pclose(gnuplot) : -1;
-  std::error_code error;
-  if (written && status == 0) {
-    std::filesystem::rename(temporary, path, error);
-    if (!error) return {};
-  }
-  std::filesystem::remove(temporary, error);
+  if (written && status == 0) return file.Commit();
   constexpr int kCommandNotFound = 127;
   if (WIFEXITED(status) && WEXITSTATUS(status) == kCommandNotFound) {
     return MakeError(ErrorCode::kIo, "plots need gnuplot: install the package gnuplot-nox");

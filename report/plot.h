@@ -12,7 +12,7 @@ namespace sextant {
 
 /// Runs gnuplot commands that draw into a file, .svg or .png by its extension; the file is written
 /// whole or not at all. Errors: kInvalidOption (another extension), kIo (gnuplot is missing or
-/// fails).
+/// fails); those of OutputFile.
 Expected<void> DrawPlot(const std::string& commands, const std::filesystem::path& path);
 
 /// Commands that plot the residual of every pair for every solver with an answer: of the 3D-3D

@@ -11,7 +11,7 @@
 
 #include "io/clouds/cloud_file.h"
 #include "io/images/image_codec.h"
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
 
 namespace sextant {
 namespace {

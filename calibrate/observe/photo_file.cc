@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "io/images/image_codec.h"
+#include "io/output/output_file.h"
 #include "io/text/text_file.h"
 
 namespace sextant {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <numbers>
+#include <system_error>
 
 #include "base/units.h"
 #include "calibrate/observe/photo_file.h"
@@ -12,6 +13,7 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "eval/metrics/bounds.h"
+#include "io/output/standard_output.h"
 #include "report/advice_picture.h"
 #include "simulator/lidar/lidar_model.h"
 
@@ -31,7 +33,8 @@ void Declare(AdviseCommandOptions& options, Arguments& arguments) {
                 "result.yaml of sextant calibrate, its JSON, or a folder that contains result.yaml",
                 {.required = true});
   arguments.Add("--picture", options.picture_path,
-                "Draw the place from above and as the camera would see it (.png)");
+                "Draw the place from above and as the camera would see it (.png)",
+                {.writes = Writes::kFile});
   arguments.Add("--count", options.count, "How many places, each after those before it",
                 {.shows_default = true, .range = {{1, 20}}});
   arguments.Add("--lidar", options.lidar,
@@ -117,7 +120,8 @@ ResultView AsView(const CalibrationResult& result, const Advice& advice) {
 
 int Run(const AdviseCommandOptions& options) {
   std::filesystem::path path = options.result_path;
-  if (std::filesystem::is_directory(path)) path /= "result.yaml";
+  std::error_code ignored;  // Reading the file then gives the reason.
+  if (std::filesystem::is_directory(path, ignored)) path /= "result.yaml";
   const Expected<CalibrationResult> result = ReadCalibrationResult(path);
   if (!result) {
     return Refuse("advise", {result.error().code,
@@ -131,10 +135,9 @@ int Run(const AdviseCommandOptions& options) {
   for (int i = 0; i < options.count; ++i) {
     const Expected<Advice> advice = Advise(growing, *sensors);
     if (!advice) return Refuse("advise", advice.error(), kNoAnswer);
-    if (i == 0) fmt::print("{}", ViewsText(*result, *advice));
-    fmt::print("{}\n  {} rings would cross it; predicted 1 sigma then {}\n",
-               advice->proposal.sentence, advice->proposal.rings,
-               SigmaText(advice->proposal.covariance));
+    if (i == 0) Print("{}", ViewsText(*result, *advice));
+    Print("{}\n  {} rings would cross it; predicted 1 sigma then {}\n", advice->proposal.sentence,
+          advice->proposal.rings, SigmaText(advice->proposal.covariance));
     proposals.push_back(advice->proposal);
     growing.views.push_back(AsView(growing, *advice));
   }
@@ -142,7 +145,7 @@ int Run(const AdviseCommandOptions& options) {
   const Expected<void> written =
       WriteImage(DrawAdvice(*result, *sensors, proposals), options.picture_path);
   if (!written) return Refuse("advise", written.error());
-  fmt::print("{}: the place from above and in the camera's image\n", options.picture_path);
+  Print("{}: the place from above and in the camera's image\n", options.picture_path);
   return kAnswered;
 }
 

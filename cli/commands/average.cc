@@ -23,7 +23,8 @@ struct AverageOptions {
 void Declare(AverageOptions& options, Arguments& arguments) {
   arguments.Add("LOG", options.log_path, "avg_values.txt of the original package",
                 {.required = true});
-  arguments.Add("--json", options.json_path, "Write the results as JSON; - for standard output");
+  arguments.Add("--json", options.json_path, "Write the results as JSON; - for standard output",
+                {.writes = Writes::kFileOrStandardOutput});
 }
 
 Rigid3d LoggedPose(const RunningAverageAnalysis& analysis) {

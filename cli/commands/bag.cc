@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
-
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/recordings.h"
+#include "io/output/standard_output.h"
 #include "io/text/number_text.h"
 
 namespace sextant::cli {
@@ -20,7 +19,8 @@ void Declare(BagOptions& options, Arguments& arguments) {
                 "Recording: .bag of ROS 1, .db3 of ROS 2 or its folder, or .mcap",
                 {.required = true});
   arguments.Add("--extract", options.extract_folder,
-                "Write scans (.pcd), images, camera_info (.yaml) and pairs.csv into this folder");
+                "Write scans (.pcd), images, camera_info (.yaml) and pairs.csv into this folder",
+                {.writes = Writes::kFolder});
   arguments.Add("--tolerance", options.tolerance_s,
                 "Maximum time between the scan and the image of a pair [s]",
                 {.shows_default = true, .range = {{0.0, 3600.0}}});
@@ -29,14 +29,14 @@ void Declare(BagOptions& options, Arguments& arguments) {
 int Run(const BagOptions& options) {
   const Expected<OpenedRecording> recording = OpenRecording(options.path, options.tolerance_s);
   if (!recording) return Refuse("bag", recording.error());
-  fmt::print("{}", recording->summary);
+  Print("{}", recording->summary);
   if (options.extract_folder.empty()) return kAnswered;
   const Expected<int> files = recording->extract(options.extract_folder);
   if (!files) {
     const bool is_empty = files.error().code == ErrorCode::kMissingData;
     return Refuse("bag", files.error(), is_empty ? kNoAnswer : kWrongUse);
   }
-  fmt::print("{}: {} files\n", Printable(options.extract_folder, 200), *files);
+  Print("{}: {} files\n", Printable(options.extract_folder, 200), *files);
   return kAnswered;
 }
 

@@ -14,9 +14,10 @@
 #include "cli/pose_argument.h"
 #include "cli/progress.h"
 #include "cli/search_options.h"
+#include "io/output/output_file.h"
+#include "io/output/standard_output.h"
 #include "io/problems/problem_yaml.h"
 #include "io/results/calibration_result.h"
-#include "io/text/text_file.h"
 #include "report/calibrate_text.h"
 #include "solvers/all/all_solvers.h"
 
@@ -38,10 +39,10 @@ struct CalibrateCommandOptions {
   std::string detector{};
   std::string extractor = "rectangle";
   SearchArguments search{};
-  int bootstrap = 100;                   ///< Samples; 0: neither bootstrap nor cross-validation.
-  std::string out_path = "result.yaml";  ///< Empty: none.
-  std::string json_path{};               ///< See Deliver.
-  std::string problem_path{};            ///< The solvers' problem; empty: not written.
+  int bootstrap = 100;  ///< Samples; 0: neither bootstrap nor cross-validation.
+  std::string out_path = "result.yaml";
+  std::string json_path{};     ///< See Deliver.
+  std::string problem_path{};  ///< The solvers' problem; empty: not written.
 };
 
 void DeclareSources(CalibrateCommandOptions& options, Arguments& arguments) {
@@ -81,10 +82,13 @@ void Declare(CalibrateCommandOptions& options, Arguments& arguments) {
   arguments.Add("--bootstrap", options.bootstrap,
                 "Bootstrap samples over the views; 0: neither bootstrap nor cross-validation",
                 {.shows_default = true, .range = {{0, 100'000}}});
-  arguments.Add("--out", options.out_path, "Result file (YAML)", {.shows_default = true});
-  arguments.Add("--json", options.json_path, "Write the result as JSON too; - for standard output");
+  arguments.Add("--out", options.out_path, "Result file (YAML)",
+                {.shows_default = true, .writes = Writes::kFile});
+  arguments.Add("--json", options.json_path, "Write the result as JSON too; - for standard output",
+                {.writes = Writes::kFileOrStandardOutput});
   arguments.Add("--problem", options.problem_path,
-                "Write the correspondences, for sextant solve and compare (YAML)");
+                "Write the correspondences, for sextant solve and compare (YAML)",
+                {.writes = Writes::kFile});
 }
 
 Expected<Session> ChosenSession(const CalibrateCommandOptions& options) {
@@ -164,7 +168,7 @@ Expected<void> WriteFiles(const CalibrateCommandOptions& options, const Calibrat
     SEXTANT_RETURN_IF_ERROR(
         WriteFileAtomically(options.problem_path, FormatProblemYaml(ProblemFileOf(calibration))));
   }
-  if (!calibration.result || options.out_path.empty()) return {};
+  if (!calibration.result) return {};
   return WriteFileAtomically(options.out_path, FormatCalibrationResult(*calibration.result));
 }
 
@@ -176,10 +180,10 @@ int Run(const CalibrateCommandOptions& options) {
   }
   std::string text = DescribeCalibration(*calibration);
   if (!calibration->result) {
-    fmt::print("{}", text);
+    Print("{}", text);
     return Refuse("calibrate", calibration->result.error(), kNoAnswer);
   }
-  if (!options.out_path.empty()) text += fmt::format("\nThe result is in {}.\n", options.out_path);
+  text += fmt::format("\nThe result is in {}.\n", options.out_path);
   return Deliver("calibrate", options.json_path, text,
                  FormatCalibrationResultJson(*calibration->result), kAnswered);
 }

@@ -27,7 +27,8 @@ void Declare(CompareOptions& options, Arguments& arguments) {
   arguments.Add("--solvers", options.solvers,
                 "Solvers, separated by commas; default: every one whose needs the file meets");
   arguments.Add("--plot", options.plot_path,
-                "Draw the residuals of every pair under every solver (.svg or .png)");
+                "Draw the residuals of every pair under every solver (.svg or .png)",
+                {.writes = Writes::kFile});
 }
 
 // Whether a solver that finds the whole pose without a start has an answer; if there is none among

@@ -4,9 +4,9 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/problem_input.h"
+#include "io/output/output_file.h"
 #include "io/problems/points_file.h"
 #include "io/problems/read_problem.h"
-#include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {
@@ -20,7 +20,7 @@ void Declare(ConvertOptions& options, Arguments& arguments) {
   arguments.Add("FROM", options.from, kCorrespondencesHelp, {.required = true});
   arguments.Add("TO", options.to,
                 "Written by its extension: .yaml (everything) or .txt (points.txt)",
-                {.required = true});
+                {.required = true, .writes = Writes::kFile});
 }
 
 Expected<std::string> FormatAs(const std::string& extension, const ProblemFile& file) {

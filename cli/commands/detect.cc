@@ -12,6 +12,8 @@
 #include "features/camera/grey_image.h"
 #include "io/boards/board_file.h"
 #include "io/cameras/camera_file.h"
+#include "io/output/output_target.h"
+#include "io/text/text_file.h"
 #include "report/detect_report.h"
 
 namespace sextant::cli {
@@ -39,8 +41,10 @@ void Declare(DetectOptions& options, Arguments& arguments) {
   arguments.Add("--detector", options.detector,
                 "aruco, apriltag or checkerboard, with options; see sextant list detectors");
   arguments.Add("--overlay", options.overlay_path,
-                "Draw what was found (.png or .jpg); for several images one out-NAME.png each");
-  arguments.Add("--json", options.json_path, "Write the results as JSON; - for standard output");
+                "Draw what was found (.png or .jpg); for several images one out-NAME.png each",
+                {.writes = Writes::kCheckedByCommand});
+  arguments.Add("--json", options.json_path, "Write the results as JSON; - for standard output",
+                {.writes = Writes::kFileOrStandardOutput});
   arguments.Add("--quick", options.quick, "Do not search for the reason why a tag is missing");
 }
 
@@ -142,9 +146,20 @@ bool FoundSomething(const ImageReport& report) {
   });
 }
 
+// The overlays, before any of them is written: none may be one of the images, or another overlay.
+Expected<void> CheckOverlays(const DetectOptions& options) {
+  if (options.overlay_path.empty()) return {};
+  for (const std::string& image : options.images) {
+    SEXTANT_RETURN_IF_ERROR(ClaimOutput(OverlayPath(options, image)));
+  }
+  for (const std::string& image : options.images) SEXTANT_RETURN_IF_ERROR(CheckInput(image));
+  return {};
+}
+
 int Run(const DetectOptions& options) {
   const Expected<Search> search = MakeSearch(options);
   if (!search) return Refuse("detect", search.error());
+  if (const Expected<void> ok = CheckOverlays(options); !ok) return Refuse("detect", ok.error());
   std::vector<ImageResult> results(options.images.size());
   {
     Progress progress("images", static_cast<long>(results.size()));

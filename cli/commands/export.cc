@@ -6,7 +6,8 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "io/export/export_transform.h"
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
+#include "io/output/standard_output.h"
 
 namespace sextant::cli {
 namespace {
@@ -33,7 +34,7 @@ void Declare(ExportCommandOptions& options, Arguments& arguments) {
                 {.required = true});
   arguments.Add("--to", options.format, FormatsHelp(), {.required = true});
   arguments.Add("--out", options.out, "File to write; - for standard output",
-                {.shows_default = true});
+                {.shows_default = true, .writes = Writes::kFileOrStandardOutput});
   arguments.Add("--lidar-frame", options.lidar_frame, "Default: the name in the result");
   arguments.Add(
       "--camera-frame", options.camera_frame,
@@ -79,13 +80,13 @@ int Run(const ExportCommandOptions& options) {
                              fmt::format("{}: {}", options.result_path, text.error().message)});
   }
   if (options.out == "-") {
-    fmt::print("{}", *text);
+    Print("{}", *text);
     return kAnswered;
   }
   if (const Expected<void> ok = WriteFileAtomically(options.out, *text); !ok) {
     return Refuse("export", ok.error());
   }
-  fmt::print("{}: {} of {}\n", options.out, options.format, options.result_path);
+  Print("{}: {} of {}\n", options.out, options.format, options.result_path);
   return kAnswered;
 }
 

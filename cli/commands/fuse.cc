@@ -13,8 +13,9 @@
 #include "io/clouds/cloud_file.h"
 #include "io/clouds/pcd_file.h"
 #include "io/clouds/ply_file.h"
+#include "io/output/output_file.h"
+#include "io/output/standard_output.h"
 #include "io/problems/transform_list.h"
-#include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {
@@ -40,7 +41,7 @@ void Declare(FuseOptions& options, Arguments& arguments) {
                 "Instead: rts.txt of the original package, one 4x4 matrix per cloud");
   arguments.Add("--out", options.out,
                 "Cloud to write: .ply (each input cloud in its own colour) or .pcd",
-                {.shows_default = true});
+                {.shows_default = true, .writes = Writes::kFile});
 }
 
 // Distinguishable for the colour-blind too (Okabe and Ito 2008); the last cloud is grey.
@@ -129,9 +130,9 @@ int Run(const FuseOptions& options) {
       !ok) {
     return Refuse("fuse", ok.error());
   }
-  fmt::print("{}{}: {} points of {} clouds in the frame of {}\n",
-             Describe(options, clouds, last_from_cloud), options.out, fused.points.size(),
-             clouds.size(), options.clouds.back());
+  Print("{}{}: {} points of {} clouds in the frame of {}\n",
+        Describe(options, clouds, last_from_cloud), options.out, fused.points.size(), clouds.size(),
+        options.clouds.back());
   return kAnswered;
 }
 

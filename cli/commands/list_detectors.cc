@@ -8,6 +8,7 @@
 #include "eval/extractors/detector_study.h"
 #include "eval/statistics/text_table.h"
 #include "features/camera/tag_detector.h"
+#include "io/output/standard_output.h"
 
 namespace sextant::cli {
 namespace {
@@ -40,13 +41,13 @@ std::string DescribeEntry(const TagDetectorEntry& entry, bool markdown) {
 
 int Run(const ListDetectorsOptions& options) {
   for (const TagDetectorEntry& entry : TagDetectorEntries()) {
-    fmt::print("{}", DescribeEntry(entry, options.markdown));
+    Print("{}", DescribeEntry(entry, options.markdown));
   }
   if (options.trials == 0) return kAnswered;
   const Expected<std::vector<DetectorRow>> rows =
       StudyDetectors({.trials = options.trials, .seed = options.seed});
   if (!rows) return Refuse("list detectors", rows.error());
-  fmt::print(
+  Print(
       "{} rendered tags of 30 to 200 px, tilts to 60 deg, blur 0.7 px, noise of 3 grey "
       "levels:\n\n{}",
       options.trials, FormatDetectorStudy(*rows, options.markdown));

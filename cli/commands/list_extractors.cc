@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
-
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "eval/extractors/extractor_study.h"
 #include "eval/statistics/text_table.h"
 #include "features/lidar/corner_extractor.h"
+#include "io/output/standard_output.h"
 
 namespace sextant::cli {
 namespace {
@@ -41,7 +40,7 @@ int Run(const ListExtractorsOptions& options) {
   for (const CornerExtractorInfo& info : CornerExtractors()) {
     table.AddRow({info.name, info.summary});
   }
-  fmt::print("{}", options.markdown ? table.Markdown() : table.Plain());
+  Print("{}", options.markdown ? table.Markdown() : table.Plain());
   if (options.trials == 0) return kAnswered;
   ExtractorStudyOptions study;
   study.models = options.models;
@@ -50,7 +49,7 @@ int Run(const ListExtractorsOptions& options) {
   study.seed = options.seed;
   const Expected<std::vector<ExtractorStudyRow>> rows = StudyExtractors(study);
   if (!rows) return Refuse("list extractors", rows.error());
-  fmt::print(
+  Print(
       "\nRange sigma 1 cm; spots, mixed and lost returns as in each model. {} scans each of two "
       "48 cm boards 1.2 to 4.2 m away in a room (due: with {} rings or, without rings, {} returns "
       "on it), of rooms without a board, and of the two boards 1.8 m away for the corners:\n\n{}",

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
-
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "eval/experiment/kinds/kinds_page.h"
+#include "io/output/standard_output.h"
 
 namespace sextant::cli {
 
@@ -12,7 +11,7 @@ Command ListKindsCommand() {
           .summary = "The kinds of experiments, their parameters and metrics (Markdown)",
           .footer = "Example:\n  sextant list kinds",
           .run = [] {
-            fmt::print("{}", FormatKindsPage(BuiltinKinds()));
+            Print("{}", FormatKindsPage(BuiltinKinds()));
             return kAnswered;
           }};
 }

@@ -6,6 +6,7 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "eval/statistics/text_table.h"
+#include "io/output/standard_output.h"
 #include "simulator/lidar/lidar_model.h"
 
 namespace sextant::cli {
@@ -59,7 +60,7 @@ int Run(const ListLidarsOptions& options) {
   const auto text = [&options](const TextTable& table) {
     return options.markdown ? table.Markdown() : table.Plain();
   };
-  fmt::print("{}\n{}", text(Figures(models)), text(Sources(models)));
+  Print("{}\n{}", text(Figures(models)), text(Sources(models)));
   return kAnswered;
 }
 

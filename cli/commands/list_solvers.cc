@@ -5,6 +5,7 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "eval/statistics/text_table.h"
+#include "io/output/standard_output.h"
 #include "solvers/all/all_solvers.h"
 
 namespace sextant::cli {
@@ -66,17 +67,17 @@ std::string List(const SolverRegistry& registry) {
 int Run(const ListSolversOptions& options) {
   const SolverRegistry registry = AllSolvers();
   if (options.markdown) {
-    fmt::print("{}", Page(registry));
+    Print("{}", Page(registry));
     return kAnswered;
   }
   if (options.name.empty()) {
-    fmt::print("{}", List(registry));
+    Print("{}", List(registry));
     return kAnswered;
   }
   std::vector<std::string> known;
   for (const SolverEntry& entry : registry.entries()) {
     if (entry.name == options.name) {
-      fmt::print("{}", InFull(entry));
+      Print("{}", InFull(entry));
       return kAnswered;
     }
     known.push_back(entry.name);

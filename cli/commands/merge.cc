@@ -5,6 +5,7 @@
 #include "cli/experiment_run.h"
 #include "cli/output.h"
 #include "eval/experiment/run/part_files.h"
+#include "io/output/output_folder.h"
 
 namespace sextant::cli {
 namespace {
@@ -15,27 +16,21 @@ struct MergeOptions {
 };
 
 void Declare(MergeOptions& options, Arguments& arguments) {
-  ExperimentOptions& experiment = options.experiment;
-  arguments.Add("EXPERIMENT", experiment.experiment_path, "Experiment file (YAML)",
-                {.required = true});
+  DeclareExperiment(options.experiment, arguments);
   arguments.Add("ROWS", options.row_files, "The row files of all shards", {.required = true});
-  arguments.Add("--out", experiment.out, "Folder to write. Default: results/NAME");
-  arguments.Add("--trials", experiment.trials, "The value with which the shards were run");
-  arguments.Add("--seed", experiment.seed, "The value with which the shards were run");
-  arguments.Add("--quick", experiment.quick, "If the shards were run with it");
-  arguments.Add("--no-csv", experiment.no_csv, "Without rows.csv");
 }
 
 int Run(const MergeOptions& options) {
   const Expected<Experiment> experiment = LoadExperiment(options.experiment);
   if (!experiment) return Refuse("merge", experiment.error());
   const std::filesystem::path folder = FolderOf(options.experiment, *experiment);
-  if (Expected<void> ok = MakeFolder(folder); !ok) return Refuse("merge", ok.error());
+  const Expected<OutputFolder> locked = OutputFolder::Open(folder);
+  if (!locked) return Refuse("merge", locked.error());
   const std::vector<std::filesystem::path> shards(options.row_files.begin(),
                                                   options.row_files.end());
-  if (Expected<void> ok = MergeRowFiles(shards, folder / "rows.sxtrows"); !ok) {
-    return Refuse("merge", ok.error());
-  }
+  Expected<void> ok = ClaimReport(options.experiment, *experiment, folder);
+  if (ok) ok = MergeRowFiles(shards, folder / "rows.sxtrows", ConfigurationOf(*experiment));
+  if (!ok) return Refuse("merge", ok.error());
   return WriteTables("merge", options.experiment, *experiment, folder);
 }
 
@@ -43,7 +38,10 @@ int Run(const MergeOptions& options) {
 
 Command MergeCommand() {
   constexpr const char* kFooter =
-      "Gives the same bytes as one run on one machine.\n"
+      "Gives the same bytes as one run on one machine. Takes the options that change the "
+      "experiment\n"
+      "as the shards were run with them. Nothing is replaced before all rows are checked, and the\n"
+      "rows of another experiment only with --overwrite.\n"
       "Example:\n  sextant merge experiments/accuracy.yaml results/accuracy/shard_*.sxtrows";
   return MakeCommand<MergeOptions>("merge", "The shards of an experiment, to one report", kFooter,
                                    Declare, Run);

@@ -7,7 +7,7 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "io/boards/board_file.h"
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
 #include "report/board_drawing.h"
 
 namespace sextant::cli {
@@ -24,7 +24,7 @@ void Declare(PrintBoardOptions& options, Arguments& arguments) {
   arguments.Add("FILE", options.board_path, "Board YAML or marker_coordinates.txt",
                 {.required = true});
   arguments.Add("--out", options.out, "Written by its extension: .pdf, .svg or .png",
-                {.required = true});
+                {.required = true, .writes = Writes::kFile});
   arguments.Add("--id", options.id, "One board of the file; a .pdf holds all");
   arguments.Add("--dpi", options.dpi, "Pixels per inch of a .png",
                 {.shows_default = true, .range = {{10.0, 2400.0}}});

@@ -11,6 +11,7 @@
 #include "io/boards/board_file.h"
 #include "io/cameras/camera_file.h"
 #include "io/clouds/cloud_file.h"
+#include "io/output/standard_output.h"
 #include "io/results/calibration_result.h"
 #include "report/scan_on_image.h"
 
@@ -34,7 +35,8 @@ void Declare(ProjectOptions& options, Arguments& arguments) {
                 {.required = true});
   arguments.Add("--result", options.result_path, "result.yaml of sextant calibrate",
                 {.required = true});
-  arguments.Add("--out", options.out_path, "Picture to write (.png or .jpg)", {.required = true});
+  arguments.Add("--out", options.out_path, "Picture to write (.png or .jpg)",
+                {.required = true, .writes = Writes::kFile});
   arguments.Add("--camera", options.camera_path, "Intrinsics; default: the result's");
   arguments.Add("--board", options.boards_path,
                 "Boards to outline, by the image and by the scan; default: the result's");
@@ -183,7 +185,7 @@ int Run(const ProjectOptions& options) {
   if (const Expected<void> ok = WriteImage(canvas, options.out_path); !ok) {
     return Refuse("project", ok.error());
   }
-  fmt::print("{}{}: written\n", text, options.out_path);
+  Print("{}{}: written\n", text, options.out_path);
   if (drawn.in_view > 0) return kAnswered;
   return Refuse("project",
                 {ErrorCode::kInvalidInput,

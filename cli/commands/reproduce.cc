@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/reproduction/reproduce.h"
 
-#include <fmt/core.h>
-
 #include <memory>
 
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "eval/statistics/text_table.h"
+#include "io/output/standard_output.h"
 #include "solvers/all/all_solvers.h"
 
 namespace sextant::cli {
@@ -26,7 +25,8 @@ void Declare(ReproduceOptions& options, Arguments& arguments) {
   arguments.Add("--quick", options.quick, "Few trials: a minute instead of ten or more");
   arguments.Add("--out", options.out,
                 "Folder to write; default: paper, or build/paper-quick with --quick. A run that\n"
-                "was stopped continues where it was");
+                "was stopped continues where it was",
+                {.writes = Writes::kFolder});
   arguments.Add("--experiments", options.experiments, "Folder of the experiment files",
                 {.shows_default = true});
   arguments.Add("--claims", options.claims, "The paper's claims, and the rule for each",
@@ -60,11 +60,10 @@ int Run(const ReproduceOptions& options) {
                   std::string(ToString(judged.verdict))});
   }
   for (const std::string& why : reproduction->skipped) {
-    fmt::print(stderr, "sextant reproduce: not run: {}\n", why);
+    PrintError("sextant reproduce: not run: {}\n", why);
   }
-  fmt::print("{}\n{} claims in {:.0f} s; the page is {}\n", table.Plain(),
-             reproduction->claims.size(), reproduction->seconds,
-             (settings.out / "REPRODUCTION.md").string());
+  Print("{}\n{} claims in {:.0f} s; the page is {}\n", table.Plain(), reproduction->claims.size(),
+        reproduction->seconds, (settings.out / "REPRODUCTION.md").string());
   return kAnswered;
 }
 

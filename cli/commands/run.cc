@@ -9,6 +9,8 @@
 #include "cli/experiment_run.h"
 #include "cli/output.h"
 #include "eval/experiment/run/part_files.h"
+#include "io/output/output_folder.h"
+#include "io/output/standard_output.h"
 
 namespace sextant::cli {
 namespace {
@@ -43,7 +45,7 @@ Expected<Shard> ParseShard(const std::string& text) {
 
 void PrintKept(const RunOutcome& outcome, const std::filesystem::path& rows) {
   if (outcome.kept_trials == 0) return;
-  fmt::print(stderr, "sextant run: {} of {} trials were already in {}{}\n", outcome.kept_trials,
+  PrintError("sextant run: {} of {} trials were already in {}{}\n", outcome.kept_trials,
              outcome.kept_trials + outcome.run_trials, rows.string(),
              outcome.run_trials == 0 ? "; --fresh runs them again" : "");
 }
@@ -55,8 +57,15 @@ int Run(const RunOptions& all) {
   const Expected<Shard> shard = ParseShard(all.shard);
   if (!shard) return Refuse("run", shard.error());
   const std::filesystem::path folder = FolderOf(options, *experiment);
-  if (Expected<void> ok = MakeFolder(folder); !ok) return Refuse("run", ok.error());
   const bool whole = shard->of == 1;
+  const Expected<OutputFolder> locked =
+      OutputFolder::Open(folder, whole ? Sharing::kAlone : Sharing::kWithOthers);
+  if (!locked) return Refuse("run", locked.error());
+  if (const Expected<void> ok =
+          whole ? ClaimReport(options, *experiment, folder) : Expected<void>();
+      !ok) {
+    return Refuse("run", ok.error());
+  }
   const std::filesystem::path rows = folder / (whole ? "rows.sxtrows" : PartFileName(*shard));
   const Expected<RunOutcome> outcome = RunWithProgress(
       *experiment,
@@ -64,7 +73,7 @@ int Run(const RunOptions& all) {
   if (!outcome) return Refuse("run", outcome.error());
   PrintKept(*outcome, rows);
   if (whole) return WriteAll("run", options, *experiment, folder);
-  fmt::print("written to {}; join the shards with sextant merge\n", rows.string());
+  Print("written to {}; join the shards with sextant merge\n", rows.string());
   return kAnswered;
 }
 

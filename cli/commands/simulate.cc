@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "cli/progress.h"
 #include "cli/recordings.h"
 #include "io/images/image_codec.h"
+#include "io/output/output_file.h"
+#include "io/output/standard_output.h"
 #include "io/text/text_file.h"
 #include "simulator/scene/scene_file.h"
 #include "simulator/session/contact_sheet.h"
@@ -37,7 +40,7 @@ void Declare(SimulateOptions& options, Arguments& arguments) {
                 "Scene file (YAML); experiments/scenes has a set of them");
   arguments.Add("--out", options.out,
                 "Folder to write; a run that was stopped continues where it was",
-                {.shows_default = true});
+                {.shows_default = true, .writes = Writes::kFolder});
   arguments.Add("--scans", options.scans, "Number of scans, with their images",
                 {.shows_default = true});
   arguments.Add("--seed", options.seed, "The same seed gives the same bytes",
@@ -59,7 +62,8 @@ void Declare(SimulateOptions& options, Arguments& arguments) {
   arguments.Add("--pixel-sigma", options.pixel_sigma_px,
                 "Levels corners and pairs: corner noise in the image [px]; default 1 and 3.5");
   arguments.Add("--sheet", options.sheet_path,
-                "Draw image, scan and edges of the first scan (.png)");
+                "Draw image, scan and edges of the first scan (.png)",
+                {.writes = Writes::kCheckedByCommand});
 }
 
 Expected<SessionOptions> SessionOptionsOf(const SimulateOptions& options) {
@@ -97,6 +101,33 @@ Expected<void> WriteExtras(const Scene& scene, const std::vector<ScanTruth>& sca
   return options.sheet_path.empty() ? Expected<void>() : WriteSheet(scene, options);
 }
 
+// --sheet may name a file in the folder of --out, which the simulation creates.
+Expected<void> CheckSheet(const SimulateOptions& options) {
+  const std::filesystem::path sheet(options.sheet_path);
+  if (sheet.empty() || sheet.parent_path() == std::filesystem::path(options.out)) return {};
+  return ClaimOutput(sheet);
+}
+
+// Errors of the scene begin with its file; those of what is written name the output.
+Error WithScene(const Error& error, const std::string& scene_path) {
+  const bool is_of_output = error.code == ErrorCode::kIo || error.code == ErrorCode::kUnwritable ||
+                            error.code == ErrorCode::kInvalidOption;
+  return {error.code, is_of_output ? error.message : scene_path + ": " + error.message};
+}
+
+std::string Describe(const SimulateOptions& options, const Scene& scene,
+                     const SessionReport& report) {
+  std::string text =
+      fmt::format("{}: scene {}, scans: {}, files written: {}, kept: {}", options.out, scene.name,
+                  options.scans, report.written, report.kept);
+  if (report.removed > 0) {
+    text +=
+        fmt::format(", removed: {} of an earlier run with another number of scans", report.removed);
+  }
+  text += "; the truth is in truth.yaml";
+  return text + (options.bag ? ", scans and images also in session.bag\n" : "\n");
+}
+
 int Run(const SimulateOptions& options) {
   if (options.scene_path.empty()) {
     return Refuse("simulate", {ErrorCode::kInvalidOption,
@@ -109,27 +140,20 @@ int Run(const SimulateOptions& options) {
   if (!scene) return Refuse("simulate", scene.error());
   Expected<SessionOptions> session = SessionOptionsOf(options);
   if (!session) return Refuse("simulate", session.error());
-  if (options.bag) {
-    if (const Expected<void> ok = CheckSessionBag(*session); !ok) {
-      return Refuse("simulate", ok.error());
-    }
-  }
+  Expected<void> checked = CheckSheet(options);
+  if (checked && options.bag) checked = CheckSessionBag(*session);
+  if (!checked) return Refuse("simulate", checked.error());
   auto progress = std::make_unique<Progress>("simulating", CountSessionFiles(*scene, *session));
   session->step = [&] { progress->Step(); };
   const Expected<SessionReport> report = SimulateSession(*scene, *text, *session);
   progress.reset();
   if (!report) {
-    return Refuse("simulate",
-                  {report.error().code, report.error().code == ErrorCode::kIo
-                                            ? report.error().message
-                                            : options.scene_path + ": " + report.error().message});
+    return Refuse("simulate", WithScene(report.error(), options.scene_path));
   }
   if (const Expected<void> ok = WriteExtras(*scene, report->scans, options); !ok) {
     return Refuse("simulate", ok.error());
   }
-  fmt::print("{}: scene {}, scans: {}, files written: {}, kept: {}; the truth is in truth.yaml{}\n",
-             options.out, scene->name, options.scans, report->written, report->kept,
-             options.bag ? ", scans and images also in session.bag" : "");
+  PrintText(Describe(options, *scene, *report));
   return kAnswered;
 }
 

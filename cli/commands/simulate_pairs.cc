@@ -5,8 +5,9 @@
 
 #include "cli/commands/commands.h"
 #include "cli/output.h"
+#include "io/output/output_file.h"
+#include "io/output/standard_output.h"
 #include "io/problems/problem_yaml.h"
-#include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {
@@ -18,7 +19,8 @@ struct SimulatePairsOptions {
 
 void Declare(SimulatePairsOptions& options, Arguments& arguments) {
   PairSimulation& simulation = options.simulation;
-  arguments.Add("--out", options.out, "Problem file to write", {.shows_default = true});
+  arguments.Add("--out", options.out, "Problem file to write",
+                {.shows_default = true, .writes = Writes::kFile});
   arguments.Add("--seed", simulation.seed, "The same seed gives the same bytes",
                 {.shows_default = true});
   arguments.Add("--views", simulation.views, "Views, each with the boards in new places",
@@ -49,8 +51,8 @@ int Run(const SimulatePairsOptions& options) {
   if (const Expected<void> ok = WriteFileAtomically(options.out, FormatProblemYaml(file)); !ok) {
     return Refuse("simulate pairs", ok.error());
   }
-  fmt::print("{}: {} pairs of corners, {} of them displaced; the truth is in the file\n",
-             options.out, session->problem.pairs_3d3d.size(), simulation.outliers);
+  Print("{}: {} pairs of corners, {} of them displaced; the truth is in the file\n", options.out,
+        session->problem.pairs_3d3d.size(), simulation.outliers);
   return kAnswered;
 }
 

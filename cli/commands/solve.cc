@@ -25,7 +25,7 @@ void Declare(SolveOptions& options, Arguments& arguments) {
                 {.shows_default = true});
   arguments.Add("--overlay", options.overlay,
                 "IMAGE OUT: draw measured and reprojected points on the image, residuals x10",
-                {.min_values = 2});
+                {.min_values = 2, .writes = Writes::kFile});
 }
 
 std::string TextOf(const CalibrationProblem& problem, const Solver& solver,

@@ -11,7 +11,9 @@
 #include "cli/mark/mark_window.h"
 #include "cli/output.h"
 #include "io/boards/polygon_file.h"
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
+#include "io/output/remove_file.h"
+#include "io/output/standard_output.h"
 
 namespace sextant::cli {
 namespace {
@@ -32,13 +34,27 @@ void Declare(MarkOptions& options, Arguments& arguments) {
       {.shows_default = true, .range = {{-360.0, 360.0}}, .excludes = "--cam-from-lidar"});
   arguments.Add("--ids", options.ids, "Ids of the boards from left to right; default: 0, 1, ...");
   arguments.Add("--out", options.out_path, "Polygon file to write, or to continue with",
-                {.shows_default = true});
+                {.shows_default = true, .writes = Writes::kCheckedByCommand});
   arguments.Add("--render", options.render_path,
-                "Write a picture (PNG) of the window instead of opening it");
+                "Write a picture (PNG) of the window instead of opening it",
+                {.writes = Writes::kFile});
   arguments.Add("--width", options.width_px, "Width of the window [px]",
                 {.shows_default = true, .range = {{320, 8192}}});
   arguments.Add("--height", options.height_px, "Height of the window [px]",
                 {.shows_default = true, .range = {{240, 8192}}});
+}
+
+// Both files are read before the marks are drawn, and written again and again.
+constexpr OutputUse kContinued{.may_be_read = true, .is_repeated = true};
+
+Expected<void> ClaimMarks(const MarkOptions& options) {
+  SEXTANT_RETURN_IF_ERROR(ClaimOutput(options.out_path, kContinued));
+  return ClaimOutput(AutosavePath(options), kContinued);
+}
+
+// An existing file was read as marks at the start.
+Expected<void> WriteMarks(const std::filesystem::path& path, const std::string& text) {
+  return WriteFileAtomically(path, text, Replace::kAnyFile, kContinued);
 }
 
 // Writes --out on request, and the autosave file whenever the marks differ from what is saved.
@@ -49,7 +65,7 @@ class Keeper {
 
   void Save() {
     const std::string text = FormatPolygons(controller_.session().marks());
-    if (const Expected<void> ok = WriteFileAtomically(options_.out_path, text); !ok) {
+    if (const Expected<void> ok = WriteMarks(options_.out_path, text); !ok) {
       controller_.ShowMessage(ok.error().message, false);
       return;
     }
@@ -66,8 +82,7 @@ class Keeper {
       RemoveAutosave();
       return;
     }
-    const Expected<void> ok =
-        WriteFileAtomically(AutosavePath(options_), FormatPolygons(session.marks()));
+    const Expected<void> ok = WriteMarks(AutosavePath(options_), FormatPolygons(session.marks()));
     if (!ok) controller_.ShowMessage(ok.error().message, false);
   }
 
@@ -76,8 +91,9 @@ class Keeper {
 
  private:
   void RemoveAutosave() {
-    std::error_code ignored;
-    std::filesystem::remove(AutosavePath(options_), ignored);
+    // What remains of it continues the next time.
+    const Expected<void> ignored = RemoveFile(AutosavePath(options_), Replace::kAnyFile);
+    static_cast<void>(ignored);
   }
 
   const MarkOptions& options_;
@@ -109,6 +125,9 @@ int Render(const std::string& path, const MarkController& controller, MarkCanvas
 int Run(const MarkOptions& options) {
   const bool renders = !options.render_path.empty();
   if (const Expected<void> ok = CheckDisplay(); !renders && !ok) return Refuse("mark", ok.error());
+  if (const Expected<void> ok = renders ? Expected<void>() : ClaimMarks(options); !ok) {
+    return Refuse("mark", ok.error());
+  }
   Expected<MarkInput> input = LoadMarkInput(options);
   if (!input) return Refuse("mark", input.error());
   const MarkViewport viewport(options.width_px, options.height_px, kMarkBar_px,
@@ -126,17 +145,16 @@ int Run(const MarkOptions& options) {
   if (!shown) return Refuse("mark", shown.error());
   const std::string summary = SummaryOf(controller.session().marks());
   if (!keeper.IsSaved()) {
-    fmt::print(stderr,
-               "sextant mark: not saved: {}; kept in {}, with which the next start continues\n",
+    PrintError("sextant mark: not saved: {}; kept in {}, with which the next start continues\n",
                summary, AutosavePath(options).string());
     return kNoAnswer;
   }
   std::error_code ignored;
   if (!std::filesystem::exists(options.out_path, ignored)) {
-    fmt::print(stderr, "sextant mark: nothing marked, nothing written\n");
+    PrintError("sextant mark: nothing marked, nothing written\n");
     return kNoAnswer;
   }
-  fmt::print("{}: {}\n", options.out_path, summary);
+  Print("{}: {}\n", options.out_path, summary);
   return kAnswered;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include <exception>
 
 #include "cli/mpi/run_on_ranks.h"
-#include "cli/parse.h"
+#include "cli/output.h"
+#include "cli/run_program.h"
+#include "io/output/standard_output.h"
 
 namespace sextant::cli {
 namespace {
@@ -17,6 +19,16 @@ constexpr const char* kFooter =
     "  mpirun -n 4 sextant-mpi run experiments/leaderboard.yaml\n"
     "  mpirun --hostfile machines --map-by ppr:1:node --bind-to none sextant-mpi run x.yaml";
 
+// The other ranks would wait for one that has ended.
+int RunOrAbort(const Ranks& ranks, const ExperimentOptions& options) {
+  try {
+    return RunOnRanks(ranks, options);
+  } catch (const std::exception& error) {
+    PrintError("sextant-mpi run: rank {}: {}\n", ranks.rank(), error.what());
+    ranks.Abort(kFailed);
+  }
+}
+
 int Main(int argc, char** argv) {
   const Ranks ranks(&argc, &argv);
   ExperimentOptions options;
@@ -30,16 +42,16 @@ int Main(int argc, char** argv) {
                     .summary = "sextant run, distributed over the ranks",
                     .footer = kFooter,
                     .declare = [&](Arguments& arguments) { DeclareRun(options, arguments); },
-                    .run = [&] { return RunOnRanks(ranks, options); }}}}}};
-  const ParsedLine line = ParseLine(program, argc, argv);
-  if (ranks.is_first()) {
-    fmt::print("{}", line.out);
-    fmt::print(stderr, "{}", line.err);
-  }
-  return line.run ? line.run() : line.exit_code;
+                    .run = [&] { return RunOrAbort(ranks, options); }}}}}};
+  ParsedLine line = ParseLine(program, argc, argv);
+  if (!ranks.is_first()) line.out = line.err = {};
+  return RunLine(program, line);
 }
 
 }  // namespace
 }  // namespace sextant::cli
 
-int main(int argc, char** argv) { return sextant::cli::Main(argc, argv); }
+int main(int argc, char** argv) {
+  sextant::cli::PrepareProcess();
+  return sextant::cli::Main(argc, argv);
+}

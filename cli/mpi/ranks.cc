@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <numeric>
 #include <thread>
 
@@ -44,6 +45,11 @@ std::vector<std::string> Gather(const std::string& own, int ranks) {
 }
 
 }  // namespace
+
+void Ranks::Abort(int exit_code) const {
+  MPI_Abort(MPI_COMM_WORLD, exit_code);
+  std::abort();
+}
 
 Ranks::Ranks(int* argc, char*** argv) {
   int provided = 0;

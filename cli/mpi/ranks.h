@@ -24,6 +24,9 @@ class Ranks {
   /// The number of ranks on this machine, including this one.
   int on_this_machine() const { return on_this_machine_; }
 
+  /// Ends all ranks.
+  [[noreturn]] void Abort(int exit_code) const;
+
   /// Returns on every rank once all have called it, with the same value on all: no error if all
   /// succeeded, otherwise the errors with their ranks.
   Expected<void> Agree(const Expected<void>& own) const;

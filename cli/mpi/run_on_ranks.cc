@@ -5,12 +5,15 @@
 #include <tbb/info.h>
 
 #include <algorithm>
+#include <optional>
 #include <system_error>
 #include <thread>
 
 #include "cli/experiment_run.h"
 #include "cli/output.h"
 #include "eval/experiment/run/part_files.h"
+#include "io/output/output_folder.h"
+#include "io/output/standard_output.h"
 
 namespace sextant::cli {
 namespace {
@@ -22,13 +25,20 @@ struct Plan {
   Experiment experiment;
   std::filesystem::path folder;
   std::string configuration;
-  std::vector<std::uint64_t> held;  // Blocks that are in some row file of the folder.
+  std::vector<std::uint64_t> held;     // Blocks that are in some row file of the folder.
+  std::optional<OutputFolder> locked;  // By the first rank, for all.
 };
 
 template <class T>
 Expected<void> WithoutValue(const Expected<T>& value) {
   if (!value) return tl::unexpected<Error>(value.error());
   return {};
+}
+
+Expected<void> LockFolder(const ExperimentOptions& options, Plan& plan) {
+  SEXTANT_ASSIGN_OR_RETURN(OutputFolder locked, OutputFolder::Open(plan.folder));
+  plan.locked.emplace(std::move(locked));
+  return ClaimReport(options, plan.experiment, plan.folder);
 }
 
 Expected<void> CheckSeen(const std::filesystem::path& folder) {
@@ -52,10 +62,14 @@ Expected<Plan> MakePlan(const Ranks& ranks, const ExperimentOptions& options) {
   Expected<Experiment> experiment = LoadExperiment(options);
   Expected<void> ok = ranks.Agree(WithoutValue(experiment));
   if (!ok) return tl::unexpected<Error>(std::move(ok.error()));
-  Plan plan{.experiment = std::move(*experiment), .folder = {}, .configuration = {}, .held = {}};
+  Plan plan{.experiment = std::move(*experiment),
+            .folder = {},
+            .configuration = {},
+            .held = {},
+            .locked = {}};
   plan.folder = FolderOf(options, plan.experiment);
   plan.configuration = ConfigurationOf(plan.experiment);
-  ok = ranks.Agree(ranks.is_first() ? MakeFolder(plan.folder) : Expected<void>());
+  ok = ranks.Agree(ranks.is_first() ? LockFolder(options, plan) : Expected<void>());
   if (ok) ok = ranks.Agree(CheckSeen(plan.folder));
   if (!ok) return tl::unexpected<Error>(std::move(ok.error()));
   Expected<std::vector<std::uint64_t>> held = std::vector<std::uint64_t>();
@@ -76,14 +90,14 @@ int ThreadsOf(const Ranks& ranks, const ExperimentOptions& options) {
 void PrintPlan(const Plan& plan, const Ranks& ranks, int threads) {
   std::uint64_t held = 0;
   for (const std::uint64_t block : plan.held) held += TrialsOfBlock(plan.experiment, block);
-  fmt::print(stderr, "sextant-mpi run: {} rank{}, {} thread{} on the first", ranks.count(),
+  PrintError("sextant-mpi run: {} rank{}, {} thread{} on the first", ranks.count(),
              ranks.count() == 1 ? "" : "s", threads, threads == 1 ? "" : "s");
   if (held > 0) {
-    fmt::print(stderr, "; {} of {} trials were already in {}{}", held,
+    PrintError("; {} of {} trials were already in {}{}", held,
                plan.experiment.trials * plan.experiment.conditions.size(), plan.folder.string(),
                plan.held.size() == BlocksOf(plan.experiment) ? ", --fresh runs them again" : "");
   }
-  fmt::print(stderr, "\n");
+  PrintErrorText("\n");
 }
 
 Expected<void> RunShare(const Plan& plan, const Ranks& ranks, int threads) {
@@ -106,7 +120,7 @@ int Finish(const Plan& plan, const ExperimentOptions& options) {
 }
 
 int End(const Ranks& ranks, const Error& error) {
-  return ranks.is_first() ? Refuse(kCommand, error) : kWrongUse;
+  return ranks.is_first() ? Refuse(kCommand, error) : ExitCodeOf(error);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "base/call_files.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
@@ -28,11 +29,13 @@ Expected<std::shared_ptr<const MappedFile>> MappedFile::Open(const std::filesyst
   if (fd < 0) return ReadError(path, std::generic_category().message(errno));
   struct stat status {};
   const bool is_file = fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
-  const auto size = static_cast<std::size_t>(is_file ? status.st_size : 0);
+  const std::string refusal = is_file ? NoteInput(status) : "";
+  const auto size = static_cast<std::size_t>(is_file && refusal.empty() ? status.st_size : 0);
   void* const data = size > 0 ? mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd, 0) : nullptr;
   const int reason = errno;
   close(fd);
   if (!is_file) return ReadError(path, "it is not a regular file");
+  if (!refusal.empty()) return ReadError(path, refusal);
   if (data == MAP_FAILED) return ReadError(path, std::generic_category().message(reason));
   return std::shared_ptr<const MappedFile>(new MappedFile(static_cast<const char*>(data), size));
 }

@@ -2,19 +2,16 @@
 #include "io/bag/rosbag1_writer.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
 #include <map>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "io/bag/decompress.h"
 #include "io/bag/message_writer.h"
 #include "io/bag/rosbag1_records.h"
+#include "io/output/output_file.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
@@ -130,26 +127,10 @@ std::string ConnectionRecord(std::uint32_t id, std::string_view topic, const Ros
 
 class Rosbag1Writer::Impl {
  public:
-  Impl(std::filesystem::path path, BagCompression compression)
-      : path_(std::move(path)),
-        temporary_(path_.parent_path() /
-                   fmt::format(".{}.{}.tmp", path_.filename().string().substr(0, 200), getpid())),
-        compression_(compression) {}
-  ~Impl() {
-    if (file_ == nullptr) return;
-    std::fclose(file_);
-    unlink(temporary_.c_str());
-  }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
+  Impl(std::filesystem::path path, OutputFile file, BagCompression compression)
+      : path_(std::move(path)), file_(std::move(file)), compression_(compression) {}
 
-  Expected<void> Open() {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path_, ignored)) return Fail("it is a folder");
-    file_ = std::fopen(temporary_.c_str(), "wbe");
-    if (file_ == nullptr) return SystemError();
-    return Put(std::string(kRosbag1Magic) + BagHeader(0, 0, 0));
-  }
+  Expected<void> Begin() { return Put(std::string(kRosbag1Magic) + BagHeader(0, 0, 0)); }
 
   Expected<void> Write(std::string_view topic, std::int64_t time_ns, std::int64_t stamp_ns,
                        const Ros1Type& type, const std::string& message) {
@@ -181,17 +162,9 @@ class Rosbag1Writer::Impl {
     }
     for (const ChunkSummary& chunk : chunks_) index += ChunkInfo(chunk);
     SEXTANT_RETURN_IF_ERROR(Put(index));
-    if (std::fseek(file_, static_cast<long>(kRosbag1Magic.size()), SEEK_SET) != 0) {
-      return SystemError();
-    }
-    SEXTANT_RETURN_IF_ERROR(Put(BagHeader(index_position, connections_.size(), chunks_.size())));
-    if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) return SystemError();
-    std::fclose(std::exchange(file_, nullptr));
-    if (std::rename(temporary_.c_str(), path_.c_str()) == 0) return {};
-    const int reason = errno;
-    unlink(temporary_.c_str());
-    errno = reason;
-    return SystemError();
+    SEXTANT_RETURN_IF_ERROR(file_.WriteAt(
+        kRosbag1Magic.size(), BagHeader(index_position, connections_.size(), chunks_.size())));
+    return file_.Commit();
   }
 
  private:
@@ -230,16 +203,11 @@ class Rosbag1Writer::Impl {
   }
 
   Expected<void> Put(std::string_view bytes) {
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) return SystemError();
+    SEXTANT_RETURN_IF_ERROR(file_.Append(bytes));
     position_ += bytes.size();
     return {};
   }
 
-  tl::unexpected<Error> Fail(const std::string& reason) const {
-    return MakeError(ErrorCode::kIo,
-                     fmt::format("cannot write '{}': {}", Printable(path_.string(), 300), reason));
-  }
-  tl::unexpected<Error> SystemError() const { return Fail(std::generic_category().message(errno)); }
   tl::unexpected<Error> Refuse(std::string_view topic, const std::string& what) const {
     return MakeError(
         ErrorCode::kInvalidInput,
@@ -247,9 +215,8 @@ class Rosbag1Writer::Impl {
   }
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;
+  OutputFile file_;
   BagCompression compression_;
-  std::FILE* file_ = nullptr;
   std::uint64_t position_ = 0;
   std::map<std::string, Connection, std::less<>> connections_;
   std::string chunk_;  // Messages that are not written yet.
@@ -265,8 +232,9 @@ Rosbag1Writer::~Rosbag1Writer() = default;
 
 Expected<Rosbag1Writer> Rosbag1Writer::Create(const std::filesystem::path& path,
                                               BagCompression compression) {
-  auto impl = std::make_unique<Impl>(path, compression);
-  SEXTANT_RETURN_IF_ERROR(impl->Open());
+  SEXTANT_ASSIGN_OR_RETURN(OutputFile file, OutputFile::Open(path));
+  auto impl = std::make_unique<Impl>(path, std::move(file), compression);
+  SEXTANT_RETURN_IF_ERROR(impl->Begin());
   return Rosbag1Writer(std::move(impl));
 }
 

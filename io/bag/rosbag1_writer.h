@@ -15,13 +15,12 @@ namespace sextant {
 enum class BagCompression { kNone, kBz2, kLz4 };
 
 /// Writes a recording that every tool of ROS 1 reads: a .bag of version 2.0, with its index. The
-/// file is written under a temporary name and renamed by Close(), so it appears whole or not at
-/// all.
+/// file appears whole, by Close(), or not at all (io/output).
 ///
 /// A topic has one type. `time_ns` is the recording time since 1970, from 0 to 2^32 s.
-/// Errors: kIo; kInvalidInput for a time or stamp outside this range, an image whose data does not
-/// match its size, and a topic with messages of two types. After an error, only the destructor may
-/// be called.
+/// Errors: those of OutputFile; kInvalidInput for a time or stamp outside this range, an image
+/// whose data does not match its size, and a topic with messages of two types. After an error, only
+/// the destructor may be called.
 class Rosbag1Writer {
  public:
   static Expected<Rosbag1Writer> Create(const std::filesystem::path& path,

@@ -258,8 +258,8 @@ SolverResult ParseResult(const ParsedJson& json) {
   if (Get<bool>(json, "ok")) {
     result.report = ParseReport(json);
   } else {
-    result.report =
-        MakeError(GetEnum(json, "error_code", ErrorCode::kIo), Get<std::string>(json, "error"));
+    result.report = MakeError(GetEnum(json, "error_code", ErrorCode::kUnwritable),
+                              Get<std::string>(json, "error"));
   }
   return result;
 }

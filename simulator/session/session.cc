@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include "base/nearest_name.h"
@@ -13,6 +15,7 @@
 #include "io/boards/board_file.h"
 #include "io/cameras/camera_file.h"
 #include "io/clouds/pcd_file.h"
+#include "io/output/remove_file.h"
 #include "io/problems/problem_yaml.h"
 #include "io/text/yaml_text.h"
 #include "simulator/camera/render.h"
@@ -25,6 +28,8 @@
 
 namespace sextant {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int kMaxScans = 100'000;
 
@@ -78,12 +83,18 @@ std::string Configuration(const SessionOptions& options) {
   return out.Take();
 }
 
+std::string ScanName(int scan) { return fmt::format("scan_{:03}.pcd", scan); }
+std::string ImageName(const std::string& camera, int scan) {
+  return fmt::format("{}_{:03}.png", camera, scan);
+}
+
 class Session {
  public:
   Session(const Scene& scene, const SessionOptions& options, LidarModel lidar, SessionFolder folder)
       : scene_(scene), options_(options), lidar_(std::move(lidar)), folder_(std::move(folder)) {}
 
   Expected<SessionReport> Run() {
+    SEXTANT_ASSIGN_OR_RETURN(const std::vector<fs::path> stale, StaleFiles());
     SEXTANT_RETURN_IF_ERROR(WriteBoardsAndCameras());
     for (int scan = 0; scan < options_.scans; ++scan) truths_.push_back(TruthOf(scan));
     if (options_.level == SessionLevel::kFull) {
@@ -95,6 +106,10 @@ class Session {
     }
     SEXTANT_RETURN_IF_ERROR(
         folder_.Write("truth.yaml", FormatTruth(scene_, options_.seed, truths_)));
+    // Only now: truth.yaml never names a file that is gone.
+    for (const fs::path& file : stale) SEXTANT_RETURN_IF_ERROR(RemoveFile(file));
+    report_.removed = static_cast<int>(stale.size());
+    report_.lock = folder_.lock();
     report_.scans = std::move(truths_);
     return std::move(report_);
   }
@@ -114,13 +129,40 @@ class Session {
       truth.image_seeds.push_back(SeedOf(i, scan));
     }
     if (options_.level == SessionLevel::kFull) {
-      truth.scan_file = fmt::format("scan_{:03}.pcd", scan);
+      truth.scan_file = ScanName(scan);
       for (const SceneCamera& camera : scene_.cameras) {
-        truth.image_files.push_back(fmt::format("{}_{:03}.png", camera.name, scan));
+        truth.image_files.push_back(ImageName(camera.name, scan));
       }
     }
     truth.boards = BoardsAt(scene_, truth.image_time_s);
     return truth;
+  }
+
+  // Files of an earlier run that had more scans, and a recording of another number of scans.
+  Expected<std::vector<fs::path>> StaleFiles() const {
+    std::vector<fs::path> stale;
+    if (options_.level != SessionLevel::kFull) return stale;
+    SEXTANT_ASSIGN_OR_RETURN(const std::vector<std::string> names, folder_.FileNames());
+    const std::set<std::string> there(names.begin(), names.end());
+    for (const std::string& name : names) {
+      if (IsOfLaterScan(name)) stale.push_back(folder_.path() / name);
+    }
+    const bool is_longer = !there.contains(ScanName(options_.scans - 1));
+    if ((is_longer || !stale.empty()) && there.contains(kSessionBag)) {
+      stale.push_back(folder_.path() / kSessionBag);
+    }
+    for (const fs::path& file : stale) SEXTANT_RETURN_IF_ERROR(CheckRemovable(file));
+    return stale;
+  }
+
+  bool IsOfLaterScan(const std::string& name) const {
+    const std::size_t digits = name.find_last_of('_') + 1;
+    int scan = 0;
+    std::from_chars(name.data() + digits, name.data() + name.size(), scan);
+    if (digits == 0 || scan < options_.scans) return false;
+    return name == ScanName(scan) || std::ranges::any_of(scene_.cameras, [&](const auto& camera) {
+             return name == ImageName(camera.name, scan);
+           });
   }
 
   Expected<void> WriteBoardsAndCameras() {

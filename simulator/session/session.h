@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <opencv2/core/mat.hpp>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include "base/error.h"
 #include "io/clouds/pcd_header.h"
+#include "io/output/output_folder.h"
 #include "simulator/scene/corner_noise.h"
 #include "simulator/scene/scene.h"
 #include "simulator/scene/truth_yaml.h"
@@ -43,9 +45,14 @@ struct SessionOptions {
 
 struct SessionReport {
   int written = 0;
-  int kept = 0;  ///< Complete files kept from an earlier run with the same configuration.
-  std::vector<ScanTruth> scans{};  ///< Contents of truth.yaml for each scan.
+  int kept = 0;     ///< Complete files kept from an earlier run with the same configuration.
+  int removed = 0;  ///< Files of an earlier run of more scans.
+  std::vector<ScanTruth> scans{};              ///< Contents of truth.yaml for each scan.
+  std::shared_ptr<const OutputFolder> lock{};  ///< Keeps other processes out of the folder.
 };
+
+/// The recording in the folder of a session, which the program may write from its files.
+inline constexpr const char* kSessionBag = "session.bag";
 
 /// Number of scan files that SimulateSession will write or keep.
 long CountSessionFiles(const Scene& scene, const SessionOptions& options);
@@ -59,10 +66,12 @@ long CountSessionFiles(const Scene& scene, const SessionOptions& options);
 ///
 /// Every file is written completely or not at all. If the folder holds a run of the same scene and
 /// options, its files are kept: an interrupted run is continued, and the number of scans may be
-/// increased. The same scene, seed and options give the same bytes on any number of threads.
+/// increased. If it is decreased, the files of later scans are removed, and so is a session.bag of
+/// another number of scans. The same scene, seed and options give the same bytes on any number of
+/// threads.
 ///
 /// Errors: those of ValidateScene, before anything is written; kInvalidOption; kInvalidInput for a
-/// folder with other contents; kIo.
+/// folder with other contents; kIo; those of OutputFolder, OutputFile and RemoveFile.
 Expected<SessionReport> SimulateSession(const Scene& scene, std::string_view scene_text,
                                         const SessionOptions& options);
 

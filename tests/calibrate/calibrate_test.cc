@@ -11,7 +11,7 @@
 #include "calibrate/observe/photo_file.h"
 #include "eval/extractors/board_scenes.h"
 #include "io/clouds/pcd_file.h"
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
 #include "report/calibrate_text.h"
 #include "simulator/scene/camera_model.h"
 #include "solvers/builtin_solvers.h"

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
 #include "support/scratch_folder.h"
 
 namespace sextant::test {

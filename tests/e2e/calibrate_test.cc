@@ -104,7 +104,7 @@ TEST(Calibrate, TheProblemFileGivesTheSameAnswerToSolve) {
             json::parse(ReadText(calibrated)).at("cam_from_lidar"));
   const ProgramRun nowhere =
       RunSextant("calibrate " + session.string() + Out() + " --problem /proc/none/problem.yaml");
-  EXPECT_EQ(nowhere.exit_code, 2);
+  EXPECT_EQ(nowhere.exit_code, 4);
   EXPECT_THAT(nowhere.err, HasSubstr("/proc/none/problem.yaml"));
 }
 

@@ -145,7 +145,7 @@ TEST(Detect, BadBoardsAndDetectorsAreRefused) {
   EXPECT_EQ(overlapping.exit_code, 2);
   EXPECT_THAT(overlapping.err, HasSubstr("bad.yaml"));
   EXPECT_EQ(Detect(photo + " --detector arucoo").exit_code, 2);
-  EXPECT_EQ(Detect(photo + " --overlay /nowhere/a.png").exit_code, 2);
+  EXPECT_EQ(Detect(photo + " --overlay /nowhere/a.png").exit_code, 4);
   EXPECT_EQ(Detect("").exit_code, 2);
 }
 

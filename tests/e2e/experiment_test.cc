@@ -94,10 +94,10 @@ TEST(Run, AFullDiskLosesNothing) {
   ASSERT_EQ(RunSextant(RunArguments(experiment, "whole", "--no-csv")).exit_code, 0);
   const ProgramRun full = RunProgram("trap '' XFSZ; ulimit -f 64; " SEXTANT_BINARY,
                                      RunArguments(experiment, "full", "--no-csv"));
-  EXPECT_EQ(full.exit_code, 2);
+  EXPECT_EQ(full.exit_code, 4);
   EXPECT_THAT(
       full.err,
-      HasSubstr("the rows written so far are kept: free some space and run the same command"));
+      HasSubstr("what was written so far is kept: free some space and run the same command"));
   const std::string kept = Rows("full");
   EXPECT_GT(kept.size(), 9000U) << "at least one block";
   EXPECT_LE(kept.size(), 64U * 1024);
@@ -110,10 +110,10 @@ TEST(Run, FoldersThatCannotBeWrittenAreNamed) {
   const std::filesystem::path experiment = WriteExperiment(10);
   WriteText(TestFolder() / "file", "not a folder");
   const ProgramRun in_file = RunSextant(RunArguments(experiment, "file/out"));
-  EXPECT_EQ(in_file.exit_code, 2);
+  EXPECT_EQ(in_file.exit_code, 4);
   EXPECT_THAT(in_file.err, HasSubstr("cannot make the folder"));
   const ProgramRun denied = RunSextant("run " + Quoted(experiment) + " --out /proc/sextant");
-  EXPECT_EQ(denied.exit_code, 2);
+  EXPECT_EQ(denied.exit_code, 4);
   EXPECT_THAT(denied.err, HasSubstr("cannot make the folder '/proc/sextant'"));
 }
 

@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "e2e/run_sextant.h"
+#include "support/file_marks.h"
 #include "support/pictures.h"
 #include "support/run_program.h"
 
@@ -100,13 +101,52 @@ TEST(Simulate, AKilledRunContinuesWhereItWas) {
                              "/cam_001.png ] && kill -0 $pid; do sleep 0.001; done; kill "
                              "-9 $pid; wait'");
   ASSERT_TRUE(fs::exists(killed + "/cam_001.png"));
-  WriteText(killed + "/.scan_005.pcd.77.tmp", "half");
+  WriteText(killed + "/.scan_005.pcd.0123456789abcdef.sxtmp", "half");
   const fs::file_time_type before = fs::last_write_time(killed + "/cam_001.png");
   const ProgramRun resumed = RunSextant("simulate " + scene + " --scans 8 --out " + killed);
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
   EXPECT_EQ(resumed.out.find("kept: 0;"), std::string::npos) << resumed.out;
   EXPECT_EQ(fs::last_write_time(killed + "/cam_001.png"), before);
   EXPECT_EQ(FilesIn(killed), FilesIn(whole));
+}
+
+TEST(Simulate, ASignalLeavesNoTemporary) {
+  const fs::path out = TestFolder() / "session";
+  for (const char* signal : {"INT", "TERM", "HUP"}) {
+    // As soon as there is a scan. In the background a shell's process ignores SIGINT, unless it is
+    // started with env.
+    test::RunProgram(
+        "{", fmt::format("mkdir {0}; env --default-signal=INT " SEXTANT_BINARY
+                         " simulate {1} --scans 1000 --out {0} & pid=$!; while [ ! -e "
+                         "{0}/scan_000.pcd ] && kill -0 $pid; do sleep 0.01; done; kill -{2} $pid; "
+                         "wait; }}",
+                         out.string(), SceneFile(), signal));
+    for (const auto& [name, content] : FilesIn(out)) EXPECT_NE(name.front(), '.') << signal << name;
+    EXPECT_TRUE(fs::exists(out / "scan_000.pcd"));
+    EXPECT_FALSE(fs::exists(out / "truth.yaml")) << "it ended by itself";
+    fs::remove_all(out);
+  }
+}
+
+TEST(Simulate, FewerScansLeaveAConsistentFolder) {
+  if (!KeepsMarks(TestFolder())) GTEST_SKIP() << "the file system keeps no attributes";
+  const std::string scene = " " + SceneFile() + " --out ";
+  ASSERT_EQ(RunSextant("simulate" + scene + TestPath("two") + " --scans 2").exit_code, 0);
+  ASSERT_EQ(RunSextant("simulate" + scene + TestPath("used") + " --scans 4").exit_code, 0);
+  WriteText(TestPath("used/notes.txt"), "mine");
+  const ProgramRun fewer = RunSextant("simulate" + scene + TestPath("used") + " --scans 2");
+  ASSERT_EQ(fewer.exit_code, 0) << fewer.err;
+  EXPECT_THAT(fewer.out, HasSubstr("removed: 4 "));
+  auto expected = FilesIn(TestPath("two"));
+  expected["notes.txt"] = "mine";
+  EXPECT_EQ(FilesIn(TestPath("used")), expected);
+  // A file of somebody else under the name of a later scan is not removed, and nothing changes.
+  WriteText(TestPath("used/scan_001.pcd"), "mine");
+  const auto before = FilesIn(TestPath("used"));
+  const ProgramRun refused = RunSextant("simulate" + scene + TestPath("used"));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("sextant did not write it"));
+  EXPECT_EQ(FilesIn(TestPath("used")), before);
 }
 
 TEST(Simulate, MoreScansMayBeAddedButNothingElseChanged) {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
 #include "support/bad_text.h"
 #include "support/calibration_result.h"
 #include "support/scratch_folder.h"

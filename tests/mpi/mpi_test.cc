@@ -167,7 +167,7 @@ TEST_F(Mpi, WhatFailsOnOneRankIsToldAndEndsAll) {
                                       " " + rank.substr(5) + "; else " + rank + "; fi");
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("sextant run: rank 1 of 3 on "));
-  EXPECT_THAT(run.err, HasSubstr("is being written by another run"));
+  EXPECT_THAT(run.err, HasSubstr("another process writes it"));
   const ProgramRun again = Run(3, experiment, "out");
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_TRUE(Rows("out") == WholeRows(experiment));
@@ -182,7 +182,7 @@ TEST_F(Mpi, AFullDiskOfOneRankLosesNothing) {
             "if [ $OMPI_COMM_WORLD_RANK = 1 ]; then trap \"\" XFSZ; ulimit -f 48; fi; "
             "OMPI_MCA_btl=self,tcp exec " +
                 rank);
-  EXPECT_EQ(full.exit_code, 2);
+  EXPECT_EQ(full.exit_code, 4);
   EXPECT_THAT(full.err, HasSubstr("free some space and run the same command again"));
   const ProgramRun again = Run(2, experiment, "out");
   EXPECT_EQ(again.exit_code, 0) << again.err;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "eval/experiment/run/run_trials.h"
+#include "io/output/output_file.h"
 #include "io/text/text_file.h"
 #include "regression/golden_figures.h"
 #include "solvers/builtin_solvers.h"

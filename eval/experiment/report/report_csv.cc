@@ -6,7 +6,7 @@
 
 #include "eval/experiment/report/report.h"
 #include "eval/experiment/run/run_trials.h"
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
 
 namespace sextant {
 namespace {
@@ -69,7 +69,7 @@ Expected<std::string> RowsText(const RowFileReader& reader, const RowBlockPlace&
 
 Expected<void> WriteRowsCsv(const Experiment& experiment, const RowFileReader& reader,
                             const std::filesystem::path& path) {
-  SEXTANT_ASSIGN_OR_RETURN(AtomicFileWriter writer, AtomicFileWriter::Open(path));
+  SEXTANT_ASSIGN_OR_RETURN(OutputFile writer, OutputFile::Open(path));
   SEXTANT_RETURN_IF_ERROR(writer.Append(Header(experiment)));
   const std::uint64_t per_condition = BlocksPerCondition(experiment);
   const auto block_trials = static_cast<std::uint64_t>(experiment.trials_per_block);

@@ -2,7 +2,7 @@
 #include "eval/experiment/report/write_report.h"
 
 #include "eval/experiment/report/report.h"
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
 #include "report/plot.h"
 
 namespace sextant {
@@ -21,6 +21,20 @@ Expected<void> DrawPlots(const Experiment& experiment, const ReportData& data,
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> ReportFiles(const Experiment& experiment,
+                                               const std::filesystem::path& folder,
+                                               const ReportSettings& settings) {
+  std::vector<std::filesystem::path> files = {folder / "summary.json", folder / "report.md",
+                                              folder / "tables.tex"};
+  if (settings.csv) files.push_back(folder / "rows.csv");
+  for (const PlotSpec& plot : experiment.plots) {
+    for (const char* extension : {".svg", ".png"}) {
+      if (settings.plots) files.push_back(folder / (plot.name + extension));
+    }
+  }
+  return files;
+}
 
 Expected<std::string> WriteReport(const Experiment& experiment,
                                   const std::filesystem::path& rows_path,

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "eval/experiment/definition/experiment.h"
 
@@ -13,10 +14,15 @@ struct ReportSettings {
   bool plots = true;
 };
 
+/// The files that WriteReport may write into the folder, to be checked before the trials.
+std::vector<std::filesystem::path> ReportFiles(const Experiment& experiment,
+                                               const std::filesystem::path& folder,
+                                               const ReportSettings& settings);
+
 /// Reads the finished rows of the experiment and writes into the folder: rows.csv, summary.json,
 /// report.md, tables.tex, and NAME.svg and NAME.png for every plot. Returns the tables as plain
 /// text. The bytes of all files except the PNGs depend only on the rows. Errors: kIo, kParse,
-/// kInvalidInput (rows of another configuration).
+/// kInvalidInput (rows of another configuration); those of OutputFile.
 Expected<std::string> WriteReport(const Experiment& experiment,
                                   const std::filesystem::path& rows_path,
                                   const std::filesystem::path& folder,

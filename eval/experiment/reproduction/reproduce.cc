@@ -9,7 +9,8 @@
 
 #include "eval/experiment/report/write_report.h"
 #include "eval/experiment/run/run_trials.h"
-#include "io/text/text_file.h"
+#include "io/output/output_file.h"
+#include "io/output/output_folder.h"
 
 namespace sextant {
 namespace {
@@ -29,12 +30,10 @@ Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const 
       ReadExperiment(settings.experiments / (name + ".yaml"), BuiltinKinds(), registry));
   if (settings.quick) experiment.trials = experiment.quick_trials;
   const fs::path folder = settings.out / name;
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    return MakeError(ErrorCode::kIo,
-                     fmt::format("cannot create the folder '{}': {}; choose another one with --out",
-                                 folder.string(), error.message()));
+  SEXTANT_ASSIGN_OR_RETURN(const OutputFolder locked, OutputFolder::Open(folder));
+  const ReportSettings report{.csv = false, .plots = true};
+  for (const fs::path& file : ReportFiles(experiment, folder, report)) {
+    SEXTANT_RETURN_IF_ERROR(ClaimOutput(file));
   }
   const fs::path rows = folder / "rows.sxtrows";
   SEXTANT_RETURN_IF_ERROR(
@@ -43,7 +42,7 @@ Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const 
                              .after_block = [&](std::uint64_t done, std::uint64_t all) {
                                settings.progress(name, done, all);
                              }}));
-  SEXTANT_RETURN_IF_ERROR(WriteReport(experiment, rows, folder, {.csv = false, .plots = true}));
+  SEXTANT_RETURN_IF_ERROR(WriteReport(experiment, rows, folder, report));
   SEXTANT_ASSIGN_OR_RETURN(RowFileReader reader, RowFileReader::Open(rows));
   return std::make_unique<Done>(Done{std::move(experiment), std::move(reader)});
 }
@@ -54,6 +53,9 @@ Expected<Reproduction> Reproduce(const ReproduceSettings& settings,
                                  const SolverRegistry& registry) {
   const auto start = std::chrono::steady_clock::now();
   SEXTANT_ASSIGN_OR_RETURN(const ClaimsFile file, ReadClaims(settings.claims));
+  SEXTANT_ASSIGN_OR_RETURN(const OutputFolder locked, OutputFolder::Open(settings.out));
+  const fs::path page = settings.out / "REPRODUCTION.md";
+  SEXTANT_RETURN_IF_ERROR(ClaimOutput(page));
   Reproduction reproduction;
   std::map<std::string, std::unique_ptr<Done>> done;
   std::map<std::string, RowsOf> rows;
@@ -73,8 +75,7 @@ Expected<Reproduction> Reproduce(const ReproduceSettings& settings,
   }
   const std::string command = fmt::format("sextant reproduce{}", settings.quick ? " --quick" : "");
   SEXTANT_RETURN_IF_ERROR(WriteFileAtomically(
-      settings.out / "REPRODUCTION.md",
-      FormatReproduction(file, reproduction.claims, reproduction.skipped, command)));
+      page, FormatReproduction(file, reproduction.claims, reproduction.skipped, command)));
   reproduction.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return reproduction;

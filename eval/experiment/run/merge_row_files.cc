@@ -2,10 +2,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <system_error>
 
 #include "eval/experiment/run/configuration.h"
+#include "eval/experiment/run/part_files.h"
 #include "eval/experiment/run/row_file.h"
 #include "eval/experiment/run/run_trials.h"
+#include "io/output/output_file.h"
 
 namespace sextant {
 namespace {
@@ -15,7 +18,8 @@ struct Piece {
   RowBlockPlace place;
 };
 
-Expected<std::vector<RowFileReader>> OpenAll(const std::vector<std::filesystem::path>& shards) {
+Expected<std::vector<RowFileReader>> OpenAll(const std::vector<std::filesystem::path>& shards,
+                                             const std::string& configuration) {
   std::vector<RowFileReader> readers;
   for (const std::filesystem::path& path : shards) {
     SEXTANT_ASSIGN_OR_RETURN(RowFileReader reader, RowFileReader::Open(path));
@@ -26,7 +30,32 @@ Expected<std::vector<RowFileReader>> OpenAll(const std::vector<std::filesystem::
     }
     readers.push_back(std::move(reader));
   }
-  return readers;
+  if (readers[0].configuration() == configuration) return readers;
+  return MakeError(ErrorCode::kInvalidInput,
+                   fmt::format("'{}' holds the rows of another configuration; name the experiment "
+                               "and give the options with which the shards were run",
+                               shards[0].string()));
+}
+
+// Rows of the same configuration may be replaced, whoever wrote them; others on demand only.
+Expected<Replace> HowToReplace(const std::filesystem::path& merged,
+                               const std::string& configuration) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::symlink_status(merged, error);
+  if (!std::filesystem::is_regular_file(status)) return Replace::kOwnFiles;
+  if (HoldsNothing(merged, configuration)) return Replace::kAnyFile;
+  if (const CallFiles* const call = CallFiles::Current();
+      call != nullptr && call->may_overwrite()) {
+    return Replace::kAnyFile;
+  }
+  const Expected<RowFileReader> existing = RowFileReader::Open(merged);
+  if (existing && existing->configuration() == configuration) return Replace::kAnyFile;
+  return MakeError(
+      ErrorCode::kInvalidInput,
+      fmt::format("'{}' is not replaced: {}; choose another folder with --out, or replace it with "
+                  "--overwrite",
+                  merged.string(),
+                  existing ? "it holds the rows of another experiment" : existing.error().message));
 }
 
 // All distinct blocks by number. Errors: kInvalidInput if one is missing.
@@ -52,25 +81,29 @@ Expected<std::vector<Piece>> SortPieces(const std::vector<RowFileReader>& reader
 }  // namespace
 
 Expected<void> MergeRowFiles(const std::vector<std::filesystem::path>& shards,
-                             const std::filesystem::path& merged) {
+                             const std::filesystem::path& merged, const std::string& configuration,
+                             OutputUse use) {
   if (shards.empty()) return MakeError(ErrorCode::kMissingData, "no row files to merge");
   for (const std::filesystem::path& shard : shards) {
     std::error_code ignored;
-    if (!std::filesystem::equivalent(shard, merged, ignored)) continue;
+    if (use.may_be_read || !std::filesystem::equivalent(shard, merged, ignored)) continue;
     return MakeError(ErrorCode::kInvalidOption,
                      fmt::format("'{}' is itself one of the files to merge; name another folder",
                                  merged.string()));
   }
-  SEXTANT_ASSIGN_OR_RETURN(const std::vector<RowFileReader> readers, OpenAll(shards));
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<RowFileReader> readers,
+                           OpenAll(shards, configuration));
   SEXTANT_ASSIGN_OR_RETURN(const std::vector<Piece> pieces, SortPieces(readers));
-  SEXTANT_ASSIGN_OR_RETURN(
-      RowFileWriter writer,
-      RowFileWriter::Open(merged, readers.front().configuration(), /*fresh=*/true));
+  SEXTANT_ASSIGN_OR_RETURN(const Replace replace, HowToReplace(merged, configuration));
+  // The file that is replaced was read above.
+  SEXTANT_ASSIGN_OR_RETURN(OutputFile file,
+                           OutputFile::Open(merged, replace, {.may_be_read = true}));
+  SEXTANT_RETURN_IF_ERROR(file.Append(RowFileHeader(configuration)));
   for (const Piece& piece : pieces) {
     SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, readers[piece.file].ReadBytes(piece.place));
-    SEXTANT_RETURN_IF_ERROR(writer.Append(bytes));
+    SEXTANT_RETURN_IF_ERROR(file.Append(bytes));
   }
-  return writer.Flush();
+  return file.Commit();
 }
 
 }  // namespace sextant

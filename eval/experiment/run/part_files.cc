@@ -4,10 +4,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <fstream>
 #include <system_error>
 
 #include "eval/experiment/run/row_file.h"
+#include "io/output/remove_file.h"
+#include "io/text/text_file.h"
 
 namespace sextant {
 namespace {
@@ -22,34 +23,26 @@ bool IsPartFile(const std::filesystem::path& path) {
 
 std::vector<std::filesystem::path> AllRowFiles(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    const std::filesystem::path& path = entry.path();
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::filesystem::path& path = entry->path();
     if (path.filename() == kWholeFile || IsPartFile(path)) files.push_back(path);
   }
   std::sort(files.begin(), files.end());
   return files;
 }
 
-// Whether the file contains only the beginning of a header, from a run that was killed.
+}  // namespace
+
 bool HoldsNothing(const std::filesystem::path& path, const std::string& configuration) {
   const std::string header = RowFileHeader(configuration);
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error || size >= header.size()) return false;
-  std::string begun(size, '\0');
-  std::ifstream stream(path, std::ios::binary);
-  stream.read(begun.data(), static_cast<std::streamsize>(size));
-  return stream && header.starts_with(begun);
+  const Expected<std::string> begun = ReadTextFile(path);
+  return begun && header.starts_with(*begun);
 }
-
-tl::unexpected<Error> Failed(const char* what, const std::filesystem::path& path,
-                             const std::error_code& error) {
-  return MakeError(ErrorCode::kIo,
-                   fmt::format("cannot {} '{}': {}", what, path.string(), error.message()));
-}
-
-}  // namespace
 
 std::string PartFileName(const Shard& shard) {
   return fmt::format("shard_{}_of_{}.sxtrows", shard.number + 1, shard.of);
@@ -84,9 +77,7 @@ Expected<std::vector<std::uint64_t>> BlocksHeldBy(const std::vector<std::filesys
 
 Expected<void> RemoveRowFiles(const std::filesystem::path& folder) {
   for (const std::filesystem::path& path : AllRowFiles(folder)) {
-    std::error_code error;
-    std::filesystem::remove(path, error);
-    if (error) return Failed("remove", path, error);
+    SEXTANT_RETURN_IF_ERROR(RemoveFile(path, Replace::kAnyFile));
   }
   return {};
 }
@@ -95,16 +86,10 @@ Expected<void> JoinRowFiles(const std::filesystem::path& folder, const std::stri
   const std::vector<std::filesystem::path> files = RowFilesIn(folder, configuration);
   const std::filesystem::path whole = folder / kWholeFile;
   if (files != std::vector<std::filesystem::path>{whole}) {
-    const std::filesystem::path joined = folder / "rows.sxtrows.part";
-    SEXTANT_RETURN_IF_ERROR(MergeRowFiles(files, joined));
-    std::error_code error;
-    std::filesystem::rename(joined, whole, error);
-    if (error) return Failed("write", whole, error);
+    SEXTANT_RETURN_IF_ERROR(MergeRowFiles(files, whole, configuration, {.may_be_read = true}));
   }
   for (const std::filesystem::path& path : AllRowFiles(folder)) {
-    std::error_code error;
-    if (path != whole) std::filesystem::remove(path, error);
-    if (error) return Failed("remove", path, error);
+    if (path != whole) SEXTANT_RETURN_IF_ERROR(RemoveFile(path, Replace::kAnyFile));
   }
   return {};
 }

@@ -5,10 +5,13 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "eval/experiment/definition/trials.h"
+#include "io/output/appended_file.h"
 
 namespace sextant {
 
@@ -86,30 +89,24 @@ class RowFileReader {
 class RowFileWriter {
  public:
   /// Creates the file, or opens it to continue: a damaged end is cut off. With `fresh`, existing
-  /// rows are discarded. Errors: kIo (no permission, no space, another process writes it);
-  /// kInvalidInput (it holds the rows of another configuration).
+  /// rows are discarded, but no file of another kind. Errors: those of AppendedFile; kParse (not a
+  /// row file); kInvalidInput (it holds the rows of another configuration).
   static Expected<RowFileWriter> Open(const std::filesystem::path& path,
                                       const std::string& configuration, bool fresh);
-  ~RowFileWriter();
-  RowFileWriter(RowFileWriter&& other) noexcept;
-  RowFileWriter& operator=(RowFileWriter&&) = delete;
 
   /// Numbers of the blocks in the file when it was opened, in file order.
   const std::vector<std::uint64_t>& kept() const { return kept_; }
 
   /// Appends one block. After an error (such as a full disk) the file is unchanged.
-  Expected<void> Append(std::string_view block);
+  Expected<void> Append(std::string_view block) { return file_.Append(block); }
   /// Flushes all data to the disk.
-  Expected<void> Flush();
+  Expected<void> Flush() { return file_.Flush(); }
 
  private:
-  RowFileWriter() = default;
-  Expected<void> Lock();
-  Expected<void> Keep(const std::string& configuration);
+  explicit RowFileWriter(AppendedFile file) : file_(std::move(file)) {}
+  Expected<void> Keep(const std::filesystem::path& path, const std::string& configuration);
 
-  std::filesystem::path path_;
-  int fd_ = -1;
-  std::uint64_t bytes_ = 0;
+  AppendedFile file_;
   std::vector<std::uint64_t> kept_;
 };
 

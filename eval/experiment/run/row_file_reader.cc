@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "base/call_files.h"
 #include "eval/experiment/run/configuration.h"
 #include "eval/experiment/run/row_checksum.h"
 #include "eval/experiment/run/row_file.h"
@@ -67,6 +68,10 @@ Expected<RowFileReader> RowFileReader::Open(const std::filesystem::path& path) {
   struct stat status {};
   if (reader.fd_ < 0 || fstat(reader.fd_, &status) != 0) return Unreadable(path);
   if (!S_ISREG(status.st_mode)) return Damaged(path);
+  if (const std::string why = NoteInput(status); !why.empty()) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("cannot read '{}': {}", Printable(path.string(), 300), why));
+  }
   reader.file_bytes_ = static_cast<std::uint64_t>(status.st_size);
   SEXTANT_RETURN_IF_ERROR(reader.ReadHeader());
   reader.FindBlocks();

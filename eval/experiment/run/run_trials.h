@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/call_files.h"
 #include "base/error.h"
 #include "eval/experiment/definition/experiment.h"
 #include "eval/experiment/run/configuration.h"
@@ -52,9 +53,13 @@ std::uint64_t TrialsOfBlock(const Experiment& experiment, std::uint64_t block);
 std::uint64_t BlocksPerCondition(const Experiment& experiment);
 std::uint64_t BlocksOf(const Experiment& experiment);
 
-/// Merges the row files of all shards into the file that a single run writes, byte for byte.
-/// Errors: kInvalidInput (files of different experiments; missing blocks, with their number).
+/// Merges the row files of all shards into the file that a single run writes, byte for byte. All
+/// must have this configuration, and so must an existing file, which is then replaced as a whole;
+/// with --overwrite it may be any. Nothing is replaced before all is checked. `use.may_be_read`:
+/// the merged file may be one of the shards. Errors: kInvalidInput (files of different experiments;
+/// missing blocks, with their number); those of RowFileReader and OutputFile.
 Expected<void> MergeRowFiles(const std::vector<std::filesystem::path>& shards,
-                             const std::filesystem::path& merged);
+                             const std::filesystem::path& merged, const std::string& configuration,
+                             OutputUse use = {});
 
 }  // namespace sextant

@@ -74,20 +74,47 @@ TEST(RunTrials, ShardsMergeToTheSameBytes) {
     RunTo(name, Small(), 2, {.number = i, .of = 3});
     shards.push_back(TestFolder() / name);
   }
-  const Expected<void> merged = MergeRowFiles(shards, TestFolder() / "merged");
+  const Expected<void> merged =
+      MergeRowFiles(shards, TestFolder() / "merged", ConfigurationOf(Small()));
   ASSERT_TRUE(merged) << merged.error().message;
   EXPECT_TRUE(ReadText(TestFolder() / "merged") == whole);
 }
 
 TEST(RunTrials, AFullRunDoesNotOverwriteAShard) {
   const std::string before = RunTo("rows", Small(), 2);
-  EXPECT_FALSE(MergeRowFiles({TestFolder() / "rows"}, TestFolder() / "rows"));
+  EXPECT_FALSE(
+      MergeRowFiles({TestFolder() / "rows"}, TestFolder() / "rows", ConfigurationOf(Small())));
   EXPECT_TRUE(ReadText(TestFolder() / "rows") == before);
+}
+
+TEST(RunTrials, MergeReplacesNoRowsOfAnotherConfiguration) {
+  const std::string other = RunTo("merged", Small("seed: 2"), 2);
+  RunTo("rows", Small(), 2);
+  const Expected<void> wrong_rows = MergeRowFiles({TestFolder() / "rows"}, TestFolder() / "new",
+                                                  ConfigurationOf(Small("seed: 2")));
+  ASSERT_FALSE(wrong_rows);
+  EXPECT_THAT(wrong_rows.error().message, testing::HasSubstr("rows of another configuration"));
+  EXPECT_FALSE(std::filesystem::exists(TestFolder() / "new"));
+  const Expected<void> wrong_target =
+      MergeRowFiles({TestFolder() / "rows"}, TestFolder() / "merged", ConfigurationOf(Small()));
+  ASSERT_FALSE(wrong_target);
+  EXPECT_THAT(wrong_target.error().message, testing::HasSubstr("it holds the rows of another"));
+  EXPECT_TRUE(ReadText(TestFolder() / "merged") == other);
+}
+
+TEST(RunTrials, FreshRowsReplaceNoFileOfAnotherKind) {
+  WriteText(TestFolder() / "rows", "my notes\n");
+  const Expected<RunOutcome> outcome =
+      RunTrials(Small(), {.rows_path = TestFolder() / "rows", .fresh = true});
+  ASSERT_FALSE(outcome);
+  EXPECT_THAT(outcome.error().message, testing::HasSubstr("is not a row file"));
+  EXPECT_EQ(ReadText(TestFolder() / "rows"), "my notes\n");
 }
 
 TEST(RunTrials, MergeReportsMissingBlocks) {
   RunTo("shard0", Small(), 2, {.number = 0, .of = 3});
-  const Expected<void> merged = MergeRowFiles({TestFolder() / "shard0"}, TestFolder() / "merged");
+  const Expected<void> merged =
+      MergeRowFiles({TestFolder() / "shard0"}, TestFolder() / "merged", ConfigurationOf(Small()));
   ASSERT_FALSE(merged);
   EXPECT_THAT(merged.error().message,
               testing::HasSubstr("4 of 6 blocks are in none of the files, the first is number 1"));

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/core.h>
+
+#include <string_view>
+#include <utility>
+
+#include "base/error.h"
+
+// Standard output and standard error of a program. Printing never throws: what standard output
+// could not take is reported once, by FinishOutput; what standard error could not take is dropped.
+namespace sextant {
+
+/// To be called first in main: a stream that is closed does not become the next file that is
+/// opened, and a closed pipe is an error of writing instead of the end of the process.
+void PrepareStandardStreams();
+
+void PrintText(std::string_view text);
+void PrintErrorText(std::string_view text);
+
+template <class... Values>
+void Print(fmt::format_string<Values...> format, Values&&... values) {
+  PrintText(fmt::format(format, std::forward<Values>(values)...));
+}
+
+template <class... Values>
+void PrintError(fmt::format_string<Values...> format, Values&&... values) {
+  PrintErrorText(fmt::format(format, std::forward<Values>(values)...));
+}
+
+/// Flushes standard output. Error: kUnwritable if any of what was printed is lost. If its reader
+/// has closed the pipe, that is no error: the reader wanted no more.
+Expected<void> FinishOutput();
+
+}  // namespace sextant

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/output/output_folder.h"
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <optional>
+#include <string>
+
+#include "io/output/appended_file.h"
+#include "io/output/output_file.h"
+#include "support/run_program.h"
+#include "support/scratch_folder.h"
+
+namespace sextant {
+namespace {
+
+namespace fs = std::filesystem;
+using test::ReadText;
+using test::ScratchFolder;
+using test::WriteText;
+using testing::HasSubstr;
+
+TEST(OutputFolder, IsRefusedToASecondUserWithTheFirstOnesNumber) {
+  const ScratchFolder scratch;
+  const fs::path path = scratch.path() / "new" / "results";
+  {
+    const Expected<OutputFolder> first = OutputFolder::Open(path);
+    ASSERT_TRUE(first);
+    for (const Sharing sharing : {Sharing::kAlone, Sharing::kWithOthers}) {
+      const Expected<OutputFolder> second = OutputFolder::Open(path, sharing);
+      ASSERT_FALSE(second);
+      EXPECT_THAT(second.error().message,
+                  HasSubstr(fmt::format("is in use by process {}", getpid())));
+    }
+  }
+  EXPECT_TRUE(fs::is_empty(path));
+  EXPECT_TRUE(OutputFolder::Open(path));
+}
+
+TEST(OutputFolder, IsSharedByThoseThatShareIt) {
+  const ScratchFolder scratch;
+  std::optional<OutputFolder> kept;
+  {
+    Expected<OutputFolder> first = OutputFolder::Open(scratch.path(), Sharing::kWithOthers);
+    Expected<OutputFolder> second = OutputFolder::Open(scratch.path(), Sharing::kWithOthers);
+    ASSERT_TRUE(first && second);
+    EXPECT_FALSE(OutputFolder::Open(scratch.path()));
+    kept.emplace(std::move(*second));
+  }
+  EXPECT_FALSE(OutputFolder::Open(scratch.path())) << "one of them is left";
+  kept.reset();
+  EXPECT_TRUE(OutputFolder::Open(scratch.path()));
+  EXPECT_TRUE(fs::is_empty(scratch.path()));
+}
+
+TEST(OutputFolder, OnlyTheTemporariesOfTheDeadAreRemoved) {
+  const ScratchFolder scratch;
+  const fs::path dead = scratch.path() / ".scan.pcd.0123456789abcdef.sxtmp";
+  const fs::path foreign = scratch.path() / ".mine.tmp";
+  WriteText(dead, "half");
+  WriteText(foreign, "whole");
+  const Expected<OutputFile> alive = OutputFile::Open(scratch.path() / "a");
+  ASSERT_TRUE(alive);
+  const Expected<OutputFolder> folder = OutputFolder::Open(scratch.path());
+  ASSERT_TRUE(folder);
+  EXPECT_FALSE(fs::exists(dead));
+  EXPECT_TRUE(fs::exists(foreign));
+  EXPECT_TRUE(fs::exists(alive->temporary()));
+  EXPECT_TRUE(OutputFolder::IsPassing(alive->temporary().filename().string()));
+}
+
+TEST(OutputFolder, AFileInItsPlaceIsRefused) {
+  const ScratchFolder scratch;
+  WriteText(scratch.path() / "taken", "x");
+  const Expected<OutputFolder> folder = OutputFolder::Open(scratch.path() / "taken");
+  ASSERT_FALSE(folder);
+  EXPECT_EQ(folder.error().code, ErrorCode::kUnwritable);
+  EXPECT_THAT(folder.error().message, HasSubstr("cannot make the folder"));
+}
+
+TEST(AppendedFile, ContinuesAtItsEnd) {
+  const ScratchFolder scratch;
+  const fs::path path = scratch.path() / "rows";
+  {
+    Expected<AppendedFile> file = AppendedFile::Open(path);
+    ASSERT_TRUE(file);
+    ASSERT_TRUE(file->Append("one"));
+    EXPECT_FALSE(AppendedFile::Open(path)) << "it is locked";
+  }
+  Expected<AppendedFile> file = AppendedFile::Open(path);
+  ASSERT_TRUE(file);
+  EXPECT_EQ(file->size(), 3U);
+  EXPECT_EQ(*file->ReadBeginning(2), "on");
+  ASSERT_TRUE(file->Truncate(1));
+  ASSERT_TRUE(file->Append("k"));
+  ASSERT_TRUE(file->Flush());
+  EXPECT_EQ(ReadText(path), "ok");
+}
+
+TEST(AppendedFile, FollowsNoLinkAndTakesNoDevice) {
+  const ScratchFolder scratch;
+  WriteText(scratch.path() / "precious", "old");
+  fs::create_symlink("precious", scratch.path() / "rows");
+  EXPECT_FALSE(AppendedFile::Open(scratch.path() / "rows"));
+  EXPECT_FALSE(AppendedFile::Open("/dev/null"));
+  EXPECT_EQ(ReadText(scratch.path() / "precious"), "old");
+}
+
+}  // namespace
+}  // namespace sextant
