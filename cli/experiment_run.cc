@@ -93,7 +93,8 @@ int WriteTables(const char* command, const ExperimentOptions& options, const Exp
   const Expected<std::string> tables = WriteReport(experiment, folder / "rows.sxtrows", folder,
                                                    {.csv = !options.no_csv, .plots = true});
   if (!tables) return Refuse(command, tables.error());
-  fmt::print("{}{}written to {}\n", *tables, tables->empty() ? "" : "\n", folder.string());
+  fmt::print("{}{}{}", *tables, tables->empty() ? "" : "\n",
+             WroteLine(folder, "rows, tables and plots of " + experiment.name));
   return kAnswered;
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "base/error.h"
 
@@ -11,6 +13,12 @@ namespace sextant::cli {
 inline constexpr int kAnswered = 0;
 inline constexpr int kNoAnswer = 1;  ///< The input was read, and no solver answered.
 inline constexpr int kWrongUse = 2;  ///< Wrong usage, or an input or output that fails.
+
+/// Whether a file of this path can be written; to be called before long work. Error: kIo.
+Expected<void> CheckOutputPath(const std::filesystem::path& path);
+
+/// "<path>: <what>": the line about every file or folder that a command wrote.
+std::string WroteLine(const std::filesystem::path& path, std::string_view what);
 
 /// Prints "sextant <command>: <message>" on standard error; returns `exit_code`.
 int Refuse(const char* command, const Error& error, int exit_code = kWrongUse);

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <numbers>
+#include <system_error>
 
 #include "base/units.h"
 #include "calibrate/observe/photo_file.h"
@@ -115,9 +116,19 @@ ResultView AsView(const CalibrationResult& result, const Advice& advice) {
   return view;
 }
 
+Expected<void> CheckPicture(const std::string& path) {
+  if (path.empty()) return {};
+  SEXTANT_RETURN_IF_ERROR(CheckImageName(path));
+  return CheckOutputPath(path);
+}
+
 int Run(const AdviseCommandOptions& options) {
+  if (const Expected<void> ok = CheckPicture(options.picture_path); !ok) {
+    return Refuse("advise", ok.error());
+  }
   std::filesystem::path path = options.result_path;
-  if (std::filesystem::is_directory(path)) path /= "result.yaml";
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) path /= "result.yaml";
   const Expected<CalibrationResult> result = ReadCalibrationResult(path);
   if (!result) {
     return Refuse("advise", {result.error().code,
@@ -142,7 +153,8 @@ int Run(const AdviseCommandOptions& options) {
   const Expected<void> written =
       WriteImage(DrawAdvice(*result, *sensors, proposals), options.picture_path);
   if (!written) return Refuse("advise", written.error());
-  fmt::print("{}: the place from above and in the camera's image\n", options.picture_path);
+  fmt::print("{}",
+             WroteLine(options.picture_path, "the place from above and in the camera's image"));
   return kAnswered;
 }
 

@@ -127,9 +127,12 @@ int Run(const SimulateOptions& options) {
   if (const Expected<void> ok = WriteExtras(*scene, report->scans, options); !ok) {
     return Refuse("simulate", ok.error());
   }
-  fmt::print("{}: scene {}, scans: {}, files written: {}, kept: {}; the truth is in truth.yaml{}\n",
-             options.out, scene->name, options.scans, report->written, report->kept,
-             options.bag ? ", scans and images also in session.bag" : "");
+  fmt::print("{}",
+             WroteLine(options.out,
+                       fmt::format("scene {}, scans: {}, files written: {}, kept: {}; the truth is "
+                                   "in truth.yaml{}",
+                                   scene->name, options.scans, report->written, report->kept,
+                                   options.bag ? ", scans and images also in session.bag" : "")));
   return kAnswered;
 }
 

@@ -97,11 +97,16 @@ std::string SummaryOf(const ScanMarks& marks) {
                      Counted(edges, "edge"), Counted(marks.corners.size(), "corner"));
 }
 
-int Render(const std::string& path, const MarkController& controller, MarkCanvas& canvas) {
-  if (!path.ends_with(".png")) {
-    return Refuse("mark",
-                  {ErrorCode::kInvalidOption, path + ": expected a name that ends in .png"});
+Expected<void> CheckOutputs(const MarkOptions& options) {
+  if (options.render_path.empty()) return CheckOutputPath(options.out_path);
+  if (!options.render_path.ends_with(".png")) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     options.render_path + ": expected a name that ends in .png");
   }
+  return CheckOutputPath(options.render_path);
+}
+
+int Render(const std::string& path, const MarkController& controller, MarkCanvas& canvas) {
   const Expected<void> ok = WriteImage(canvas.Draw(controller), path);
   return ok ? kAnswered : Refuse("mark", ok.error());
 }
@@ -109,6 +114,7 @@ int Render(const std::string& path, const MarkController& controller, MarkCanvas
 int Run(const MarkOptions& options) {
   const bool renders = !options.render_path.empty();
   if (const Expected<void> ok = CheckDisplay(); !renders && !ok) return Refuse("mark", ok.error());
+  if (const Expected<void> ok = CheckOutputs(options); !ok) return Refuse("mark", ok.error());
   Expected<MarkInput> input = LoadMarkInput(options);
   if (!input) return Refuse("mark", input.error());
   const MarkViewport viewport(options.width_px, options.height_px, kMarkBar_px,
@@ -136,7 +142,7 @@ int Run(const MarkOptions& options) {
     fmt::print(stderr, "sextant mark: nothing marked, nothing written\n");
     return kNoAnswer;
   }
-  fmt::print("{}: {}\n", options.out_path, summary);
+  fmt::print("{}", WroteLine(options.out_path, summary));
   return kAnswered;
 }
 
