@@ -47,7 +47,7 @@ std::string_view LatexPiece(const char& c) {
 
 // Whether the character at `i` would begin or end markup of Markdown.
 bool IsMarkup(std::string_view text, std::size_t i) {
-  const char next = i + 1 < text.size() ? text[i + 1] : ' ';
+  const char next = i + 1 < text.size() ? text[i + 1] : '\0';
   const char before = i > 0 ? text[i - 1] : ' ';
   switch (text[i]) {
     case '_':
@@ -71,7 +71,7 @@ bool IsMarkup(std::string_view text, std::size_t i) {
 
 // The pieces of HTML that Markdown passes on: <tag>, </tag>, <!--, <?, and &entity;.
 std::string_view HtmlPiece(std::string_view text, std::size_t i) {
-  const char next = i + 1 < text.size() ? text[i + 1] : ' ';
+  const char next = i + 1 < text.size() ? text[i + 1] : '\0';
   const bool opens = IsLetterOrDigit(next) || next == '/' || next == '!' || next == '?';
   if (text[i] == '<' && opens) return "&lt;";
   if (text[i] == '&' && (IsLetterOrDigit(next) || next == '#')) return "&amp;";

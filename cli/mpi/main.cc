@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include "base/text/printable.h"
 #include "cli/mpi/run_on_ranks.h"
 #include "cli/parse.h"
 
@@ -33,8 +34,8 @@ int Main(int argc, char** argv) {
                     .run = [&] { return RunOnRanks(ranks, options); }}}}}};
   const ParsedLine line = ParseLine(program, argc, argv);
   if (ranks.is_first()) {
-    fmt::print("{}", line.out);
-    fmt::print(stderr, "{}", line.err);
+    fmt::print("{}", PrintableLines(line.out));
+    fmt::print(stderr, "{}", PrintableLines(line.err));
   }
   return line.run ? line.run() : line.exit_code;
 }

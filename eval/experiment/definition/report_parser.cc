@@ -77,6 +77,10 @@ void ExperimentParser::ParsePlots(const YamlNode& root, Experiment& experiment) 
     PlotSpec plot;
     if (!fields_.IsMap(node, "plots", keys)) return;
     plot.name = OptionalFileName(node, "name", fmt::format("plot{}", experiment.plots.size() + 1));
+    const bool is_new = std::ranges::count(experiment.plots, plot.name, &PlotSpec::name) == 0;
+    if (fields_.ok() && !is_new) {
+      fields_.Fail(node.line, "name", "another plot has the name " + Quoted(plot.name));
+    }
     plot.title = OptionalText(node, "title", "");
     plot.x = ParseAxis(node, "x", experiment, true);
     plot.y = ParseStatisticOf(fields_.Require(node, "y"), experiment);

@@ -25,7 +25,7 @@ TEST(RunProcess, ArgumentsArriveAsTheyAre) {
 }
 
 TEST(RunProcess, PassesInputOfAnySize) {
-  for (const std::size_t size : {0, 1, 100'000, 10'000'000}) {
+  for (const std::size_t size : {0UL, 1UL, 100'000UL, 10'000'000UL}) {
     const std::string text(size, 'x');
     const Expected<ProcessEnd> end = RunProcess({"cat"}, {.standard_input = text});
     ASSERT_TRUE(end) << end.error().message;

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "base/error.h"
 #include "base/text/code_point.h"
 #include "base/text/file_name.h"
@@ -34,11 +36,15 @@ TEST(CodePoint, RefusesWhatIsNotUtf8) {
 }
 
 TEST(CodePoint, KnowsControlCharacters) {
-  for (const char32_t value : {0x00, 0x09, 0x0a, 0x1b, 0x1f, 0x7f, 0x80, 0x85, 0x9b, 0x9f, 0x2028,
-                               0x2029, 0x202a, 0x202e, 0x2066, 0x2069, 0xfffe, 0xffff}) {
+  const std::vector<char32_t> controls = {0x00,   0x09,   0x0a,   0x1b,   0x1f,   0x7f,
+                                          0x80,   0x85,   0x9b,   0x9f,   0x2028, 0x2029,
+                                          0x202a, 0x202e, 0x2066, 0x2069, 0xfffe, 0xffff};
+  for (const char32_t value : controls) {
     EXPECT_TRUE(IsControl(value)) << static_cast<unsigned>(value);
   }
-  for (const char32_t value : {0x20, 0x7e, 0xa0, 0xfc, 0x2027, 0x202f, 0x2065, 0x206a, 0xfffd}) {
+  const std::vector<char32_t> others = {0x20,   0x7e,   0xa0,   0xfc,  0x2027,
+                                        0x202f, 0x2065, 0x206a, 0xfffd};
+  for (const char32_t value : others) {
     EXPECT_FALSE(IsControl(value)) << static_cast<unsigned>(value);
   }
 }
