@@ -6,6 +6,8 @@
 #include <tl/expected.hpp>
 #include <utility>
 
+#include "base/text/printable.h"
+
 namespace sextant {
 
 /// The kind of an error. The message of an Error names the input and the remedy.
@@ -28,8 +30,18 @@ enum class ErrorCode {
 /// "too_few_pairs" and so on: stable, for logs and JSON.
 std::string_view ToString(ErrorCode code);
 
+/// An error with its message: one line that is safe to print (PrintableLine), whatever names and
+/// contents of files it quotes, and the lines that AddLine appends.
 struct Error {
-  ErrorCode code;
+  Error() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor): errors are written as {code, message}.
+  Error(ErrorCode error_code, std::string text)
+      : code(error_code), message(PrintableLine(std::move(text))) {}
+
+  /// Appends a line of details, indented.
+  void AddLine(std::string line) { message += "\n  " + PrintableLine(std::move(line)); }
+
+  ErrorCode code{};
   std::string message;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/text/escape.h"
 #include "eval/statistics/text_table.h"
 #include "report/plot.h"
 
@@ -62,10 +63,10 @@ std::string Panel(const Chart& chart, const std::string& y_label, int column, bo
   for (std::size_t i = 0; i < chart.curves.size(); ++i) {
     lines.push_back(
         fmt::format("$curve{} using 1:{} with linespoints pt 7 ps 0.5 lw 1.5 lc {} "
-                    "title '{}'",
-                    i, column, i + 1, chart.curves[i].name));
+                    "title {}",
+                    i, column, i + 1, GnuplotText(chart.curves[i].name)));
   }
-  return fmt::format("set ylabel '{}'\n{}plot {}\n", y_label,
+  return fmt::format("set ylabel {}\n{}plot {}\n", GnuplotText(y_label),
                      from_zero ? "unset logscale y\nset yrange [0:*]\nset format y '%g'\n"
                                : "set logscale y\nset yrange [*:*]\nset format y '%.0s%c'\n",
                      fmt::join(lines, ", \\\n  "));
@@ -85,8 +86,8 @@ Expected<void> DrawChart(const Chart& chart, const std::filesystem::path& folder
   }
   commands += fmt::format(
       "set multiplot layout 1,2\nset grid\nset key above left maxrows 4 noenhanced\nset xlabel "
-      "'{}'\n{}set offsets graph 0.03, graph 0.03, 0, 0\n",
-      chart.x,
+      "{}\n{}set offsets graph 0.03, graph 0.03, 0, 0\n",
+      GnuplotText(chart.x),
       chart.log_x ? "set logscale x\nset format x '%.0s%c'\n"
                   : fmt::format("set xtics ({})\n", fmt::join(PlacesOf(chart), ", ")));
   commands += Panel(chart, chart.rates ? "trials a second" : "seconds", 2, chart.rates);

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include "base/text/printable.h"
 #include "calibrate/configuration.h"
 #include "calibrate/observe/probe_size.h"
 #include "calibrate/trust/diagnose.h"
@@ -35,7 +36,7 @@ std::vector<std::string> WarningsFor(const Calibration& calibration, const Match
   const Assembly& assembly = calibration.assembly;
   std::vector<std::string> warnings = DescribeAmbiguity(assembly.matching, match);
   for (const std::filesystem::path& file : calibration.observed.session.files.without_partner) {
-    warnings.push_back(fmt::format("without a partner: {}", file.string()));
+    warnings.push_back(fmt::format("without a partner: {}", Printable(file.string(), 300)));
   }
   const SolveReport* report = calibration.report();
   const Rigid3d& pose =
@@ -84,11 +85,11 @@ Calibration CalibrateObserved(ObservedSession observed, const CalibrateOptions& 
   Expected<Assembly> assembly = Assemble(calibration.observed.views, calibration.observed.boards,
                                          calibration.observed.camera, match);
   if (!assembly) {
-    std::string message = assembly.error().message;
+    Error error = assembly.error();
     for (const std::string& line : OtherSizes(calibration.observed, options.observe.search)) {
-      message += "\n  " + line;
+      error.AddLine(line);
     }
-    calibration.result = MakeError(assembly.error().code, message);
+    calibration.result = tl::unexpected<Error>(std::move(error));
     return calibration;
   }
   calibration.assembly = std::move(*assembly);

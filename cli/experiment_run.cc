@@ -106,7 +106,8 @@ int WriteTables(const char* command, const ExperimentOptions& options, const Exp
   const Expected<std::string> tables =
       WriteReport(experiment, folder / "rows.sxtrows", folder, ReportSettingsOf(options));
   if (!tables) return Refuse(command, tables.error());
-  Print("{}{}written to {}\n", *tables, tables->empty() ? "" : "\n", folder.string());
+  Print("{}{}{}", *tables, tables->empty() ? "" : "\n",
+        WroteLine(folder, "rows, tables and plots of " + experiment.name));
   return kAnswered;
 }
 

@@ -1,10 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/output.h"
 
+#include <fmt/core.h>
+
+#include "base/text/printable.h"
 #include "io/output/output_file.h"
 #include "io/output/standard_output.h"
 
 namespace sextant::cli {
+namespace {
+
+constexpr std::size_t kMaxPathBytes = 300;
+
+}  // namespace
+
+std::string WroteLine(const std::filesystem::path& path, std::string_view what) {
+  return fmt::format("{}: {}\n", Printable(path.string(), kMaxPathBytes), what);
+}
 
 int ExitCodeOf(const Error& error, int exit_code) {
   return error.code == ErrorCode::kUnwritable ? kNotWritten : exit_code;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "base/error.h"
 
@@ -16,6 +18,9 @@ inline constexpr int kNotWritten = 4;  ///< A file or standard output could not 
 
 /// kNotWritten for the error kUnwritable, else `exit_code`.
 int ExitCodeOf(const Error& error, int exit_code = kWrongUse);
+
+/// "<path>: <what>": the line about every file or folder that a command wrote.
+std::string WroteLine(const std::filesystem::path& path, std::string_view what);
 
 /// Prints "sextant <command>: <message>" on standard error. Returns ExitCodeOf the error.
 int Refuse(const char* command, const Error& error, int exit_code = kWrongUse);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/nearest_name.h"
+#include "base/text/printable.h"
 #include "base/version.h"
 #include "cli/output.h"
 
@@ -100,7 +101,7 @@ std::string UnknownName(const std::string& program, const std::string& name,
     if (command->name == name) return {};
     known.push_back(command->name);
   }
-  return fmt::format("{} has no command '{}'; {}\n", program, name, SuggestName(name, known));
+  return fmt::format("{} has no command {}; {}\n", program, Quoted(name), SuggestName(name, known));
 }
 
 // CLI11 would only report that a command is required.
@@ -183,6 +184,51 @@ ParsedLine LineOf(const Chosen& chosen, bool overwrites) {
   return line;
 }
 
+// The innermost command that the line names, with the names of those around it.
+std::pair<const CLI::App*, std::string> ChosenApp(const CLI::App& app) {
+  const CLI::App* chosen = &app;
+  std::string name = app.get_name();
+  for (bool goes_on = true; goes_on;) {
+    goes_on = false;
+    for (const CLI::App* sub : chosen->get_subcommands(nullptr)) {
+      if (!sub->parsed()) continue;
+      chosen = sub;
+      name += " " + sub->get_name();
+      goes_on = true;
+      break;
+    }
+  }
+  return {chosen, name};
+}
+
+std::vector<std::string> OptionsOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+// The error for an argument that the command does not take; empty if there is none. CLI11 would
+// report a required argument that is missing as well before it.
+std::string UnknownArgument(const CLI::App& app) {
+  const std::vector<std::string> unknown = app.remaining(/*recurse=*/true);
+  if (unknown.empty()) return {};
+  const auto [chosen, command] = ChosenApp(app);
+  const auto is_option = [](const std::string& text) {
+    return text.size() > 1 && text[0] == '-' && text.find_first_of("0123456789.") != 1;
+  };
+  const auto option = std::find_if(unknown.begin(), unknown.end(), is_option);
+  if (option == unknown.end()) {
+    return fmt::format("{0}: unexpected argument {1}; see '{0} --help'\n", command,
+                       Quoted(unknown.front()));
+  }
+  const std::string name = option->substr(0, option->find('='));
+  const std::string nearest = NearestName(name, OptionsOf(*chosen));
+  return fmt::format("{0} has no option {1}; {2}see '{0} --help'\n", command, Quoted(name),
+                     nearest.empty() ? "" : fmt::format("did you mean {}? Or ", nearest));
+}
+
 }  // namespace
 
 ParsedLine ParseLine(const Program& program, int argc, const char* const* argv) {
@@ -204,6 +250,8 @@ ParsedLine ParseLine(const Program& program, int argc, const char* const* argv) 
     std::ostringstream out;
     std::ostringstream err;
     const int code = app.exit(error, out, err);
+    std::string unknown = code == 0 ? "" : UnknownArgument(app);
+    if (!unknown.empty()) return {.exit_code = kWrongUse, .err = std::move(unknown)};
     return {.exit_code = code == 0 ? kAnswered : kWrongUse, .out = out.str(), .err = err.str()};
   }
   return LineOf(FindChosen(app, AllCommands(program)), overwrites);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/progress.h"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
+#include "base/text/printable.h"
 #include "io/output/standard_output.h"
 
 namespace sextant::cli {
@@ -21,7 +23,7 @@ Progress::Progress(std::string what, long total)
       drawn_(start_) {}
 
 Progress::~Progress() {
-  if (visible_) PrintError("\r\033[K");
+  if (visible_) DrawOnTerminal("\r\033[K");
 }
 
 void Progress::Set(long done) {
@@ -36,8 +38,9 @@ void Progress::Draw(long done) {
   const double fraction = static_cast<double>(done) / static_cast<double>(total_);
   const double elapsed = std::chrono::duration<double>(drawn_ - start_).count();
   const int filled = static_cast<int>(fraction * kBarWidth);
-  PrintError("\r\033[K{} [{:#<{}}{:.<{}}] {:.0f} %, {:.0f} s left", what_, "", filled, "",
-             kBarWidth - filled, 100.0 * fraction, elapsed * (1.0 - fraction) / fraction);
+  DrawOnTerminal(fmt::format("\r\033[K{} [{:#<{}}{:.<{}}] {:.0f} %, {:.0f} s left",
+                             PrintableLine(what_), "", filled, "", kBarWidth - filled,
+                             100.0 * fraction, elapsed * (1.0 - fraction) / fraction));
 }
 
 }  // namespace sextant::cli

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 
+#include "base/text/printable.h"
 #include "features/camera/tags/tag_pattern.h"
 
 namespace sextant {
@@ -71,7 +72,7 @@ void DrawChecker(cairo_t* cr, const BoardChecker& checker) {
 
 void DrawText(cairo_t* cr, double x, double y, const std::string& text) {
   cairo_move_to(cr, x, y);
-  cairo_show_text(cr, text.c_str());
+  cairo_show_text(cr, PrintableLine(text).c_str());
 }
 
 // A ruler and a label, below the board and outside the cut line.

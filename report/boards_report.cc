@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/text/escape.h"
 #include "base/units.h"
 #include "base/version.h"
 #include "eval/statistics/text_table.h"
@@ -176,7 +177,7 @@ std::string ScansJson(const std::vector<ScanReport>& reports, const std::vector<
     }
     json["scans"].push_back(std::move(scan));
   }
-  return json.dump(2) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace sextant

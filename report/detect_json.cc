@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "base/text/escape.h"
 #include "base/version.h"
 #include "io/blocks/json_blocks.h"
 #include "report/detect_report.h"
@@ -131,7 +132,7 @@ std::string FormatDetections(const std::vector<std::string>& paths,
     }
     document["images"].push_back(std::move(image));
   }
-  return document.dump(2) + "\n";
+  return JsonText(document);
 }
 
 }  // namespace sextant

@@ -2,29 +2,20 @@
 #include "report/plot.h"
 
 #include <fmt/format.h>
-#include <sys/wait.h>
 
-#include <cstdio>
-#include <cstdlib>
-
+#include "base/text/escape.h"
 #include "io/output/output_file.h"
+#include "report/gnuplot.h"
 
 namespace sextant {
 namespace {
 
-Expected<std::string> TerminalFor(const std::filesystem::path& path) {
+Expected<PlotFormat> FormatOf(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
-  if (extension == ".svg") return "svg size 960,480 background 'white' font 'sans,13'";
-  if (extension == ".png") return "pngcairo size 960,480 font 'sans,11'";
+  if (extension == ".svg") return PlotFormat::kSvg;
+  if (extension == ".png") return PlotFormat::kPng;
   return MakeError(ErrorCode::kInvalidOption,
                    fmt::format("{}: expected a plot that ends in .svg or .png", path.string()));
-}
-
-// Inside gnuplot's single quotes a quote is doubled; nothing else is special.
-std::string Quote(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
-  return quoted + "'";
 }
 
 struct Residuals {
@@ -65,24 +56,9 @@ std::string Ticks(const std::vector<PairId>& ids) {
 }  // namespace
 
 Expected<void> DrawPlot(const std::string& commands, const std::filesystem::path& path) {
-  SEXTANT_ASSIGN_OR_RETURN(const std::string terminal, TerminalFor(path));
-  SEXTANT_ASSIGN_OR_RETURN(OutputFile file, OutputFile::Open(path));
-  const std::filesystem::path temporary = file.temporary().empty() ? path : file.temporary();
-  const std::string script = fmt::format("set terminal {}\nset output {}\n{}\nset output\n",
-                                         terminal, Quote(temporary.string()), commands);
-  FILE* gnuplot = popen("exec gnuplot >/dev/null 2>&1", "w");
-  const bool written =
-      gnuplot != nullptr && std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
-  const int status = gnuplot != nullptr ? pclose(gnuplot) : -1;
-  if (written && status == 0) return file.Commit();
-  constexpr int kCommandNotFound = 127;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == kCommandNotFound) {
-    return MakeError(ErrorCode::kIo, "plots need gnuplot: install the package gnuplot-nox");
-  }
-  return MakeError(ErrorCode::kIo,
-                   fmt::format("{}: gnuplot could not write the plot; does the folder "
-                               "exist, and is it writable?",
-                               path.string()));
+  SEXTANT_ASSIGN_OR_RETURN(const PlotFormat format, FormatOf(path));
+  SEXTANT_ASSIGN_OR_RETURN(const std::string picture, RunGnuplot(commands, format));
+  return WriteFileAtomically(path, picture);
 }
 
 std::string ResidualPlot(const CalibrationProblem& problem,
@@ -108,7 +84,7 @@ std::string ResidualPlot(const CalibrationProblem& problem,
     series.push_back(
         fmt::format("$answer{} using 1:2 with impulses lw 3 lc {} notitle, "
                     "$answer{} using 1:2 with points pt 7 ps 0.7 lc {} title {}",
-                    k, k + 1, k, k + 1, Quote(answers[k]->solver)));
+                    k, k + 1, k, k + 1, GnuplotText(answers[k]->solver)));
   }
   return fmt::format(
       "{}{}set key above horizontal noenhanced\nset grid ytics\nset offsets 0, 0, graph 0.05, "

@@ -10,9 +10,9 @@
 
 namespace sextant {
 
-/// Runs gnuplot commands that draw into a file, .svg or .png by its extension; the file is written
-/// whole or not at all. Errors: kInvalidOption (another extension), kIo (gnuplot is missing or
-/// fails); those of OutputFile.
+/// Writes the picture that gnuplot draws by the commands, .svg or .png by the file's extension.
+/// Errors: kInvalidOption (another extension), kIo, those of RunGnuplot, whose header says what the
+/// commands may contain.
 Expected<void> DrawPlot(const std::string& commands, const std::filesystem::path& path);
 
 /// Commands that plot the residual of every pair for every solver with an answer: of the 3D-3D

@@ -115,8 +115,8 @@ std::string DescribeAnswer(const SolveReport& report) {
   const Evaluation& evaluation = report.evaluation;
   std::string text = report.solver + "\n" + DescribePose(report.cam_from_lidar);
   if (evaluation.rmse_m) {
-    text += fmt::format("  RMSE                       {:.8f} m over {} pairs\n", *evaluation.rmse_m,
-                        evaluation.per_pair_m.size());
+    text += fmt::format("  RMSE                       {} over {} pairs\n",
+                        LengthText(*evaluation.rmse_m), evaluation.per_pair_m.size());
   }
   if (evaluation.rmse_px) {
     text += fmt::format("  reprojection RMSE          {:.4f} px over {} pairs\n",

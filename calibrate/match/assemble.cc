@@ -82,11 +82,11 @@ class Rows {
   std::map<std::pair<std::size_t, int>, BoardRow> fates_;
 };
 
-std::string DescribeMissing(std::span<const SessionView> views, std::span<const Board> boards) {
-  std::string text = fmt::format(
-      "no board was seen by both sensors in any of {} views, so there is nothing to "
-      "calibrate from",
-      views.size());
+Error DescribeMissing(std::span<const SessionView> views, std::span<const Board> boards) {
+  Error error(ErrorCode::kMissingData,
+              fmt::format("no board was seen by both sensors in any of {} views, so there is "
+                          "nothing to calibrate from",
+                          views.size()));
   constexpr std::size_t kShown = 3;
   std::size_t shown = 0;
   for (const BoardRow& row : Rows(views, boards, {}).All()) {
@@ -94,10 +94,10 @@ std::string DescribeMissing(std::span<const SessionView> views, std::span<const 
     const std::string board =
         row.board < 0 ? std::string()
                       : fmt::format(", board {}", boards[static_cast<std::size_t>(row.board)].id);
-    text += fmt::format("\n  view {}{}: {}: {}", views[row.view].name, board, ToString(row.fate),
-                        row.why);
+    error.AddLine(
+        fmt::format("view {}{}: {}: {}", views[row.view].name, board, ToString(row.fate), row.why));
   }
-  return text;
+  return error;
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ Expected<Assembly> Assemble(std::span<const SessionView> views, std::span<const 
   }
   Expected<Matching> matching = MatchViews(observations, settings);
   if (!matching && matching.error().code == ErrorCode::kTooFewPairs) {
-    return MakeError(ErrorCode::kMissingData, DescribeMissing(views, boards));
+    return tl::unexpected<Error>(DescribeMissing(views, boards));
   }
   if (!matching) return tl::unexpected<Error>(matching.error());
   Assembly assembly;

@@ -42,6 +42,13 @@ Expected<cv::Mat> ReadAs(const std::filesystem::path& path, DecodedColor color) 
   return MakeError(image.error().code, fmt::format("{}: {}", path.string(), image.error().message));
 }
 
+Expected<std::string> EncodedFor(const std::filesystem::path& path, const cv::Mat& image) {
+  Expected<std::string> bytes = EncodeImage(path.extension().string(), image);
+  if (bytes || bytes.error().code == ErrorCode::kIo) return bytes;
+  return MakeError(ErrorCode::kInvalidOption,
+                   path.string() + ": expected an image that ends in .png or .jpg");
+}
+
 }  // namespace
 
 Expected<cv::Mat> ReadImage(const std::filesystem::path& path) {
@@ -52,12 +59,14 @@ Expected<cv::Mat> ReadColourImage(const std::filesystem::path& path) {
   return ReadAs(path, DecodedColor::kBgr);
 }
 
+Expected<void> CheckImageName(const std::filesystem::path& path) {
+  SEXTANT_RETURN_IF_ERROR(EncodedFor(path, cv::Mat::zeros(1, 1, CV_8UC3)));
+  return {};
+}
+
 Expected<void> WriteImage(const cv::Mat& image, const std::filesystem::path& path) {
-  const Expected<std::string> bytes = EncodeImage(path.extension().string(), image);
-  if (bytes) return WriteFileAtomically(path, *bytes);
-  if (bytes.error().code == ErrorCode::kIo) return tl::unexpected<Error>(bytes.error());
-  return MakeError(ErrorCode::kInvalidOption,
-                   path.string() + ": expected an image that ends in .png or .jpg");
+  SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, EncodedFor(path, image));
+  return WriteFileAtomically(path, bytes);
 }
 
 }  // namespace sextant

@@ -16,6 +16,10 @@ Expected<cv::Mat> ReadImage(const std::filesystem::path& path);
 /// The same, converted to BGR of 8 bits.
 Expected<cv::Mat> ReadColourImage(const std::filesystem::path& path);
 
+/// Whether WriteImage knows the format that the extension names; to be called before long work.
+/// Error: kInvalidOption.
+Expected<void> CheckImageName(const std::filesystem::path& path);
+
 /// Writes the format that the extension names, atomically. Errors: kInvalidOption for an extension
 /// without an image format; kIo.
 Expected<void> WriteImage(const cv::Mat& image, const std::filesystem::path& path);

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "base/text/printable.h"
+
 namespace sextant {
 namespace {
 
@@ -46,7 +48,7 @@ bool Matches(std::string_view name, std::string_view pattern) {
 // The distinguishing part of each file name: without the beginning and the end that all share.
 std::vector<std::string> DistinguishingParts(const std::vector<fs::path>& files) {
   std::vector<std::string> names;
-  for (const fs::path& file : files) names.push_back(file.stem().string());
+  for (const fs::path& file : files) names.push_back(PrintableLine(file.stem().string()));
   std::size_t begin = names.front().size();
   std::size_t end = names.front().size();
   for (const std::string& name : names) {
@@ -97,7 +99,7 @@ Expected<std::vector<fs::path>> ExpandPattern(const fs::path& pattern) {
 FilePairs PairFiles(const std::vector<fs::path>& images, const std::vector<fs::path>& clouds) {
   FilePairs result;
   if (images.size() == 1 && clouds.size() == 1) {
-    result.pairs.push_back({images[0].stem().string(), images[0], clouds[0]});
+    result.pairs.push_back({PrintableLine(images[0].stem().string()), images[0], clouds[0]});
     return result;
   }
   std::map<std::string, FilePair> by_key;

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <system_error>
 
+#include "base/text/printable.h"
 #include "io/blocks/pose_block.h"
+#include "io/text/number_text.h"
 #include "io/text/text_file.h"
 #include "io/text/yaml_fields.h"
 
@@ -79,7 +81,7 @@ class SessionReader {
       FilePair pair{.name = TextAt(node, "name"),
                     .image = folder_ / in_.TextAt(node, "image"),
                     .cloud = folder_ / in_.TextAt(node, "cloud")};
-      if (pair.name.empty()) pair.name = pair.image.stem().string();
+      if (pair.name.empty()) pair.name = PrintableLine(pair.image.stem().string());
       session_.files.pairs.push_back(std::move(pair));
     }
   }
@@ -166,10 +168,27 @@ Expected<std::vector<fs::path>> ExpandAll(std::span<const std::string> patterns)
   return files;
 }
 
+// As points.txt does; a session file begins with a key or a comment.
+bool BeginsWithNumber(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  return begin != std::string_view::npos &&
+         std::string_view("+-.0123456789").find(text[begin]) != std::string_view::npos &&
+         !text.substr(begin).starts_with("---");
+}
+
+tl::unexpected<Error> HintToSolve(const std::string& file) {
+  return MakeError(ErrorCode::kParse,
+                   fmt::format("{}: expected a session file (YAML with the key sextant_session); "
+                               "for a file of correspondences run 'sextant solve' with it",
+                               ToString(Place{.file = file})));
+}
+
 }  // namespace
 
 Expected<Session> ParseSession(std::string_view text, const std::string& file) {
+  if (BeginsWithNumber(text)) return HintToSolve(file);
   SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  if (root.Find("sextant_problem") != nullptr) return HintToSolve(file);
   return SessionReader(file).Read(root);
 }
 

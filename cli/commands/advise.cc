@@ -118,9 +118,17 @@ ResultView AsView(const CalibrationResult& result, const Advice& advice) {
   return view;
 }
 
+Expected<void> CheckPicture(const std::string& path) {
+  if (path.empty()) return {};
+  return CheckImageName(path);
+}
+
 int Run(const AdviseCommandOptions& options) {
+  if (const Expected<void> ok = CheckPicture(options.picture_path); !ok) {
+    return Refuse("advise", ok.error());
+  }
   std::filesystem::path path = options.result_path;
-  std::error_code ignored;  // Reading the file then gives the reason.
+  std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) path /= "result.yaml";
   const Expected<CalibrationResult> result = ReadCalibrationResult(path);
   if (!result) {
@@ -145,7 +153,7 @@ int Run(const AdviseCommandOptions& options) {
   const Expected<void> written =
       WriteImage(DrawAdvice(*result, *sensors, proposals), options.picture_path);
   if (!written) return Refuse("advise", written.error());
-  Print("{}: the place from above and in the camera's image\n", options.picture_path);
+  Print("{}", WroteLine(options.picture_path, "the place from above and in the camera's image"));
   return kAnswered;
 }
 

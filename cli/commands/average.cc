@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/text/escape.h"
 #include "base/units.h"
 #include "base/version.h"
 #include "cli/commands/commands.h"
@@ -72,7 +73,7 @@ std::string Text(const RunningAverageAnalysis& analysis) {
   return Repeats(analysis) + "\n" + table.Plain() + "\n" +
          Spread("1 sigma of a scan", analysis.standard_deviation) +
          Spread("1 sigma of the mean", analysis.standard_error) +
-         fmt::format("{:<24}  {:.8f} m\n", "last RMSE in the log", analysis.last_rmse_m) +
+         fmt::format("{:<24}  {}\n", "last RMSE in the log", LengthText(analysis.last_rmse_m)) +
          "\nThe rotation in the log is not a mean: its newest scan has the weight one half. The "
          "spread\n"
          "is over the distinct scans, about x y z and along x y z; a repeated scan adds nothing.\n";
@@ -106,7 +107,7 @@ std::string AverageJson(const AverageOptions& options, const RunningAverageAnaly
       {"last_rmse_m", analysis.last_rmse_m},
       {"scans", std::move(scans)},
   };
-  return json.dump(2) + "\n";
+  return JsonText(json);
 }
 
 int Run(const AverageOptions& options) {

@@ -2,8 +2,6 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/recordings.h"
-#include "io/output/standard_output.h"
-#include "io/text/number_text.h"
 
 namespace sextant::cli {
 namespace {
@@ -36,7 +34,7 @@ int Run(const BagOptions& options) {
     const bool is_empty = files.error().code == ErrorCode::kMissingData;
     return Refuse("bag", files.error(), is_empty ? kNoAnswer : kWrongUse);
   }
-  Print("{}: {} files\n", Printable(options.extract_folder, 200), *files);
+  Print("{}", WroteLine(options.extract_folder, fmt::format("{} files", *files)));
   return kAnswered;
 }
 

@@ -183,7 +183,9 @@ int Run(const CalibrateCommandOptions& options) {
     Print("{}", text);
     return Refuse("calibrate", calibration->result.error(), kNoAnswer);
   }
-  text += fmt::format("\nThe result is in {}.\n", options.out_path);
+  if (!options.out_path.empty()) {
+    text += "\n" + WroteLine(options.out_path, "the result, for project, export and advise");
+  }
   return Deliver("calibrate", options.json_path, text,
                  FormatCalibrationResultJson(*calibration->result), kAnswered);
 }

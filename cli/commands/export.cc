@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/text/printable.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "io/export/export_transform.h"
@@ -86,7 +87,8 @@ int Run(const ExportCommandOptions& options) {
   if (const Expected<void> ok = WriteFileAtomically(options.out, *text); !ok) {
     return Refuse("export", ok.error());
   }
-  Print("{}: {} of {}\n", options.out, options.format, options.result_path);
+  Print("{}", WroteLine(options.out, fmt::format("{} of {}", options.format,
+                                                 Printable(options.result_path, 200))));
   return kAnswered;
 }
 

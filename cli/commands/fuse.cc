@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "base/text/printable.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/pose_file.h"
@@ -130,9 +131,10 @@ int Run(const FuseOptions& options) {
       !ok) {
     return Refuse("fuse", ok.error());
   }
-  Print("{}{}: {} points of {} clouds in the frame of {}\n",
-        Describe(options, clouds, last_from_cloud), options.out, fused.points.size(), clouds.size(),
-        options.clouds.back());
+  Print("{}{}", Describe(options, clouds, last_from_cloud),
+        WroteLine(options.out,
+                  fmt::format("{} points of {} clouds in the frame of {}", fused.points.size(),
+                              clouds.size(), Printable(options.clouds.back(), 200))));
   return kAnswered;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include <algorithm>
-
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "eval/extractors/detector_study.h"
@@ -30,13 +28,11 @@ void Declare(ListDetectorsOptions& options, Arguments& arguments) {
 std::string DescribeEntry(const TagDetectorEntry& entry, bool markdown) {
   TextTable table({"option", "default", "unit", "meaning"}, TextTable::Columns::kWords);
   for (const OptionDoc& doc : entry.options) {
-    // Choices have the form a|b, which a Markdown table would split into columns.
-    std::string unit = doc.unit;
-    std::ranges::replace(unit, '|', ' ');
-    table.AddRow({doc.name, doc.default_value, unit, doc.meaning});
+    table.AddRow({doc.name, doc.default_value, doc.unit, doc.meaning});
   }
   return fmt::format("{}{}: {}, as in {}\n\n{}\n", markdown ? "### " : "", entry.name,
-                     entry.summary, entry.example, markdown ? table.Markdown() : table.Plain());
+                     entry.summary, entry.example,
+                     markdown ? table.Markdown() : table.Plain(/*max_width=*/100));
 }
 
 int Run(const ListDetectorsOptions& options) {

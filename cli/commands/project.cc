@@ -185,7 +185,7 @@ int Run(const ProjectOptions& options) {
   if (const Expected<void> ok = WriteImage(canvas, options.out_path); !ok) {
     return Refuse("project", ok.error());
   }
-  Print("{}{}: written\n", text, options.out_path);
+  Print("{}{}", text, WroteLine(options.out_path, "the scan on its image"));
   if (drawn.in_view > 0) return kAnswered;
   return Refuse("project",
                 {ErrorCode::kInvalidInput,

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/experiment/reproduction/reproduce.h"
 
+#include <fmt/core.h>
+
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include "cli/commands/commands.h"
 #include "cli/output.h"
@@ -35,7 +39,22 @@ void Declare(ReproduceOptions& options, Arguments& arguments) {
                 {.shows_default = true, .range = {{0, 1024}}});
 }
 
+// The defaults are those of the project's folder.
+Expected<void> CheckInputs(const ReproduceOptions& options) {
+  std::error_code ignored;
+  for (const std::string& path : {options.claims, options.experiments}) {
+    if (std::filesystem::exists(path, ignored)) continue;
+    return MakeError(ErrorCode::kIo,
+                     fmt::format("there is no '{}': run it in the project's folder, which has "
+                                 "experiments/ and paper/claims.yaml, or name them with "
+                                 "--experiments and --claims",
+                                 path));
+  }
+  return {};
+}
+
 int Run(const ReproduceOptions& options) {
+  if (const Expected<void> ok = CheckInputs(options); !ok) return Refuse("reproduce", ok.error());
   std::unique_ptr<Progress> progress;
   std::string running;
   ReproduceSettings settings{.experiments = options.experiments,
@@ -62,8 +81,10 @@ int Run(const ReproduceOptions& options) {
   for (const std::string& why : reproduction->skipped) {
     PrintError("sextant reproduce: not run: {}\n", why);
   }
-  Print("{}\n{} claims in {:.0f} s; the page is {}\n", table.Plain(), reproduction->claims.size(),
-        reproduction->seconds, (settings.out / "REPRODUCTION.md").string());
+  Print("{}\n{}", table.Plain(),
+        WroteLine(settings.out / "REPRODUCTION.md",
+                  fmt::format("the verdicts on {} claims, after {:.0f} s",
+                              reproduction->claims.size(), reproduction->seconds)));
   return kAnswered;
 }
 

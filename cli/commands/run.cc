@@ -73,7 +73,7 @@ int Run(const RunOptions& all) {
   if (!outcome) return Refuse("run", outcome.error());
   PrintKept(*outcome, rows);
   if (whole) return WriteAll("run", options, *experiment, folder);
-  Print("written to {}; join the shards with sextant merge\n", rows.string());
+  Print("{}", WroteLine(rows, "rows of one shard; join the shards with sextant merge"));
   return kAnswered;
 }
 

@@ -153,7 +153,12 @@ int Run(const SimulateOptions& options) {
   if (const Expected<void> ok = WriteExtras(*scene, report->scans, options); !ok) {
     return Refuse("simulate", ok.error());
   }
-  PrintText(Describe(options, *scene, *report));
+  Print("{}",
+        WroteLine(options.out,
+                  fmt::format("scene {}, scans: {}, files written: {}, kept: {}; the truth is "
+                              "in truth.yaml{}",
+                              scene->name, options.scans, report->written, report->kept,
+                              options.bag ? ", scans and images also in session.bag" : "")));
   return kAnswered;
 }
 

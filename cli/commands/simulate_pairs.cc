@@ -51,8 +51,9 @@ int Run(const SimulatePairsOptions& options) {
   if (const Expected<void> ok = WriteFileAtomically(options.out, FormatProblemYaml(file)); !ok) {
     return Refuse("simulate pairs", ok.error());
   }
-  Print("{}: {} pairs of corners, {} of them displaced; the truth is in the file\n", options.out,
-        session->problem.pairs_3d3d.size(), simulation.outliers);
+  Print("{}", WroteLine(options.out,
+                        fmt::format("{} pairs of corners, {} of them displaced, and the truth",
+                                    session->problem.pairs_3d3d.size(), simulation.outliers)));
   return kAnswered;
 }
 

@@ -113,11 +113,12 @@ std::string SummaryOf(const ScanMarks& marks) {
                      Counted(edges, "edge"), Counted(marks.corners.size(), "corner"));
 }
 
+Expected<void> CheckPicture(const std::string& path) {
+  if (path.ends_with(".png")) return {};
+  return MakeError(ErrorCode::kInvalidOption, path + ": expected a name that ends in .png");
+}
+
 int Render(const std::string& path, const MarkController& controller, MarkCanvas& canvas) {
-  if (!path.ends_with(".png")) {
-    return Refuse("mark",
-                  {ErrorCode::kInvalidOption, path + ": expected a name that ends in .png"});
-  }
   const Expected<void> ok = WriteImage(canvas.Draw(controller), path);
   return ok ? kAnswered : Refuse("mark", ok.error());
 }
@@ -125,7 +126,8 @@ int Render(const std::string& path, const MarkController& controller, MarkCanvas
 int Run(const MarkOptions& options) {
   const bool renders = !options.render_path.empty();
   if (const Expected<void> ok = CheckDisplay(); !renders && !ok) return Refuse("mark", ok.error());
-  if (const Expected<void> ok = renders ? Expected<void>() : ClaimMarks(options); !ok) {
+  if (const Expected<void> ok = renders ? CheckPicture(options.render_path) : ClaimMarks(options);
+      !ok) {
     return Refuse("mark", ok.error());
   }
   Expected<MarkInput> input = LoadMarkInput(options);
@@ -154,7 +156,7 @@ int Run(const MarkOptions& options) {
     PrintError("sextant mark: nothing marked, nothing written\n");
     return kNoAnswer;
   }
-  Print("{}: {}\n", options.out_path, summary);
+  PrintText(WroteLine(options.out_path, summary));
   return kAnswered;
 }
 

@@ -84,7 +84,9 @@ Expected<void> Ranks::Agree(const Expected<void>& own) const {
     if (texts[i].empty()) continue;
     failures.push_back(fmt::format("rank {} of {} on {}: {}", i, count_, machines_[i], texts[i]));
   }
-  return MakeError(error_code, fmt::format("{}", fmt::join(failures, "\n")));
+  Error error(error_code, failures.front());
+  for (std::size_t i = 1; i < failures.size(); ++i) error.AddLine(failures[i]);
+  return tl::unexpected<Error>(std::move(error));
 }
 
 std::vector<std::uint64_t> Ranks::FromFirst(std::vector<std::uint64_t> words) const {

@@ -6,32 +6,86 @@
 #include <algorithm>
 #include <numeric>
 
-namespace sextant {
+#include "base/text/escape.h"
+#include "base/text/printable.h"
+#include "base/units.h"
 
-std::vector<std::size_t> TextTable::Widths() const {
+namespace sextant {
+namespace {
+
+constexpr std::size_t kGap = 2;
+
+// The width of a line of columns.
+std::size_t SumOf(const std::vector<std::size_t>& widths) {
+  return std::accumulate(widths.begin(), widths.end(), kGap * (widths.size() - 1));
+}
+
+// The lines of a cell: broken at blanks, after the bars between choices, and where neither is near.
+std::vector<std::string> WrapText(std::string_view text, std::size_t width) {
+  std::vector<std::string> lines;
+  while (text.size() > width) {
+    // npos + 1 is 0, as for a break at the beginning.
+    const std::size_t after_blank = text.substr(0, width + 1).rfind(' ') + 1;
+    const std::size_t after_bar = text.substr(0, width).rfind('|') + 1;
+    std::size_t end = std::max(after_blank, after_bar);
+    if (end == 0) end = width;
+    lines.emplace_back(text.substr(0, end == after_blank ? end - 1 : end));
+    text.remove_prefix(end);
+  }
+  lines.emplace_back(text);
+  return lines;
+}
+
+}  // namespace
+
+void TextTable::AddRow(std::vector<std::string> cells) {
+  for (std::string& cell : cells) cell = PrintableLine(std::move(cell));
+  rows_.push_back(std::move(cells));
+}
+
+std::vector<std::size_t> TextTable::Widths(std::size_t max_width) const {
   std::vector<std::size_t> widths(rows_.front().size(), 0);
   for (const auto& row : rows_) {
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
   }
+  // Narrower columns would be harder to read than long lines.
+  constexpr std::size_t kMinWrapped = 16;
+  while (SumOf(widths) > max_width) {
+    const auto widest = std::max_element(widths.begin(), widths.end());
+    if (*widest <= kMinWrapped) break;
+    --*widest;
+  }
   return widths;
 }
 
-std::string TextTable::Plain() const {
-  const std::vector<std::size_t> widths = Widths();
+std::string TextTable::PlainRow(const std::vector<std::string>& row,
+                                const std::vector<std::size_t>& widths) const {
+  std::vector<std::vector<std::string>> cells;
+  std::size_t height = 0;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    height = std::max(height, cells.emplace_back(WrapText(row[i], widths[i])).size());
+  }
   std::string text;
-  for (const auto& row : rows_) {
+  for (std::size_t k = 0; k < height; ++k) {
     std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (i > 0) line += "  ";
-      line += IsFlushLeft(i) ? fmt::format("{:<{}}", row[i], widths[i])
-                             : fmt::format("{:>{}}", row[i], widths[i]);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const std::string cell = k < cells[i].size() ? cells[i][k] : std::string();
+      if (i > 0) line += std::string(kGap, ' ');
+      line += IsFlushLeft(i) ? fmt::format("{:<{}}", cell, widths[i])
+                             : fmt::format("{:>{}}", cell, widths[i]);
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
-    if (&row == &rows_.front()) {
-      const std::size_t gaps = 2 * (widths.size() - 1);
-      text += std::string(std::accumulate(widths.begin(), widths.end(), gaps), '-') + "\n";
-    }
+  }
+  return text;
+}
+
+std::string TextTable::Plain(std::size_t max_width) const {
+  const std::vector<std::size_t> widths = Widths(max_width);
+  std::string text;
+  for (const auto& row : rows_) {
+    text += PlainRow(row, widths);
+    if (&row == &rows_.front()) text += std::string(SumOf(widths), '-') + "\n";
   }
   return text;
 }
@@ -39,7 +93,9 @@ std::string TextTable::Plain() const {
 std::string TextTable::Markdown() const {
   std::string text;
   for (const auto& row : rows_) {
-    text += fmt::format("| {} |\n", fmt::join(row, " | "));
+    std::vector<std::string> cells;
+    for (const std::string& cell : row) cells.push_back(MarkdownText(cell));
+    text += fmt::format("| {} |\n", fmt::join(cells, " | "));
     if (&row != &rows_.front()) continue;
     for (std::size_t i = 0; i < row.size(); ++i) text += IsFlushLeft(i) ? "|:--" : "|--:";
     text += "|\n";
@@ -60,13 +116,9 @@ std::string TextTable::Latex() const {
   return text + "\\bottomrule\n\\end{tabular}\n";
 }
 
-std::string LatexText(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (std::string_view("_%&#$").find(c) != std::string_view::npos) escaped += '\\';
-    escaped += c;
-  }
-  return escaped;
+std::string LengthText(double metres) {
+  return metres < 1.0 ? fmt::format("{:.5f} mm", metres * kMmPerM)
+                      : fmt::format("{:.8f} m", metres);
 }
 
 std::string Fixed(double value, int decimals) {

@@ -7,7 +7,8 @@
 
 namespace sextant {
 
-/// A table of text cells with a rule under the header.
+/// A table of text cells with a rule under the header. Cells may be any text of others: each output
+/// has them on one line, and escaped as its format requires.
 class TextTable {
  public:
   enum class Columns {
@@ -16,31 +17,35 @@ class TextTable {
   };
 
   explicit TextTable(std::vector<std::string> header, Columns columns = Columns::kNumbers)
-      : rows_{std::move(header)}, columns_(columns) {}
+      : columns_(columns) {
+    AddRow(std::move(header));
+  }
 
   /// Appends a row, which must have as many cells as the header.
-  void AddRow(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+  void AddRow(std::vector<std::string> cells);
 
-  /// Text for a terminal; every line ends with a line feed and has no trailing blanks.
-  std::string Plain() const;
+  /// Text for a terminal; every line ends with a line feed and has no trailing blanks. Where the
+  /// lines would be longer than `max_width` characters, the widest columns are wrapped.
+  std::string Plain(std::size_t max_width = std::string::npos) const;
 
-  /// A Markdown table (GitHub's dialect).
+  /// A Markdown table (GitHub's dialect); code in `backquotes` stays code.
   std::string Markdown() const;
 
   /// A LaTeX tabular with the rules of the package booktabs.
   std::string Latex() const;
 
  private:
-  std::vector<std::size_t> Widths() const;
+  std::vector<std::size_t> Widths(std::size_t max_width) const;
+  std::string PlainRow(const std::vector<std::string>& row,
+                       const std::vector<std::size_t>& widths) const;
   bool IsFlushLeft(std::size_t column) const { return column == 0 || columns_ == Columns::kWords; }
 
   std::vector<std::vector<std::string>> rows_;
   Columns columns_;
 };
 
-/// The text with LaTeX's special characters _ % & # $ escaped. Backslashes, braces, tildes and
-/// carets are not handled, as our texts have none.
-std::string LatexText(std::string_view text);
+/// The length to 1e-8 m: "8.21334 mm" below 1 m, "1.20000000 m" from there on.
+std::string LengthText(double metres);
 
 /// The number with a fixed number of decimals, without a minus sign if it rounds to zero.
 std::string Fixed(double value, int decimals);

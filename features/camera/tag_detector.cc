@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/camera/tag_detector.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <opencv2/core.hpp>
@@ -81,8 +81,13 @@ Expected<TagDetectorPtr> MakeTagDetector(std::string_view spec) {
     SEXTANT_RETURN_IF_ERROR(CheckOptions(entry, node.options));
     return entry.make(FormatSpec(node), node.options);
   }
-  return MakeError(ErrorCode::kUnknownName, fmt::format("unknown detector '{}'; {}", node.name,
-                                                        SuggestName(node.name, known)));
+  const Expected<std::string> of_family = DetectorSpecFor(node.name);
+  const std::string nearest = of_family ? *of_family : NearestName(node.name, known);
+  return MakeError(
+      ErrorCode::kUnknownName,
+      fmt::format("unknown detector '{}'; {}expected {}, with options as in sextant list detectors",
+                  node.name, nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest),
+                  fmt::join(known, ", ")));
 }
 
 Expected<std::string> DetectorSpecFor(std::string_view family) {

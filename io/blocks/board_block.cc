@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "base/text/escape.h"
 #include "base/units.h"
 #include "geometry/board_check.h"
 #include "io/text/degrees.h"

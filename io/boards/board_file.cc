@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <initializer_list>
 #include <numbers>
 
 #include "geometry/board_check.h"
@@ -24,14 +26,31 @@ Expected<std::vector<Board>> ParseMarkerBoards(std::string_view text, const std:
   return AtPlace(BoardsWithTags(markers), {.file = file});
 }
 
+bool HasAny(const YamlNode& map, std::initializer_list<std::string_view> keys) {
+  return std::ranges::any_of(keys, [&](std::string_view key) { return map.Find(key) != nullptr; });
+}
+
+// A file of one board alone; its wrong keys are then compared with those of a board.
+bool IsSingleBoard(const YamlNode& root) {
+  return HasAny(root, {"top_right_m", "right_bottom_m", "thickness_m", "tags", "checker"});
+}
+
+bool IsCamera(const YamlNode& root) {
+  return HasAny(root, {"camera_matrix", "distortion_model", "distortion_coefficients",
+                       "projection_matrix", "fx_px", "image_width", "K"});
+}
+
 Expected<std::vector<Board>> ParseBoardYaml(std::string_view text, const std::string& file) {
   static const std::vector<std::string> kKeys = {"boards"};
   SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
   YamlFields in(file);
   std::vector<const YamlNode*> nodes;
   const YamlNode* list = root.Find("boards");
-  if (list == nullptr && root.Find("top_right_m") != nullptr) {
+  if (list == nullptr && IsSingleBoard(root)) {
     nodes.push_back(&root);
+  } else if (IsCamera(root)) {
+    in.Fail(root.line, {},
+            "expected boards, with the key 'boards', but this is a file of a camera's intrinsics");
   } else if (in.IsMap(root, "boards", kKeys) &&
              in.IsSequence(in.Require(root, "boards"), "boards")) {
     for (const YamlNode& item : list->items) nodes.push_back(&item);

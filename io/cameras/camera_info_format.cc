@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <span>
 
+#include "base/text/escape.h"
 #include "io/cameras/camera_file.h"
 #include "io/cameras/camera_parts.h"
 #include "io/text/yaml_text.h"
@@ -27,7 +28,7 @@ std::string FormatCameraInfo(const Camera& camera, const std::string& name) {
   YamlText out;
   out.Line("image_width: {}", camera.width_px);
   out.Line("image_height: {}", camera.height_px);
-  out.Line("camera_name: {}", name);
+  out.Line("camera_name: {}", YamlQuoted(name));
   WriteMatrix(out, "camera_matrix", 3, 3, k);
   out.Line("distortion_model: {}", distortion.model);
   WriteMatrix(out, "distortion_coefficients", 1, static_cast<int>(distortion.coefficients),

@@ -71,7 +71,7 @@ Expected<Camera> ParseCameraIni(std::string_view text, const std::string& file) 
       ReadRows(in, 3, 4, heading);
     } else {
       in.Fail(ErrorCode::kParse, fmt::format("unknown heading {}; {}", Quoted(heading),
-                                             SuggestName(heading.substr(0, 60), kHeadings)));
+                                             SuggestName(heading, kHeadings)));
     }
   }
   if (in.ok() && matrix.empty()) in.Require("the heading camera matrix");

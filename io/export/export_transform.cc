@@ -4,25 +4,24 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "base/nearest_name.h"
+#include "base/text/file_name.h"
 #include "io/export/export_texts.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
 namespace {
 
+// Frames are the only text of others in these formats: XML, where "--" would end the comment, YAML,
+// Python and lines of arguments. No such name needs an escape in any of them.
 Expected<void> CheckFrame(const std::string& name, const char* whose) {
-  const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-           std::string_view("_-./").find(c) != std::string_view::npos;
-  });
-  if (plain && !name.empty()) return {};
-  return MakeError(
-      ErrorCode::kInvalidOption,
-      fmt::format("the {}'s frame is named {}: expected letters, digits, _, -, . and /", whose,
-                  Quoted(name)));
+  std::string without_slashes = name.starts_with('/') ? name.substr(1) : name;
+  std::ranges::replace(without_slashes, '/', '_');
+  if (IsFileName(without_slashes) && name.find("--") == std::string::npos) return {};
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("the {}'s frame is named {}: expected {}, no \"--\", and slashes",
+                               whose, Quoted(name), kFileNameRule));
 }
 
 Expected<void> CheckFrames(const ExportOptions& options) {
@@ -84,8 +83,8 @@ Expected<std::string> ExportTransform(std::string_view format, const Calibration
   }
   std::vector<std::string> known;
   for (const ExportFormat& one : ExportFormats()) known.emplace_back(one.name);
-  return MakeError(ErrorCode::kUnknownName, fmt::format("no format {}; {}", Quoted(format),
-                                                        SuggestName(format.substr(0, 60), known)));
+  return MakeError(ErrorCode::kUnknownName,
+                   fmt::format("no format {}; {}", Quoted(format), SuggestName(format, known)));
 }
 
 }  // namespace sextant

@@ -8,7 +8,10 @@
 #include <csignal>
 #include <cstdio>
 #include <mutex>
+#include <string>
 #include <system_error>
+
+#include "base/text/printable.h"
 
 namespace sextant {
 namespace {
@@ -37,14 +40,17 @@ void PrepareStandardStreams() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-void PrintText(std::string_view text) {
+void PrintText(std::string_view foreign) {
+  const std::string text = PrintableLines(std::string(foreign));
   const std::scoped_lock lock(g_printing);
   if (g_failure != 0) return;
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) NoteFailure();
 }
 
-void PrintErrorText(std::string_view text) {
+void PrintErrorText(std::string_view text) { DrawOnTerminal(PrintableLines(std::string(text))); }
+
+void DrawOnTerminal(std::string_view text) {
   const std::size_t ignored = std::fwrite(text.data(), 1, text.size(), stderr);
   static_cast<void>(ignored);
 }

@@ -16,8 +16,12 @@ namespace sextant {
 /// opened, and a closed pipe is an error of writing instead of the end of the process.
 void PrepareStandardStreams();
 
+/// Both print PrintableLines of the text: names in it may come from anywhere.
 void PrintText(std::string_view text);
 void PrintErrorText(std::string_view text);
+
+/// The text on standard error as it is, with its control sequences: for progress bars.
+void DrawOnTerminal(std::string_view text);
 
 template <class... Values>
 void Print(fmt::format_string<Values...> format, Values&&... values) {

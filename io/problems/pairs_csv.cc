@@ -69,8 +69,8 @@ class Columns {
   void Add(std::string name) {
     const Names& known = KnownColumns();
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      in_.Fail(ErrorCode::kParse, fmt::format("unknown column {}; {}", Quoted(name),
-                                              SuggestName(name.substr(0, 60), known)));
+      in_.Fail(ErrorCode::kParse,
+               fmt::format("unknown column {}; {}", Quoted(name), SuggestName(name, known)));
     }
     if (Has(name)) {
       in_.Fail(ErrorCode::kParse, fmt::format("the column {} appears twice", Quoted(name)));

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "base/text/escape.h"
 #include "io/blocks/board_block.h"
 #include "io/blocks/board_view_block.h"
 #include "io/blocks/camera_block.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "io/blocks/board_block.h"
 #include "io/blocks/board_view_block.h"
 #include "io/blocks/camera_block.h"
@@ -114,7 +116,10 @@ Expected<ProblemFile> ParseProblemYaml(std::string_view text, const std::string&
 
   ProblemFile read;
   CalibrationProblem& problem = read.problem;
-  if (root.Find("comment") != nullptr) read.comment = in.TextAt(root, "comment");
+  if (root.Find("comment") != nullptr) {
+    read.comment = in.ParagraphAt(root, "comment");
+    std::ranges::replace(read.comment, '\n', ' ');
+  }
   if (const YamlNode* node = root.Find("camera")) problem.camera = ReadCameraBlock(in, *node);
   if (const YamlNode* node = root.Find("boards")) ReadProblemBoards(in, *node, problem.boards);
   if (const YamlNode* node = root.Find("initial_cam_from_lidar")) {

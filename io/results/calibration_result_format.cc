@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/text/escape.h"
 #include "io/blocks/json_blocks.h"
 #include "io/results/calibration_result.h"
 #include "io/text/degrees.h"
@@ -163,7 +164,7 @@ std::string FormatCalibrationResult(const CalibrationResult& result) {
 
 std::string FormatCalibrationResultJson(const CalibrationResult& result) {
   // A path may hold bytes that are not UTF-8.
-  return ResultJson(result).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(ResultJson(result));
 }
 
 }  // namespace sextant

@@ -81,10 +81,7 @@ std::vector<std::string> ReadTexts(YamlFields& in, const YamlNode& map, std::str
   std::vector<std::string> texts;
   const YamlNode* list = Present(map, key);
   if (list == nullptr || !in.IsSequence(*list, key)) return texts;
-  for (const YamlNode& node : list->items) {
-    if (node.kind != YamlNode::Kind::kText) in.Fail(node.line, key, "expected text");
-    texts.push_back(node.text);
-  }
+  for (const YamlNode& node : list->items) texts.push_back(in.Text(node, key));
   return texts;
 }
 
@@ -284,6 +281,18 @@ std::uint64_t ReadSeed(YamlFields& in, const YamlNode& root) {
   return seed;
 }
 
+// What the file is instead of a result.
+std::string DescribeOther(const YamlNode& root) {
+  const auto has = [&root](std::string_view key) { return root.Find(key) != nullptr; };
+  if (has("pairs") || has("images") || has("bag")) return "a session file";
+  if (has("sextant_problem")) return "a problem file, for sextant solve and compare";
+  if (has("sensors") || (has("boards") && has("cameras"))) return "a scene or truth file";
+  if (has("boards") || has("top_right_m")) return "a board file";
+  if (has("camera_matrix") || has("fx_px")) return "a file of a camera's intrinsics";
+  if (root.keys.empty()) return "an empty map";
+  return "a file that begins with the key " + Quoted(root.keys.front());
+}
+
 void ReadResultHeader(YamlFields& in, const YamlNode& root) {
   static const Keys kKeys = {"sextant_result", "sextant",       "solver",
                              "seed",           "configuration", "configuration_hash",
@@ -293,8 +302,9 @@ void ReadResultHeader(YamlFields& in, const YamlNode& root) {
                              "boards",         "views"};
   if (root.kind == YamlNode::Kind::kMap && root.Find("sextant_result") == nullptr) {
     in.Fail(root.line, {},
-            "expected a result of sextant calibrate, with the key sextant_result: 1; is this "
-            "another kind of YAML or JSON?");
+            fmt::format("expected result.yaml of sextant calibrate, or its JSON, "
+                        "with the key sextant_result; this is {}",
+                        DescribeOther(root)));
   }
   if (!in.IsMap(root, "sextant_result", kKeys)) return;
   in.IntegerAt(root, "sextant_result", 1, 1);

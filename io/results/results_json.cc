@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/text/escape.h"
 #include "io/blocks/camera_block.h"
 #include "io/blocks/json_blocks.h"
 #include "io/text/number_text.h"
@@ -293,7 +294,7 @@ std::string FormatResults(const ResultFile& results) {
   json["results"] = Json::array();
   for (const SolverResult& result : results.results) json["results"].push_back(Result(result));
   // A path may hold bytes that are not UTF-8.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 Expected<ResultFile> ReadResults(const std::filesystem::path& path) {

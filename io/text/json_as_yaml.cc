@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/text/escape.h"
 #include "io/text/yaml_text.h"
 
 namespace sextant {

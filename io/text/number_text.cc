@@ -51,28 +51,6 @@ std::string ToString(const Place& place) {
   return text;
 }
 
-std::string Printable(std::string_view text, std::size_t max_bytes) {
-  std::string printable;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    // Bytes above 0x7f may belong to a name in UTF-8; control bytes could control a terminal.
-    std::string piece =
-        byte < 0x20 || byte == 0x7f ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
-    if (printable.size() + piece.size() > max_bytes) return printable + "...";
-    printable += piece;
-  }
-  return printable;
-}
-
-std::string Quoted(std::string_view text) {
-  std::string ascii;
-  for (const char c : text.substr(0, 41)) {
-    const auto byte = static_cast<unsigned char>(c);
-    ascii += byte > 0x7f ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
-  }
-  return fmt::format("'{}'", Printable(ascii, 40));
-}
-
 Expected<double> ParseFinite(std::string_view text, const Place& place) {
   double value = 0.0;
   const std::errc error = ParseWhole(text, value);
@@ -94,9 +72,10 @@ Expected<std::int64_t> ParseInteger(std::string_view text, std::int64_t low, std
                                     const Place& place) {
   std::int64_t value = 0;
   if (ParseWhole(text, value) != std::errc() || value < low || value > high) {
-    return MakeError(ErrorCode::kParse,
-                     fmt::format("{}: expected a whole number from {} to {}, got {}",
-                                 ToString(place), low, high, Quoted(text)));
+    const std::string expected =
+        low == high ? std::to_string(low) : fmt::format("a whole number from {} to {}", low, high);
+    return MakeError(ErrorCode::kParse, fmt::format("{}: expected {}, got {}", ToString(place),
+                                                    expected, Quoted(text)));
   }
   return value;
 }

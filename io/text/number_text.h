@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/text/printable.h"  // IWYU pragma: export
 
 namespace sextant {
 
@@ -26,12 +27,6 @@ Expected<T> AtPlace(Expected<T> value, const Place& place) {
   if (!value) value.error().message.insert(0, ToString(place) + ": ");
   return value;
 }
-
-/// The text in single quotes on one line: cut to 40 bytes, unprintable bytes as \xNN.
-std::string Quoted(std::string_view text);
-
-/// The text with control bytes as \xNN, cut to `max_bytes` bytes.
-std::string Printable(std::string_view text, std::size_t max_bytes);
 
 /// The whole text as a number, independent of the locale. Errors: kParse; kNonFinite.
 Expected<double> ParseFinite(std::string_view text, const Place& place);

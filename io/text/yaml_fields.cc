@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "base/nearest_name.h"
+#include "base/text/code_point.h"
+#include "base/text/file_name.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
@@ -50,7 +52,7 @@ bool YamlFields::IsMap(const YamlNode& node, std::string_view what,
     const std::string& key = node.keys[i];
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     Fail(node.items[i].line, what,
-         fmt::format("unknown key {}; {}", Quoted(key), SuggestName(key.substr(0, 60), known)));
+         fmt::format("unknown key {}; {}", Quoted(key), SuggestName(key, known)));
     return false;
   }
   return true;
@@ -110,12 +112,29 @@ int YamlFields::IntegerAt(const YamlNode& map, std::string_view key, int low, in
   return ok() && map.Find(key) != nullptr ? IntegerAt(map, key, low, high) : default_value;
 }
 
-std::string YamlFields::TextAt(const YamlNode& map, std::string_view key) {
-  const YamlNode& node = Require(map, key);
-  if (ok() && node.kind != YamlNode::Kind::kText) {
-    Fail(node.line, key, fmt::format("expected text, got {}", KindName(node)));
+std::string YamlFields::Text(const YamlNode& node, std::string_view name) {
+  if (!ok()) return {};
+  if (node.kind != YamlNode::Kind::kText) {
+    Fail(node.line, name, fmt::format("expected text, got {}", KindName(node)));
+    return {};
   }
-  return node.text;
+  if (IsPlainLine(node.text)) return node.text;
+  Fail(node.line, name, fmt::format("expected text of one line, got {}", Quoted(node.text)));
+  return {};
+}
+
+std::string YamlFields::ParagraphAt(const YamlNode& map, std::string_view key) {
+  const YamlNode& node = Require(map, key);
+  if (node.kind != YamlNode::Kind::kText) return Text(node, key);
+  return ok() ? node.text : std::string();
+}
+
+std::string YamlFields::FileName(const YamlNode& node, std::string_view name) {
+  std::string text = Text(node, name);
+  if (!ok() || IsFileName(text)) return text;
+  Fail(node.line, name,
+       fmt::format("expected a name for a file: {}; got {}", kFileNameRule, Quoted(text)));
+  return {};
 }
 
 void YamlFields::Reals(const YamlNode& node, std::string_view name, std::span<double> values) {

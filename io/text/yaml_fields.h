@@ -36,7 +36,15 @@ class YamlFields {
   double NonNegativeAt(const YamlNode& map, std::string_view key, double default_value);
   int IntegerAt(const YamlNode& map, std::string_view key, int low, int high);
   int IntegerAt(const YamlNode& map, std::string_view key, int low, int high, int default_value);
-  std::string TextAt(const YamlNode& map, std::string_view key);
+  /// A text of one line.
+  std::string Text(const YamlNode& node, std::string_view name);
+  std::string TextAt(const YamlNode& map, std::string_view key) {
+    return Text(Require(map, key), key);
+  }
+  /// A text that may have several lines.
+  std::string ParagraphAt(const YamlNode& map, std::string_view key);
+  /// A text that becomes the name of a file or folder (IsFileName).
+  std::string FileName(const YamlNode& node, std::string_view name);
 
   /// A sequence of exactly values.size() numbers.
   void Reals(const YamlNode& node, std::string_view name, std::span<double> values);

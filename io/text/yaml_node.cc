@@ -2,8 +2,6 @@
 #include "io/text/yaml_node.h"
 
 #include <fmt/core.h>
-#include <yaml-cpp/emitter.h>
-#include <yaml-cpp/emittermanip.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
@@ -11,6 +9,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "base/text/code_point.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
@@ -54,6 +53,7 @@ class TreeBuilder final : public YAML::EventHandler {
   }
 
   void AddKey(const YAML::Mark& mark, YamlNode& map, const std::string& key) {
+    if (!IsPlainLine(key)) Refuse(mark, "expected a key of one line, got " + Quoted(key));
     if (std::find(map.keys.begin(), map.keys.end(), key) != map.keys.end()) {
       Refuse(mark, "the key " + Quoted(key) + " appears twice");
     }
@@ -62,7 +62,19 @@ class TreeBuilder final : public YAML::EventHandler {
     map.keys.push_back(key);
   }
 
+  // Texts of several lines may be meant; YamlFields refuses them where one line is expected.
+  void RefuseControls(const YAML::Mark& mark, const std::string& text) const {
+    std::string line = text;
+    std::erase(line, '\n');
+    if (IsPlainLine(line)) return;
+    const bool has_key = !open_.empty() && !open_.back()->keys.empty();
+    Refuse(mark, fmt::format("{}control characters are not allowed in a text, got {}",
+                             has_key ? Printable(open_.back()->keys.back(), 60) + ": " : "",
+                             Quoted(text)));
+  }
+
   YamlNode* Add(const YAML::Mark& mark, YamlNode::Kind kind, const std::string& text) {
+    RefuseControls(mark, text);
     YamlNode* node = &root_;
     if (!open_.empty()) {
       // Only the last item of a node is ever open, so its address stays valid until it is closed.
@@ -96,12 +108,6 @@ class TreeBuilder final : public YAML::EventHandler {
 const YamlNode* YamlNode::Find(std::string_view key) const {
   const auto found = std::find(keys.begin(), keys.end(), key);
   return found == keys.end() ? nullptr : &items[static_cast<std::size_t>(found - keys.begin())];
-}
-
-std::string YamlQuoted(const std::string& text) {
-  YAML::Emitter emitter;
-  emitter << YAML::DoubleQuoted << text;
-  return emitter.c_str();
 }
 
 Expected<YamlNode> ParseYaml(const std::string& text, const std::string& file) {

@@ -13,7 +13,8 @@ namespace sextant {
 ///
 /// A deliberate subset of YAML, so that reading a hostile file costs no more than its size: no
 /// aliases (a few lines of them can expand to billions of values), at most kMaxYamlDepth levels,
-/// keys that are plain text and distinct, one document.
+/// keys that are plain text and distinct, one document. No text has control characters (IsControl)
+/// but line feeds.
 struct YamlNode {
   enum class Kind { kNull, kText, kSequence, kMap };
 
@@ -34,8 +35,5 @@ inline constexpr std::size_t kMaxYamlBytes = std::size_t{64} << 20;
 
 /// Error: kParse, with file and line.
 Expected<YamlNode> ParseYaml(const std::string& text, const std::string& file);
-
-/// The text as a YAML scalar in double quotes, special characters escaped.
-std::string YamlQuoted(const std::string& text);
 
 }  // namespace sextant

@@ -109,7 +109,7 @@ void ReadCamera(YamlFields& in, const YamlNode& node, std::vector<SceneCamera>& 
       "name", "model", "intrinsics", "assumed_intrinsics", "pose", "stereo_baseline_m"};
   if (!in.IsMap(node, "camera", kKeys)) return;
   SceneCamera camera;
-  camera.name = NameAt(in, node, camera.name);
+  if (const YamlNode* name = node.Find("name")) camera.name = in.FileName(*name, "name");
   const YamlNode* intrinsics = node.Find("intrinsics");
   if ((node.Find("model") != nullptr) == (intrinsics != nullptr)) {
     in.Fail(node.line, "camera", "expected either model or intrinsics");

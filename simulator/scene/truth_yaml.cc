@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/scene/truth_yaml.h"
 
+#include "base/text/escape.h"
 #include "io/blocks/camera_block.h"
 #include "io/text/yaml_text.h"
 #include "simulator/scene/camera_model.h"

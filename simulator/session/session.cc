@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/nearest_name.h"
+#include "base/text/escape.h"
 #include "base/version.h"
 #include "io/boards/board_file.h"
 #include "io/cameras/camera_file.h"

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/text/file_name.h"
 #include "features/camera/tags/tag_pattern.h"
 #include "geometry/board_check.h"
 #include "simulator/lidar/lidar_model.h"
@@ -96,12 +97,8 @@ class SceneCheck {
   void CheckCamera(const SceneCamera& camera) {
     const std::string what = fmt::format("camera '{}'", camera.name);
     RequirePose(camera.world_from_cam, what);
-    const bool is_name =
-        !camera.name.empty() && std::all_of(camera.name.begin(), camera.name.end(), [](char c) {
-          return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                 c == '_' || c == '-';
-        });
-    Require(is_name, what, "its name is used in file names: expected letters, digits, _ and -");
+    Require(IsFileName(camera.name), what,
+            fmt::format("its name is used in file names: expected {}", kFileNameRule));
     const auto same = std::count_if(scene_.cameras.begin(), scene_.cameras.end(),
                                     [&](const SceneCamera& c) { return c.name == camera.name; });
     Require(same == 1, what, "another camera has the same name");

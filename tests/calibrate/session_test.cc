@@ -108,6 +108,10 @@ TEST_F(SessionFiles, WhatIsWrongIsSaidWithItsLine) {
       {"sextant_session: 1\nbag: a.bag\nimages: a*.png\nclouds: b*.pcd\n", "expected one of"},
       {"sextant_session: 1\npairs:\n  - {image: a.png}\n", "cloud"},
       {"sextant_session: 2\nbag: a.bag\n", "sextant_session"},
+      {"4\n1 2 3\n", "run 'sextant solve' with it"},
+      {"sextant_problem: 1\n", "run 'sextant solve' with it"},
+      {"sextant_session: 1\npairs:\n  - {name: \"a\\nb\", image: a, cloud: b}\n",
+       "s.yaml:3: name: expected text of one line"},
   };
   for (const auto& [text, expected] : cases) {
     const Expected<Session> session = ParseSession(text, "s.yaml");

@@ -173,6 +173,21 @@ TEST(Parse, RefusesValuesThatTheRulesForbid) {
   EXPECT_THAT(ErrorOf({"all", "a", "--unknown"}), HasSubstr("--unknown"));
 }
 
+TEST(Parse, SuggestsTheOptionThatIsMeant) {
+  EXPECT_EQ(ErrorOf({"all", "a.txt", "--trails", "3"}),
+            "sextant all has no option '--trails'; did you mean --trials? Or see 'sextant all "
+            "--help'\n");
+  EXPECT_EQ(ErrorOf({"all", "--sed=3"}),
+            "sextant all has no option '--sed'; did you mean --seed? Or see 'sextant all --help'\n")
+      << "FILE is missing too";
+  EXPECT_EQ(ErrorOf({"list", "lidars", "--nothing-like-it"}),
+            "sextant list lidars has no option '--nothing-like-it'; see 'sextant list lidars "
+            "--help'\n");
+  EXPECT_EQ(ErrorOf({"all", "a.txt", "b.txt"}),
+            "sextant all: unexpected argument 'b.txt'; see 'sextant all --help'\n");
+  EXPECT_THAT(ErrorOf({"all", "a.txt", "--\x1b[31m"}), HasSubstr("'--\\x1b[31m'"));
+}
+
 TEST(Parse, RunsTheSubcommandThatIsNamed) {
   EXPECT_EQ(RunLine({"simulate", "a.txt"}), 5);
   EXPECT_EQ(RunLine({"simulate", "pairs"}), 6);

@@ -76,6 +76,19 @@ TEST(Cli, HelpTeachesEveryCommand) {
   EXPECT_THAT(RunSextant("--version").out, testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+\n"));
 }
 
+TEST(Cli, WrongUseOfAFileSaysWhatWasExpected) {
+  const std::string points = TestPath("points.txt");
+  WriteText(points, "1\n1 2 3\n1 2 3\n");
+  EXPECT_THAT(RunSextant("calibrate " + points).err, HasSubstr("run 'sextant solve' with it"));
+  EXPECT_THAT(RunSextant("average " + points).err, Not(HasSubstr("from 1 to 1")));
+  const ProgramRun elsewhere =
+      test::RunProgram("cd " + TestFolder().string() + " && " SEXTANT_BINARY, "reproduce --quick");
+  EXPECT_EQ(elsewhere.exit_code, 2);
+  EXPECT_THAT(elsewhere.err, HasSubstr("run it in the project's folder"));
+  const ProgramRun mark = RunSextant("mark --cloud " + points + " --render /nowhere/a.png");
+  EXPECT_THAT(mark.err, HasSubstr("cannot write '/nowhere/a.png'"));
+}
+
 TEST(Cli, WrongUsageEndsInTwo) {
   EXPECT_EQ(RunSextant("").exit_code, 2);
   EXPECT_EQ(RunSextant("slove").exit_code, 2);
@@ -255,6 +268,10 @@ TEST(Cli, CatalogueDescribesEachSolver) {
   EXPECT_THAT(RunSextant("list solvers ransac").out,
               AllOf(HasSubstr("sample_size"), HasSubstr("default"), HasSubstr("reference")));
   EXPECT_EQ(RunSextant("list solvers ransax").exit_code, 2);
+  const ProgramRun nothing = RunSextant("list solvers nope");
+  EXPECT_THAT(nothing.err, AllOf(HasSubstr("known are "), Not(HasSubstr("did you mean"))));
+  std::istringstream lines(RunSextant("list detectors --trials 0").out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
 }
 
 struct BadInput {

@@ -176,6 +176,15 @@ TEST_F(ResultCommands, AdviseReportsWhatItNeeds) {
   const ProgramRun absent = RunSextant("advise " + Session());
   EXPECT_EQ(absent.exit_code, 2);
   EXPECT_THAT(absent.err, HasSubstr("run sextant calibrate first"));
+  const std::string board = test::TestPath("board.yaml");
+  test::WriteText(board, "id: 0\ntop_right_m: 1\nright_bottom_m: 1\n");
+  EXPECT_THAT(RunSextant("advise " + board).err, HasSubstr("this is a board file"));
+  const ProgramRun picture = RunSextant("advise " + Result() + " --picture /nowhere/a.png");
+  EXPECT_EQ(picture.exit_code, 2);
+  EXPECT_EQ(picture.out, "") << "before the work";
+  EXPECT_THAT(picture.err, HasSubstr("cannot write '/nowhere/a.png'"));
+  EXPECT_THAT(RunSextant("advise " + Result() + " --picture a.xyz").err,
+              HasSubstr("a.xyz: expected an image that ends in .png or .jpg"));
   const ProgramRun lidar = RunSextant("advise " + Result() + " --lidar vlp61");
   EXPECT_EQ(lidar.exit_code, 2);
   EXPECT_THAT(lidar.err, HasSubstr("vlp16"));

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "base/text/code_point.h"
+#include "support/hostile_text.h"
 #include "support/source_tree.h"
 
 namespace sextant {
@@ -50,6 +53,46 @@ TEST(TextTable, AlignsNumbersRightAndWordsLeft) {
   TextTable words({"a", "b"}, TextTable::Columns::kWords);
   words.AddRow({"x", "yes"});
   EXPECT_EQ(words.Plain(), "a  b\n------\nx  yes\n");
+}
+
+TEST(TextTable, WrapsTheWidestColumns) {
+  TextTable table({"name", "choices", "meaning"}, TextTable::Columns::kWords);
+  table.AddRow({"family", "tag16h5|tag25h9|tag36h10|tag36h11", "which tags are searched for"});
+  EXPECT_EQ(table.Plain(50),
+            "name    choices             meaning\n"
+            "--------------------------------------------------\n"
+            "family  tag16h5|tag25h9|    which tags are\n"
+            "        tag36h10|tag36h11   searched for\n");
+  table.AddRow({"x", std::string(1000, 'y'), std::string(1000, 'z')});
+  std::istringstream lines(table.Plain(50));
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 50U) << line;
+}
+
+// Texts of others are cells of every output.
+TEST(TextTable, HostileCellsStayInTheirRow) {
+  TextTable table({"a", "b"}, TextTable::Columns::kWords);
+  for (const std::string& text : test::HostileTexts()) {
+    if (text.size() < 100) table.AddRow({text, text});
+  }
+  const auto rows = [](const std::string& text) {
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  const auto count = static_cast<std::ptrdiff_t>(
+      std::count_if(test::HostileTexts().begin(), test::HostileTexts().end(),
+                    [](const std::string& text) { return text.size() < 100; }));
+  EXPECT_EQ(rows(table.Plain()), count + 2);
+  EXPECT_EQ(rows(table.Markdown()), count + 2);
+  EXPECT_EQ(ExpectFullRows(table.Latex(), "table"), count + 1);
+  for (std::string text : {table.Plain(), table.Markdown(), table.Latex()}) {
+    std::erase(text, '\n');
+    EXPECT_TRUE(IsPlainLine(text));
+  }
+}
+
+TEST(LengthText, IsInMillimetresBelowAMetre) {
+  EXPECT_EQ(LengthText(0.00821334), "8.21334 mm");
+  EXPECT_EQ(LengthText(0.0), "0.00000 mm");
+  EXPECT_EQ(LengthText(1.25), "1.25000000 m");
 }
 
 TEST(TextTable, LatexRowsHaveAllCellsEvenIfTheyAreEmpty) {

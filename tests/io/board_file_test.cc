@@ -69,7 +69,7 @@ TEST(BoardFile, ADocumentMayBeOneBoard) {
 TEST(BoardFile, RoundTripsToTheSameText) {
   auto boards = ParseBoards(kHollow, "b.yaml");
   ASSERT_TRUE(boards) << boards.error().message;
-  (*boards)[0].name = "it's \"new\": #1\n";
+  (*boards)[0].name = "it's \"new\": \\#1";
   (*boards)[0].tags[0].rotation_rad = 1.234;
   const std::string text = FormatBoards(*boards);
   const auto again = ParseBoards(text, "again.yaml");
@@ -104,6 +104,16 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"NoBoards", "boards: []", kParse, "b:1: boards: expected at least one board"},
         BadText{"UnknownKey", BoardWith("    hol: {}\n"), kParse,
                 "b:5: board: unknown key 'hol'; did you mean 'hole'?"},
+        BadText{"ABeginningIsMeant", "id: 0\ncheckerboard: {}\ntop_right_m: 1\n", kParse,
+                "b:2: board: unknown key 'checkerboard'; did you mean 'checker'?"},
+        BadText{"WrongKeyOfOneBoard", "id: 0\nright_bottom_m: 1\ntop_righ_m: 1\n", kParse,
+                "b:3: board: unknown key 'top_righ_m'; did you mean 'top_right_m'?"},
+        BadText{"Camera", "image_width: 1280\ncamera_matrix: {}\n", kParse,
+                "b:1: expected boards, with the key 'boards', but this is a file of a camera"},
+        BadText{"NameOfTwoLines", "id: 0\nname: \"a\\nb\"\ntop_right_m: 1\n", kParse,
+                "b:2: name: expected text of one line, got 'a\\x0ab'"},
+        BadText{"NameWithEscape", "id: 0\nname: \"a\\eb\"\ntop_right_m: 1\n", kParse,
+                "b:2: not valid YAML: name: control characters are not allowed"},
         BadText{"UnknownTagKey", BoardWith("    tags:\n      - {familie: x}\n"), kParse,
                 "b:6: tag: unknown key 'familie'; did you mean 'family'?"},
         BadText{"NoId", "boards:\n  - {top_right_m: 1, right_bottom_m: 1}\n", kParse,

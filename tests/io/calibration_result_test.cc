@@ -110,7 +110,11 @@ INSTANTIATE_TEST_SUITE_P(
     Inputs, BadResultTest,
     testing::Values(
         BadText{"Empty", "", kParse, "r.yaml:1: the file is empty"},
-        BadText{"AnotherKind", "sextant_problem: 1", kParse, "expected a result of sextant"},
+        BadText{"AnotherKind", "sextant_problem: 1", kParse, "this is a problem file"},
+        BadText{"Board", "boards: []", kParse,
+                "r.yaml:1: expected result.yaml of sextant calibrate, or its JSON, with the key "
+                "sextant_result; this is a board file"},
+        BadText{"SomethingElse", "x: 1", kParse, "this is a file that begins with the key 'x'"},
         BadText{"UnknownKey", Result("covarience: []"), kParse,
                 "r.yaml:6: sextant_result: unknown key 'covarience'; did you mean 'covariance'?"},
         BadText{"UnknownKeyOfAView", Result("views:\n  - view: 0\n    keept: true"), kParse,

@@ -162,8 +162,7 @@ TEST(AverageLog, RefusesBadText) {
   const BadText cases[] = {
       {"empty", "", kParse, "a:1: the file ends here, expected the number of iteration 1"},
       {"truncated", good + "2\n0\n0\n", kParse, "a:11: the file ends here, expected a line of"},
-      {"gap", good + "3\n", kParse,
-       "a:9: field 1 (iteration): expected a whole number from 2 to 2"},
+      {"gap", good + "3\n", kParse, "a:9: field 1 (iteration): expected 2, got '3'"},
       {"mirror", "1\n0\n0\n0\n1 0 0\n0 1 0\n0 0 -1\n0.1\n", kParse, "a:7: expected three rows"},
       {"rmse", "1\n0\n0\n0\n1 0 0\n0 1 0\n0 0 1\n-1\n", kParse, "a:8: expected an RMSE"},
       {"nan", "1\n0\nnan\n", ErrorCode::kNonFinite, "a:3: field 1"},

@@ -2,13 +2,13 @@
 #include "support/run_program.h"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
+#include <chrono>
 #include <fstream>
 #include <iterator>
 #include <memory>
 
+#include "base/process/run_process.h"
 #include "support/scratch_folder.h"
 
 namespace sextant::test {
@@ -39,9 +39,9 @@ ProgramRun RunProgram(const std::string& program, const std::string& arguments) 
   const std::filesystem::path folder = TestFolder();
   const std::string command = program + " " + arguments + " >" + (folder / "stdout").string() +
                               " 2>" + (folder / "stderr").string() + " </dev/null";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadText(folder / "stdout"),
-          ReadText(folder / "stderr")};
+  const Expected<ProcessEnd> end =
+      RunProcess({"/bin/sh", "-c", command}, {.timeout = std::chrono::hours(1)});
+  return {end ? end->exit_code : -1, ReadText(folder / "stdout"), ReadText(folder / "stderr")};
 }
 
 }  // namespace sextant::test

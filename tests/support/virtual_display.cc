@@ -6,19 +6,19 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <thread>
+
+#include "base/process/run_process.h"
 
 namespace sextant::test {
 namespace {
 
 bool IsOnPath(const std::string& program) {
-  return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
+  const Expected<ProcessEnd> end = RunProcess({"/bin/sh", "-c", "command -v " + program});
+  return end && end->exit_code == 0;
 }
 
 }  // namespace
@@ -84,16 +84,9 @@ VirtualDisplay::VirtualDisplay(const std::string& folder) {
 }
 
 std::string VirtualDisplay::Do(const std::string& arguments) const {
-  const std::string command = variable_ + " timeout 30 xdotool " + arguments + " 2>/dev/null";
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return {};
-  std::string text;
-  std::array<char, 256> buffer{};
-  while (fgets(buffer.data(), static_cast<int>(buffer.size()), pipe) != nullptr) {
-    text += buffer.data();
-  }
-  pclose(pipe);
-  return text;
+  const std::string command = variable_ + " timeout 30 xdotool " + arguments;
+  const Expected<ProcessEnd> end = RunProcess({"/bin/sh", "-c", command});
+  return end ? end->out : std::string();
 }
 
 }  // namespace sextant::test

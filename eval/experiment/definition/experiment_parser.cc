@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <set>
 #include <utility>
@@ -27,28 +26,17 @@ const std::vector<std::string>& RootKeys() {
   return keys;
 }
 
-// Whether the name is safe as a file and folder name.
-bool IsPlainName(const std::string& name) {
-  return !name.empty() && name.size() <= 100 && name.front() != '.' &&
-         std::all_of(name.begin(), name.end(), [](unsigned char c) {
-           return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
-         });
-}
-
 }  // namespace
 
 Expected<Experiment> ExperimentParser::Parse(const YamlNode& root) {
   Experiment experiment;
   fields_.IsMap(root, "experiment", RootKeys());
-  const std::string stem = std::filesystem::path(fields_.file()).stem().string();
-  experiment.name = OptionalText(root, "name", stem);
-  if (fields_.ok() && !IsPlainName(experiment.name)) {
-    fields_.Fail(
-        root.line, "name",
-        fmt::format("expected letters, digits, '_', '-' and '.', got {}", Quoted(experiment.name)));
-  }
+  experiment.name =
+      OptionalFileName(root, "name", std::filesystem::path(fields_.file()).stem().string());
   experiment.title = OptionalText(root, "title", experiment.name);
-  experiment.text = OptionalText(root, "text", "");
+  if (fields_.ok() && root.Find("text") != nullptr) {
+    experiment.text = fields_.ParagraphAt(root, "text");
+  }
   FindKind(root);
   ParseCounts(root, experiment);
   if (!fields_.ok()) return fields_.TakeError();
@@ -70,6 +58,16 @@ Expected<Experiment> ExperimentParser::Parse(const YamlNode& root) {
 std::string ExperimentParser::OptionalText(const YamlNode& map, std::string_view key,
                                            std::string otherwise) {
   return fields_.ok() && map.Find(key) != nullptr ? fields_.TextAt(map, key) : std::move(otherwise);
+}
+
+std::string ExperimentParser::OptionalFileName(const YamlNode& map, std::string_view key,
+                                               std::string otherwise) {
+  YamlNode unnamed;
+  unnamed.kind = YamlNode::Kind::kText;
+  unnamed.line = map.line;
+  unnamed.text = std::move(otherwise);
+  const YamlNode* named = map.Find(key);
+  return fields_.FileName(named != nullptr ? *named : unnamed, key);
 }
 
 bool ExperimentParser::Flag(const YamlNode& map, std::string_view key) {
@@ -129,9 +127,9 @@ void ExperimentParser::ParseMetrics(const YamlNode& root, Experiment& experiment
     }
     const auto found = std::find(known.begin(), known.end(), item.text);
     if (found == known.end()) {
-      fields_.Fail(item.line, "metrics",
-                   fmt::format("unknown metric {}; {}", Quoted(item.text),
-                               SuggestName(item.text.substr(0, 60), known)));
+      fields_.Fail(
+          item.line, "metrics",
+          fmt::format("unknown metric {}; {}", Quoted(item.text), SuggestName(item.text, known)));
       return;
     }
     experiment.wanted.set(static_cast<std::size_t>(found - known.begin()));
@@ -149,10 +147,11 @@ void ExperimentParser::ParseMetrics(const YamlNode& root, Experiment& experiment
 }
 
 std::string ExperimentParser::ParseValue(const YamlNode& node, std::string_view name) {
-  if (node.kind == YamlNode::Kind::kText) return node.text;
+  if (node.kind == YamlNode::Kind::kText) return fields_.Text(node, name);
   if (!fields_.IsSequence(node, name)) return {};
   std::string text;
-  for (const YamlNode& item : node.items) text += (text.empty() ? "" : " ") + item.text;
+  for (const YamlNode& item : node.items)
+    text += (text.empty() ? "" : " ") + fields_.Text(item, name);
   return text;
 }
 

@@ -47,6 +47,8 @@ class ExperimentParser {
   std::string ParseAxis(const YamlNode& map, std::string_view key, const Experiment& experiment,
                         bool may_be_index);
   std::string OptionalText(const YamlNode& map, std::string_view key, std::string otherwise);
+  /// A name that becomes a file's (IsFileName), the default too.
+  std::string OptionalFileName(const YamlNode& map, std::string_view key, std::string otherwise);
   bool Flag(const YamlNode& map, std::string_view key);
 
   YamlFields fields_;

@@ -24,10 +24,9 @@ std::string ExperimentParser::ParseAxis(const YamlNode& map, std::string_view ke
   std::vector<std::string> known = experiment.axes;
   if (may_be_index) known.emplace_back("index");
   if (!fields_.ok() || std::find(known.begin(), known.end(), name) != known.end()) return name;
-  fields_.Fail(
-      map.Find(key)->line, key,
-      fmt::format("{} is not an axis of the grid; {}", Quoted(name),
-                  known.empty() ? "the grid has no axes" : SuggestName(name.substr(0, 60), known)));
+  fields_.Fail(map.Find(key)->line, key,
+               fmt::format("{} is not an axis of the grid; {}", Quoted(name),
+                           known.empty() ? "the grid has no axes" : SuggestName(name, known)));
   return {};
 }
 
@@ -55,7 +54,7 @@ void ExperimentParser::ParseTables(const YamlNode& root, Experiment& experiment)
         return;
       }
       for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        table.columns[i].label = labels->items[i].text;
+        table.columns[i].label = fields_.Text(labels->items[i], "labels");
       }
     }
     const bool wrong_count =
@@ -77,7 +76,11 @@ void ExperimentParser::ParsePlots(const YamlNode& root, Experiment& experiment) 
   for (const YamlNode& node : list->items) {
     PlotSpec plot;
     if (!fields_.IsMap(node, "plots", keys)) return;
-    plot.name = OptionalText(node, "name", fmt::format("plot{}", experiment.plots.size() + 1));
+    plot.name = OptionalFileName(node, "name", fmt::format("plot{}", experiment.plots.size() + 1));
+    const bool is_new = std::ranges::count(experiment.plots, plot.name, &PlotSpec::name) == 0;
+    if (fields_.ok() && !is_new) {
+      fields_.Fail(node.line, "name", "another plot has the name " + Quoted(plot.name));
+    }
     plot.title = OptionalText(node, "title", "");
     plot.x = ParseAxis(node, "x", experiment, true);
     plot.y = ParseStatisticOf(fields_.Require(node, "y"), experiment);

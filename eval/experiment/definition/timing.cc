@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/text/escape.h"
 #include "eval/statistics/statistics.h"
 #include "eval/statistics/text_table.h"
 
@@ -50,7 +51,7 @@ std::string FormatTimingMarkdown(const Experiment& experiment, const std::vector
   std::string text = fmt::format(
       "# Time of {}\n\nMedian and quartiles in microseconds over {} trials on one thread; only "
       "trials with an answer count.\n",
-      experiment.title, experiment.timed_trials);
+      MarkdownText(experiment.title), experiment.timed_trials);
   for (const Condition& condition : experiment.conditions) {
     TextTable table({"", "time [us]", "from", "to"});
     for (const TimingRow& row : rows) {
@@ -58,7 +59,7 @@ std::string FormatTimingMarkdown(const Experiment& experiment, const std::vector
       table.AddRow(
           {row.subject, Fixed(row.median_us, 1), Fixed(row.p25_us, 1), Fixed(row.p75_us, 1)});
     }
-    text += fmt::format("\n## {}\n\n{}", condition.name, table.Markdown());
+    text += fmt::format("\n## {}\n\n{}", MarkdownText(condition.name), table.Markdown());
   }
   return text;
 }
@@ -72,7 +73,7 @@ std::string FormatTimingJson(const std::vector<TimingRow>& rows) {
                     {"p25_us", row.p25_us},
                     {"p75_us", row.p75_us}});
   }
-  return json.dump(1) + "\n";
+  return JsonText(json, 1);
 }
 
 }  // namespace sextant

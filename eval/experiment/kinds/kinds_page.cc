@@ -14,10 +14,7 @@ std::string FormatKindsPage(const std::vector<TrialKind>& kinds) {
                         kind.takes_solvers ? "" : "; takes no solvers");
     TextTable parameters({"parameter", "default", "unit", "meaning"}, TextTable::Columns::kWords);
     for (const OptionDoc& doc : kind.parameters) {
-      // A vertical bar would end the table cell.
-      std::string unit;
-      for (const char c : doc.unit) unit += c == '|' ? std::string(" or ") : std::string(1, c);
-      parameters.AddRow({"`" + doc.name + "`", doc.default_value, unit, doc.meaning});
+      parameters.AddRow({"`" + doc.name + "`", doc.default_value, doc.unit, doc.meaning});
     }
     if (!kind.parameters.empty()) text += parameters.Markdown() + "\n";
     TextTable metrics({"metric", "meaning"}, TextTable::Columns::kWords);

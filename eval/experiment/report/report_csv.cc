@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/text/escape.h"
 #include "eval/experiment/report/report.h"
 #include "eval/experiment/run/run_trials.h"
 #include "io/output/output_file.h"
@@ -11,26 +12,19 @@
 namespace sextant {
 namespace {
 
-std::string CsvField(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string Header(const Experiment& experiment) {
   std::string line = "experiment,condition";
-  for (const std::string& axis : experiment.axes) line += "," + axis;
+  for (const std::string& axis : experiment.axes) line += "," + CsvField(axis);
   line += ",subject,trial,index";
   for (std::size_t m = 0; m < experiment.metrics.size(); ++m) {
-    if (experiment.wanted[m]) line += "," + experiment.metrics[m].name;
+    if (experiment.wanted[m]) line += "," + CsvField(experiment.metrics[m].name);
   }
   return line + "\n";
 }
 
 // The fields that all rows of a subject begin with.
 std::vector<std::string> Beginnings(const Experiment& experiment, const Condition& condition) {
-  std::string common = experiment.name + "," + CsvField(condition.name);
+  std::string common = CsvField(experiment.name) + "," + CsvField(condition.name);
   for (const std::string& place : condition.place) common += "," + CsvField(place);
   std::vector<std::string> beginnings;
   for (const std::string& subject : condition.trials->subjects()) {

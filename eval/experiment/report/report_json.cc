@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/text/escape.h"
 #include "base/version.h"
 #include "eval/experiment/report/description.h"
 #include "eval/experiment/report/report.h"
@@ -128,7 +129,7 @@ Expected<std::string> FormatSummary(const Experiment& experiment, const RowFileR
     described["cells"] = std::move(cells);
     json["conditions"].push_back(std::move(described));
   }
-  return json.dump(1) + "\n";
+  return JsonText(json, 1);
 }
 
 }  // namespace sextant

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "base/text/escape.h"
 #include "eval/experiment/report/report.h"
 
 namespace sextant {
@@ -67,11 +68,11 @@ Lines CollectLines(const Experiment& experiment, const PlotSpec& plot, const Rep
   return lines;
 }
 
-// In gnuplot's single-quoted strings only the quote itself is special; it is doubled.
-std::string Quote(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
-  return quoted + "'";
+// gnuplot takes the label of a tick for a format of its position.
+std::string TickText(const std::string& label) {
+  std::string text;
+  for (const char c : label) text += c == '%' ? std::string("%%") : std::string(1, c);
+  return GnuplotText(text);
 }
 
 std::string DataOf(const Lines& lines, bool log_y) {
@@ -113,20 +114,20 @@ std::string PlotCommands(const Experiment& experiment, const PlotSpec& plot,
   for (std::size_t i = 0; i < lines.size(); ++i) {
     series.push_back(
         fmt::format("$line{} using 1:2:3:4 with yerrorlines pt 7 ps 0.5 lw 1.5 lc {} title {}", i,
-                    i + 1, Quote(lines[i].first)));
+                    i + 1, GnuplotText(lines[i].first)));
   }
   std::string ticks;
   for (const auto& [name, x] : named)
-    ticks += fmt::format("{}{} {}", ticks.empty() ? "" : ", ", Quote(name), x);
+    ticks += fmt::format("{}{} {}", ticks.empty() ? "" : ", ", TickText(name), x);
   std::string y_axis = BeginsAtZero(lines) ? "set yrange [0:*]\n" : "";
   if (plot.log_y) y_axis = "set logscale y\n";
   return fmt::format(
       "{}set key outside right noenhanced\nset grid\nset title {} noenhanced\nset xlabel {} "
       "noenhanced\nset ylabel {} noenhanced\n{}{}{}set offsets graph 0.03, graph 0.03, 0, 0\nplot "
       "{}\n",
-      DataOf(lines, plot.log_y), Quote(plot.title), Quote(plot.x_label), Quote(plot.y_label),
-      plot.log_x ? "set logscale x\n" : "", y_axis,
-      ticks.empty() ? "" : "set xtics (" + ticks + ")\n", fmt::join(series, ", \\\n  "));
+      DataOf(lines, plot.log_y), GnuplotText(plot.title), GnuplotText(plot.x_label),
+      GnuplotText(plot.y_label), plot.log_x ? "set logscale x\n" : "", y_axis,
+      ticks.empty() ? "" : "set xtics noenhanced (" + ticks + ")\n", fmt::join(series, ", \\\n  "));
 }
 
 }  // namespace sextant

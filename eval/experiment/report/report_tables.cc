@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
+#include "base/text/escape.h"
+#include "base/text/printable.h"
 #include "eval/experiment/report/report.h"
 
 namespace sextant {
@@ -122,21 +125,33 @@ std::vector<ReportTable> MakeTables(const Experiment& experiment, const ReportDa
   return tables;
 }
 
+namespace {
+
+// The paragraphs of the experiment's text.
+std::string MarkdownLines(const std::string& text) {
+  std::string lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines += MarkdownText(line) + "\n";
+  return lines;
+}
+
+}  // namespace
+
 std::string FormatMarkdown(const Experiment& experiment, const ReportData& data) {
-  std::string text = fmt::format("# {}\n\n", experiment.title);
-  if (!experiment.text.empty()) text += experiment.text + "\n\n";
+  std::string text = fmt::format("# {}\n\n", MarkdownText(experiment.title));
+  if (!experiment.text.empty()) text += MarkdownLines(experiment.text) + "\n";
   text += fmt::format(
       "Written by `sextant run` from the experiment `{}`: {} trials per condition, seed {}. In "
       "brackets: 95 percent intervals.\n",
       experiment.name, experiment.trials, experiment.seed);
   for (const ReportTable& table : MakeTables(experiment, data)) {
-    if (!table.title.empty()) text += fmt::format("\n## {}\n", table.title);
+    if (!table.title.empty()) text += fmt::format("\n## {}\n", MarkdownText(table.title));
     text += "\n" + table.table.Markdown();
   }
   for (const PlotSpec& plot : experiment.plots) {
     if (PlotCommands(experiment, plot, data).empty()) continue;
-    text +=
-        fmt::format("\n![{}]({}.svg)\n", plot.title.empty() ? plot.name : plot.title, plot.name);
+    text += fmt::format("\n![{}]({}.svg)\n",
+                        MarkdownText(plot.title.empty() ? plot.name : plot.title), plot.name);
   }
   return text;
 }
@@ -145,7 +160,7 @@ std::string FormatPlain(const Experiment& experiment, const ReportData& data) {
   std::string text;
   for (const ReportTable& table : MakeTables(experiment, data)) {
     if (!text.empty()) text += "\n";
-    if (!table.title.empty()) text += table.title + "\n";
+    if (!table.title.empty()) text += PrintableLine(table.title) + "\n";
     text += table.table.Plain();
   }
   return text;
@@ -155,7 +170,7 @@ std::string FormatLatex(const Experiment& experiment, const ReportData& data) {
   std::string text =
       fmt::format("% Written by sextant run from the experiment {}.\n", experiment.name);
   for (const ReportTable& table : MakeTables(experiment, data)) {
-    text += fmt::format("\n% {}\n{}", table.title, table.table.Latex());
+    text += fmt::format("\n% {}\n{}", PrintableLine(table.title), table.table.Latex());
   }
   return text;
 }

@@ -102,7 +102,9 @@ Expected<ClaimsFile> ParseClaims(std::string_view text, const std::string& file)
   in.IsMap(root, "claims file", kKeys);
   claims.paper = in.TextAt(root, "paper");
   if (const YamlNode& list = in.Require(root, "experiments"); in.IsSequence(list, "experiments")) {
-    for (const YamlNode& item : list.items) claims.experiments.push_back(item.text);
+    for (const YamlNode& item : list.items) {
+      claims.experiments.push_back(in.FileName(item, "experiments"));
+    }
   }
   if (const YamlNode& list = in.Require(root, "claims"); in.IsSequence(list, "claims")) {
     for (const YamlNode& item : list.items) {

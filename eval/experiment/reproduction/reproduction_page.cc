@@ -4,23 +4,17 @@
 #include <algorithm>
 #include <array>
 
+#include "base/text/escape.h"
 #include "eval/experiment/reproduction/reproduce.h"
 
 namespace sextant {
 namespace {
 
-// Escapes vertical bars, which would end the table cell.
-std::string Cell(const std::string& text) {
-  std::string cell;
-  for (const char c : text) cell += c == '|' ? std::string("\\|") : std::string(1, c);
-  return cell;
-}
-
 std::string LinkTo(const Claim& claim) {
   if (!claim.ours) return "-";
   std::string text = fmt::format("[{0}]({0}/report.md)", claim.ours->experiment);
-  if (!claim.ours->condition.empty()) text += ": " + claim.ours->condition;
-  text += ", " + claim.ours->subject;
+  if (!claim.ours->condition.empty()) text += ": " + MarkdownText(claim.ours->condition);
+  text += ", " + MarkdownText(claim.ours->subject);
   if (claim.ours->index > 0) text += fmt::format(" #{}", claim.ours->index);
   return text;
 }
@@ -41,10 +35,11 @@ std::string Rows(const std::vector<JudgedClaim>& claims) {
       "| where | claim | printed | ours [95 %] | verdict | experiment | remark |\n"
       "|:--|:--|:--|:--|:--|:--|:--|\n";
   for (const JudgedClaim& judged : claims) {
-    text += fmt::format("| {} | {} | {} | {} | **{}** | {} | {} |\n", Cell(judged.claim.where),
-                        Cell(judged.claim.text), Cell(judged.claim.printed),
-                        judged.ours.empty() ? "-" : Cell(judged.ours), ToString(judged.verdict),
-                        Cell(LinkTo(judged.claim)), Cell(judged.remark));
+    text +=
+        fmt::format("| {} | {} | {} | {} | **{}** | {} | {} |\n", MarkdownText(judged.claim.where),
+                    MarkdownText(judged.claim.text), MarkdownText(judged.claim.printed),
+                    judged.ours.empty() ? "-" : MarkdownText(judged.ours), ToString(judged.verdict),
+                    LinkTo(judged.claim), MarkdownText(judged.remark));
   }
   return text;
 }
@@ -60,7 +55,7 @@ std::string FormatReproduction(const ClaimsFile& file, const std::vector<JudgedC
       "boards, sensors, poses and processing steps. The noise is taken from data sheets and real "
       "recordings, is stated in each file of `experiments/`, and was not tuned. Printed values, "
       "claims and rules are in `paper/claims.yaml`.\n\n{} claims: {}.\n\n",
-      file.paper, command, claims.size(), Tally(claims));
+      MarkdownText(file.paper), command, claims.size(), Tally(claims));
   text +=
       "Each verdict follows from a rule. A printed single measurement is *reproduced* if it lies "
       "in "
@@ -75,12 +70,12 @@ std::string FormatReproduction(const ClaimsFile& file, const std::vector<JudgedC
   text += Rows(claims);
   if (!skipped.empty()) {
     text += "\n## Experiments that were not run\n\n";
-    for (const std::string& why : skipped) text += fmt::format("- {}\n", why);
+    for (const std::string& why : skipped) text += fmt::format("- {}\n", MarkdownText(why));
   }
   text += "\n## Errata of the paper\n\n| where | printed | correct |\n|:--|:--|:--|\n";
   for (const Erratum& erratum : file.errata) {
-    text += fmt::format("| {} | {} | {} |\n", Cell(erratum.where), Cell(erratum.printed),
-                        Cell(erratum.is));
+    text += fmt::format("| {} | {} | {} |\n", MarkdownText(erratum.where),
+                        MarkdownText(erratum.printed), MarkdownText(erratum.is));
   }
   text += "\n## Experiments\n\n";
   for (const std::string& name : file.experiments) {

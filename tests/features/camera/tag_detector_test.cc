@@ -91,6 +91,8 @@ TEST(TagDetector, SpecsAreCheckedByName) {
     const Expected<TagDetectorPtr> made = MakeTagDetector(spec);
     return made ? std::string() : made.error().message;
   };
+  EXPECT_THAT(message("foo"), HasSubstr("expected aruco, apriltag, checkerboard, with options"));
+  EXPECT_THAT(message("tag36h11"), HasSubstr("did you mean 'apriltag(family=tag36h11)'?"));
   EXPECT_THAT(message("arco(dictionary=6x6_250)"), HasSubstr("did you mean 'aruco'?"));
   EXPECT_THAT(message("aruco(dictionary=6x6_25)"), HasSubstr("did you mean '6x6_250'?"));
   EXPECT_THAT(message("aruco(dictionry=6x6_250)"), HasSubstr("did you mean 'dictionary'?"));
