@@ -169,7 +169,7 @@ Expected<std::vector<fs::path>> ExpandAll(std::span<const std::string> patterns)
 }  // namespace
 
 Expected<Session> ParseSession(std::string_view text, const std::string& file) {
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   return SessionReader(file).Read(root);
 }
 

@@ -26,7 +26,7 @@ Expected<std::vector<Board>> ParseMarkerBoards(std::string_view text, const std:
 
 Expected<std::vector<Board>> ParseBoardYaml(std::string_view text, const std::string& file) {
   static const std::vector<std::string> kKeys = {"boards"};
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   YamlFields in(file);
   std::vector<const YamlNode*> nodes;
   const YamlNode* list = root.Find("boards");

@@ -114,7 +114,7 @@ Expected<ScanMarks> ReadPolygons(const std::filesystem::path& path) {
 }
 
 Expected<ScanMarks> ParsePolygons(std::string_view text, const std::string& file) {
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   YamlFields in(file);
   ReadPolygonHeader(in, root);
   if (!in.ok()) return in.TakeError();

@@ -67,7 +67,7 @@ void ReadMatrices(YamlFields& in, const YamlNode& root, const YamlNode& matrix, 
 }  // namespace
 
 Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file) {
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   YamlFields in(file);
   if (const YamlNode* block = root.Find("camera")) {
     const Camera camera = ReadCameraBlock(in, *block);

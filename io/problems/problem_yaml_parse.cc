@@ -107,7 +107,7 @@ Expected<ProblemFile> ReadProblemYaml(const std::filesystem::path& path) {
 }
 
 Expected<ProblemFile> ParseProblemYaml(std::string_view text, const std::string& file) {
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   YamlFields in(file);
   ReadProblemHeader(in, root);
   if (!in.ok()) return in.TakeError();

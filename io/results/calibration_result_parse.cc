@@ -328,7 +328,7 @@ Expected<CalibrationResult> ReadCalibrationResult(const std::filesystem::path& p
 
 Expected<CalibrationResult> ParseCalibrationResult(std::string_view text, const std::string& file) {
   // JSON is a subset of YAML.
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   YamlFields in(file);
   ReadResultHeader(in, root);
   if (!in.ok()) return in.TakeError();
