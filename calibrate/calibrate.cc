@@ -33,16 +33,17 @@ std::vector<std::string> OtherSizes(const ObservedSession& observed,
 
 std::vector<std::string> WarningsFor(const Calibration& calibration, const MatchSettings& match) {
   const Assembly& assembly = calibration.assembly;
-  std::vector<std::string> warnings = DescribeAmbiguity(assembly.matching, match);
+  std::vector<std::string> warnings = calibration.observed.notes;
+  const auto add = [&warnings](const std::vector<std::string>& lines) {
+    warnings.insert(warnings.end(), lines.begin(), lines.end());
+  };
+  add(DescribeAmbiguity(assembly.matching, match));
   for (const std::filesystem::path& file : calibration.observed.session.files.without_partner) {
     warnings.push_back(fmt::format("without a partner: {}", file.string()));
   }
   const SolveReport* report = calibration.report();
   const Rigid3d& pose =
       report != nullptr ? report->cam_from_lidar : assembly.matching.cam_from_lidar;
-  const auto add = [&warnings](const std::vector<std::string>& lines) {
-    warnings.insert(warnings.end(), lines.begin(), lines.end());
-  };
   add(Diagnose(calibration.observed.views, assembly, pose));
   add(Describe(DiagnosePairs(assembly.problem)));
   return warnings;

@@ -103,7 +103,11 @@ Expected<std::vector<fs::path>> ExpandPattern(const fs::path& pattern) {
     return MakeError(ErrorCode::kMissingData,
                      fmt::format("no file is named '{}'", pattern.string()));
   }
-  std::ranges::sort(files, {}, [](const fs::path& file) { return NaturalKey(file.string()); });
+  std::vector<std::pair<std::string, fs::path>> by_key;
+  for (fs::path& file : files) by_key.emplace_back(NaturalKey(file.string()), std::move(file));
+  std::ranges::sort(by_key);
+  std::ranges::transform(by_key, files.begin(),
+                         [](auto& keyed) { return std::move(keyed.second); });
   return files;
 }
 
