@@ -20,7 +20,8 @@ void Declare(MergeOptions& options, Arguments& arguments) {
                 {.required = true});
   arguments.Add("ROWS", options.row_files, "The row files of all shards", {.required = true});
   arguments.Add("--out", experiment.out, "Folder to write. Default: results/NAME");
-  arguments.Add("--trials", experiment.trials, "The value with which the shards were run");
+  arguments.Add("--trials", experiment.trials, "The value with which the shards were run",
+                {.range = {{1, 1e9}}});
   arguments.Add("--seed", experiment.seed, "The value with which the shards were run");
   arguments.Add("--quick", experiment.quick, "If the shards were run with it");
   arguments.Add("--no-csv", experiment.no_csv, "Without rows.csv");

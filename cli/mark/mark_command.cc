@@ -30,7 +30,8 @@ void Declare(MarkOptions& options, Arguments& arguments) {
       "--yaw", options.yaw_deg,
       "Without a pose: turn the assumed camera to the left by this angle [deg]",
       {.shows_default = true, .range = {{-360.0, 360.0}}, .excludes = "--cam-from-lidar"});
-  arguments.Add("--ids", options.ids, "Ids of the boards from left to right; default: 0, 1, ...");
+  arguments.Add("--ids", options.ids, "Ids of the boards from left to right; default: 0, 1, ...",
+                {.range = {{0, 1e9}}});
   arguments.Add("--out", options.out_path, "Polygon file to write, or to continue with",
                 {.shows_default = true});
   arguments.Add("--render", options.render_path,

@@ -43,10 +43,30 @@ Expected<std::vector<Piece>> SortPieces(const std::vector<RowFileReader>& reader
   if (pieces.size() == expected) return pieces;
   std::uint64_t missing = 0;
   while (missing < pieces.size() && pieces[missing].place.number == missing) ++missing;
-  return MakeError(ErrorCode::kInvalidInput,
-                   fmt::format("{} of {} blocks are in none of the files, the first is number {}; "
-                               "finish all shards and name all of them",
-                               expected - pieces.size(), expected, missing));
+  std::string damage;
+  for (const RowFileReader& reader : readers) {
+    for (const std::string& line : DescribeDamage(reader)) damage += line + "; ";
+  }
+  return MakeError(
+      ErrorCode::kInvalidInput,
+      fmt::format(
+          "{}{} of {} blocks are in none of the files, the first is number {}; {}finish all "
+          "shards and name all of them",
+          damage, expected - pieces.size(), expected, missing,
+          damage.empty() ? "" : "run the damaged ones again, which repairs them, "));
+}
+
+// Writes the pieces, in their order, to a new file.
+Expected<void> WritePieces(const std::vector<RowFileReader>& readers,
+                           const std::vector<Piece>& pieces, const std::filesystem::path& path) {
+  SEXTANT_ASSIGN_OR_RETURN(
+      RowFileWriter writer,
+      RowFileWriter::Open(path, readers.front().configuration(), /*fresh=*/true));
+  for (const Piece& piece : pieces) {
+    SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, readers[piece.file].ReadBytes(piece.place));
+    SEXTANT_RETURN_IF_ERROR(writer.Append(bytes));
+  }
+  return writer.Flush();
 }
 
 }  // namespace
@@ -63,14 +83,21 @@ Expected<void> MergeRowFiles(const std::vector<std::filesystem::path>& shards,
   }
   SEXTANT_ASSIGN_OR_RETURN(const std::vector<RowFileReader> readers, OpenAll(shards));
   SEXTANT_ASSIGN_OR_RETURN(const std::vector<Piece> pieces, SortPieces(readers));
-  SEXTANT_ASSIGN_OR_RETURN(
-      RowFileWriter writer,
-      RowFileWriter::Open(merged, readers.front().configuration(), /*fresh=*/true));
-  for (const Piece& piece : pieces) {
-    SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, readers[piece.file].ReadBytes(piece.place));
-    SEXTANT_RETURN_IF_ERROR(writer.Append(bytes));
-  }
-  return writer.Flush();
+  return WritePieces(readers, pieces, merged);
+}
+
+Expected<void> OrderRowFile(const std::filesystem::path& path) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<RowFileReader> readers, OpenAll({path}));
+  std::vector<Piece> pieces;
+  for (const RowBlockPlace& place : readers.front().blocks()) pieces.push_back({0, place});
+  std::filesystem::path ordered = path;
+  ordered += ".part";
+  SEXTANT_RETURN_IF_ERROR(WritePieces(readers, pieces, ordered));
+  std::error_code error;
+  std::filesystem::rename(ordered, path, error);
+  if (!error) return {};
+  return MakeError(ErrorCode::kIo,
+                   fmt::format("cannot write '{}': {}", path.string(), error.message()));
 }
 
 }  // namespace sextant

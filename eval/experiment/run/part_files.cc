@@ -22,9 +22,10 @@ bool IsPartFile(const std::filesystem::path& path) {
 
 std::vector<std::filesystem::path> AllRowFiles(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    const std::filesystem::path& path = entry.path();
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    const std::filesystem::path& path = it->path();
     if (path.filename() == kWholeFile || IsPartFile(path)) files.push_back(path);
   }
   std::sort(files.begin(), files.end());

@@ -57,7 +57,9 @@ RowFileWriter::RowFileWriter(RowFileWriter&& other) noexcept
     : path_(std::move(other.path_)),
       fd_(std::exchange(other.fd_, -1)),
       bytes_(other.bytes_),
-      kept_(std::move(other.kept_)) {}
+      kept_(std::move(other.kept_)),
+      damage_(std::move(other.damage_)),
+      is_orderly_(other.is_orderly_) {}
 
 Expected<RowFileWriter> RowFileWriter::Open(const std::filesystem::path& path,
                                             const std::string& configuration, bool fresh) {
@@ -100,6 +102,8 @@ Expected<void> RowFileWriter::Keep(const std::string& configuration) {
                                  Printable(path_.string(), 300)));
   }
   bytes_ = reader.whole_bytes();
+  damage_ = DescribeDamage(reader);
+  is_orderly_ = reader.is_orderly();
   for (const RowBlockPlace& block : reader.blocks()) kept_.push_back(block.number);
   if (ftruncate(fd_, static_cast<off_t>(bytes_)) != 0) return Unwritable(path_);
   return {};
