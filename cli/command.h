@@ -25,17 +25,17 @@ struct ArgumentRange {
   double high = 0.0;
 };
 
+/// Whatever the rules, a number must be finite and the whole text, an unsigned one has no sign, and
+/// a text is not empty.
 struct ArgumentRules {
   bool required = false;
-  bool shows_default = false;  ///< The help shows the variable's initial value.
-  /// Allowed numbers, both ends included. Numbers are always finite and whole texts, and unsigned
-  /// ones have no sign; texts are never empty.
-  std::optional<ArgumentRange> range{};
-  int min_values = 0;                  ///< For a vector; 0: any number.
-  int max_values = 0;                  ///< The same as min_values if 0.
-  char separator = '\0';               ///< Splits one value into several.
-  std::vector<std::string> choices{};  ///< The only values allowed, in any case.
-  std::string excludes{};              ///< Name of an option that may not be given as well.
+  bool shows_default = false;            ///< The help shows the variable's initial value.
+  std::optional<ArgumentRange> range{};  ///< Allowed numbers, both ends included.
+  int min_values = 0;                    ///< For a vector; 0: any number.
+  int max_values = 0;                    ///< The same as min_values if 0.
+  char separator = '\0';                 ///< Splits one value into several.
+  std::vector<std::string> choices{};    ///< The only values allowed, in any case.
+  std::string excludes{};                ///< Name of an option that may not be given as well.
 };
 
 /// An option ("--json") or a positional argument ("FILE").

@@ -117,7 +117,8 @@ ResultView AsView(const CalibrationResult& result, const Advice& advice) {
 
 int Run(const AdviseCommandOptions& options) {
   std::filesystem::path path = options.result_path;
-  if (std::filesystem::is_directory(path)) path /= "result.yaml";
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) path /= "result.yaml";
   const Expected<CalibrationResult> result = ReadCalibrationResult(path);
   if (!result) {
     return Refuse("advise", {result.error().code,

@@ -9,6 +9,7 @@
 #include <map>
 #include <vector>
 
+#include "geometry/coordinate_range.h"
 #include "io/clouds/scalar_type.h"
 
 namespace sextant {

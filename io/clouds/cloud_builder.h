@@ -15,9 +15,6 @@ namespace sextant {
 inline constexpr std::size_t kMaxPointBytes =
     sizeof(Eigen::Vector3d) + sizeof(float) + sizeof(std::uint16_t) + sizeof(double);
 
-/// Coordinates beyond this are no returns [m].
-inline constexpr double kMaxCoordinate_m = 1e9;
-
 /// Builds a PointCloud from the rows of a table. Time is linear in the rows; memory is that of the
 /// cloud, at most kMaxPointBytes a row, and three times as much where `points` is not known.
 class CloudBuilder {

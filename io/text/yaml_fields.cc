@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/nearest_name.h"
+#include "geometry/coordinate_range.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
@@ -153,6 +154,11 @@ Eigen::Vector2d YamlFields::Point2At(const YamlNode& map, std::string_view key,
 Eigen::Vector3d YamlFields::Point(const YamlNode& node, std::string_view name) {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Reals(node, name, {point.data(), 3});
+  if (ok() && !(point.array().abs() <= kMaxCoordinate_m).all()) {
+    Fail(node.line, name,
+         fmt::format("expected coordinates up to {:g} m, got {:g} {:g} {:g}; are they in metres?",
+                     kMaxCoordinate_m, point.x(), point.y(), point.z()));
+  }
   return point;
 }
 

@@ -42,6 +42,7 @@ class YamlFields {
   void Reals(const YamlNode& node, std::string_view name, std::span<double> values);
   /// A sequence of at most `max_size` numbers.
   std::vector<double> RealList(const YamlNode& node, std::string_view name, std::size_t max_size);
+  /// Three numbers of at most kMaxCoordinate_m (geometry/coordinate_range.h).
   Eigen::Vector3d Point(const YamlNode& node, std::string_view name);
   Eigen::Vector2d Point2At(const YamlNode& map, std::string_view key,
                            const Eigen::Vector2d& default_value);
