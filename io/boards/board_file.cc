@@ -8,6 +8,7 @@
 #include "geometry/board_check.h"
 #include "io/blocks/board_block.h"
 #include "io/text/line_reader.h"
+#include "io/text/max_id.h"
 #include "io/text/text_file.h"
 
 namespace sextant {
@@ -33,7 +34,7 @@ Expected<std::vector<Board>> ParseBoardYaml(std::string_view text, const std::st
   if (list == nullptr && root.Find("top_right_m") != nullptr) {
     nodes.push_back(&root);
   } else if (in.IsMap(root, "boards", kKeys) &&
-             in.IsSequence(in.Require(root, "boards"), "boards")) {
+             in.IsSequence(in.Require(root, "boards"), "boards", kMaxBoards)) {
     for (const YamlNode& item : list->items) nodes.push_back(&item);
     if (nodes.empty()) in.Fail(list->line, "boards", "expected at least one board");
   }

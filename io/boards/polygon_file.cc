@@ -57,7 +57,7 @@ Quadrilateral ReadQuadrilateral(YamlFields& in, const YamlNode& node) {
 
 void ReadPolygonBoards(YamlFields& in, const YamlNode& list, std::vector<MarkedBoard>& boards) {
   static const Keys kKeys = {"id", "edges"};
-  if (!in.IsSequence(list, "boards")) return;
+  if (!in.IsSequence(list, "boards", kMaxBoards)) return;
   for (const YamlNode& node : list.items) {
     if (!in.IsMap(node, "boards", kKeys)) return;
     MarkedBoard board;
@@ -74,7 +74,7 @@ void ReadPolygonBoards(YamlFields& in, const YamlNode& list, std::vector<MarkedB
 
 void ReadCorners(YamlFields& in, const YamlNode& list, std::vector<ClickedCorner>& corners) {
   static const Keys kKeys = {"board", "corner", "pixel"};
-  if (!in.IsSequence(list, "corners")) return;
+  if (!in.IsSequence(list, "corners", (kMaxCorner + 1) * kMaxBoards)) return;
   for (const YamlNode& node : list.items) {
     if (!in.IsMap(node, "corners", kKeys)) return;
     ClickedCorner corner;

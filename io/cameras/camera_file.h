@@ -21,6 +21,7 @@ namespace sextant {
 ///   width, height, camera matrix, distortion; rectification and projection are ignored.
 /// Errors: kIo; kParse; kNonFinite; kInvalidInput (also for skew and for distortion models that
 /// Camera does not have).
+/// Time is linear in the file's size; memory is that of ParseYaml (io/text/yaml_node.h).
 Expected<Camera> ReadCamera(const std::filesystem::path& path);
 Expected<Camera> ParseCamera(std::string_view text, const std::string& file);
 

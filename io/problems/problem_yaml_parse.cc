@@ -73,7 +73,7 @@ std::vector<Eigen::Vector3d> ReadPointList(YamlFields& in, const YamlNode& list,
 
 void ReadProblemBoards(YamlFields& in, const YamlNode& list, std::vector<Board>& boards) {
   static const Keys kKeys = {"id", "top_right_m", "right_bottom_m", "hole"};
-  if (!in.IsSequence(list, "boards")) return;
+  if (!in.IsSequence(list, "boards", kMaxBoards)) return;
   for (const YamlNode& node : list.items) {
     if (!in.IsMap(node, "boards", kKeys)) return;
     in.Require(node, "top_right_m");

@@ -26,7 +26,7 @@ struct DetectedProblem : ProblemFile {
 /// of pairs; "key: value" is YAML, as is every file named .yaml or .yml.
 /// Errors: kIo; kParse, which lists the formats if none matches; kNonFinite; kInvalidInput for
 /// coordinates out of range (CheckRange). Time is linear in the file's size, but for the order of
-/// corners in poses.csv; memory is at most 20 times the size and 64 MiB.
+/// corners in poses.csv; memory is at most 60 times the size and 64 MiB.
 Expected<DetectedProblem> ReadProblem(const std::filesystem::path& path);
 Expected<DetectedProblem> ParseProblem(std::string_view text, const std::string& file);
 

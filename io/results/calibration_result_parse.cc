@@ -154,7 +154,7 @@ LidarPattern ReadLidar(YamlFields& in, const YamlNode& node) {
 }
 
 void ReadResultBoards(YamlFields& in, const YamlNode& list, std::vector<Board>& boards) {
-  if (!in.IsSequence(list, "boards")) return;
+  if (!in.IsSequence(list, "boards", kMaxBoards)) return;
   std::vector<const YamlNode*> nodes;
   for (const YamlNode& node : list.items) {
     nodes.push_back(&node);

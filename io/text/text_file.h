@@ -18,7 +18,8 @@ namespace sextant {
 /// large scan is given by mistake.
 inline constexpr std::size_t kMaxTextBytes = std::size_t{256} << 20;
 
-/// The bytes of a regular file. Error: kIo, with the path and the system's reason.
+/// The bytes of a regular file; time and memory are its size. Error: kIo, with the path and the
+/// system's reason.
 Expected<std::string> ReadTextFile(const std::filesystem::path& path);
 
 /// Writes the whole file or nothing: a temporary file in the same folder is flushed to the disk and

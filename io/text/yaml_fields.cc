@@ -64,6 +64,14 @@ bool YamlFields::IsSequence(const YamlNode& node, std::string_view what) {
   return false;
 }
 
+bool YamlFields::IsSequence(const YamlNode& node, std::string_view what, std::size_t max_size) {
+  if (!IsSequence(node, what)) return false;
+  if (node.items.size() <= max_size) return true;
+  Fail(node.line, what,
+       fmt::format("expected at most {} items, got {}", max_size, node.items.size()));
+  return false;
+}
+
 const YamlNode& YamlFields::Require(const YamlNode& map, std::string_view key) {
   if (!ok()) return kNothing;
   if (const YamlNode* found = map.Find(key)) return *found;

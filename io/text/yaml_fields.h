@@ -24,6 +24,8 @@ class YamlFields {
   /// most similar known one.
   bool IsMap(const YamlNode& node, std::string_view what, std::span<const std::string> known);
   bool IsSequence(const YamlNode& node, std::string_view what);
+  /// The same, with at most `max_size` items.
+  bool IsSequence(const YamlNode& node, std::string_view what, std::size_t max_size);
 
   /// The value of a key of a map; an error if it is absent.
   const YamlNode& Require(const YamlNode& map, std::string_view key);
