@@ -27,11 +27,12 @@ struct DecoderStep {
 };
 
 // Whether the end of the stream may be missing.
-enum class Stream { kWhole, kBegun };
+enum class StreamExtent { kWhole, kBegun };
 
 // Calls `decode(input, output, room)` until its stream ends. The output grows as it is produced.
 template <class Decode>
-Expected<std::string> Run(std::string_view input, std::size_t size, Stream stream, Decode decode) {
+Expected<std::string> Run(std::string_view input, std::size_t size, StreamExtent stream,
+                          Decode decode) {
   if (size > kUncheckedSize && size / kMaxRatio > input.size()) {
     return MakeError(ErrorCode::kParse,
                      fmt::format("{} compressed bytes are stated to hold {} bytes, more than {} "
@@ -47,7 +48,7 @@ Expected<std::string> Run(std::string_view input, std::size_t size, Stream strea
     }
     const DecoderStep step = decode(input, output.data() + filled, output.size() - filled);
     const bool stalls = !step.ended && step.consumed == 0 && step.produced == 0;
-    if (stream == Stream::kBegun && (step.failed || stalls)) {
+    if (stream == StreamExtent::kBegun && (step.failed || stalls)) {
       output.resize(filled);
       return output;
     }
@@ -69,7 +70,7 @@ Expected<std::string> Run(std::string_view input, std::size_t size, Stream strea
   return output;
 }
 
-Expected<std::string> DecompressBz2(std::string_view bytes, std::size_t size, Stream end) {
+Expected<std::string> DecompressBz2(std::string_view bytes, std::size_t size, StreamExtent end) {
   bz_stream stream{};
   if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) {
     return MakeError(ErrorCode::kParse, "bz2 cannot be started");
@@ -91,7 +92,7 @@ Expected<std::string> DecompressBz2(std::string_view bytes, std::size_t size, St
   });
 }
 
-Expected<std::string> DecompressLz4(std::string_view bytes, std::size_t size, Stream end) {
+Expected<std::string> DecompressLz4(std::string_view bytes, std::size_t size, StreamExtent end) {
   LZ4F_dctx* raw = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION)) != 0U) {
     return MakeError(ErrorCode::kParse, "lz4 cannot be started");
@@ -110,7 +111,7 @@ Expected<std::string> DecompressLz4(std::string_view bytes, std::size_t size, St
   });
 }
 
-Expected<std::string> DecompressZstd(std::string_view bytes, std::size_t size, Stream end) {
+Expected<std::string> DecompressZstd(std::string_view bytes, std::size_t size, StreamExtent end) {
   const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(),
                                                                              ZSTD_freeDStream);
   return Run(bytes, size, end, [&stream](std::string_view input, char* output, std::size_t room) {
@@ -125,7 +126,7 @@ Expected<std::string> DecompressZstd(std::string_view bytes, std::size_t size, S
 }
 
 Expected<std::string> DecompressStream(Compression compression, std::string_view bytes,
-                                       std::size_t size, Stream stream) {
+                                       std::size_t size, StreamExtent stream) {
   switch (compression) {
     case Compression::kBz2:
       return DecompressBz2(bytes, size, stream);
@@ -136,7 +137,7 @@ Expected<std::string> DecompressStream(Compression compression, std::string_view
     case Compression::kNone:
       break;
   }
-  if (stream == Stream::kBegun || bytes.size() == size) return std::string(bytes);
+  if (stream == StreamExtent::kBegun || bytes.size() == size) return std::string(bytes);
   return MakeError(ErrorCode::kParse,
                    fmt::format("it holds {} bytes, expected {}", bytes.size(), size));
 }
@@ -176,11 +177,11 @@ Expected<Compression> CompressionNamed(std::string_view name) {
 
 Expected<std::string> Decompress(Compression compression, std::string_view bytes,
                                  std::size_t size) {
-  return DecompressStream(compression, bytes, size, Stream::kWhole);
+  return DecompressStream(compression, bytes, size, StreamExtent::kWhole);
 }
 
 std::string DecompressBegun(Compression compression, std::string_view bytes, std::size_t size) {
-  return DecompressStream(compression, bytes, size, Stream::kBegun).value_or(std::string());
+  return DecompressStream(compression, bytes, size, StreamExtent::kBegun).value_or(std::string());
 }
 
 Expected<std::string> DecompressZstdFrame(std::string_view bytes) {
@@ -188,7 +189,7 @@ Expected<std::string> DecompressZstdFrame(std::string_view bytes) {
   if (size == ZSTD_CONTENTSIZE_UNKNOWN || size == ZSTD_CONTENTSIZE_ERROR) {
     return MakeError(ErrorCode::kParse, "expected a zstd frame that states its size");
   }
-  return DecompressZstd(bytes, size, Stream::kWhole);
+  return DecompressZstd(bytes, size, StreamExtent::kWhole);
 }
 
 std::string Compress(Compression compression, std::string_view bytes) {

@@ -11,7 +11,7 @@ namespace sextant {
 namespace {
 
 // Discarded if the text is not JSON.
-nlohmann::json Parsed(const std::string& configuration) {
+nlohmann::json ParsedConfiguration(const std::string& configuration) {
   if (IsJsonTooDeep(configuration)) return nlohmann::json::value_t::discarded;
   return nlohmann::json::parse(configuration, nullptr, /*allow_exceptions=*/false);
 }
@@ -47,13 +47,13 @@ std::string ConfigurationOf(const Experiment& experiment) {
 }
 
 std::size_t CountMetrics(const std::string& configuration) {
-  const nlohmann::json json = Parsed(configuration);
+  const nlohmann::json json = ParsedConfiguration(configuration);
   if (!json.is_object() || !json.contains("metrics") || !json["metrics"].is_array()) return 0;
   return json["metrics"].size();
 }
 
 std::uint64_t CountBlocks(const std::string& configuration) {
-  const nlohmann::json json = Parsed(configuration);
+  const nlohmann::json json = ParsedConfiguration(configuration);
   const auto number = [&json](const char* key) {
     return json.is_object() && json.contains(key) && json[key].is_number_unsigned()
                ? json[key].get<std::uint64_t>()
