@@ -22,6 +22,9 @@ namespace {
 constexpr std::size_t kBytesPerByte = 17;
 constexpr std::size_t kBytesForAny = std::size_t{40} << 20;
 
+constexpr const char* kNoAliases =
+    "aliases (*name) are not supported, nor anchors (&name); write the value out";
+
 // Builds the tree from the parser's events; reports errors by the exception of the parser itself.
 class TreeBuilder final : public YAML::EventHandler {
  public:
@@ -35,9 +38,7 @@ class TreeBuilder final : public YAML::EventHandler {
     RefuseAnchor(mark, anchor);
     Add(mark, YamlNode::Kind::kNull, {});
   }
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    Refuse(mark, "aliases (*name) are not supported; write the value out");
-  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { Refuse(mark, kNoAliases); }
   void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
                 const std::string& value) override {
     RefuseAnchor(mark, anchor);
@@ -86,7 +87,7 @@ class TreeBuilder final : public YAML::EventHandler {
 
   // The parser remembers every anchor until its end, and without aliases none has a use.
   static void RefuseAnchor(const YAML::Mark& mark, YAML::anchor_t anchor) {
-    if (anchor != YAML::NullAnchor) Refuse(mark, "anchors (&name) are not supported; leave it out");
+    if (anchor != YAML::NullAnchor) Refuse(mark, kNoAliases);
   }
 
   static bool ExpectsKey(const YamlNode& node) {

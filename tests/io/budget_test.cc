@@ -23,7 +23,7 @@ using testing::HasSubstr;
 
 constexpr std::size_t kMiB = std::size_t{1} << 20;
 
-std::string Repeated(std::string text, std::string_view unit, std::size_t size) {
+std::string Filled(std::string text, std::string_view unit, std::size_t size) {
   while (text.size() < size) text += unit;
   return text;
 }
@@ -70,17 +70,17 @@ TEST(Budget, YamlTakesTwentyTimesItsSizeAnd64MiB) {
                               {"a: &a [*a", ",*a", "]\n"}};
   for (const Worst& worst : kWorst) {
     for (const std::size_t size : {kMiB / 4, 2 * kMiB}) {
-      ExpectYamlBudget(Repeated(worst.begin, worst.unit, size) + worst.end, worst.unit);
+      ExpectYamlBudget(Filled(worst.begin, worst.unit, size) + worst.end, worst.unit);
     }
   }
-  ExpectYamlBudget(Repeated("a: [", "0,", 42'000'000) + "0]\n", "a list of 42 MB");
+  ExpectYamlBudget(Filled("a: [", "0,", 42'000'000) + "0]\n", "a list of 42 MB");
   ExpectYamlBudget(
-      Repeated("a:\n", "- [-1.2345678901234, 2.345678901234567, 0.345678901234]\n", 42'000'000),
+      Filled("a:\n", "- [-1.2345678901234, 2.345678901234567, 0.345678901234]\n", 42'000'000),
       "points of 42 MB");
 }
 
 TEST(Budget, YamlThatIsTooDenseIsRefusedWithTheLine) {
-  EXPECT_THAT(ParseYaml(Repeated("a:\n", " - 0\n", 2 * kMiB), "f.yaml").error().message,
+  EXPECT_THAT(ParseYaml(Filled("a:\n", " - 0\n", 2 * kMiB), "f.yaml").error().message,
               HasSubstr("too many values for a text of this size"));
   EXPECT_THAT(ParseYaml(std::string(2 * kMiB, '['), "f.yaml").error().message,
               testing::StartsWith("f.yaml:1: not valid YAML: too many values"));
