@@ -89,6 +89,7 @@ Calibration CalibrateObserved(ObservedSession observed, const CalibrateOptions& 
     for (const std::string& line : OtherSizes(calibration.observed, options.observe.search)) {
       message += "\n  " + line;
     }
+    for (const std::string& note : calibration.observed.notes) message += "\n  " + note;
     calibration.result = MakeError(assembly.error().code, message);
     return calibration;
   }
