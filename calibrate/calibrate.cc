@@ -34,16 +34,17 @@ std::vector<std::string> OtherSizes(const ObservedSession& observed,
 
 std::vector<std::string> WarningsFor(const Calibration& calibration, const MatchSettings& match) {
   const Assembly& assembly = calibration.assembly;
-  std::vector<std::string> warnings = DescribeAmbiguity(assembly.matching, match);
+  std::vector<std::string> warnings = calibration.observed.notes;
+  const auto add = [&warnings](const std::vector<std::string>& lines) {
+    warnings.insert(warnings.end(), lines.begin(), lines.end());
+  };
+  add(DescribeAmbiguity(assembly.matching, match));
   for (const std::filesystem::path& file : calibration.observed.session.files.without_partner) {
     warnings.push_back(fmt::format("without a partner: {}", Printable(file.string(), 300)));
   }
   const SolveReport* report = calibration.report();
   const Rigid3d& pose =
       report != nullptr ? report->cam_from_lidar : assembly.matching.cam_from_lidar;
-  const auto add = [&warnings](const std::vector<std::string>& lines) {
-    warnings.insert(warnings.end(), lines.begin(), lines.end());
-  };
   add(Diagnose(calibration.observed.views, assembly, pose));
   add(Describe(DiagnosePairs(assembly.problem)));
   return warnings;
@@ -89,6 +90,7 @@ Calibration CalibrateObserved(ObservedSession observed, const CalibrateOptions& 
     for (const std::string& line : OtherSizes(calibration.observed, options.observe.search)) {
       error.AddLine(line);
     }
+    for (const std::string& note : calibration.observed.notes) error.AddLine(note);
     calibration.result = tl::unexpected<Error>(std::move(error));
     return calibration;
   }

@@ -48,6 +48,7 @@ Expected<void> ObserveBagOf(const CalibrateOptions& options, const std::optional
                                             options.progress));
   observed.camera = recorded.camera;
   observed.views = std::move(recorded.views);
+  if (!recorded.note.empty()) observed.notes.push_back(std::move(recorded.note));
   return {};
 }
 #else

@@ -22,6 +22,7 @@ struct ObservedSession {
   std::vector<Board> boards{};
   Camera camera{};
   std::vector<SessionView> views{};
+  std::vector<std::string> notes{};  ///< Such as that the recording is cut short.
 };
 
 /// An image and a scan of one moment, in memory.

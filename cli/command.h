@@ -36,6 +36,8 @@ enum class Writes {
   kFolder,
 };
 
+/// Whatever the rules, a number must be finite and the whole text, an unsigned one has no sign, and
+/// a text is not empty.
 struct ArgumentRules {
   bool required = false;
   bool shows_default = false;            ///< The help shows the variable's initial value.

@@ -6,6 +6,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
 #include <sstream>
 #include <type_traits>
 #include <utility>
@@ -14,6 +17,7 @@
 #include "base/text/printable.h"
 #include "base/version.h"
 #include "cli/output.h"
+#include "io/text/number_text.h"
 
 namespace sextant::cli {
 namespace {
@@ -28,17 +32,59 @@ struct NumberOf<std::optional<Value>> {
 };
 
 template <class Value>
-void SetRange(const ArgumentRange& range, CLI::Option& option) {
-  using Number = typename NumberOf<Value>::Type;
-  if constexpr (std::is_arithmetic_v<Number>) {
-    option.check(CLI::Range(static_cast<Number>(range.low), static_cast<Number>(range.high)));
+struct NumberOf<std::vector<Value>> {
+  using Type = Value;
+};
+
+// The fault of a value that is to be a number of this type within the range; empty if it has none.
+// CLI11 takes NaN for a number in every range, and -1 for a large unsigned one.
+template <class Number>
+std::string FaultOf(const std::string& text, const std::optional<ArgumentRange>& range) {
+  Number value{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] =
+      std::from_chars(text.data() + (text.starts_with('+') ? 1 : 0), end, value);
+  const double number = static_cast<double>(value);
+  const bool fits = error == std::errc() && stop == end && std::isfinite(number) &&
+                    (!range || (number >= range->low && number <= range->high));
+  if (fits) return {};
+  std::string expected = std::is_integral_v<Number> ? "a whole number" : "a finite number";
+  if (range) {
+    expected += fmt::format(" from {} to {}", range->low, range->high);
+  } else if (std::is_integral_v<Number>) {
+    expected += fmt::format(" from {} to {}", std::numeric_limits<Number>::min(),
+                            std::numeric_limits<Number>::max());
+  }
+  return fmt::format("expected {}, got {}", expected, Quoted(text));
+}
+
+template <class Number>
+std::string DescribeRange(const std::optional<ArgumentRange>& range) {
+  if (!range) return {};
+  return fmt::format("{} in [{} - {}]", CLI::detail::type_name<Number>(), range->low, range->high);
+}
+
+// Every value of every command is checked here, before CLI11 converts it.
+template <class Value>
+void CheckValues(const ArgumentRules& rules, CLI::Option& option) {
+  using One = typename NumberOf<Value>::Type;
+  if constexpr (std::is_arithmetic_v<One>) {
+    const auto fault = [range = rules.range](std::string& text) {
+      return FaultOf<One>(text, range);
+    };
+    option.check(CLI::Validator(fault, DescribeRange<One>(rules.range)));
+  } else {
+    const auto fault = [](std::string& text) {
+      return text.empty() ? "expected a text, got an empty one" : std::string();
+    };
+    option.check(CLI::Validator(fault, ""));
   }
 }
 
 template <class Value>
 CLI::Option& AddOption(const Argument& argument, Value& value, CLI::App& app) {
   CLI::Option& option = *app.add_option(argument.name, value, argument.help);
-  if (argument.rules.range) SetRange<Value>(*argument.rules.range, option);
+  CheckValues<Value>(argument.rules, option);
   return option;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cli/pose_file.h"
+#include "geometry/coordinate_range.h"
 #include "io/text/number_text.h"
 
 namespace sextant::cli {
@@ -30,7 +31,13 @@ Expected<Rigid3d> PoseFromNumbers(const std::string& option,
         ErrorCode::kInvalidOption,
         fmt::format("{}: expected a quaternion of length 1, got {:.3f}", option, rotation.norm()));
   }
-  return Rigid3d{rotation.normalized(), {values[0], values[1], values[2]}};
+  const Eigen::Vector3d translation(values[0], values[1], values[2]);
+  if (translation.cwiseAbs().maxCoeff() > kMaxCoordinate_m) {
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        fmt::format("{}: expected a translation of at most {:g} m", option, kMaxCoordinate_m));
+  }
+  return Rigid3d{rotation.normalized(), translation};
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ Expected<Rigid3d> FromResults(const std::string& path) {
 
 // Other keys, of this or a later version, are ignored.
 Expected<Rigid3d> ParsePoseYaml(std::string_view text, const std::string& file) {
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   const YamlNode* node = root.Find("cam_from_lidar");
   if (node == nullptr) {
     return MakeError(ErrorCode::kMissingData,

@@ -31,7 +31,8 @@ std::string Summary(const Bag& bag, const std::string& path) {
     text += fmt::format(", {} s from {:%Y-%m-%d %H:%M:%S} UTC", Fixed(Seconds(last - first), 3),
                         fmt::gmtime(static_cast<std::time_t>(first / 1'000'000'000)));
   }
-  return text + "\n";
+  text += "\n";
+  return bag.cut() ? text + "warning: " + DescribeCut(bag) + "\n" : text;
 }
 
 std::string TopicTable(const Bag& bag) {
@@ -73,6 +74,10 @@ std::string PairingsText(const Bag& bag, const BagStreams& all, double tolerance
   std::string text;
   for (const BagPairing& pairing : all.pairings) {
     text += PairingText(bag, all, pairing, tolerance_s);
+  }
+  if (all.more_pairings > 0) {
+    text +=
+        fmt::format("and {} more pairs of topics, which are not paired here\n", all.more_pairings);
   }
   return text;
 }

@@ -6,7 +6,8 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <set>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "calibrate/bag/bag_image.h"
 #include "calibrate/bag/bag_streams.h"
@@ -64,8 +65,10 @@ class Extractor {
   std::filesystem::path FolderOf(std::size_t topic) {
     const auto known = folders_.find(topic);
     if (known != folders_.end()) return folder_ / std::filesystem::path(known->second);
-    std::string name = FolderName(bag_.topics()[topic].name);
-    while (!taken_.insert(name).second) name += '_';
+    const std::string plain = FolderName(bag_.topics()[topic].name);
+    std::string name = plain;
+    std::size_t& number = numbers_of_name_[plain];
+    while (!taken_.insert(name).second) name = fmt::format("{}_{}", plain, ++number + 1);
     folders_[topic] = name;
     return folder_ / std::filesystem::path(name);
   }
@@ -109,7 +112,8 @@ class Extractor {
   std::filesystem::path folder_;
   std::map<std::size_t, std::size_t> numbers_;  // The next message's, by topic.
   std::map<std::size_t, std::string> folders_;
-  std::set<std::string> taken_;
+  std::unordered_set<std::string> taken_;
+  std::unordered_map<std::string, std::size_t> numbers_of_name_;  // The last number of each name.
   std::map<std::size_t, std::string> extensions_;
   std::map<std::size_t, std::string> cameras_;
   int files_ = 0;

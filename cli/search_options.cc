@@ -22,19 +22,20 @@ Expected<LidarBeam> BeamOf(const SearchArguments& arguments) {
 
 void DeclareSearch(SearchArguments& search, Arguments& arguments) {
   arguments.Add("--region", search.region, "Search only in x y z x y z [m], LiDAR frame",
-                {.min_values = 6});
+                {.range = {{-1e6, 1e6}}, .min_values = 6});
   arguments.Add("--raw-edges", search.raw_edges,
                 "Put edges at the last return, uncorrected for sample steps and beam width");
   arguments.Add("--lidar", search.lidar,
                 "Sensor, for the width of its beam: vlp16, os1_64, ... of sextant list lidars",
                 {.shows_default = true});
   arguments.Add("--beam-aperture", search.aperture_m,
-                "For another sensor: width of the beam at the sensor [m]");
+                "For another sensor: width of the beam at the sensor [m]", {.range = {{0.0, 1.0}}});
   arguments.Add("--beam-divergence", search.divergence_rad,
-                "For another sensor: full divergence angle [rad]");
+                "For another sensor: full divergence angle [rad]", {.range = {{0.0, 1.0}}});
   arguments.Add("--edge-growth", search.growth,
                 "How far beyond an edge the board still gives returns, as a share of the beam's\n"
-                "width");
+                "width",
+                {.range = {{-10.0, 10.0}}});
   arguments.Add("--seed", search.seed, "Seed of the search for planes", {.shows_default = true});
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "io/bag/bag.h"
@@ -24,12 +26,24 @@ struct BagPairing {
 };
 
 struct BagStreams {
-  std::vector<BagStream> streams;  ///< All topics of scans and of images.
+  std::vector<BagStream> streams;  ///< The chosen topics of scans and of images.
   std::vector<BagPairing> pairings;
+  std::size_t more_pairings = 0;  ///< Pairs of topics beyond kMaxPairings, which are left out.
 };
 
-/// Reads the stamps of all scans and images, and pairs every topic of scans with every topic of
-/// images. Errors: those of Bag::Read and of the messages' headers.
-Expected<BagStreams> ReadStreams(const Bag& bag, std::int64_t tolerance_ns);
+/// The topics to read; an empty name chooses all of its kind.
+struct StreamChoice {
+  std::string image_topic{};
+  std::string cloud_topic{};
+};
+
+inline constexpr std::size_t kMaxPairings = 100;
+
+/// Reads the stamps of the chosen scans and images, and pairs every topic of scans with every topic
+/// of images, the first kMaxPairings of them. Errors: those of Bag::Read and of the messages'
+/// headers. Time: that of one Bag::Read, and O(n log n) in the messages for each pairing; memory:
+/// 16 bytes for each message and pairing.
+Expected<BagStreams> ReadStreams(const Bag& bag, std::int64_t tolerance_ns,
+                                 const StreamChoice& choice = {});
 
 }  // namespace sextant

@@ -12,35 +12,47 @@
 #include "calibrate/bag/bag_streams.h"
 #include "calibrate/match/motion.h"
 #include "io/bag/messages.h"
+#include "io/text/number_text.h"
 
 namespace sextant {
 namespace {
 
 double Seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
-// The pairing of the named topics, or the only one.
-Expected<const BagPairing*> ChoosePairing(const Bag& bag, const BagStreams& all,
-                                          const BagSource& source) {
-  std::vector<const BagPairing*> fitting;
-  std::string known;
-  for (const BagPairing& pairing : all.pairings) {
-    const std::string& images = bag.topics()[all.streams[pairing.images].topic].name;
-    const std::string& clouds = bag.topics()[all.streams[pairing.scans].topic].name;
-    known += fmt::format("{}{} with {}", known.empty() ? "" : "; ", images, clouds);
-    const bool fits = (source.image_topic.empty() || source.image_topic == images) &&
-                      (source.cloud_topic.empty() || source.cloud_topic == clouds);
-    if (fits) fitting.push_back(&pairing);
+// The pairs of topics of images and of scans, the first few by name.
+std::string KnownTopics(const Bag& bag) {
+  constexpr std::size_t kMaxListed = 20;
+  std::vector<std::string> images;
+  std::vector<std::string> clouds;
+  for (const BagTopic& topic : bag.topics()) {
+    const bool is_cloud = topic.kind == MessageKind::kPointCloud;
+    const bool is_image =
+        topic.kind == MessageKind::kImage || topic.kind == MessageKind::kEncodedImage;
+    if (is_cloud || is_image) (is_cloud ? clouds : images).push_back(Printable(topic.name, 100));
   }
-  if (all.pairings.empty()) {
+  if (images.empty() || clouds.empty()) return {};
+  const std::size_t pairs = images.size() * clouds.size();
+  std::string known;
+  for (std::size_t i = 0; i < std::min(pairs, kMaxListed); ++i) {
+    known += fmt::format("{}{} with {}", i == 0 ? "" : "; ", images[i % images.size()],
+                         clouds[i / images.size()]);
+  }
+  return known + (pairs > kMaxListed ? fmt::format("; and {} more", pairs - kMaxListed) : "");
+}
+
+// The pairing of the named topics, or the only one.
+Expected<const BagPairing*> ChoosePairing(const Bag& bag, const BagStreams& all) {
+  const std::string known = KnownTopics(bag);
+  if (known.empty()) {
     return MakeError(ErrorCode::kMissingData,
                      "the recording has no topic of images (Image, CompressedImage) beside one of "
                      "scans (PointCloud2)");
   }
-  if (fitting.size() == 1) return fitting.front();
+  if (all.pairings.size() == 1) return &all.pairings.front();
   return MakeError(ErrorCode::kMissingData,
                    fmt::format("{} topics fit: name one of images with --image-topic and one of "
                                "scans with --cloud-topic; there are: {}",
-                               fitting.empty() ? "no" : "several", known));
+                               all.pairings.empty() ? "no" : "several", known));
 }
 
 // The smallest difference in time between an image and a scan. Requires stamps of both.
@@ -194,8 +206,10 @@ class Batches {
 
 Expected<BagPlan> PlanBag(const Bag& bag, const BagSource& source) {
   const auto tolerance_ns = static_cast<std::int64_t>(1e9 * source.tolerance_s);
-  SEXTANT_ASSIGN_OR_RETURN(const BagStreams all, ReadStreams(bag, tolerance_ns));
-  SEXTANT_ASSIGN_OR_RETURN(const BagPairing* pairing, ChoosePairing(bag, all, source));
+  SEXTANT_ASSIGN_OR_RETURN(const BagStreams all, ReadStreams(bag, tolerance_ns,
+                                                             {.image_topic = source.image_topic,
+                                                              .cloud_topic = source.cloud_topic}));
+  SEXTANT_ASSIGN_OR_RETURN(const BagPairing* pairing, ChoosePairing(bag, all));
   const BagStream& images = all.streams[pairing->images];
   const BagStream& scans = all.streams[pairing->scans];
   const std::vector<StampPair>& pairs = pairing->pairs.pairs;

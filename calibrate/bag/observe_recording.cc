@@ -28,6 +28,7 @@ Expected<RecordedViews> ObserveRecording(const std::filesystem::path& path,
                            ObserveBag(*bag, *plan, observer, [&counter] { counter.Step(); }));
   counter.Finish();
   recorded.views = std::move(views);
+  if (bag->cut()) recorded.note = fmt::format("{}: {}", path.string(), DescribeCut(*bag));
   return recorded;
 }
 

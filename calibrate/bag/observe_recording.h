@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/error.h"
@@ -25,6 +26,7 @@ struct RecordingOptions {
 struct RecordedViews {
   Camera camera{};  ///< The one that the images were examined with.
   std::vector<SessionView> views{};
+  std::string note{};  ///< What is missing of a recording that is cut short; else empty.
 };
 
 /// Opens a recording, pairs its images and scans by time stamp and observes the boards in them.

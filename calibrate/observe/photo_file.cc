@@ -3,8 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <string_view>
-
 #include "io/images/image_codec.h"
 #include "io/output/output_file.h"
 #include "io/text/text_file.h"
@@ -12,31 +10,8 @@
 namespace sextant {
 namespace {
 
-using namespace std::string_view_literals;
-
-// The first and last bytes of an image format. Other bytes may follow the last ones.
-struct Signature {
-  std::string_view begin;
-  std::string_view end;
-};
-constexpr Signature kEnds[] = {{"\xFF\xD8\xFF"sv, "\xFF\xD9"sv}, {"\x89PNG"sv, "IEND"sv}};
-constexpr std::size_t kTailBytes = 4096;
-
-bool IsTruncated(std::string_view bytes) {
-  const std::string_view tail =
-      bytes.substr(bytes.size() > kTailBytes ? bytes.size() - kTailBytes : 0);
-  for (const Signature& ends : kEnds) {
-    if (bytes.starts_with(ends.begin)) return tail.find(ends.end) == std::string_view::npos;
-  }
-  return false;
-}
-
 Expected<cv::Mat> ReadAs(const std::filesystem::path& path, DecodedColor color) {
   SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, ReadTextFile(path));
-  if (IsTruncated(bytes)) {
-    return MakeError(ErrorCode::kParse,
-                     fmt::format("{}: the image is cut off: its end is missing", path.string()));
-  }
   Expected<cv::Mat> image = DecodeImage(bytes, color);
   if (image) return image;
   return MakeError(image.error().code, fmt::format("{}: {}", path.string(), image.error().message));

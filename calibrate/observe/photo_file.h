@@ -9,8 +9,8 @@
 namespace sextant {
 
 /// Reads an image in any format of OpenCV as grey or BGR of 8 or 16 bits, rotated by its Exif
-/// orientation. Errors: kIo (no such file, or one that cannot be read), kParse (not an image,
-/// or one whose end is missing, which OpenCV would fill with grey).
+/// orientation. Errors: kIo (no such file, or one that cannot be read), kParse (not an image, or
+/// one whose end is missing). Time and memory: those of DecodeImage.
 Expected<cv::Mat> ReadImage(const std::filesystem::path& path);
 
 /// The same, converted to BGR of 8 bits.

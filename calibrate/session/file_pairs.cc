@@ -33,16 +33,29 @@ std::string NaturalKey(std::string_view text) {
   return key;
 }
 
-// Whether the name matches a pattern in which each `*` matches any text.
+// Whether the name matches a pattern in which each `*` matches any text. When a part after a star
+// does not fit, only the last star needs to take more: an earlier one would leave less to match.
 bool Matches(std::string_view name, std::string_view pattern) {
-  const std::size_t star = pattern.find('*');
-  if (star == std::string_view::npos) return name == pattern;
-  if (!name.starts_with(pattern.substr(0, star))) return false;
-  const std::string_view rest = pattern.substr(star + 1);
-  for (std::size_t i = star; i <= name.size(); ++i) {
-    if (Matches(name.substr(i), rest)) return true;
+  constexpr std::size_t kNoStar = std::string_view::npos;
+  std::size_t at = 0;
+  std::size_t in_pattern = 0;
+  std::size_t last_star = kNoStar;
+  std::size_t taken_until = 0;  // The last star has taken the name up to here.
+  while (at < name.size()) {
+    if (in_pattern < pattern.size() && pattern[in_pattern] == '*') {
+      last_star = in_pattern++;
+      taken_until = at;
+    } else if (in_pattern < pattern.size() && pattern[in_pattern] == name[at]) {
+      ++in_pattern;
+      ++at;
+    } else if (last_star != kNoStar) {
+      in_pattern = last_star + 1;
+      at = ++taken_until;
+    } else {
+      return false;
+    }
   }
-  return false;
+  return pattern.find_first_not_of('*', in_pattern) == std::string_view::npos;
 }
 
 // The distinguishing part of each file name: without the beginning and the end that all share.
@@ -92,7 +105,11 @@ Expected<std::vector<fs::path>> ExpandPattern(const fs::path& pattern) {
     return MakeError(ErrorCode::kMissingData,
                      fmt::format("no file is named '{}'", pattern.string()));
   }
-  std::ranges::sort(files, {}, [](const fs::path& file) { return NaturalKey(file.string()); });
+  std::vector<std::pair<std::string, fs::path>> by_key;
+  for (fs::path& file : files) by_key.emplace_back(NaturalKey(file.string()), std::move(file));
+  std::ranges::sort(by_key);
+  std::ranges::transform(by_key, files.begin(),
+                         [](auto& keyed) { return std::move(keyed.second); });
   return files;
 }
 

@@ -187,7 +187,7 @@ tl::unexpected<Error> HintToSolve(const std::string& file) {
 
 Expected<Session> ParseSession(std::string_view text, const std::string& file) {
   if (BeginsWithNumber(text)) return HintToSolve(file);
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   if (root.Find("sextant_problem") != nullptr) return HintToSolve(file);
   return SessionReader(file).Read(root);
 }

@@ -58,7 +58,7 @@ void DeclareSources(CalibrateCommandOptions& options, Arguments& arguments) {
   arguments.Add("--cloud-topic", options.cloud_topic, "For a recording with several");
   arguments.Add("--tolerance", options.tolerance_s,
                 "Maximum time between an image and its scan, by their stamps [s]",
-                {.shows_default = true});
+                {.shows_default = true, .range = {{0.0, 3600.0}}});
   arguments.Add("--board", options.boards_path,
                 "Boards (YAML, or marker_coordinates.txt); default: the session's");
   arguments.Add("--camera", options.camera_path,

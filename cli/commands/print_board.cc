@@ -25,7 +25,8 @@ void Declare(PrintBoardOptions& options, Arguments& arguments) {
                 {.required = true});
   arguments.Add("--out", options.out, "Written by its extension: .pdf, .svg or .png",
                 {.required = true, .writes = Writes::kFile});
-  arguments.Add("--id", options.id, "One board of the file; a .pdf holds all");
+  arguments.Add("--id", options.id, "One board of the file; a .pdf holds all",
+                {.range = {{0, 1e9}}});
   arguments.Add("--dpi", options.dpi, "Pixels per inch of a .png",
                 {.shows_default = true, .range = {{10.0, 2400.0}}});
 }

@@ -42,7 +42,7 @@ void Declare(SimulateOptions& options, Arguments& arguments) {
                 "Folder to write; a run that was stopped continues where it was",
                 {.shows_default = true, .writes = Writes::kFolder});
   arguments.Add("--scans", options.scans, "Number of scans, with their images",
-                {.shows_default = true});
+                {.shows_default = true, .range = {{1, 100'000}}});
   arguments.Add("--seed", options.seed, "The same seed gives the same bytes",
                 {.shows_default = true});
   arguments.Add("--level", options.level,
@@ -50,7 +50,7 @@ void Declare(SimulateOptions& options, Arguments& arguments) {
                 "by a person",
                 {.shows_default = true});
   arguments.Add("--interval", options.interval_s, "From one scan to the next [s]",
-                {.shows_default = true});
+                {.shows_default = true, .range = {{0.0, 1e6}}});
   arguments.Add("--bag", options.bag, "Write also session.bag (ROS 1), with the scans and images");
   arguments.Add("--ideal", options.ideal,
                 "Sensors without noise, without blur and with a beam of no width");
@@ -58,9 +58,10 @@ void Declare(SimulateOptions& options, Arguments& arguments) {
                 {.shows_default = true});
   arguments.Add("--lidar-sigma", options.lidar_sigma_m,
                 "Levels corners and pairs: LiDAR corner noise per axis [m]",
-                {.shows_default = true});
+                {.shows_default = true, .range = {{0.0, 1000.0}}});
   arguments.Add("--pixel-sigma", options.pixel_sigma_px,
-                "Levels corners and pairs: corner noise in the image [px]; default 1 and 3.5");
+                "Levels corners and pairs: corner noise in the image [px]; default 1 and 3.5",
+                {.range = {{0.0, 1e4}}});
   arguments.Add("--sheet", options.sheet_path,
                 "Draw image, scan and edges of the first scan (.png)",
                 {.writes = Writes::kCheckedByCommand});

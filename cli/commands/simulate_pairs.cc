@@ -24,19 +24,21 @@ void Declare(SimulatePairsOptions& options, Arguments& arguments) {
   arguments.Add("--seed", simulation.seed, "The same seed gives the same bytes",
                 {.shows_default = true});
   arguments.Add("--views", simulation.views, "Views, each with the boards in new places",
-                {.shows_default = true});
+                {.shows_default = true, .range = {{1, PairSimulation::kMaxViews}}});
   arguments.Add("--outliers", simulation.outliers, "Corners that are displaced",
-                {.shows_default = true});
+                {.shows_default = true, .range = {{0, 8 * PairSimulation::kMaxViews}}});
   arguments.Add("--outlier-shift", simulation.outlier_shift_m, "Size of the displacement [m]",
-                {.shows_default = true});
+                {.shows_default = true, .range = {{0.0, 1000.0}}});
   arguments.Add("--lidar-sigma", simulation.lidar_sigma_m, "LiDAR corner noise per axis [m]",
-                {.shows_default = true});
+                {.shows_default = true, .range = {{0.0, 1000.0}}});
   arguments.Add("--camera-sigma", simulation.camera_lateral_sigma_m,
-                "Camera corner noise across the ray [m]", {.shows_default = true});
+                "Camera corner noise across the ray [m]",
+                {.shows_default = true, .range = {{0.0, 1000.0}}});
   arguments.Add("--depth-sigma", simulation.camera_depth_sigma_m,
-                "Camera corner noise along the ray [m]", {.shows_default = true});
+                "Camera corner noise along the ray [m]",
+                {.shows_default = true, .range = {{0.0, 1000.0}}});
   arguments.Add("--pixel-sigma", simulation.pixel_sigma_px, "Corner noise in the image [px]",
-                {.shows_default = true});
+                {.shows_default = true, .range = {{0.0, 1e4}}});
 }
 
 int Run(const SimulatePairsOptions& options) {

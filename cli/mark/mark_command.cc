@@ -32,7 +32,8 @@ void Declare(MarkOptions& options, Arguments& arguments) {
       "--yaw", options.yaw_deg,
       "Without a pose: turn the assumed camera to the left by this angle [deg]",
       {.shows_default = true, .range = {{-360.0, 360.0}}, .excludes = "--cam-from-lidar"});
-  arguments.Add("--ids", options.ids, "Ids of the boards from left to right; default: 0, 1, ...");
+  arguments.Add("--ids", options.ids, "Ids of the boards from left to right; default: 0, 1, ...",
+                {.range = {{0, 1e9}}});
   arguments.Add("--out", options.out_path, "Polygon file to write, or to continue with",
                 {.shows_default = true, .writes = Writes::kCheckedByCommand});
   arguments.Add("--render", options.render_path,
@@ -113,7 +114,7 @@ std::string SummaryOf(const ScanMarks& marks) {
                      Counted(edges, "edge"), Counted(marks.corners.size(), "corner"));
 }
 
-Expected<void> CheckPicture(const std::string& path) {
+Expected<void> CheckRenderPath(const std::string& path) {
   if (path.ends_with(".png")) return {};
   return MakeError(ErrorCode::kInvalidOption, path + ": expected a name that ends in .png");
 }
@@ -126,7 +127,7 @@ int Render(const std::string& path, const MarkController& controller, MarkCanvas
 int Run(const MarkOptions& options) {
   const bool renders = !options.render_path.empty();
   if (const Expected<void> ok = CheckDisplay(); !renders && !ok) return Refuse("mark", ok.error());
-  if (const Expected<void> ok = renders ? CheckPicture(options.render_path) : ClaimMarks(options);
+  if (const Expected<void> ok = renders ? CheckRenderPath(options.render_path) : ClaimMarks(options);
       !ok) {
     return Refuse("mark", ok.error());
   }

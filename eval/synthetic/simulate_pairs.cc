@@ -62,11 +62,13 @@ void DisplaceOutliers(const PairSimulation& simulation, Random& random,
   }
 }
 
-Expected<void> Check(const PairSimulation& simulation, int corners) {
-  if (simulation.views < 1) {
-    return MakeError(ErrorCode::kInvalidOption,
-                     fmt::format("expected at least 1 view, got {}", simulation.views));
+Expected<void> Check(const PairSimulation& simulation, std::size_t boards) {
+  if (simulation.views < 1 || simulation.views > PairSimulation::kMaxViews) {
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        fmt::format("expected 1 to {} views, got {}", PairSimulation::kMaxViews, simulation.views));
   }
+  const int corners = simulation.views * static_cast<int>(boards) * kCornersPerBoard;
   if (simulation.outliers < 0 || simulation.outliers > corners) {
     return MakeError(ErrorCode::kInvalidOption, fmt::format("expected 0 to {} outliers, got {}",
                                                             corners, simulation.outliers));
@@ -86,8 +88,7 @@ Expected<void> Check(const PairSimulation& simulation, int corners) {
 
 Expected<SimulatedSession> SimulatePairs(const PairSimulation& simulation) {
   const std::vector<Board> boards = PaperBoards();
-  const int corners = simulation.views * static_cast<int>(boards.size()) * kCornersPerBoard;
-  SEXTANT_RETURN_IF_ERROR(Check(simulation, corners));
+  SEXTANT_RETURN_IF_ERROR(Check(simulation, boards.size()));
   SimulatedSession session;
   session.problem.boards = boards;
   session.problem.camera = ZedLikeCamera();

@@ -16,6 +16,8 @@ namespace sextant {
 /// the camera corners: a tag's depth is far less certain than its bearing. Marking in the image: 1
 /// px.
 struct PairSimulation {
+  static constexpr int kMaxViews = 20'000;
+
   std::uint64_t seed = 1;
   int views = 1;     ///< The boards get a new random pose in every view.
   int outliers = 1;  ///< Number of corners in the whole session whose LiDAR point is displaced.
@@ -32,8 +34,8 @@ struct SimulatedSession {
 };
 
 /// Simulates pairs of both kinds with their stated noise, point sets, boards, camera and the true
-/// pose. The same seed gives the same bytes. Errors: kInvalidOption (no views, noise that is not
-/// positive, more outliers than corners).
+/// pose. The same seed gives the same bytes. Errors: kInvalidOption (not 1 to kMaxViews views, noise
+/// that is not positive, more outliers than corners).
 Expected<SimulatedSession> SimulatePairs(const PairSimulation& simulation);
 
 }  // namespace sextant

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,7 +43,15 @@ struct BagMessage {
   std::string_view data;
 };
 
-/// A recording, open for reading. It keeps at most one chunk in memory.
+/// The end of a recording that is not whole.
+struct BagCut {
+  std::uint64_t byte = 0;  ///< What begins here is not read.
+  std::string reason{};    ///< "the file ends within a record" and so on.
+};
+
+/// A recording, open for reading. It keeps at most one chunk and its index in memory: a chunk takes
+/// its decompressed size, at most 256 times the file's and 64 MiB. Opening and each Read() take
+/// time linear in the file's size and in what it decompresses to.
 class Bag {
  public:
   /// Receives a message; an error stops the reading.
@@ -54,6 +63,10 @@ class Bag {
   virtual std::string_view format() const = 0;
   const std::vector<BagTopic>& topics() const { return topics_; }
 
+  /// Set if the recording is cut short, or was not closed by its recorder. Its topics, counts and
+  /// messages are then those before the cut.
+  const std::optional<BagCut>& cut() const { return cut_; }
+
   /// Passes the messages of the topics with these indices to `visit`, in the order of the file.
   /// Errors: kParse, with the byte or row; those of the visitor.
   virtual Expected<void> Read(const std::vector<std::size_t>& topic_indices,
@@ -61,13 +74,19 @@ class Bag {
 
  protected:
   std::vector<BagTopic> topics_;
+  std::optional<BagCut> cut_;
 };
 
 /// Opens a recording of ROS 1 (.bag, version 2.0; chunks plain, bz2 or lz4; with an index or
 /// without), ROS 2 (.db3, messages plain or zstd) or MCAP (chunks plain, lz4 or zstd), recognised
-/// by the first bytes; or the only such file in a folder, as ROS 2 records. Errors: kIo; kParse,
-/// with the byte, for anything else and for a file that is cut short.
+/// by the first bytes; or the only such file in a folder, as ROS 2 records. Of a file that is cut
+/// short, everything before the cut is read. Errors: kIo; kParse, with the byte, for anything else,
+/// for damage before the end, and for a cut before the first message.
 Expected<std::unique_ptr<Bag>> OpenBag(const std::filesystem::path& path);
+
+/// "the file ends within a record (byte N): the M messages before it are read"; empty if the
+/// recording is whole.
+std::string DescribeCut(const Bag& bag);
 
 /// The kind of a type such as "sensor_msgs/PointCloud2".
 MessageKind MessageKindOf(std::string_view type);

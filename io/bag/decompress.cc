@@ -26,9 +26,13 @@ struct DecoderStep {
   std::size_t produced = 0;
 };
 
+// Whether the end of the stream may be missing.
+enum class StreamExtent { kWhole, kBegun };
+
 // Calls `decode(input, output, room)` until its stream ends. The output grows as it is produced.
 template <class Decode>
-Expected<std::string> Run(std::string_view input, std::size_t size, Decode decode) {
+Expected<std::string> Run(std::string_view input, std::size_t size, StreamExtent stream,
+                          Decode decode) {
   if (size > kUncheckedSize && size / kMaxRatio > input.size()) {
     return MakeError(ErrorCode::kParse,
                      fmt::format("{} compressed bytes are stated to hold {} bytes, more than {} "
@@ -43,6 +47,11 @@ Expected<std::string> Run(std::string_view input, std::size_t size, Decode decod
       output.resize(std::min(size + 1, filled + std::max(kStep, filled)));
     }
     const DecoderStep step = decode(input, output.data() + filled, output.size() - filled);
+    const bool stalls = !step.ended && step.consumed == 0 && step.produced == 0;
+    if (stream == StreamExtent::kBegun && (step.failed || stalls)) {
+      output.resize(filled);
+      return output;
+    }
     if (step.failed) return MakeError(ErrorCode::kParse, "its compressed data is damaged");
     input.remove_prefix(step.consumed);
     filled += step.produced;
@@ -53,7 +62,7 @@ Expected<std::string> Run(std::string_view input, std::size_t size, Decode decod
                       filled > size ? "more than " : "", std::min(filled, size), size));
     }
     if (step.ended) break;
-    if (step.consumed == 0 && step.produced == 0) {
+    if (stalls) {
       return MakeError(ErrorCode::kParse, "its compressed data is cut short");
     }
   }
@@ -61,13 +70,13 @@ Expected<std::string> Run(std::string_view input, std::size_t size, Decode decod
   return output;
 }
 
-Expected<std::string> DecompressBz2(std::string_view bytes, std::size_t size) {
+Expected<std::string> DecompressBz2(std::string_view bytes, std::size_t size, StreamExtent end) {
   bz_stream stream{};
   if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) {
     return MakeError(ErrorCode::kParse, "bz2 cannot be started");
   }
   const std::unique_ptr<bz_stream, int (*)(bz_stream*)> guard(&stream, BZ2_bzDecompressEnd);
-  return Run(bytes, size, [&stream](std::string_view input, char* output, std::size_t room) {
+  return Run(bytes, size, end, [&stream](std::string_view input, char* output, std::size_t room) {
     const auto in = static_cast<unsigned>(std::min(input.size(), kStep));
     const auto out = static_cast<unsigned>(std::min(room, kStep));
     std::string block(input.substr(0, in));  // bz2 requires writable input.
@@ -83,14 +92,14 @@ Expected<std::string> DecompressBz2(std::string_view bytes, std::size_t size) {
   });
 }
 
-Expected<std::string> DecompressLz4(std::string_view bytes, std::size_t size) {
+Expected<std::string> DecompressLz4(std::string_view bytes, std::size_t size, StreamExtent end) {
   LZ4F_dctx* raw = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION)) != 0U) {
     return MakeError(ErrorCode::kParse, "lz4 cannot be started");
   }
   const std::unique_ptr<LZ4F_dctx, LZ4F_errorCode_t (*)(LZ4F_dctx*)> context(
       raw, LZ4F_freeDecompressionContext);
-  return Run(bytes, size, [&context](std::string_view input, char* output, std::size_t room) {
+  return Run(bytes, size, end, [&context](std::string_view input, char* output, std::size_t room) {
     std::size_t in = input.size();
     std::size_t out = room;
     const std::size_t result =
@@ -102,10 +111,10 @@ Expected<std::string> DecompressLz4(std::string_view bytes, std::size_t size) {
   });
 }
 
-Expected<std::string> DecompressZstd(std::string_view bytes, std::size_t size) {
+Expected<std::string> DecompressZstd(std::string_view bytes, std::size_t size, StreamExtent end) {
   const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(),
                                                                              ZSTD_freeDStream);
-  return Run(bytes, size, [&stream](std::string_view input, char* output, std::size_t room) {
+  return Run(bytes, size, end, [&stream](std::string_view input, char* output, std::size_t room) {
     ZSTD_inBuffer in{input.data(), input.size(), 0};
     ZSTD_outBuffer out{output, room, 0};
     const std::size_t result = ZSTD_decompressStream(stream.get(), &out, &in);
@@ -114,6 +123,23 @@ Expected<std::string> DecompressZstd(std::string_view bytes, std::size_t size) {
                        .consumed = in.pos,
                        .produced = out.pos};
   });
+}
+
+Expected<std::string> DecompressStream(Compression compression, std::string_view bytes,
+                                       std::size_t size, StreamExtent stream) {
+  switch (compression) {
+    case Compression::kBz2:
+      return DecompressBz2(bytes, size, stream);
+    case Compression::kLz4:
+      return DecompressLz4(bytes, size, stream);
+    case Compression::kZstd:
+      return DecompressZstd(bytes, size, stream);
+    case Compression::kNone:
+      break;
+  }
+  if (stream == StreamExtent::kBegun || bytes.size() == size) return std::string(bytes);
+  return MakeError(ErrorCode::kParse,
+                   fmt::format("it holds {} bytes, expected {}", bytes.size(), size));
 }
 
 std::string CompressBz2(std::string_view bytes) {
@@ -151,19 +177,11 @@ Expected<Compression> CompressionNamed(std::string_view name) {
 
 Expected<std::string> Decompress(Compression compression, std::string_view bytes,
                                  std::size_t size) {
-  switch (compression) {
-    case Compression::kBz2:
-      return DecompressBz2(bytes, size);
-    case Compression::kLz4:
-      return DecompressLz4(bytes, size);
-    case Compression::kZstd:
-      return DecompressZstd(bytes, size);
-    case Compression::kNone:
-      break;
-  }
-  if (bytes.size() == size) return std::string(bytes);
-  return MakeError(ErrorCode::kParse,
-                   fmt::format("it holds {} bytes, expected {}", bytes.size(), size));
+  return DecompressStream(compression, bytes, size, StreamExtent::kWhole);
+}
+
+std::string DecompressBegun(Compression compression, std::string_view bytes, std::size_t size) {
+  return DecompressStream(compression, bytes, size, StreamExtent::kBegun).value_or(std::string());
 }
 
 Expected<std::string> DecompressZstdFrame(std::string_view bytes) {
@@ -171,7 +189,7 @@ Expected<std::string> DecompressZstdFrame(std::string_view bytes) {
   if (size == ZSTD_CONTENTSIZE_UNKNOWN || size == ZSTD_CONTENTSIZE_ERROR) {
     return MakeError(ErrorCode::kParse, "expected a zstd frame that states its size");
   }
-  return DecompressZstd(bytes, size);
+  return DecompressZstd(bytes, size, StreamExtent::kWhole);
 }
 
 std::string Compress(Compression compression, std::string_view bytes) {

@@ -20,7 +20,11 @@ Expected<Compression> CompressionNamed(std::string_view name);
 /// file.
 Expected<std::string> Decompress(Compression compression, std::string_view bytes, std::size_t size);
 
-/// The same for a zstd frame that states its own size.
+/// The beginning of what `bytes`, themselves the beginning of a stream, decompress to: all whole
+/// blocks of the format, perhaps none.
+std::string DecompressBegun(Compression compression, std::string_view bytes, std::size_t size);
+
+/// As Decompress, for a zstd frame that states its own size.
 Expected<std::string> DecompressZstdFrame(std::string_view bytes);
 
 /// Compresses by none, bz2 or lz4 (independent blocks and a checksum, as ROS 1 requires).

@@ -4,6 +4,7 @@
 #include "io/bag/mapped_file.h"
 #include "io/bag/open_bytes.h"
 #include "io/bag/rosbag1_records.h"
+#include "io/bag/topic_table.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
@@ -62,6 +63,12 @@ Expected<std::unique_ptr<Bag>> OpenBag(const std::filesystem::path& path) {
                    fmt::format("{}: byte 0: expected a recording: .bag of ROS 1, .db3 of ROS 2 or "
                                ".mcap{}",
                                Printable(path.string(), 200), hint));
+}
+
+std::string DescribeCut(const Bag& bag) {
+  if (!bag.cut()) return {};
+  return fmt::format("{} (byte {}): the {} messages before it are read", bag.cut()->reason,
+                     bag.cut()->byte, CountMessages(bag.topics()));
 }
 
 }  // namespace sextant

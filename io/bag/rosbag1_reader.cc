@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "io/bag/byte_reader.h"
 #include "io/bag/decompress.h"
@@ -19,6 +21,7 @@ struct Chunk {
   Compression compression = Compression::kNone;
   std::size_t size = 0;  // Decompressed.
   std::string_view data;
+  bool is_cut = false;  // Its end is missing.
 };
 
 // The index of the topic of each connection, by its number.
@@ -38,31 +41,38 @@ class Rosbag1 final : public Bag {
  private:
   Expected<void> CheckBagHeader(BagRecords& records);
   Expected<void> TakeRecord(const BagRecords& records, const BagRecord& record);
+  Expected<void> TakeCut(const BagRecords& records);
   Expected<void> TakeChunk(const BagRecords& records, const BagRecord& record);
   Expected<void> TakeIndex(const BagRecords& records, const BagRecord& record);
+  Expected<void> AddConnection(const BagRecords& records, const BagRecord& record);
+  Expected<void> CountIndex(const BagRecords& records);
   Expected<void> CountContents();
-  Expected<void> VisitChunk(const Chunk& chunk, const Visitor& visit) const;
+  Expected<void> CheckCut() const;
+  // Calls `take(records, record)` for each record in the chunk.
+  template <class Take>
+  Expected<void> ForEachRecord(const Chunk& chunk, Take take) const;
 
   std::string_view bytes_;
   std::string file_;
   std::shared_ptr<const void> owner_;
-  bool has_index_ = false;
+  std::uint64_t index_position_ = 0;  // 0: the recorder did not close the bag.
   std::vector<Chunk> chunks_;
+  TopicTable table_;
   Connections connections_;
   std::map<std::uint32_t, BagTopic> indexed_;  // Counts and times by connection.
 };
 
 // Adds the topic of a connection record, whose data is a header with the type.
-Expected<void> AddConnection(const BagRecords& records, const BagRecord& record,
-                             std::vector<BagTopic>& topics, Connections& connections) {
+Expected<void> Rosbag1::AddConnection(const BagRecords& records, const BagRecord& record) {
   const std::optional<std::uint32_t> id = Uint32Field(record.fields, "conn");
   const std::optional<BagFields> description = ParseBagFields(record.data);
   if (!id || !description || !record.fields.contains("topic")) {
     return records.Fail("expected a connection with conn, topic and type");
   }
-  const std::size_t topic = TopicIndex(topics, TextField(record.fields, "topic"),
-                                       TextField(*description, "type"), MessageEncoding::kRos1);
-  const auto [place, is_new] = connections.emplace(*id, topic);
+  const std::size_t topic =
+      table_.IndexOf(TextField(record.fields, "topic"), TextField(*description, "type"),
+                     MessageEncoding::kRos1, topics_);
+  const auto [place, is_new] = connections_.emplace(*id, topic);
   if (!is_new && place->second != topic) {
     return records.Fail(fmt::format("the connection {} has two topics", *id));
   }
@@ -79,11 +89,41 @@ Expected<void> Rosbag1::Open() {
   BagRecords records(bytes_.substr(kRosbag1Magic.size()), kRosbag1Magic.size(), file_);
   SEXTANT_RETURN_IF_ERROR(CheckBagHeader(records));
   while (true) {
-    SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
-    if (!record) break;
-    SEXTANT_RETURN_IF_ERROR(TakeRecord(records, *record));
+    const Expected<std::optional<BagRecord>> record = records.Next();
+    if (!record && !records.is_cut()) return tl::unexpected<Error>(record.error());
+    if (!record) SEXTANT_RETURN_IF_ERROR(TakeCut(records));
+    if (!record || !*record) break;
+    SEXTANT_RETURN_IF_ERROR(TakeRecord(records, **record));
   }
-  if (!has_index_) return CountContents();
+  if (!cut_ && index_position_ == 0) {
+    cut_ = {.byte = bytes_.size(), .reason = "its recorder did not close it"};
+  } else if (!cut_ && index_position_ > bytes_.size()) {
+    cut_ = {.byte = bytes_.size(), .reason = "the file ends before its index"};
+  }
+  if (!cut_) return CountIndex(records);
+  SEXTANT_RETURN_IF_ERROR(CountContents());
+  return CheckCut();
+}
+
+// The file ends within the last record; if that is a chunk, its beginning is read.
+Expected<void> Rosbag1::TakeCut(const BagRecords& records) {
+  cut_ = {.byte = records.record_begin(), .reason = "the file ends within a record"};
+  const std::optional<BagRecord> begun = records.Begun();
+  if (!begun || OpOf(begun->fields) != BagOp::kChunk) return {};
+  SEXTANT_RETURN_IF_ERROR(TakeChunk(records, *begun));
+  chunks_.back().is_cut = true;
+  return {};
+}
+
+Expected<void> Rosbag1::CheckCut() const {
+  if (CountMessages(topics_) > 0) return {};
+  return MakeError(
+      ErrorCode::kParse,
+      fmt::format("{}: byte {}: {}, before its first message: nothing can be recovered", file_,
+                  cut_->byte, cut_->reason));
+}
+
+Expected<void> Rosbag1::CountIndex(const BagRecords& records) {
   for (const auto& [id, counted] : indexed_) {
     const auto connection = connections_.find(id);
     if (connection == connections_.end()) {
@@ -109,7 +149,7 @@ Expected<void> Rosbag1::CheckBagHeader(BagRecords& records) {
     return records.Fail("this bag is encrypted; decrypt it with ROS first");
   }
   // The recorder sets index_pos when it closes the bag.
-  has_index_ = Uint64Field(fields, "index_pos").value_or(0) != 0;
+  index_position_ = Uint64Field(fields, "index_pos").value_or(0);
   return {};
 }
 
@@ -118,7 +158,7 @@ Expected<void> Rosbag1::TakeRecord(const BagRecords& records, const BagRecord& r
   if (!op) return records.Fail("a record has no operation");
   if (*op == BagOp::kChunk) return TakeChunk(records, record);
   if (*op == BagOp::kIndexData) return TakeIndex(records, record);
-  if (*op == BagOp::kConnection) return AddConnection(records, record, topics_, connections_);
+  if (*op == BagOp::kConnection) return AddConnection(records, record);
   return {};
 }
 
@@ -150,26 +190,22 @@ Expected<void> Rosbag1::TakeIndex(const BagRecords& records, const BagRecord& re
   return {};
 }
 
-// A recorder that was killed leaves no index; topics and counts then come from the chunks.
+// Without an index, topics and counts come from the chunks.
 Expected<void> Rosbag1::CountContents() {
   topics_.clear();
+  table_ = {};
   connections_.clear();
   for (const Chunk& chunk : chunks_) {
-    const Expected<std::string> contents = Decompress(chunk.compression, chunk.data, chunk.size);
-    if (!contents) break;  // Read() reports the error.
-    BagRecords records(*contents, 0, fmt::format("{}: chunk at byte {}", file_, chunk.begin));
-    while (true) {
-      SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
-      if (!record) break;
-      const std::optional<BagOp> op = OpOf(record->fields);
-      if (op == BagOp::kConnection) {
-        SEXTANT_RETURN_IF_ERROR(AddConnection(records, *record, topics_, connections_));
-      }
-      if (op != BagOp::kMessage) continue;
-      const auto known = connections_.find(Uint32Field(record->fields, "conn").value_or(~0U));
-      const std::optional<std::int64_t> time = TimeField(record->fields, "time");
-      if (known != connections_.end() && time) CountMessage(topics_[known->second], *time);
-    }
+    SEXTANT_RETURN_IF_ERROR(ForEachRecord(
+        chunk, [this](const BagRecords& records, const BagRecord& record) -> Expected<void> {
+          const std::optional<BagOp> op = OpOf(record.fields);
+          if (op == BagOp::kConnection) return AddConnection(records, record);
+          if (op != BagOp::kMessage) return {};
+          const auto known = connections_.find(Uint32Field(record.fields, "conn").value_or(~0U));
+          const std::optional<std::int64_t> time = TimeField(record.fields, "time");
+          if (known != connections_.end() && time) CountMessage(topics_[known->second], *time);
+          return {};
+        }));
   }
   return {};
 }
@@ -177,40 +213,47 @@ Expected<void> Rosbag1::CountContents() {
 Expected<void> Rosbag1::Read(const std::vector<std::size_t>& topic_indices,
                              const Visitor& visit) const {
   const std::vector<bool> wanted = WantedTopics(topics_, topic_indices);
-  const Visitor filtered = [&](const BagMessage& message) -> Expected<void> {
-    return wanted[message.topic_index] ? visit(message) : Expected<void>();
-  };
-  for (const Chunk& chunk : chunks_) {
-    SEXTANT_RETURN_IF_ERROR(VisitChunk(chunk, filtered));
-  }
-  return {};
-}
-
-Expected<void> Rosbag1::VisitChunk(const Chunk& chunk, const Visitor& visit) const {
-  const std::string where = fmt::format("{}: chunk at byte {}", file_, chunk.begin);
-  Expected<std::string> unpacked;
-  std::string_view contents = chunk.data;
-  if (chunk.compression != Compression::kNone || chunk.size != chunk.data.size()) {
-    unpacked = Decompress(chunk.compression, chunk.data, chunk.size);
-    if (!unpacked) {
-      return MakeError(ErrorCode::kParse, fmt::format("{}: {}", where, unpacked.error().message));
-    }
-    contents = *unpacked;
-  }
-  BagRecords records(contents, 0, where);
-  while (true) {
-    SEXTANT_ASSIGN_OR_RETURN(const std::optional<BagRecord> record, records.Next());
-    if (!record) return {};
-    const BagFields& fields = record->fields;
-    if (OpOf(fields) != BagOp::kMessage) continue;
+  const auto take = [&](const BagRecords& records, const BagRecord& record) -> Expected<void> {
+    const BagFields& fields = record.fields;
+    if (OpOf(fields) != BagOp::kMessage) return {};
     const std::optional<std::uint32_t> id = Uint32Field(fields, "conn");
     const std::optional<std::int64_t> time = TimeField(fields, "time");
     const auto known = id ? connections_.find(*id) : connections_.end();
     if (!time || known == connections_.end()) {
       return records.Fail("expected a message with its time and a known connection");
     }
-    const BagMessage message{&topics_[known->second], known->second, *time, record->data};
-    SEXTANT_RETURN_IF_ERROR(visit(message));
+    if (!wanted[known->second]) return {};
+    return visit({&topics_[known->second], known->second, *time, record.data});
+  };
+  for (const Chunk& chunk : chunks_) {
+    SEXTANT_RETURN_IF_ERROR(ForEachRecord(chunk, take));
+  }
+  return {};
+}
+
+template <class Take>
+Expected<void> Rosbag1::ForEachRecord(const Chunk& chunk, Take take) const {
+  const std::string where = fmt::format("{}: chunk at byte {}", file_, chunk.begin);
+  std::string unpacked;
+  std::string_view contents = chunk.data;
+  if (chunk.is_cut && chunk.compression != Compression::kNone) {
+    unpacked = DecompressBegun(chunk.compression, chunk.data, chunk.size);
+    contents = unpacked;
+  } else if (!chunk.is_cut &&
+             (chunk.compression != Compression::kNone || chunk.size != chunk.data.size())) {
+    SEXTANT_ASSIGN_OR_RETURN(
+        std::string whole,
+        AtPlace(Decompress(chunk.compression, chunk.data, chunk.size), {.file = where}));
+    unpacked = std::move(whole);
+    contents = unpacked;
+  }
+  BagRecords records(contents, 0, where);
+  while (true) {
+    const Expected<std::optional<BagRecord>> record = records.Next();
+    if (!record && chunk.is_cut && records.is_cut()) return {};
+    if (!record) return tl::unexpected<Error>(record.error());
+    if (!*record) return {};
+    SEXTANT_RETURN_IF_ERROR(take(records, **record));
   }
 }
 

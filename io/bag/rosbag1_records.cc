@@ -24,6 +24,7 @@ Expected<std::optional<BagRecord>> BagRecords::Next() {
   const std::string_view header = in.Counted<std::uint32_t>();
   const std::string_view data = in.Counted<std::uint32_t>();
   if (!in.ok()) {
+    is_cut_ = true;
     return Fail(
         fmt::format("a record extends beyond the {} bytes that follow: the recording is cut "
                     "short or damaged (`rosbag reindex` may repair it)",
@@ -33,6 +34,15 @@ Expected<std::optional<BagRecord>> BagRecords::Next() {
   if (!fields) return Fail("expected the header of a record");
   position_ += in.position();
   return std::optional<BagRecord>({std::move(*fields), data});
+}
+
+std::optional<BagRecord> BagRecords::Begun() const {
+  ByteReader in(bytes_.substr(position_));
+  const std::string_view header = in.Counted<std::uint32_t>();
+  in.Take<std::uint32_t>();
+  std::optional<BagFields> fields = ParseBagFields(header);
+  if (!in.ok() || !fields) return std::nullopt;
+  return BagRecord{std::move(*fields), in.Bytes(in.bytes_left())};
 }
 
 tl::unexpected<Error> BagRecords::Fail(std::string_view what) const {

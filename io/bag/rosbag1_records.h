@@ -41,6 +41,10 @@ class BagRecords {
 
   /// The next record; none at the end. Error: kParse, with the byte.
   Expected<std::optional<BagRecord>> Next();
+  /// Whether Next() failed because the record extends beyond the bytes.
+  bool is_cut() const { return is_cut_; }
+  /// That record with as much of its data as there is; none if its header is not whole.
+  std::optional<BagRecord> Begun() const;
   /// The position of the record that Next() returned last.
   std::size_t record_begin() const { return record_begin_; }
 
@@ -53,6 +57,7 @@ class BagRecords {
   std::string where_;
   std::size_t position_ = 0;
   std::size_t record_begin_ = 0;
+  bool is_cut_ = false;
 };
 
 /// The fields of a header, each <length><name>=<value>; none if it has another form.

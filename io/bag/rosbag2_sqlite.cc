@@ -4,7 +4,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
-#include <map>
+#include <unordered_map>
 
 #include "io/bag/decompress.h"
 #include "io/bag/open_bytes.h"
@@ -15,6 +15,9 @@ namespace sextant {
 namespace {
 
 using std::string_view_literals::operator""sv;
+
+constexpr const char* kMessagesInOrder =
+    "SELECT id, topic_id, timestamp, data FROM messages ORDER BY id";
 
 using Database = std::unique_ptr<sqlite3, int (*)(sqlite3*)>;
 using Statement = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
@@ -47,7 +50,12 @@ class Rosbag2Sqlite final : public Bag {
                       const Visitor& visit) const override;
 
  private:
-  // Calls `take` for each row of the result.
+  void Limit();
+  Expected<void> ReadTopics();
+  Expected<void> CountRows();
+  Expected<void> CountRowsBeforeCut();
+  // Calls `take` for each row of the result. In a database that is cut short, rows end before the
+  // first page that is missing.
   Expected<void> Query(const char* sql,
                        const std::function<Expected<void>(sqlite3_stmt*)>& take) const;
   tl::unexpected<Error> DatabaseError() const;
@@ -56,7 +64,8 @@ class Rosbag2Sqlite final : public Bag {
   std::filesystem::path path_;
   std::string file_;
   Database database_{nullptr, sqlite3_close};
-  std::map<std::int64_t, std::size_t> topic_of_id_;
+  TopicTable table_;
+  std::unordered_map<std::int64_t, std::size_t> topic_of_id_;
 };
 
 tl::unexpected<Error> Rosbag2Sqlite::DatabaseError() const {
@@ -77,22 +86,51 @@ Expected<void> Rosbag2Sqlite::Open() {
       sqlite3_open_v2(uri.c_str(), &raw, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
   database_.reset(raw);
   if (result != SQLITE_OK) return DatabaseError();
-  // The database may be hostile: only tables are read, and no value is larger than the file.
-  sqlite3_db_config(raw, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
-  sqlite3_db_config(raw, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
-  sqlite3_db_config(raw, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  Limit();
+  Expected<void> ok = ReadTopics();
+  if (ok) ok = CountRows();
+  if (ok || sqlite3_errcode(raw) != SQLITE_CORRUPT) return ok;
+  // A page is missing. SQLite refuses a file with fewer pages than its header states, unless its
+  // schema may be repaired; nothing is written, as the file is open for reading only.
   const std::uintmax_t size = std::filesystem::file_size(path_, ignored);
-  sqlite3_limit(raw, SQLITE_LIMIT_LENGTH,
-                static_cast<int>(std::clamp<std::uintmax_t>(size, 1 << 16, 1'000'000'000)));
-  SEXTANT_RETURN_IF_ERROR(
-      Query("SELECT id, name, type, serialization_format FROM topics ORDER BY id",
-            [this](sqlite3_stmt* row) -> Expected<void> {
-              const MessageEncoding encoding =
-                  Text(row, 3) == "cdr" ? MessageEncoding::kCdr : MessageEncoding::kUnknown;
-              topic_of_id_[sqlite3_column_int64(row, 0)] =
-                  TopicIndex(topics_, Text(row, 1), Ros1TypeName(Text(row, 2)), encoding);
-              return {};
-            }));
+  cut_ = {.byte = ignored ? 0 : size, .reason = "a page of the database is missing or damaged"};
+  sqlite3_exec(raw, "PRAGMA writable_schema=ON", nullptr, nullptr, nullptr);
+  topics_.clear();
+  table_ = {};
+  SEXTANT_RETURN_IF_ERROR(ReadTopics());
+  SEXTANT_RETURN_IF_ERROR(CountRowsBeforeCut());
+  if (CountMessages(topics_) > 0) return {};
+  return MakeError(
+      ErrorCode::kParse,
+      fmt::format("{}: byte {}: {}, before its first message: nothing can be recovered", file_,
+                  cut_->byte, cut_->reason));
+}
+
+// The database may be hostile: only tables are read, and no value is larger than the file.
+void Rosbag2Sqlite::Limit() {
+  sqlite3* const database = database_.get();
+  sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  std::error_code failed;
+  const std::uintmax_t size = std::filesystem::file_size(path_, failed);
+  sqlite3_limit(
+      database, SQLITE_LIMIT_LENGTH,
+      static_cast<int>(std::clamp<std::uintmax_t>(failed ? 0 : size, 1 << 16, 1'000'000'000)));
+}
+
+Expected<void> Rosbag2Sqlite::ReadTopics() {
+  return Query("SELECT id, name, type, serialization_format FROM topics ORDER BY id",
+               [this](sqlite3_stmt* row) -> Expected<void> {
+                 const MessageEncoding encoding =
+                     Text(row, 3) == "cdr" ? MessageEncoding::kCdr : MessageEncoding::kUnknown;
+                 topic_of_id_[sqlite3_column_int64(row, 0)] =
+                     table_.IndexOf(Text(row, 1), Ros1TypeName(Text(row, 2)), encoding, topics_);
+                 return {};
+               });
+}
+
+Expected<void> Rosbag2Sqlite::CountRows() {
   return Query(
       "SELECT topic_id, COUNT(*), MIN(timestamp), MAX(timestamp) FROM messages GROUP BY topic_id",
       [this](sqlite3_stmt* row) -> Expected<void> {
@@ -106,6 +144,16 @@ Expected<void> Rosbag2Sqlite::Open() {
       });
 }
 
+// Only of rows whose data can be read.
+Expected<void> Rosbag2Sqlite::CountRowsBeforeCut() {
+  return Query(kMessagesInOrder, [this](sqlite3_stmt* row) -> Expected<void> {
+    const auto known = topic_of_id_.find(sqlite3_column_int64(row, 1));
+    if (known == topic_of_id_.end()) return {};
+    CountMessage(topics_[known->second], std::max<std::int64_t>(sqlite3_column_int64(row, 2), 0));
+    return {};
+  });
+}
+
 Expected<void> Rosbag2Sqlite::Query(
     const char* sql, const std::function<Expected<void>(sqlite3_stmt*)>& take) const {
   sqlite3_stmt* raw = nullptr;
@@ -115,7 +163,7 @@ Expected<void> Rosbag2Sqlite::Query(
   const Statement statement(raw, sqlite3_finalize);
   while (true) {
     const int result = sqlite3_step(raw);
-    if (result == SQLITE_DONE) return {};
+    if (result == SQLITE_DONE || (cut_ && result == SQLITE_CORRUPT)) return {};
     if (result != SQLITE_ROW) return DatabaseError();
     SEXTANT_RETURN_IF_ERROR(take(raw));
   }
@@ -124,17 +172,15 @@ Expected<void> Rosbag2Sqlite::Query(
 Expected<void> Rosbag2Sqlite::Read(const std::vector<std::size_t>& topic_indices,
                                    const Visitor& visit) const {
   const std::vector<bool> wanted = WantedTopics(topics_, topic_indices);
-  return Query("SELECT id, topic_id, timestamp, data FROM messages ORDER BY id",
-               [&](sqlite3_stmt* row) -> Expected<void> {
-                 const auto known = topic_of_id_.find(sqlite3_column_int64(row, 1));
-                 if (known == topic_of_id_.end()) {
-                   return MakeError(
-                       ErrorCode::kParse,
+  return Query(kMessagesInOrder, [&](sqlite3_stmt* row) -> Expected<void> {
+    const auto known = topic_of_id_.find(sqlite3_column_int64(row, 1));
+    if (known == topic_of_id_.end()) {
+      return MakeError(ErrorCode::kParse,
                        fmt::format("{}: message {}: its topic {} is missing", file_,
                                    sqlite3_column_int64(row, 0), sqlite3_column_int64(row, 1)));
-                 }
-                 return wanted[known->second] ? VisitRow(row, visit) : Expected<void>();
-               });
+    }
+    return wanted[known->second] ? VisitRow(row, visit) : Expected<void>();
+  });
 }
 
 Expected<void> Rosbag2Sqlite::VisitRow(sqlite3_stmt* row, const Visitor& visit) const {

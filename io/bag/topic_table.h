@@ -3,23 +3,44 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "io/bag/bag.h"
 
 namespace sextant {
 
-/// The index of the topic of this name and type; the topic is added if it is new.
-inline std::size_t TopicIndex(std::vector<BagTopic>& topics, const std::string& name,
-                              const std::string& type, MessageEncoding encoding) {
-  const auto found = std::find_if(topics.begin(), topics.end(), [&](const BagTopic& topic) {
-    return topic.name == name && topic.type == type;
-  });
-  if (found != topics.end()) return static_cast<std::size_t>(found - topics.begin());
-  topics.push_back({.name = name, .type = type, .kind = MessageKindOf(type), .encoding = encoding});
-  return topics.size() - 1;
-}
+/// Finds topics by name and type, in constant time.
+class TopicTable {
+ public:
+  /// The index of the topic; it is added to `topics` if it is new. Requires the same vector in
+  /// every call.
+  std::size_t IndexOf(const std::string& name, const std::string& type, MessageEncoding encoding,
+                      std::vector<BagTopic>& topics) {
+    const auto [place, is_new] = index_.emplace(KeyOf(name, type), topics.size());
+    if (is_new) {
+      topics.push_back(
+          {.name = name, .type = type, .kind = MessageKindOf(type), .encoding = encoding});
+    }
+    return place->second;
+  }
+
+  /// None if it has not been added.
+  std::optional<std::size_t> Find(const std::string& name, const std::string& type) const {
+    const auto found = index_.find(KeyOf(name, type));
+    return found == index_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  static std::string KeyOf(const std::string& name, const std::string& type) {
+    return name + '\n' + type;
+  }
+
+  std::unordered_map<std::string, std::size_t> index_;
+};
 
 /// For each topic, whether its index is among `indices`.
 inline std::vector<bool> WantedTopics(const std::vector<BagTopic>& topics,
@@ -34,6 +55,11 @@ inline void CountMessage(BagTopic& topic, std::int64_t time_ns) {
   topic.first_ns = topic.count == 0 ? time_ns : std::min(topic.first_ns, time_ns);
   topic.last_ns = topic.count == 0 ? time_ns : std::max(topic.last_ns, time_ns);
   ++topic.count;
+}
+
+inline std::size_t CountMessages(const std::vector<BagTopic>& topics) {
+  return std::accumulate(topics.begin(), topics.end(), std::size_t{0},
+                         [](std::size_t sum, const BagTopic& topic) { return sum + topic.count; });
 }
 
 /// ROS 1's name of a type of ROS 2: "sensor_msgs/Image" for "sensor_msgs/msg/Image".

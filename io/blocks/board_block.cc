@@ -16,7 +16,7 @@
 namespace sextant {
 namespace {
 
-constexpr std::size_t kMaxTags = 10'000;
+constexpr std::size_t kMaxTags = 1000;
 
 BoardTag ReadTag(YamlFields& in, const YamlNode& node) {
   static const std::vector<std::string> kKeys = {"family", "id", "edge_m", "center_in_board_m",

@@ -12,7 +12,7 @@ namespace sextant {
 bool IsRotation(const Eigen::Matrix3d& matrix, double tolerance);
 
 /// The transform of a 4x4 matrix as printed in a file; none unless it is a rotation to 1e-5 and a
-/// translation above the row 0 0 0 1.
+/// translation of at most kMaxCoordinate_m above the row 0 0 0 1.
 std::optional<Rigid3d> RigidFromMatrix(const Eigen::Matrix4d& matrix);
 
 }  // namespace sextant

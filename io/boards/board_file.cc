@@ -10,6 +10,7 @@
 #include "geometry/board_check.h"
 #include "io/blocks/board_block.h"
 #include "io/text/line_reader.h"
+#include "io/text/max_id.h"
 #include "io/text/text_file.h"
 
 namespace sextant {
@@ -42,7 +43,7 @@ bool IsCamera(const YamlNode& root) {
 
 Expected<std::vector<Board>> ParseBoardYaml(std::string_view text, const std::string& file) {
   static const std::vector<std::string> kKeys = {"boards"};
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   YamlFields in(file);
   std::vector<const YamlNode*> nodes;
   const YamlNode* list = root.Find("boards");
@@ -52,7 +53,7 @@ Expected<std::vector<Board>> ParseBoardYaml(std::string_view text, const std::st
     in.Fail(root.line, {},
             "expected boards, with the key 'boards', but this is a file of a camera's intrinsics");
   } else if (in.IsMap(root, "boards", kKeys) &&
-             in.IsSequence(in.Require(root, "boards"), "boards")) {
+             in.IsSequence(in.Require(root, "boards"), "boards", kMaxBoards)) {
     for (const YamlNode& item : list->items) nodes.push_back(&item);
     if (nodes.empty()) in.Fail(list->line, "boards", "expected at least one board");
   }

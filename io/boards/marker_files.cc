@@ -70,7 +70,7 @@ Expected<std::vector<MarkerBoard>> ParseMarkerCoordinates(std::string_view text,
   LineReader in(file, text);
   std::int64_t count = 0;
   if (in.Require("the number of boards") && in.HasFields(1, "the number of boards alone")) {
-    count = in.Integer(0, 1, kMaxId, "number of boards");
+    count = in.Integer(0, 1, kMaxBoards, "number of boards");
   }
   std::vector<MarkerBoard> boards;
   for (std::int64_t i = 0; i < count && in.ok(); ++i) {

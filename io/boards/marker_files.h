@@ -25,6 +25,7 @@ struct MarkerBoard {
 /// Reads the number of boards, then s1, s2, b1, b2 and e for each, all in cm.
 /// Which side is s1 and which s2 was determined from the package's own recorded session.
 /// Errors: kIo, kParse, kNonFinite, with file, line and field.
+/// Time and memory are linear in the file's size; at most kMaxBoards boards.
 Expected<std::vector<MarkerBoard>> ReadMarkerCoordinates(const std::filesystem::path& path);
 Expected<std::vector<MarkerBoard>> ParseMarkerCoordinates(std::string_view text,
                                                           const std::string& file);
@@ -42,6 +43,7 @@ struct DetectedMarker {
 
 /// Reads lines `id=(u,v) (u,v) (u,v) (u,v) Txyz=x y z Rxyz=x y z`.
 /// Errors: kIo, kParse, kNonFinite, with file, line and field.
+/// Time is linear in the file's size, memory at most 20 times it.
 Expected<std::vector<DetectedMarker>> ReadDetectedMarkers(const std::filesystem::path& path);
 Expected<std::vector<DetectedMarker>> ParseDetectedMarkers(std::string_view text,
                                                            const std::string& file);

@@ -57,7 +57,7 @@ Quadrilateral ReadQuadrilateral(YamlFields& in, const YamlNode& node) {
 
 void ReadPolygonBoards(YamlFields& in, const YamlNode& list, std::vector<MarkedBoard>& boards) {
   static const Keys kKeys = {"id", "edges"};
-  if (!in.IsSequence(list, "boards")) return;
+  if (!in.IsSequence(list, "boards", kMaxBoards)) return;
   for (const YamlNode& node : list.items) {
     if (!in.IsMap(node, "boards", kKeys)) return;
     MarkedBoard board;
@@ -74,7 +74,7 @@ void ReadPolygonBoards(YamlFields& in, const YamlNode& list, std::vector<MarkedB
 
 void ReadCorners(YamlFields& in, const YamlNode& list, std::vector<ClickedCorner>& corners) {
   static const Keys kKeys = {"board", "corner", "pixel"};
-  if (!in.IsSequence(list, "corners")) return;
+  if (!in.IsSequence(list, "corners", (kMaxCorner + 1) * kMaxBoards)) return;
   for (const YamlNode& node : list.items) {
     if (!in.IsMap(node, "corners", kKeys)) return;
     ClickedCorner corner;
@@ -114,7 +114,7 @@ Expected<ScanMarks> ReadPolygons(const std::filesystem::path& path) {
 }
 
 Expected<ScanMarks> ParsePolygons(std::string_view text, const std::string& file) {
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   YamlFields in(file);
   ReadPolygonHeader(in, root);
   if (!in.ok()) return in.TakeError();

@@ -220,7 +220,7 @@ Expected<Camera> CameraOfTree(const YamlNode& root, const std::string& file,
 
 Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file,
                                  std::string_view name) {
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   return CameraOfTree(root, file, name);
 }
 

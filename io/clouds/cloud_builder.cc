@@ -9,6 +9,7 @@
 #include <map>
 #include <vector>
 
+#include "geometry/coordinate_range.h"
 #include "io/clouds/scalar_type.h"
 
 namespace sextant {
@@ -68,7 +69,7 @@ Expected<void> CloudBuilder::Add(const Value& value) {
   point.x() = value(columns_.x);
   point.y() = value(columns_.y);
   point.z() = value(columns_.z);
-  const bool is_return = point.allFinite();
+  const bool is_return = (point.array().abs() <= kMaxCoordinate_m).all();  // False for NaN.
   if (!is_return) point.setConstant(kNaN);
   double ring = 0.0;
   double time = 0.0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 
 #include "base/error.h"
@@ -10,7 +11,12 @@
 
 namespace sextant {
 
-/// Builds a PointCloud from the rows of a table.
+/// The memory of a point that has every field of a PointCloud, in bytes.
+inline constexpr std::size_t kMaxPointBytes =
+    sizeof(Eigen::Vector3d) + sizeof(float) + sizeof(std::uint16_t) + sizeof(double);
+
+/// Builds a PointCloud from the rows of a table. Time is linear in the rows; memory is that of the
+/// cloud, at most kMaxPointBytes a row, and three times as much where `points` is not known.
 class CloudBuilder {
  public:
   /// `points`: the expected number of rows, for which memory is reserved.
@@ -19,10 +25,10 @@ class CloudBuilder {
   /// Returns the number in a column of the current row; called only for columns in `columns`.
   using Value = std::function<double(std::size_t column)>;
 
-  /// Adds a point. A point with a coordinate that is not finite is a ray without a return: its
-  /// coordinates become NaN; its ring and time are kept if they are valid.
-  /// Errors, without file or row: kParse for a ring that is not a whole number from 0 to 65535,
-  /// kNonFinite for a time that is not finite.
+  /// Adds a point. A point with a coordinate that is not finite, or beyond kMaxCoordinate_m, is a
+  /// ray without a return: its coordinates become NaN; its ring and time are kept if they are
+  /// valid. Errors, without file or row: kParse for a ring that is not a whole number from 0 to
+  /// 65535, kNonFinite for a time that is not finite.
   Expected<void> Add(const Value& value);
 
   std::size_t size() const { return cloud_.points.size(); }

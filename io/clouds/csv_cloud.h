@@ -14,6 +14,7 @@ namespace sextant {
 /// any order, by the names of io/clouds/cloud_columns.h (VeloView's are in quotes); other columns
 /// are ignored. Times are in seconds unless the name states another unit. A point with a coordinate
 /// nan is a ray without a return. Errors: kIo; kParse; kNonFinite; with line, field and its name.
+/// Time is linear in the file's size; memory is at most 20 times it.
 Expected<PointCloud> ReadCsvCloud(const std::filesystem::path& path);
 Expected<PointCloud> ParseCsvCloud(std::string_view text, const std::string& file);
 

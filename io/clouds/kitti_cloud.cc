@@ -22,7 +22,7 @@ Expected<PointCloud> ParseKittiCloud(std::string_view bytes, const std::string& 
                                  "intensity as float32, 16 bytes per point (KITTI)",
                                  Printable(file, 200), bytes.size()));
   }
-  CloudBuilder builder({.x = 0, .y = 1, .z = 2, .intensity = 3});
+  CloudBuilder builder({.x = 0, .y = 1, .z = 2, .intensity = 3}, bytes.size() / kPointSize);
   for (std::size_t at = 0; at < bytes.size(); at += kPointSize) {
     SEXTANT_RETURN_IF_ERROR(builder.Add([&](std::size_t column) {
       return LoadScalar(bytes.data() + at + 4 * column, ScalarType::kFloat32, false);

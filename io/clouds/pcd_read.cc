@@ -128,6 +128,21 @@ Expected<PointCloud> ReadBinary(const PcdHeader& header, const CloudColumns& col
   return ReadValues(header, columns, data, false, file);
 }
 
+// Runs of one value compress to less than a hundredth, so a small file could demand gigabytes: the
+// values, and the cloud that they become, may take 64 times as much as the file.
+Expected<void> CheckExpansion(const PcdHeader& header, std::size_t unpacked, std::size_t packed,
+                              const std::string& file) {
+  constexpr std::size_t kUnchecked = std::size_t{64} << 20;
+  constexpr std::size_t kMaxRatio = 64;
+  const std::size_t memory = unpacked + kMaxPointBytes * header.points;
+  if (memory <= kUnchecked + kMaxRatio * packed) return {};
+  return Refuse(file, 0,
+                fmt::format("{} compressed bytes are stated to hold {} points, which would take {} "
+                            "MB; expected at most 64 MB and 64 times the compressed data. Save the "
+                            "scan as DATA binary",
+                            packed, header.points, memory >> 20U));
+}
+
 // Two sizes of 4 bytes, then liblzf's stream of the values, field after field.
 Expected<PointCloud> ReadCompressed(const PcdHeader& header, const CloudColumns& columns,
                                     std::string_view text, const std::string& file) {
@@ -153,6 +168,7 @@ Expected<PointCloud> ReadCompressed(const PcdHeader& header, const CloudColumns&
                               "the file has {}",
                               packed, unpacked, body.size() - kSizes));
   }
+  SEXTANT_RETURN_IF_ERROR(CheckExpansion(header, unpacked, packed, file));
   std::string data(unpacked, '\0');
   if (unpacked > 0 && lzf_decompress(body.data() + kSizes, static_cast<unsigned>(packed),
                                      data.data(), static_cast<unsigned>(unpacked)) != unpacked) {

@@ -157,7 +157,7 @@ Expected<PointCloud> ParsePly(std::string_view bytes, const std::string& file) {
       SEXTANT_ASSIGN_OR_RETURN(const CloudColumns found, VertexColumns(element, file));
       columns = found;
     }
-    CloudBuilder builder(columns);
+    CloudBuilder builder(columns, is_vertex ? element.count : 0);
     for (std::size_t row = 0; row < element.count && body.ok(); ++row) {
       body.SetRow(element, row);
       ReadRow(element, body, values);

@@ -16,7 +16,8 @@ namespace sextant {
 /// binary_big_endian. Properties are found by the names of io/clouds/cloud_columns.h; other
 /// properties, lists and the elements before `vertex` are skipped, and what follows it is not read.
 /// Errors: kIo; kParse and kNonFinite with the line (header, ascii) or the byte (binary), vertex
-/// and property. Memory is bounded by the file's size, whatever its header states.
+/// and property. Time is linear in the file's size, whatever its header states; memory is at most
+/// 40 times it.
 Expected<PointCloud> ReadPly(const std::filesystem::path& path);
 Expected<PointCloud> ParsePly(std::string_view bytes, const std::string& file);
 

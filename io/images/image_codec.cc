@@ -8,6 +8,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
+#include "io/images/image_extent.h"
+
 namespace sextant {
 namespace {
 
@@ -68,6 +70,7 @@ int ReadMode(DecodedColor color) {
 }  // namespace
 
 Expected<cv::Mat> DecodeImage(std::string_view bytes, DecodedColor color) {
+  SEXTANT_RETURN_IF_ERROR(CheckImageExtent(bytes));
   SEXTANT_ASSIGN_OR_RETURN(const ImageFormats* const formats, LoadedFormats());
   cv::Mat image;
   try {

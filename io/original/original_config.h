@@ -39,6 +39,7 @@ struct OriginalConfig {
 /// The variants are distinguished by the count of numbers: 23 (no initial pose), 27 (with
 /// iterations and rotation), 28 (and LiDAR type), 30 (translation instead of the type), 31 (both).
 /// Errors: kIo, kParse, kNonFinite, with file, line and name of the field.
+/// Time is linear in the file's size, memory at most 20 times it.
 Expected<OriginalConfig> ReadOriginalConfig(const std::filesystem::path& path);
 Expected<OriginalConfig> ParseOriginalConfig(std::string_view text, const std::string& file);
 

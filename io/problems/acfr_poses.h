@@ -35,6 +35,7 @@ struct AcfrPose {
 /// Reads `poses.csv` of acfr/cam_lidar_calibration: 19 lines of three numbers per pose, lengths in
 /// mm.
 /// Errors: kIo, kParse, kNonFinite, with file, line and field.
+/// Time is linear in the file's size, memory at most 20 times it.
 Expected<std::vector<AcfrPose>> ReadAcfrPoses(const std::filesystem::path& path);
 Expected<std::vector<AcfrPose>> ParseAcfrPoses(std::string_view text, const std::string& file);
 

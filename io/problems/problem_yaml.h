@@ -22,6 +22,8 @@ struct ProblemFile {
 /// Writing and reading again gives the same bits. If the file has no point sets, they are those of
 /// its 3D-3D pairs without the pairing.
 /// Errors: kIo; kParse (for unknown keys with a suggestion); kNonFinite; each with the line.
+/// Time is linear in the file's size, and in the product of views and boards (at most kMaxBoards);
+/// memory is that of ParseYaml (io/text/yaml_node.h) and of the problem.
 Expected<ProblemFile> ReadProblemYaml(const std::filesystem::path& path);
 Expected<ProblemFile> ParseProblemYaml(std::string_view text, const std::string& file);
 std::string FormatProblemYaml(const ProblemFile& file);

@@ -75,7 +75,7 @@ std::vector<Eigen::Vector3d> ReadPointList(YamlFields& in, const YamlNode& list,
 
 void ReadProblemBoards(YamlFields& in, const YamlNode& list, std::vector<Board>& boards) {
   static const Keys kKeys = {"id", "top_right_m", "right_bottom_m", "hole"};
-  if (!in.IsSequence(list, "boards")) return;
+  if (!in.IsSequence(list, "boards", kMaxBoards)) return;
   for (const YamlNode& node : list.items) {
     if (!in.IsMap(node, "boards", kKeys)) return;
     in.Require(node, "top_right_m");
@@ -109,7 +109,7 @@ Expected<ProblemFile> ReadProblemYaml(const std::filesystem::path& path) {
 }
 
 Expected<ProblemFile> ParseProblemYaml(std::string_view text, const std::string& file) {
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   YamlFields in(file);
   ReadProblemHeader(in, root);
   if (!in.ok()) return in.TakeError();

@@ -8,6 +8,7 @@
 #include "io/problems/acfr_poses.h"
 #include "io/problems/pairs_csv.h"
 #include "io/problems/points_file.h"
+#include "io/problems/problem_range.h"
 #include "io/text/line_reader.h"
 #include "io/text/number_text.h"
 #include "io/text/text_file.h"
@@ -121,6 +122,7 @@ Expected<DetectedProblem> ParseProblem(std::string_view text, const std::string&
       break;
   }
   SEXTANT_RETURN_IF_ERROR(std::move(ok));
+  SEXTANT_RETURN_IF_ERROR(AtPlace(CheckRange(detected.problem), {.file = file}));
   return detected;
 }
 

@@ -151,7 +151,7 @@ LidarPattern ReadLidar(YamlFields& in, const YamlNode& node) {
 }
 
 void ReadResultBoards(YamlFields& in, const YamlNode& list, std::vector<Board>& boards) {
-  if (!in.IsSequence(list, "boards")) return;
+  if (!in.IsSequence(list, "boards", kMaxBoards)) return;
   std::vector<const YamlNode*> nodes;
   for (const YamlNode& node : list.items) {
     nodes.push_back(&node);
@@ -338,7 +338,7 @@ Expected<CalibrationResult> ReadCalibrationResult(const std::filesystem::path& p
 
 Expected<CalibrationResult> ParseCalibrationResult(std::string_view text, const std::string& file) {
   // JSON is a subset of YAML.
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   YamlFields in(file);
   ReadResultHeader(in, root);
   if (!in.ok()) return in.TakeError();

@@ -12,6 +12,7 @@
 #include "base/text/escape.h"
 #include "io/blocks/camera_block.h"
 #include "io/blocks/json_blocks.h"
+#include "io/text/json_depth.h"
 #include "io/text/number_text.h"
 #include "io/text/text_file.h"
 
@@ -302,6 +303,11 @@ Expected<ResultFile> ReadResults(const std::filesystem::path& path) {
 }
 
 Expected<ResultFile> ParseResults(std::string_view text, const std::string& file) {
+  if (IsJsonTooDeep(text)) {
+    return MakeError(ErrorCode::kParse,
+                     fmt::format("{}: not a sextant result file: nested deeper than {} levels",
+                                 ToString(Place{.file = file}), kMaxJsonDepth));
+  }
   try {
     return ParseFile(ParsedJson::parse(text));
   } catch (const ParsedJson::exception& error) {

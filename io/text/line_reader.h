@@ -16,6 +16,7 @@ namespace sextant {
 ///
 /// Blank lines, lines that begin with '#', a byte order mark and carriage returns are skipped.
 /// After an error every call does nothing, so a parser needs to check ok() only once, at its end.
+/// Time is linear in the text, memory 16 bytes for each field of a line, which has at most 1000.
 class LineReader {
  public:
   enum class Separator { kBlanks, kCommas };

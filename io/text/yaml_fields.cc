@@ -8,6 +8,7 @@
 #include "base/nearest_name.h"
 #include "base/text/code_point.h"
 #include "base/text/file_name.h"
+#include "geometry/coordinate_range.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
@@ -62,6 +63,14 @@ bool YamlFields::IsSequence(const YamlNode& node, std::string_view what) {
   if (!ok()) return false;
   if (node.kind == YamlNode::Kind::kSequence) return true;
   Fail(node.line, what, fmt::format("expected a list, got {}", KindName(node)));
+  return false;
+}
+
+bool YamlFields::IsSequence(const YamlNode& node, std::string_view what, std::size_t max_size) {
+  if (!IsSequence(node, what)) return false;
+  if (node.items.size() <= max_size) return true;
+  Fail(node.line, what,
+       fmt::format("expected at most {} items, got {}", max_size, node.items.size()));
   return false;
 }
 
@@ -172,6 +181,11 @@ Eigen::Vector2d YamlFields::Point2At(const YamlNode& map, std::string_view key,
 Eigen::Vector3d YamlFields::Point(const YamlNode& node, std::string_view name) {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Reals(node, name, {point.data(), 3});
+  if (ok() && !(point.array().abs() <= kMaxCoordinate_m).all()) {
+    Fail(node.line, name,
+         fmt::format("expected coordinates up to {:g} m, got {:g} {:g} {:g}; are they in metres?",
+                     kMaxCoordinate_m, point.x(), point.y(), point.z()));
+  }
   return point;
 }
 

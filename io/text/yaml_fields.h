@@ -24,6 +24,8 @@ class YamlFields {
   /// most similar known one.
   bool IsMap(const YamlNode& node, std::string_view what, std::span<const std::string> known);
   bool IsSequence(const YamlNode& node, std::string_view what);
+  /// The same, with at most `max_size` items.
+  bool IsSequence(const YamlNode& node, std::string_view what, std::size_t max_size);
 
   /// The value of a key of a map; an error if it is absent.
   const YamlNode& Require(const YamlNode& map, std::string_view key);
@@ -50,6 +52,7 @@ class YamlFields {
   void Reals(const YamlNode& node, std::string_view name, std::span<double> values);
   /// A sequence of at most `max_size` numbers.
   std::vector<double> RealList(const YamlNode& node, std::string_view name, std::size_t max_size);
+  /// Three numbers of at most kMaxCoordinate_m (geometry/coordinate_range.h).
   Eigen::Vector3d Point(const YamlNode& node, std::string_view name);
   Eigen::Vector2d Point2At(const YamlNode& map, std::string_view key,
                            const Eigen::Vector2d& default_value);

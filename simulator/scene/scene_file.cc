@@ -240,7 +240,7 @@ Expected<Scene> ReadScene(const std::filesystem::path& path) { return ReadWith(p
 Expected<Scene> ParseScene(std::string_view text, const std::string& file) {
   static const Keys kKeys = {"sextant_scene", "name",  "lidar",     "cameras",          "boards",
                              "walls",         "boxes", "cylinders", "background_albedo"};
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   YamlFields in(file);
   Scene scene;
   if (in.IsMap(root, "scene", kKeys)) {

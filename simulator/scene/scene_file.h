@@ -18,6 +18,7 @@ inline constexpr std::size_t kMaxSceneShapes = 10'000;
 /// Reads a scene from YAML (docs/formats.md) without the checks of ValidateScene. Errors: kIo;
 /// kParse and kNonFinite with file, line and field: unknown keys, inconsistent boards, lists that
 /// are too long.
+/// Time and memory are those of ParseYaml (io/text/yaml_node.h).
 Expected<Scene> ReadScene(const std::filesystem::path& path);
 Expected<Scene> ParseScene(std::string_view text, const std::string& file);
 

@@ -190,7 +190,8 @@ Expected<SolveReport> Solver::Solve(const CalibrationProblem& problem) const {
   Expected<Estimate> estimate = DoSolve(problem);
   const auto end = std::chrono::steady_clock::now();
   if (!estimate) return tl::unexpected<Error>(std::move(estimate.error()));
-  if (!estimate->cam_from_lidar.IsFinite()) {
+  if (!estimate->cam_from_lidar.IsFinite() ||
+      (estimate->covariance && !estimate->covariance->allFinite())) {
     return MakeError(ErrorCode::kNonFinite,
                      spec_.name + ": the arithmetic overflowed; are the coordinates in metres?");
   }

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
+
 #include "io/output/output_file.h"
 #include "support/scratch_folder.h"
 
@@ -34,6 +36,32 @@ TEST(PairFiles, NumbersAreEqualByValue) {
   EXPECT_THAT(NamesOf(found),
               testing::ElementsAre("000: cam_000.png scan_0.pcd", "011: cam_011.png scan_11.pcd"));
   EXPECT_THAT(found.without_partner, testing::ElementsAre(fs::path("cam_001.png")));
+}
+
+TEST(ExpandPattern, StarsMatchAnyTextAndTakeNoLongerThanOthers) {
+  const ScratchFolder folder;
+  const std::string name = std::string(200, 'a') + ".png";
+  for (const std::string& file : {name, std::string("ab.png"), std::string("b*.png")}) {
+    ASSERT_TRUE(WriteFileAtomically(folder.path() / file, "x"));
+  }
+  const auto count = [&folder](const std::string& pattern) {
+    const auto found = ExpandPattern(folder.path() / pattern);
+    return found ? found->size() : 0;
+  };
+  EXPECT_EQ(count("*"), 3U);
+  EXPECT_EQ(count("a*.png"), 2U);
+  EXPECT_EQ(count("*b*"), 2U);
+  EXPECT_EQ(count("**a**.png**"), 2U);
+  EXPECT_EQ(count("*a*b.png"), 1U);
+  EXPECT_EQ(count("a*a.png"), 1U);
+  EXPECT_EQ(count("ab*b.png"), 0U);
+  EXPECT_EQ(count("*.pn"), 0U);
+  std::string stars;
+  for (int i = 0; i < 60; ++i) stars += "*a";
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(count(stars + "*"), 1U);
+  EXPECT_EQ(count(stars + "*c"), 0U);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
 }
 
 TEST(PairFiles, OneOfEachBelongsTogether) {

@@ -188,6 +188,30 @@ TEST(Parse, SuggestsTheOptionThatIsMeant) {
   EXPECT_THAT(ErrorOf({"all", "a.txt", "--\x1b[31m"}), HasSubstr("'--\\x1b[31m'"));
 }
 
+TEST(Parse, RefusesWhatIsNoFiniteNumber) {
+  for (const char* text : {"nan", "NaN", "-nan", "inf", "-inf", "1e999", "1x", "x", "", "0x1p3"}) {
+    EXPECT_THAT(ErrorOf({"all", "a", "--sigma", text}), HasSubstr("--sigma: expected a finite"));
+    EXPECT_THAT(ErrorOf({"all", "a", "--growth", text}), HasSubstr("--growth"));
+    EXPECT_THAT(ErrorOf({"all", "a", "--region", "1", "2", "3", "4", "5", text}),
+                HasSubstr("--region"));
+  }
+  for (const char* text : {"-1", "1.5", "18446744073709551616", "1e3", "nan", ""}) {
+    EXPECT_THAT(ErrorOf({"all", "a", "--other-seed", text}),
+                HasSubstr("--other-seed: expected a whole number from 0 to 18446744073709551615"));
+    EXPECT_THAT(ErrorOf({"all", "a", "--seed", text}),
+                HasSubstr("--seed: expected a whole number from 1 to 1"));
+  }
+  EXPECT_THAT(ErrorOf({"all", "a", "--ids", "1", "2147483648"}), HasSubstr("--ids"));
+  EXPECT_THAT(ErrorOf({"all", "a", "--sigma", "5000"}),
+              HasSubstr("expected a finite number from 0.001 to 100, got '5000'"));
+}
+
+TEST(Parse, RefusesEmptyTexts) {
+  EXPECT_THAT(ErrorOf({"all", ""}), HasSubstr("expected a text, got an empty one"));
+  EXPECT_THAT(ErrorOf({"all", "a", "--name", ""}), HasSubstr("--name"));
+  EXPECT_THAT(ErrorOf({"all", "a", "--models", "a", ""}), HasSubstr("--models"));
+}
+
 TEST(Parse, RunsTheSubcommandThatIsNamed) {
   EXPECT_EQ(RunLine({"simulate", "a.txt"}), 5);
   EXPECT_EQ(RunLine({"simulate", "pairs"}), 6);

@@ -52,6 +52,27 @@ TEST(ReadProblem, ReportsTheErrorOfTheMatchingFormat) {
   }
 }
 
+TEST(ReadProblem, RefusesCoordinatesAndNoiseOutOfRange) {
+  const std::pair<std::string, const char*> cases[] = {
+      {"2\n1 2 3\n1 2 1e10\n4 5 6\n7 8 9\n", "f: pairs, LiDAR frame: point 2 of 2: expected"},
+      {"2\n0 0 0\n0 1e-10 0\n0 0 0\n1 0 0\n", "pairs, LiDAR frame: all 2 points are within 1e-10"},
+      {"2\n0 0 0\n1 0 0\n0 0 0\n0 1e-160 0\n", "pairs, camera frame: all 2 points are within"},
+      {"u,v,x,y,z\n1e10,2,3,4,5\n", "2D-3D pair 1: expected pixels up to 1e+09"},
+      {"u,v,x,y,z,sigma_px\n1,2,3,4,5,1e-200\n", "2D-3D pair 1: expected a sigma from 1e-12"},
+      {"sextant_problem: 1\npoint_sets:\n  in_cam: [[1, 2, 3e9]]\n  in_lidar: []\n",
+       "f:3: in_cam: expected coordinates up to 1e+09 m"},
+      {"sextant_problem: 1\ninitial_cam_from_lidar:\n  translation_m: [1e300, 0, 0]\n"
+       "  quaternion_wxyz: [1, 0, 0, 0]\n",
+       "f:3: translation_m: expected coordinates up to 1e+09 m"},
+  };
+  for (const auto& [text, message] : cases) {
+    const Expected<DetectedProblem> read = ParseProblem(text, "f");
+    ASSERT_FALSE(read) << text;
+    EXPECT_THAT(read.error().message, HasSubstr(message));
+  }
+  EXPECT_TRUE(ParseProblem("2\n1 1 1\n1 1 1\n1 1 1\n1 1 1\n", "f")) << "solvers name this case";
+}
+
 TEST(ReadProblem, ReadsTheRealPoses) {
   SEXTANT_REAL_DATA(path, "acfr_vlp16/poses.csv");
   const Expected<DetectedProblem> read = ReadProblem(path);

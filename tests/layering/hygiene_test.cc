@@ -3,6 +3,7 @@
 
 #include <cctype>
 #include <optional>
+#include <regex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -69,6 +70,46 @@ TEST(Hygiene, NoFileNamesAPathOfOneMachine) {
       const std::optional<std::string> path = PrivatePathIn(file.lines[i]);
       EXPECT_FALSE(path) << file.path << ":" << i + 1 << ": has " << *path;
     }
+  }
+}
+
+bool IsOfTheLibraryOrProgram(const SourceFile& file) {
+  for (const char* folder : {"tests", "bench", "examples"}) {
+    if (file.folder.starts_with(folder)) return false;
+  }
+  return IsCpp(file);
+}
+
+// The arguments of the call whose opening parenthesis is at `open`.
+std::string ArgumentsAt(const std::string& text, std::size_t open) {
+  int depth = 0;
+  for (std::size_t at = open; at < text.size(); ++at) {
+    depth += text[at] == '(' ? 1 : text[at] == ')' ? -1 : 0;
+    if (depth == 0) return text.substr(open + 1, at - open - 1);
+  }
+  return {};
+}
+
+// A loop of links, a name of 300 letters or a folder without permission makes them throw.
+TEST(Hygiene, NoCallOfTheFileSystemThrows) {
+  const std::regex call(
+      R"((?:filesystem|fs)::(?:exists|is_\w+|file_size|remove|remove_all|rename|create_director\w+|)"
+      R"(canonical|weakly_canonical|absolute|relative|equivalent|status|symlink_status|space|)"
+      R"(last_write_time|copy\w*|resize_file|current_path|read_symlink|)"
+      R"((?:recursive_)?directory_iterator(?: \w+)?)\()");
+  const std::regex with_code(R"(,\s*\w*(?:error|ignored|failed|code)\w*\s*$)");
+  for (const SourceFile& file : ReadSourceTree()) {
+    if (!IsOfTheLibraryOrProgram(file)) continue;
+    std::string text;
+    for (const std::string& line : file.lines) text += line + "\n";
+    for (std::sregex_iterator it(text.begin(), text.end(), call), end; it != end; ++it) {
+      const auto open = static_cast<std::size_t>(it->position() + it->length()) - 1;
+      const std::string arguments = ArgumentsAt(text, open);
+      EXPECT_TRUE(std::regex_search(arguments, with_code))
+          << file.path << ": give the error code to " << it->str() << arguments << ")";
+    }
+    EXPECT_EQ(text.find(": std::filesystem::directory_iterator("), std::string::npos)
+        << file.path << ": increment the iterator with an error code";
   }
 }
 

@@ -12,7 +12,7 @@ Expected<Experiment> ParseExperiment(std::string_view text, const std::string& f
                                      const SolverRegistry& registry, const std::string& solvers) {
   SEXTANT_ASSIGN_OR_RETURN(const std::vector<SpecNode> specs,
                            solvers.empty() ? std::vector<SpecNode>() : ParseSpecList(solvers));
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   return ExperimentParser(file, kinds, registry, specs).Parse(root);
 }
 

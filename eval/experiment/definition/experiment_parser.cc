@@ -179,7 +179,7 @@ std::vector<ExperimentParser::Draft> ExperimentParser::ParseConditions(const Yam
   if (list == nullptr)
     return {{.condition = {.parameters = base}, .solvers = solvers, .line = root.line}};
   std::vector<Draft> drafts;
-  if (!fields_.IsSequence(*list, "conditions")) return drafts;
+  if (!fields_.IsSequence(*list, "conditions", kMaxConditions)) return drafts;
   for (const YamlNode& node : list->items) {
     Draft draft{.condition = {.parameters = base}, .solvers = solvers, .line = node.line};
     const OptionValues own = ParseParameters(node, {"name", "solvers"});
@@ -207,6 +207,13 @@ std::vector<ExperimentParser::Draft> ExperimentParser::CrossWithGrid(const YamlN
     const YamlNode& values = grid.items[axis];
     if (!fields_.IsSequence(values, key)) return {};
     experiment.axes.push_back(key);
+    const std::size_t conditions = drafts.size() * values.items.size();
+    if (conditions == 0 || conditions > kMaxConditions) {
+      fields_.Fail(
+          values.line, key,
+          fmt::format("expected 1 to {} conditions in all, got {}", kMaxConditions, conditions));
+      return {};
+    }
     std::vector<Draft> crossed;
     for (const Draft& draft : drafts) {
       for (const YamlNode& item : values.items) {
@@ -218,12 +225,6 @@ std::vector<ExperimentParser::Draft> ExperimentParser::CrossWithGrid(const YamlN
             fmt::format("{}{}={}", next.condition.name.empty() ? "" : ", ", key, value);
         crossed.push_back(std::move(next));
       }
-    }
-    if (crossed.empty() || crossed.size() > kMaxConditions) {
-      fields_.Fail(values.line, key,
-                   fmt::format("expected 1 to {} conditions in all, got {}", kMaxConditions,
-                               crossed.size()));
-      return {};
     }
     drafts = std::move(crossed);
   }

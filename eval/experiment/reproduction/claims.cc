@@ -96,7 +96,7 @@ Expected<ClaimsFile> ReadClaims(const std::filesystem::path& path) {
 
 Expected<ClaimsFile> ParseClaims(std::string_view text, const std::string& file) {
   static const Keys kKeys = {"paper", "experiments", "claims", "errata"};
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(std::string(text), file));
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   YamlFields in(file);
   ClaimsFile claims;
   in.IsMap(root, "claims file", kKeys);

@@ -66,6 +66,7 @@ struct ClaimsFile {
 };
 
 /// paper/claims.yaml. Errors: kIo; kParse with file, line and key.
+/// Time and memory are those of ParseYaml (io/text/yaml_node.h).
 Expected<ClaimsFile> ReadClaims(const std::filesystem::path& path);
 Expected<ClaimsFile> ParseClaims(std::string_view text, const std::string& file);
 

@@ -5,8 +5,18 @@
 #include <nlohmann/json.hpp>
 
 #include "base/version.h"
+#include "io/text/json_depth.h"
 
 namespace sextant {
+namespace {
+
+// Discarded if the text is not JSON.
+nlohmann::json ParsedConfiguration(const std::string& configuration) {
+  if (IsJsonTooDeep(configuration)) return nlohmann::json::value_t::discarded;
+  return nlohmann::json::parse(configuration, nullptr, /*allow_exceptions=*/false);
+}
+
+}  // namespace
 
 std::string ConfigurationOf(const Experiment& experiment) {
   using nlohmann::json;
@@ -37,13 +47,13 @@ std::string ConfigurationOf(const Experiment& experiment) {
 }
 
 std::size_t CountMetrics(const std::string& configuration) {
-  const auto json = nlohmann::json::parse(configuration, nullptr, /*allow_exceptions=*/false);
+  const nlohmann::json json = ParsedConfiguration(configuration);
   if (!json.is_object() || !json.contains("metrics") || !json["metrics"].is_array()) return 0;
   return json["metrics"].size();
 }
 
 std::uint64_t CountBlocks(const std::string& configuration) {
-  const auto json = nlohmann::json::parse(configuration, nullptr, /*allow_exceptions=*/false);
+  const nlohmann::json json = ParsedConfiguration(configuration);
   const auto number = [&json](const char* key) {
     return json.is_object() && json.contains(key) && json[key].is_number_unsigned()
                ? json[key].get<std::uint64_t>()

@@ -72,10 +72,28 @@ Expected<std::vector<Piece>> SortPieces(const std::vector<RowFileReader>& reader
   if (pieces.size() == expected) return pieces;
   std::uint64_t missing = 0;
   while (missing < pieces.size() && pieces[missing].place.number == missing) ++missing;
-  return MakeError(ErrorCode::kInvalidInput,
-                   fmt::format("{} of {} blocks are in none of the files, the first is number {}; "
-                               "finish all shards and name all of them",
-                               expected - pieces.size(), expected, missing));
+  std::string damage;
+  for (const RowFileReader& reader : readers) {
+    for (const std::string& line : DescribeDamage(reader)) damage += line + "; ";
+  }
+  return MakeError(
+      ErrorCode::kInvalidInput,
+      fmt::format(
+          "{}{} of {} blocks are in none of the files, the first is number {}; {}finish all "
+          "shards and name all of them",
+          damage, expected - pieces.size(), expected, missing,
+          damage.empty() ? "" : "run the damaged ones again, which repairs them, "));
+}
+
+// Writes the pieces, in their order, to the file.
+Expected<void> WritePieces(const std::vector<RowFileReader>& readers,
+                           const std::vector<Piece>& pieces, OutputFile file) {
+  SEXTANT_RETURN_IF_ERROR(file.Append(RowFileHeader(readers.front().configuration())));
+  for (const Piece& piece : pieces) {
+    SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, readers[piece.file].ReadBytes(piece.place));
+    SEXTANT_RETURN_IF_ERROR(file.Append(bytes));
+  }
+  return file.Commit();
 }
 
 }  // namespace
@@ -98,12 +116,19 @@ Expected<void> MergeRowFiles(const std::vector<std::filesystem::path>& shards,
   // The file that is replaced was read above.
   SEXTANT_ASSIGN_OR_RETURN(OutputFile file,
                            OutputFile::Open(merged, replace, {.may_be_read = true}));
-  SEXTANT_RETURN_IF_ERROR(file.Append(RowFileHeader(configuration)));
-  for (const Piece& piece : pieces) {
-    SEXTANT_ASSIGN_OR_RETURN(const std::string bytes, readers[piece.file].ReadBytes(piece.place));
-    SEXTANT_RETURN_IF_ERROR(file.Append(bytes));
-  }
-  return file.Commit();
+  return WritePieces(readers, pieces, std::move(file));
+}
+
+Expected<void> OrderRowFile(const std::filesystem::path& path) {
+  SEXTANT_ASSIGN_OR_RETURN(RowFileReader reader, RowFileReader::Open(path));
+  std::vector<Piece> pieces;
+  for (const RowBlockPlace& place : reader.blocks()) pieces.push_back({0, place});
+  std::vector<RowFileReader> readers;
+  readers.push_back(std::move(reader));
+  SEXTANT_ASSIGN_OR_RETURN(
+      OutputFile file,
+      OutputFile::Open(path, Replace::kAnyFile, {.may_be_read = true, .is_repeated = true}));
+  return WritePieces(readers, pieces, std::move(file));
 }
 
 }  // namespace sextant

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 
@@ -44,6 +45,8 @@ RowFileReader::RowFileReader(RowFileReader&& other) noexcept
       configuration_(std::move(other.configuration_)),
       columns_(other.columns_),
       blocks_(std::move(other.blocks_)),
+      damage_(std::move(other.damage_)),
+      is_orderly_(other.is_orderly_),
       whole_bytes_(other.whole_bytes_),
       file_bytes_(other.file_bytes_) {}
 
@@ -100,23 +103,83 @@ Expected<void> RowFileReader::ReadHeader() {
 }
 
 void RowFileReader::FindBlocks() {
+  constexpr std::uint64_t kMaxReads = 8;
   std::string bytes;
-  while (whole_bytes_ + kRowBlockHead + 8 <= file_bytes_) {
-    std::uint64_t head[3];
-    if (!ReadAt(whole_bytes_, head, sizeof head)) return;
-    const std::string_view mark(reinterpret_cast<const char*>(head), 8);
-    const std::uint64_t left = file_bytes_ - whole_bytes_;
-    if (mark != kRowBlockMark || head[2] > left / 8 || BytesOfBlock(head[2], columns_) > left) {
-      return;
+  std::uint64_t offset = whole_bytes_;
+  std::uint64_t in_vain = 0;
+  while (true) {
+    const std::optional<RowBlockPlace> block = BlockAt(offset, bytes);
+    if (!block) {
+      // Marks that a hostile file repeats could each claim the rest of the file.
+      in_vain += bytes.size();
+      if (in_vain > kMaxReads * file_bytes_) break;
+      const std::optional<std::uint64_t> mark = NextMark(offset + 8, bytes);
+      if (!mark) break;
+      offset = *mark;
+      continue;
     }
-    bytes.resize(BytesOfBlock(head[2], columns_));
-    if (!ReadAt(whole_bytes_, bytes.data(), bytes.size())) return;
-    std::uint64_t checksum = 0;
-    std::memcpy(&checksum, bytes.data() + bytes.size() - 8, 8);
-    if (checksum != RowChecksum(std::string_view{bytes}.substr(0, bytes.size() - 8))) return;
-    blocks_.push_back({.number = head[1], .rows = head[2], .offset = whole_bytes_});
-    whole_bytes_ += bytes.size();
+    if (offset > whole_bytes_) damage_.push_back({whole_bytes_, offset - whole_bytes_});
+    blocks_.push_back(*block);
+    offset += BytesOfBlock(block->rows, columns_);
+    whole_bytes_ = offset;
   }
+  SortBlocks();
+}
+
+std::optional<RowBlockPlace> RowFileReader::BlockAt(std::uint64_t offset,
+                                                    std::string& bytes) const {
+  std::uint64_t head[3];
+  bytes.clear();
+  if (offset + kRowBlockHead + 8 > file_bytes_ || !ReadAt(offset, head, sizeof head)) return {};
+  const std::string_view mark(reinterpret_cast<const char*>(head), 8);
+  const std::uint64_t left = file_bytes_ - offset;
+  if (mark != kRowBlockMark || head[2] > left / 8 || BytesOfBlock(head[2], columns_) > left) {
+    return {};
+  }
+  bytes.resize(BytesOfBlock(head[2], columns_));
+  if (!ReadAt(offset, bytes.data(), bytes.size())) return {};
+  std::uint64_t checksum = 0;
+  std::memcpy(&checksum, bytes.data() + bytes.size() - 8, 8);
+  if (checksum != RowChecksum(std::string_view{bytes}.substr(0, bytes.size() - 8))) return {};
+  return RowBlockPlace{.number = head[1], .rows = head[2], .offset = offset};
+}
+
+// The next mark of a block; the length of a damaged block may be damaged too.
+std::optional<std::uint64_t> RowFileReader::NextMark(std::uint64_t offset,
+                                                     std::string& bytes) const {
+  constexpr std::uint64_t kStep = std::uint64_t{1} << 16U;
+  const std::uint64_t overlap = kRowBlockMark.size() - 1;
+  for (; offset < file_bytes_; offset += kStep) {
+    bytes.resize(std::min(kStep + overlap, file_bytes_ - offset));
+    if (!ReadAt(offset, bytes.data(), bytes.size())) return {};
+    const std::size_t found = bytes.find(kRowBlockMark);
+    if (found != std::string::npos) return offset + found;
+  }
+  return {};
+}
+
+void RowFileReader::SortBlocks() {
+  const auto less = [](const RowBlockPlace& a, const RowBlockPlace& b) {
+    return a.number < b.number;
+  };
+  const auto same = [](const RowBlockPlace& a, const RowBlockPlace& b) {
+    return a.number == b.number;
+  };
+  is_orderly_ = damage_.empty() && std::is_sorted(blocks_.begin(), blocks_.end(), less) &&
+                std::adjacent_find(blocks_.begin(), blocks_.end(), same) == blocks_.end();
+  if (is_orderly_) return;
+  std::stable_sort(blocks_.begin(), blocks_.end(), less);
+  blocks_.erase(std::unique(blocks_.begin(), blocks_.end(), same), blocks_.end());
+}
+
+std::vector<std::string> DescribeDamage(const RowFileReader& reader) {
+  std::vector<std::string> lines;
+  for (const RowFileDamage& damage : reader.damage()) {
+    lines.push_back(fmt::format("{}: bytes {} to {} are damaged",
+                                Printable(reader.path().string(), 200), damage.offset,
+                                damage.offset + damage.bytes));
+  }
+  return lines;
 }
 
 Expected<std::vector<std::uint64_t>> RowFileReader::ReadKeys(const RowBlockPlace& block) const {

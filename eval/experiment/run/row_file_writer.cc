@@ -53,6 +53,8 @@ Expected<void> RowFileWriter::Keep(const std::filesystem::path& path,
                                  "start over with --fresh, or choose another folder with --out",
                                  Printable(path.string(), 300)));
   }
+  damage_ = DescribeDamage(reader);
+  is_orderly_ = reader.is_orderly();
   for (const RowBlockPlace& block : reader.blocks()) kept_.push_back(block.number);
   return file_.Truncate(reader.whole_bytes());
 }

@@ -52,14 +52,16 @@ std::vector<std::uint64_t> BlocksOfShard(const Experiment& experiment, const Sha
   return blocks;
 }
 
-Expected<void> CheckKept(const std::vector<std::uint64_t>& kept,
-                         const std::vector<std::uint64_t>& blocks, const RunSettings& settings) {
+Expected<void> CheckKept(const RowFileWriter& writer, const std::vector<std::uint64_t>& blocks,
+                         const RunSettings& settings) {
+  const std::vector<std::uint64_t>& kept = writer.kept();
   const auto is_of_shard = [&blocks](std::uint64_t block) {
     return std::binary_search(blocks.begin(), blocks.end(), block);
   };
-  const bool fits = settings.held.empty() ? kept.size() <= blocks.size() &&
-                                                std::equal(kept.begin(), kept.end(), blocks.begin())
-                                          : std::all_of(kept.begin(), kept.end(), is_of_shard);
+  const bool has_gaps = !settings.held.empty() || !writer.is_orderly();
+  const bool fits = has_gaps ? std::all_of(kept.begin(), kept.end(), is_of_shard)
+                             : kept.size() <= blocks.size() &&
+                                   std::equal(kept.begin(), kept.end(), blocks.begin());
   if (fits) return {};
   return MakeError(ErrorCode::kInvalidInput,
                    fmt::format("'{}' holds blocks of another --shard; start over with --fresh, or "
@@ -162,8 +164,8 @@ Expected<RunOutcome> RunTrials(const Experiment& experiment, const RunSettings& 
       RowFileWriter writer,
       RowFileWriter::Open(settings.rows_path, ConfigurationOf(experiment), settings.fresh));
   std::vector<std::uint64_t> blocks = BlocksOfShard(experiment, settings.shard);
-  SEXTANT_RETURN_IF_ERROR(CheckKept(writer.kept(), blocks, settings));
-  RunOutcome outcome;
+  SEXTANT_RETURN_IF_ERROR(CheckKept(writer, blocks, settings));
+  RunOutcome outcome{.damage = writer.damage()};
   for (const std::uint64_t block : writer.kept()) {
     outcome.kept_trials += TrialsOfBlock(experiment, block);
   }
@@ -172,6 +174,7 @@ Expected<RunOutcome> RunTrials(const Experiment& experiment, const RunSettings& 
                            BlockPipeline(experiment, std::move(blocks), settings, writer).Run());
   outcome.run_trials = run;
   SEXTANT_RETURN_IF_ERROR(writer.Flush());
+  if (!writer.is_orderly()) SEXTANT_RETURN_IF_ERROR(OrderRowFile(settings.rows_path));
   return outcome;
 }
 

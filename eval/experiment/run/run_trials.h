@@ -38,12 +38,14 @@ struct RunSettings {
 struct RunOutcome {
   std::uint64_t kept_trials = 0;  ///< Trials that were already in the file.
   std::uint64_t run_trials = 0;
+  std::vector<std::string> damage{};  ///< Parts of the file whose trials were run again; see
+                                      ///< DescribeDamage.
 };
 
 /// Runs the trials that are not yet in the row file and appends them, block by block in order. The
-/// bytes depend only on the experiment, the shard and the held blocks, not on the number of threads
-/// or on interruptions. Memory does not grow with the number of trials. Errors: those of
-/// RowFileWriter.
+/// bytes depend only on the experiment, the shard and the held blocks, not on the number of
+/// threads, on interruptions or on damage to the file in between: the trials of damaged blocks are
+/// run again. Memory does not grow with the number of trials. Errors: those of RowFileWriter.
 Expected<RunOutcome> RunTrials(const Experiment& experiment, const RunSettings& settings);
 
 /// Number of trials of a block.

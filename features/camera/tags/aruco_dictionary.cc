@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <opencv2/core/persistence.hpp>
+#include <string>
 
 namespace sextant {
 namespace {
@@ -40,6 +42,25 @@ constexpr std::array kDictionaries = {
     DictionaryEntry{"aruco_tag36h11", cv::aruco::DICT_APRILTAG_36h11},
 };
 
+// OpenCV's parser calls itself for each level and would exhaust the stack. A line without many of
+// these characters adds few levels.
+bool MayNestDeeply(const std::string& path) {
+  constexpr int kMaxOpened = 64;
+  std::ifstream file(path);
+  int depth = 0;
+  for (std::string line; std::getline(file, line);) {
+    int dashes = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const bool closes_tag = line[i] == '<' && i + 1 < line.size() && line[i + 1] == '/';
+      if (line[i] == '[' || line[i] == '{' || (line[i] == '<' && !closes_tag)) ++depth;
+      if (line[i] == ']' || line[i] == '}' || closes_tag) --depth;
+      if (line[i] == '-' && i + 1 < line.size() && line[i + 1] == ' ') ++dashes;
+      if (depth > kMaxOpened || dashes > kMaxOpened) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 const std::vector<std::string>& ArucoDictionaryNames() {
@@ -59,10 +80,18 @@ std::optional<cv::aruco::Dictionary> FindArucoDictionary(std::string_view name) 
 }
 
 Expected<cv::aruco::Dictionary> ReadArucoDictionary(const std::string& path) {
+  constexpr std::uintmax_t kMaxBytes = std::uintmax_t{16} << 20;
   cv::aruco::Dictionary dictionary;
   // Checked first because OpenCV prints a message of its own for a missing file.
   if (std::error_code error; !std::filesystem::is_regular_file(path, error)) {
     return MakeError(ErrorCode::kIo, fmt::format("{}: there is no dictionary file", path));
+  }
+  std::error_code ignored;
+  if (std::filesystem::file_size(path, ignored) > kMaxBytes || MayNestDeeply(path)) {
+    return MakeError(ErrorCode::kParse,
+                     fmt::format("{}: expected a dictionary of at most {} bytes, "
+                                 "with short lines and few brackets",
+                                 path, kMaxBytes));
   }
   try {
     const cv::FileStorage file(path, cv::FileStorage::READ);

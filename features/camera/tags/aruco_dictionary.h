@@ -20,7 +20,8 @@ const std::vector<std::string>& ArucoDictionaryNames();
 std::optional<cv::aruco::Dictionary> FindArucoDictionary(std::string_view name);
 
 /// Reads a custom dictionary in OpenCV's format: nmarkers, markersize, marker_0: "0110..." and so
-/// on (and maxCorrectionBits). Errors: kIo; kParse.
+/// on (and maxCorrectionBits). Errors: kIo; kParse, also for a file above 16 MiB or one that nests
+/// deeply. Time and memory are those of OpenCV's parser, linear in the size.
 Expected<cv::aruco::Dictionary> ReadArucoDictionary(const std::string& path);
 
 /// The printed pattern of an id of the dictionary: its bits with a black border of one cell.

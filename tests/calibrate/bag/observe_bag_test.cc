@@ -6,6 +6,7 @@
 #include <atomic>
 #include <memory>
 
+#include "calibrate/bag/bag_streams.h"
 #include "calibrate/calibrate.h"
 #include "eval/extractors/board_scenes.h"
 #include "io/bag/rosbag1_writer.h"
@@ -16,6 +17,7 @@
 namespace sextant::test {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr std::int64_t kStart_ns = 1'000'000'000;
@@ -25,6 +27,35 @@ struct Frame {
   std::int64_t cloud_ns = 0;
   std::int64_t image_ns = 0;
 };
+
+// Ten thousand pairs of topics, of which none has a common message.
+TEST(ReadStreams, PairsTheFirstHundredPairsOfTopics) {
+  const ScratchFolder folder;
+  const std::filesystem::path path = folder.path() / "topics.bag";
+  Expected<Rosbag1Writer> writer = Rosbag1Writer::Create(path);
+  ASSERT_TRUE(writer);
+  for (int i = 0; i < 100; ++i) {
+    const MessageHeader header{.stamp_ns = kStart_ns + i, .frame = "f"};
+    ASSERT_TRUE(writer->Write("/scan" + std::to_string(i), kStart_ns, CloudMessage{header, {}}));
+    ASSERT_TRUE(writer->Write("/image" + std::to_string(i), kStart_ns,
+                              EncodedImageMessage{header, "jpeg", "x"}));
+  }
+  ASSERT_TRUE(writer->Close());
+  const Expected<std::unique_ptr<Bag>> bag = OpenBag(path);
+  ASSERT_TRUE(bag);
+  const Expected<BagStreams> all = ReadStreams(**bag, 1000);
+  ASSERT_TRUE(all) << all.error().message;
+  EXPECT_EQ(all->streams.size(), 200U);
+  EXPECT_EQ(all->pairings.size(), kMaxPairings);
+  EXPECT_EQ(all->more_pairings, 9900U);
+  const Expected<BagStreams> one =
+      ReadStreams(**bag, 1000, {.image_topic = "/image7", .cloud_topic = "/scan99"});
+  ASSERT_TRUE(one);
+  ASSERT_EQ(one->pairings.size(), 1U);
+  EXPECT_EQ(one->pairings[0].pairs.pairs.size(), 1U);
+  EXPECT_THAT(PlanBag(**bag, {}).error().message,
+              AllOf(HasSubstr("several topics fit"), HasSubstr("and 9980 more")));
+}
 
 class Recording : public testing::Test {
  protected:

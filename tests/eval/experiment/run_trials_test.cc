@@ -58,12 +58,67 @@ TEST(RunTrials, RunsNoTrialTwice) {
   EXPECT_EQ(outcome->run_trials, 50U);
 }
 
-TEST(RunTrials, RunsADamagedBlockAndAllLaterOnesAgain) {
+// The offset of each block of a file.
+std::vector<std::size_t> MarksIn(const std::string& bytes) {
+  std::vector<std::size_t> marks;
+  for (std::size_t at = bytes.find("sxtblock"); at != std::string::npos;
+       at = bytes.find("sxtblock", at + 1)) {
+    marks.push_back(at);
+  }
+  return marks;
+}
+
+TEST(RunTrials, RunsOnlyTheTrialsOfADamagedBlockAgain) {
   const std::string whole = RunTo("whole", Small(), 2);
-  std::string damaged = whole;
-  damaged[whole.size() / 2] = static_cast<char>(damaged[whole.size() / 2] ^ 0x10);
+  const std::vector<std::size_t> marks = MarksIn(whole);
+  ASSERT_EQ(marks.size(), 6U);
+  const std::filesystem::path path = TestFolder() / "damaged";
+  // The mark, the number, the count of rows, a key, the checksum of the second block.
+  for (const std::size_t at :
+       {marks[1], marks[1] + 9, marks[1] + 17, marks[1] + 23, marks[1] + 24, marks[2] - 1}) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
+    WriteText(path, damaged);
+    const RowFileReader reader = *RowFileReader::Open(path);
+    EXPECT_EQ(reader.blocks().size(), 5U) << at;
+    EXPECT_FALSE(reader.is_orderly());
+    ASSERT_EQ(reader.damage().size(), 1U);
+    EXPECT_EQ(reader.damage()[0].offset, marks[1]);
+    EXPECT_EQ(reader.damage()[0].bytes, marks[2] - marks[1]);
+    const Expected<RunOutcome> outcome = RunTrials(Small(), {.rows_path = path, .threads = 2});
+    ASSERT_TRUE(outcome) << outcome.error().message;
+    EXPECT_EQ(outcome->kept_trials, 400U);
+    EXPECT_EQ(outcome->run_trials, 100U);
+    ASSERT_EQ(outcome->damage.size(), 1U);
+    EXPECT_THAT(outcome->damage[0], testing::HasSubstr("are damaged"));
+    EXPECT_TRUE(ReadText(path) == whole) << at;
+  }
+}
+
+// A kill while the lost block is computed leaves the file without it, or with it at the end.
+TEST(RunTrials, RepairsAFileWithoutABlockAndOneInAnotherOrder) {
+  const std::string whole = RunTo("whole", Small(), 2);
+  const std::vector<std::size_t> marks = MarksIn(whole);
+  const std::string second = whole.substr(marks[1], marks[2] - marks[1]);
+  const std::string without = whole.substr(0, marks[1]) + whole.substr(marks[2]);
+  for (const std::string& bytes : {without + second, without + second + second,
+                                   whole.substr(0, marks[1]) + "x" + whole.substr(marks[1])}) {
+    WriteText(TestFolder() / "rows", bytes);
+    const Expected<RunOutcome> outcome =
+        RunTrials(Small(), {.rows_path = TestFolder() / "rows", .threads = 1});
+    ASSERT_TRUE(outcome) << outcome.error().message;
+    EXPECT_EQ(outcome->run_trials, 0U);
+    EXPECT_TRUE(ReadText(TestFolder() / "rows") == whole);
+  }
+}
+
+TEST(RunTrials, MergeNamesTheDamage) {
+  std::string damaged = RunTo("whole", Small(), 2);
+  damaged[MarksIn(damaged)[1] + 30] ^= 1;
   WriteText(TestFolder() / "damaged", damaged);
-  EXPECT_TRUE(RunTo("damaged", Small(), 1) == whole);
+  const Expected<void> merged = MergeRowFiles({TestFolder() / "damaged"}, TestFolder() / "merged");
+  ASSERT_FALSE(merged);
+  EXPECT_THAT(merged.error().message, testing::HasSubstr("are damaged; 1 of 6 blocks"));
 }
 
 TEST(RunTrials, ShardsMergeToTheSameBytes) {

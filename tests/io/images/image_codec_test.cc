@@ -54,6 +54,38 @@ TEST(ImageCodec, JpegIsClose) {
   EXPECT_LT(cv::norm(image, *decoded, cv::NORM_INF), 8.0);
 }
 
+// OpenCV fills what is missing of a JPEG with grey.
+TEST(ImageCodec, EveryTruncationOfAnImageIsRefused) {
+  cv::Mat noise(40, 50, CV_8UC3);
+  cv::randu(noise, 0, 255);
+  for (const char* extension : {".png", ".jpg"}) {
+    const std::string bytes = EncodeImage(extension, noise).value();
+    ASSERT_TRUE(DecodeImage(bytes, DecodedColor::kUnchanged));
+    EXPECT_TRUE(DecodeImage(bytes + "appended", DecodedColor::kUnchanged)) << extension;
+    for (std::size_t size = 4; size < bytes.size(); ++size) {
+      const Expected<cv::Mat> cut = DecodeImage(bytes.substr(0, size), DecodedColor::kUnchanged);
+      ASSERT_FALSE(cut) << extension << " " << size;
+      EXPECT_THAT(cut.error().message, HasSubstr("cut off: it ends at byte")) << size;
+    }
+  }
+}
+
+// The thumbnail in an Exif segment has an end marker of its own.
+TEST(ImageCodec, AnEndMarkerWithinASegmentIsNotTheEnd) {
+  const std::string bytes = EncodeImage(".jpg", Gradient(CV_8UC1)).value();
+  const std::string segment("\xff\xe1\x00\x06\xff\xd8\xff\xd9", 8);
+  const std::string with_thumbnail = bytes.substr(0, 2) + segment + bytes.substr(2);
+  EXPECT_TRUE(DecodeImage(with_thumbnail, DecodedColor::kGrey));
+  EXPECT_FALSE(DecodeImage(with_thumbnail.substr(0, bytes.size() - 10), DecodedColor::kGrey));
+}
+
+TEST(ImageCodec, FewBytesThatStateManyPixelsAreRefused) {
+  std::string bytes = EncodeImage(".png", Gradient(CV_8UC1)).value();
+  bytes[16] = '\x01';  // The width becomes 2^24 + 30.
+  EXPECT_THAT(DecodeImage(bytes, DecodedColor::kGrey).error().message,
+              HasSubstr("states 16777246 x 20 pixels"));
+}
+
 TEST(ImageCodec, WhatIsNoImageIsAnError) {
   for (const char* text : {"", "this is not an image", "\x89PNG"}) {
     const Expected<cv::Mat> decoded = DecodeImage(text, DecodedColor::kUnchanged);

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the readers state in their headers of time and memory, for the worst files.
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "base/random.h"
+#include "io/clouds/cloud_file.h"
+#include "io/problems/problem_yaml.h"
+#include "io/results/calibration_result.h"
+#include "io/text/yaml_node.h"
+#include "support/calibration_result.h"
+#include "support/child_cost.h"
+
+namespace sextant {
+namespace {
+
+using test::ChildCost;
+using test::CostOf;
+using testing::HasSubstr;
+
+constexpr std::size_t kMiB = std::size_t{1} << 20;
+
+std::string Filled(std::string text, std::string_view unit, std::size_t size) {
+  while (text.size() < size) text += unit;
+  return text;
+}
+
+void ExpectYamlBudget(const std::string& text, const char* what) {
+  const ChildCost cost = CostOf([&text] {
+    static_cast<void>(ParseYaml(text, "f.yaml"));
+    return true;
+  });
+  ASSERT_TRUE(cost.ended) << what;
+  EXPECT_LT(cost.peak_bytes, 20 * text.size() + 64 * kMiB) << what;
+  EXPECT_LT(cost.seconds, 20.0) << what;
+}
+
+TEST(Budget, YamlTakesTwentyTimesItsSizeAnd64MiB) {
+  struct Worst {
+    const char* begin;
+    const char* unit;
+    const char* end;
+  };
+  constexpr Worst kWorst[] = {{"", "[", ""},
+                              {"a: ", "{", ""},
+                              {"a: [", "0,", "0]\n"},
+                              {"a: [\n", "0,\n", "]"},
+                              {"a: [", "\"\"", "]\n"},
+                              {"a: [", "''", "]\n"},
+                              {"a: [", "!a ", "]\n"},
+                              {"a: [", "]0", "]\n"},
+                              {"a: [", "[],", "]\n"},
+                              {"a: [", "{},", "]\n"},
+                              {"", "- ", ""},
+                              {"a:\n", " - 0\n", ""},
+                              {"a:\n", " - [0]\n", ""},
+                              {"a:\n", " -\n", ""},
+                              {"a:\n", " - {a: 0}\n", ""},
+                              {"", "? ", ""},
+                              {"a: {", "a:,", "}\n"},
+                              {"a: ", "x", "\n"},
+                              {"a: \"", "x", "\"\n"},
+                              {"a: |\n", "  x\n", ""},
+                              {"", "%TAG !a! b\n", ""},
+                              {"a: [", "#\n", "]\n"},
+                              {"", "---\n", ""},
+                              {"a: &a [*a", ",*a", "]\n"}};
+  for (const Worst& worst : kWorst) {
+    for (const std::size_t size : {kMiB / 4, 2 * kMiB}) {
+      ExpectYamlBudget(Filled(worst.begin, worst.unit, size) + worst.end, worst.unit);
+    }
+  }
+  ExpectYamlBudget(Filled("a: [", "0,", 42'000'000) + "0]\n", "a list of 42 MB");
+  ExpectYamlBudget(
+      Filled("a:\n", "- [-1.2345678901234, 2.345678901234567, 0.345678901234]\n", 42'000'000),
+      "points of 42 MB");
+}
+
+TEST(Budget, YamlThatIsTooDenseIsRefusedWithTheLine) {
+  EXPECT_THAT(ParseYaml(Filled("a:\n", " - 0\n", 2 * kMiB), "f.yaml").error().message,
+              HasSubstr("too many values for a text of this size"));
+  EXPECT_THAT(ParseYaml(std::string(2 * kMiB, '['), "f.yaml").error().message,
+              testing::StartsWith("f.yaml:1: not valid YAML: too many values"));
+  EXPECT_THAT(ParseYaml("a: &x [1]\n", "f.yaml").error().message, HasSubstr("anchors"));
+}
+
+// 200 views of 1000 returns: 16 MB.
+TEST(Budget, ProblemsOfManyPointsAreReadWhole) {
+  ProblemFile file;
+  file.problem.boards = {{.id = 3, .top_right_m = 0.5, .right_bottom_m = 0.5}};
+  Random random(1);
+  for (int view = 0; view < 200; ++view) {
+    BoardView& seen = file.problem.board_views.emplace_back();
+    seen.view = view;
+    seen.board = 3;
+    seen.range_sigma_m = 0.01;
+    for (int i = 0; i < 1000; ++i) {
+      const double x = random.Uniform(1.0, 9.0);
+      const double y = random.Uniform(-3.0, 3.0);
+      seen.face_in_lidar.emplace_back(x, y, random.Uniform(-1.0, 1.0));
+    }
+  }
+  for (int i = 0; i < 20'000; ++i) {
+    Pair3d3d& pair = file.problem.pairs_3d3d.emplace_back();
+    pair.point_in_cam = {random.Uniform(), 2.0, 3.0};
+    pair.point_in_lidar = {random.Uniform(), 2.0, 3.0};
+    pair.sigma_m = 0.01;
+    pair.id = {i, 3, i % 4};
+  }
+  const std::string text = FormatProblemYaml(file);
+  EXPECT_GT(text.size(), 10'000'000U);
+  const ChildCost cost = CostOf([&text] {
+    const Expected<ProblemFile> read = ParseProblemYaml(text, "f.yaml");
+    return read && read->problem.board_views.size() == 200 &&
+           read->problem.board_views[199].face_in_lidar.size() == 1000 &&
+           read->problem.pairs_3d3d.size() == 20'000;
+  });
+  EXPECT_TRUE(cost.ended) << ParseProblemYaml(text, "f.yaml").error().message;
+  EXPECT_LT(cost.peak_bytes, 20 * text.size() + 64 * kMiB);
+}
+
+TEST(Budget, ResultsOfManyViewsAreReadWhole) {
+  CalibrationResult result = test::FullCalibrationResult();
+  ASSERT_FALSE(result.views.empty());
+  const std::size_t some = result.views.size();
+  for (std::size_t i = some; i < 1000; ++i) {
+    ResultView view = result.views[i % some];
+    view.view = static_cast<int>(i);
+    view.name = fmt::format("view {}", i);
+    result.views.push_back(std::move(view));
+  }
+  for (const std::string& text :
+       {FormatCalibrationResult(result), FormatCalibrationResultJson(result)}) {
+    const Expected<CalibrationResult> read = ParseCalibrationResult(text, "f");
+    ASSERT_TRUE(read) << text.size() << " bytes: " << read.error().message;
+    EXPECT_EQ(read->views.size(), 1000U);
+  }
+}
+
+// A scan of `points` zeros: liblzf's stream is a run of 12 bytes, then repetitions of 264.
+std::string CompressedZeros(std::size_t points) {
+  const std::size_t bytes = 12 * points;
+  EXPECT_EQ((bytes - 12) % 264, 0U);
+  std::string stream = std::string(1, '\x0b') + std::string(12, '\0');
+  for (std::size_t at = 12; at < bytes; at += 264) stream += std::string("\xe0\xff\0", 3);
+  const std::uint32_t sizes[] = {static_cast<std::uint32_t>(stream.size()),
+                                 static_cast<std::uint32_t>(bytes)};
+  std::string head(sizeof sizes, '\0');
+  std::memcpy(head.data(), sizes, sizeof sizes);
+  return fmt::format(
+             "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {}\nHEIGHT 1\n"
+             "POINTS {}\nDATA binary_compressed\n",
+             points, points) +
+         head + stream;
+}
+
+TEST(Budget, CompressedZerosTakeNoGigabytes) {
+  const Expected<PointCloud> few = ParseCloud(CompressedZeros(22 * 20'000 + 1), "f.pcd");
+  ASSERT_TRUE(few) << few.error().message;
+  EXPECT_EQ(few->points.size(), 440'001U);
+  const std::string many = CompressedZeros(22 * 909'090 + 1);
+  EXPECT_LT(many.size(), 3'000'000U);
+  const ChildCost cost = CostOf([&many] {
+    const Expected<PointCloud> cloud = ParseCloud(many, "f.pcd");
+    return !cloud &&
+           cloud.error().message.find("Save the scan as DATA binary") != std::string::npos;
+  });
+  EXPECT_TRUE(cost.ended);
+  EXPECT_LT(cost.peak_bytes, 16 * kMiB);
+}
+
+TEST(Budget, HeadersThatPromiseManyPointsTakeNoMemory) {
+  const std::string pcd =
+      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1000000000\nHEIGHT 1\n"
+      "POINTS 1000000000\nDATA ";
+  const std::string ply =
+      " 1.0\nelement face 4000000000\nproperty list uint int vertex_indices\n"
+      "element vertex 9000000000000\nproperty float x\nproperty float y\nproperty float z\n"
+      "end_header\n";
+  for (const auto& [text, name] :
+       {std::pair{pcd + "ascii\n1 2 3\n", "a.pcd"},
+        {pcd + "binary\n0123456789ab", "b.pcd"},
+        {pcd + "binary_compressed\n" + std::string(20, '\x7f'), "c.pcd"},
+        {"ply\nformat ascii" + ply + "4000000000 1 2\n", "d.ply"},
+        {"ply\nformat binary_little_endian" + ply + std::string(40, '\x7f'), "e.ply"},
+        {"x,y,z" + std::string(900, ',') + "\n1,2,3\n", "f.csv"}}) {
+    const ChildCost cost =
+        CostOf([&text = text, &name = name] { return !ParseCloud(text, name).has_value(); });
+    EXPECT_TRUE(cost.ended) << name;
+    EXPECT_LT(cost.peak_bytes, 8 * kMiB) << name;
+    EXPECT_LT(cost.seconds, 1.0) << name;
+  }
+}
+
+}  // namespace
+}  // namespace sextant

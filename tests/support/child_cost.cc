@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "support/child_cost.h"
+
+#include <malloc.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+
+namespace sextant::test {
+namespace {
+
+std::size_t ResidentBytes() {
+  std::size_t all = 0;
+  std::size_t resident = 0;
+  std::ifstream("/proc/self/statm") >> all >> resident;
+  return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::size_t PeakBytes() {
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace
+
+ChildCost CostOf(const std::function<bool()>& work) {
+  int ends[2] = {};
+  if (pipe(ends) != 0) return {};
+  const pid_t child = fork();
+  if (child == 0) {
+    malloc_trim(0);
+    const std::size_t before = ResidentBytes();
+    const auto start = std::chrono::steady_clock::now();
+    ChildCost cost{.ended = work()};
+    cost.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    cost.peak_bytes = PeakBytes() - before;
+    _exit(write(ends[1], &cost, sizeof cost) == sizeof cost ? 0 : 1);
+  }
+  close(ends[1]);
+  ChildCost cost;
+  if (read(ends[0], &cost, sizeof cost) != sizeof cost) cost = {};
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return cost;
+}
+
+}  // namespace sextant::test
