@@ -18,8 +18,9 @@ struct SpecNode {
 };
 
 /// Grammar: spec = name [ "(" [ argument { "," argument } ] ")" ], argument = spec | key "=" value.
-/// Names consist of letters, digits, '_' and '.'; blanks are ignored. Error: kParse, with the
-/// column.
+/// Names consist of letters, digits, '_' and '.'; blanks are ignored. At most 32 levels, and names
+/// and values of at most 100 characters. Time and memory are proportional to the text. Error:
+/// kParse, with the column.
 Expected<SpecNode> ParseSpec(std::string_view text);
 
 /// Specs separated by commas outside parentheses.
