@@ -12,15 +12,14 @@ namespace sextant {
 
 /// The parsed spec of a composed solver: `refine(ransac(kabsch, seed=7), loss=huber)`.
 struct SpecNode {
-  std::string name;
-  std::vector<SpecNode> inner;                               ///< The solvers in the parentheses.
+  std::string name;             ///< At most 100 characters, as keys and values.
+  std::vector<SpecNode> inner;  ///< The solvers in the parentheses.
   std::vector<std::pair<std::string, std::string>> options;  ///< key=value, in the order given.
 };
 
 /// Grammar: spec = name [ "(" [ argument { "," argument } ] ")" ], argument = spec | key "=" value.
-/// Names consist of letters, digits, '_' and '.'; blanks are ignored. At most 32 levels, and names
-/// and values of at most 100 characters. Time and memory are proportional to the text. Error:
-/// kParse, with the column.
+/// Names consist of letters, digits, '_' and '.'; blanks are ignored. Error: kParse, with the
+/// column.
 Expected<SpecNode> ParseSpec(std::string_view text);
 
 /// Specs separated by commas outside parentheses.
