@@ -11,6 +11,18 @@ namespace {
 // Deeper nesting has no use and would let a hostile text exhaust the stack.
 constexpr int kMaxDepth = 32;
 
+// A longer name or value has no use and would make every message about it as long.
+constexpr std::size_t kMaxWord = 100;
+
+// The text for a message: of a long one, the part around the position.
+std::string Excerpt(std::string_view text, std::size_t position) {
+  constexpr std::size_t kReach = 60;
+  const std::size_t begin = position > kReach ? position - kReach : 0;
+  const std::string_view part = text.substr(begin, 2 * kReach);
+  return fmt::format("'{}{}{}'", begin > 0 ? "..." : "", part,
+                     begin + part.size() < text.size() ? "..." : "");
+}
+
 class SpecParser {
  public:
   explicit SpecParser(std::string_view text) : text_(text) {}
@@ -30,7 +42,7 @@ class SpecParser {
   Expected<SpecNode> ParseNode(int depth) {
     if (depth > kMaxDepth) return Fail(fmt::format("at most {} nested solvers", kMaxDepth));
     SpecNode node;
-    node.name = Word();
+    SEXTANT_ASSIGN_OR_RETURN(node.name, Word());
     if (node.name.empty()) return Fail("the name of a solver");
     if (!Accept('(')) return node;
     if (Accept(')')) return node;
@@ -43,9 +55,9 @@ class SpecParser {
 
   Expected<void> ParseArgument(int depth, SpecNode& node) {
     const std::size_t start = position_;
-    const std::string key = Word();
+    SEXTANT_ASSIGN_OR_RETURN(const std::string key, Word());
     if (!key.empty() && Accept('=')) {
-      std::string value = Word();
+      SEXTANT_ASSIGN_OR_RETURN(std::string value, Word());
       if (value.empty()) return Fail(fmt::format("a value for '{}'", key));
       node.options.emplace_back(key, std::move(value));
       return {};
@@ -71,7 +83,7 @@ class SpecParser {
   }
 
   // Words include signs, for values such as -1e-3, and slashes, for paths.
-  std::string Word() {
+  Expected<std::string> Word() {
     SkipBlanks();
     const std::size_t start = position_;
     while (position_ < text_.size()) {
@@ -79,14 +91,18 @@ class SpecParser {
       const bool is_word = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' ||
                            c == '.' || c == '-' || c == '+' || c == '/';
       if (!is_word) break;
+      if (position_ - start == kMaxWord) {
+        return Fail(fmt::format("a name or value of at most {} characters", kMaxWord));
+      }
       ++position_;
     }
     return std::string(text_.substr(start, position_ - start));
   }
 
   tl::unexpected<Error> Fail(const std::string& expected) const {
-    return MakeError(ErrorCode::kParse, fmt::format("solver '{}', column {}: expected {}", text_,
-                                                    position_ + 1, expected));
+    return MakeError(ErrorCode::kParse,
+                     fmt::format("solver {}, column {}: expected {}", Excerpt(text_, position_),
+                                 position_ + 1, expected));
   }
 
   std::string_view text_;
@@ -102,8 +118,8 @@ Expected<std::vector<SpecNode>> ParseSpecList(std::string_view text) {
 Expected<SpecNode> ParseSpec(std::string_view text) {
   SEXTANT_ASSIGN_OR_RETURN(std::vector<SpecNode> specs, ParseSpecList(text));
   if (specs.size() != 1) {
-    return MakeError(ErrorCode::kParse,
-                     fmt::format("expected one solver, got {} in '{}'", specs.size(), text));
+    return MakeError(ErrorCode::kParse, fmt::format("expected one solver, got {} in {}",
+                                                    specs.size(), Excerpt(text, 0)));
   }
   return std::move(specs.front());
 }

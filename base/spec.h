@@ -12,8 +12,8 @@ namespace sextant {
 
 /// The parsed spec of a composed solver: `refine(ransac(kabsch, seed=7), loss=huber)`.
 struct SpecNode {
-  std::string name;
-  std::vector<SpecNode> inner;                               ///< The solvers in the parentheses.
+  std::string name;             ///< At most 100 characters, as keys and values.
+  std::vector<SpecNode> inner;  ///< The solvers in the parentheses.
   std::vector<std::pair<std::string, std::string>> options;  ///< key=value, in the order given.
 };
 

@@ -119,3 +119,26 @@ build() {
   if ! [ -t 1 ]; then tool=(-- --quiet); fi
   cmake --build --preset release -j "$(job_count)" "${targets[@]}" "${tool[@]}" </dev/null
 }
+
+# write_block NAME [PAGE]: replaces the block NAME that this script writes in the page (README.md) by
+# standard input.
+write_block() {
+  local page=${2:-README.md} begin block
+  begin="<!-- scripts/$(basename "$0") writes from here: $1 -->"
+  block=$(cat)
+  [ -n "$block" ] || fail "nothing to write as block $1 of $page"
+  grep -qxF -e "$begin" "$page" || fail "$page has no block $1"
+  BLOCK=$block awk -v begin="$begin" '
+    $0 == begin {print; print ENVIRON["BLOCK"]; skip = 1; next}
+    skip && $0 == "<!-- to here -->" {skip = 0}
+    !skip {print}' "$page" >"$page.part"
+  mv "$page.part" "$page"
+}
+
+# read_block NAME PAGE: prints that block.
+read_block() {
+  awk -v begin="<!-- scripts/$(basename "$0") writes from here: $1 -->" '
+    $0 == "<!-- to here -->" {inside = 0}
+    inside {print}
+    $0 == begin {inside = 1}' "$2"
+}

@@ -76,6 +76,33 @@ TEST(Pages, EveryLinkLeadsToAFileOfTheProject) {
   EXPECT_GT(links, 20);
 }
 
+// Whether a file of the tests defines TEST(suite, name), TEST_F or TEST_P; "*" is any name.
+bool IsTest(const std::vector<SourceFile>& files, const std::string& suite,
+            const std::string& name) {
+  const std::string begin = "(" + suite + ", " + (name == "*" ? "" : name + ")");
+  return std::ranges::any_of(files, [&](const SourceFile& file) {
+    return file.path.ends_with("_test.cc") &&
+           std::ranges::any_of(file.lines, [&](const std::string& line) {
+             return line.starts_with("TEST") && line.find(begin) != std::string::npos;
+           });
+  });
+}
+
+TEST(Pages, TheTestsThatHoldPromisesExist) {
+  static const std::regex named(R"(`([A-Z]\w+)\.([A-Z]\w+|\*)`)");
+  const std::vector<SourceFile> files = ReadSourceTree();
+  const auto page = std::ranges::find(files, "docs/reliability.md", &SourceFile::path);
+  ASSERT_TRUE(page != files.end());
+  int tests = 0;
+  for (const std::string& line : page->lines) {
+    for (std::sregex_iterator found(line.begin(), line.end(), named), end; found != end; ++found) {
+      ++tests;
+      EXPECT_TRUE(IsTest(files, (*found)[1], (*found)[2])) << page->path << ": " << found->str();
+    }
+  }
+  EXPECT_GT(tests, 10);
+}
+
 TEST(Pages, TheReadmeFitsAWindow) {
   for (const SourceFile& page : ReadSourceTree()) {
     if (page.path != "README.md") continue;
