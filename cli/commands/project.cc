@@ -13,6 +13,7 @@
 #include "io/clouds/cloud_file.h"
 #include "io/results/calibration_result.h"
 #include "report/scan_on_image.h"
+#include "report/thinned_scan.h"
 
 namespace sextant::cli {
 namespace {
@@ -125,7 +126,10 @@ Expected<std::vector<BoardInBoth>> FindInBoth(const Inputs& inputs) {
   if (boards.empty()) return boards;
   SEXTANT_ASSIGN_OR_RETURN(const Observer observer,
                            Observer::Make(inputs.result.boards, inputs.camera));
-  SEXTANT_ASSIGN_OR_RETURN(const Observation seen, observer.Observe(inputs.image, inputs.cloud));
+  const std::size_t step = ThinningOf(inputs.cloud);
+  SEXTANT_ASSIGN_OR_RETURN(const Observation seen,
+                           step > 1 ? observer.Observe(inputs.image, Thinned(inputs.cloud, step))
+                                    : observer.Observe(inputs.image, inputs.cloud));
   for (const CameraSighting& sighting : seen.in_image) {
     boards[static_cast<std::size_t>(sighting.board)].by_image = sighting.corners.points;
   }
