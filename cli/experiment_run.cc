@@ -3,7 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <memory>
 #include <system_error>
 
 #include "cli/output.h"
@@ -18,9 +17,11 @@ namespace {
 
 Expected<void> WriteTiming(const Experiment& experiment, const std::filesystem::path& folder) {
   if (experiment.timed_trials == 0) return {};
-  Progress progress("timing",
-                    static_cast<long>(experiment.timed_trials * experiment.conditions.size()));
-  const std::vector<TimingRow> rows = TimeSubjects(experiment, [&progress] { progress.Step(); });
+  Progress progress;
+  ProgressCounter counter(progress.Callback(), "timing",
+                          experiment.timed_trials * experiment.conditions.size());
+  const std::vector<TimingRow> rows = TimeSubjects(experiment, [&counter] { counter.Step(); });
+  counter.Finish();
   if (Expected<void> ok = WriteFileAtomically(folder / "timing.json", FormatTimingJson(rows));
       !ok) {
     return ok;
@@ -74,10 +75,9 @@ Expected<void> MakeFolder(const std::filesystem::path& folder) {
 }
 
 Expected<RunOutcome> RunWithProgress(const Experiment& experiment, RunSettings settings) {
-  std::unique_ptr<Progress> progress;
+  Progress progress;
   settings.after_block = [&](std::uint64_t done, std::uint64_t all) {
-    if (!progress) progress = std::make_unique<Progress>(experiment.name, static_cast<long>(all));
-    if (done > 0) progress->Set(static_cast<long>(done));
+    progress.Report(experiment.name, done, all);
   };
   return RunTrials(experiment, settings);
 }

@@ -147,10 +147,11 @@ int Run(const DetectOptions& options) {
   if (!search) return Refuse("detect", search.error());
   std::vector<ImageResult> results(options.images.size());
   {
-    Progress progress("images", static_cast<long>(results.size()));
+    Progress progress;
+    ProgressCounter counter(progress.Callback(), "images", results.size());
     tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
       results[i] = ExamineFile(*search, options, options.images[i]);
-      progress.Step();
+      counter.Step();
     });
   }
   std::string text;

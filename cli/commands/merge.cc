@@ -4,6 +4,7 @@
 #include "cli/commands/commands.h"
 #include "cli/experiment_run.h"
 #include "cli/output.h"
+#include "cli/progress.h"
 #include "eval/experiment/run/part_files.h"
 
 namespace sextant::cli {
@@ -33,9 +34,12 @@ int Run(const MergeOptions& options) {
   if (Expected<void> ok = MakeFolder(folder); !ok) return Refuse("merge", ok.error());
   const std::vector<std::filesystem::path> shards(options.row_files.begin(),
                                                   options.row_files.end());
+  Progress progress;
+  ProgressCounter steps(progress.Callback(), "merging", 2);
   if (Expected<void> ok = MergeRowFiles(shards, folder / "rows.sxtrows"); !ok) {
     return Refuse("merge", ok.error());
   }
+  steps.Step();
   return WriteTables("merge", options.experiment, *experiment, folder);
 }
 

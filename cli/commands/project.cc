@@ -8,6 +8,7 @@
 #include "calibrate/observe/photo_file.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
+#include "cli/progress.h"
 #include "io/boards/board_file.h"
 #include "io/cameras/camera_file.h"
 #include "io/clouds/cloud_file.h"
@@ -164,17 +165,22 @@ std::string Describe(const BoardInBoth& board, const Board& known, const Camera&
 }
 
 int Run(const ProjectOptions& options) {
+  Progress progress;
+  ProgressCounter steps(progress.Callback(), "project", 4);
   Expected<Inputs> inputs = ReadInputs(options);
+  steps.Step();
   if (!inputs) return Refuse("project", inputs.error());
   if (const Expected<void> ok = FitCamera(options.image_path, *inputs); !ok) {
     return Refuse("project", ok.error());
   }
   const Expected<std::vector<BoardInBoth>> boards = FindInBoth(*inputs);
   if (!boards) return Refuse("project", boards.error());
+  steps.Step();
   cv::Mat canvas = inputs->image.clone();
   const ScanOnImage drawn =
       DrawScanOnImage(inputs->cloud, inputs->camera, inputs->result.cam_from_lidar,
                       {.point_px = options.point_px, .all_returns = options.all_returns}, canvas);
+  steps.Step();
   std::string text =
       fmt::format("{} on {}: {} of {} returns in view, {} of them hidden by something nearer{}\n",
                   options.cloud_path, options.image_path, drawn.in_view, drawn.returns,
@@ -187,6 +193,7 @@ int Run(const ProjectOptions& options) {
   if (const Expected<void> ok = WriteImage(canvas, options.out_path); !ok) {
     return Refuse("project", ok.error());
   }
+  steps.Finish();
   fmt::print("{}{}: written\n", text, options.out_path);
   if (drawn.in_view > 0) return kAnswered;
   return Refuse("project",

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include <memory>
 #include <vector>
 
 #include "cli/commands/commands.h"
@@ -114,10 +113,12 @@ int Run(const SimulateOptions& options) {
       return Refuse("simulate", ok.error());
     }
   }
-  auto progress = std::make_unique<Progress>("simulating", CountSessionFiles(*scene, *session));
-  session->step = [&] { progress->Step(); };
+  Progress progress;
+  ProgressCounter counter(progress.Callback(), "simulating",
+                          static_cast<std::size_t>(CountSessionFiles(*scene, *session)));
+  session->step = [&counter] { counter.Step(); };
   const Expected<SessionReport> report = SimulateSession(*scene, *text, *session);
-  progress.reset();
+  counter.Finish();
   if (!report) {
     return Refuse("simulate",
                   {report.error().code, report.error().code == ErrorCode::kIo
