@@ -62,9 +62,11 @@ CalibrationResult CheckedResult(const Solver& solver, const SolveReport& report,
        .warnings = calibration.warnings});
   AddInformation(assembly.problem, result);
   if (options.bootstrap_samples == 0) return result;
-  const Expected<Trust> trust =
-      AssessTrust(assembly.problem, solver, report,
-                  {.bootstrap_samples = options.bootstrap_samples, .seed = seed});
+  const Expected<Trust> trust = AssessTrust(assembly.problem, solver, report,
+                                            {.bootstrap_samples = options.bootstrap_samples,
+                                             .seed = seed,
+                                             .together = ViewsThatShare(assembly.repeated),
+                                             .progress = options.progress});
   if (!trust) return result;
   AddTrust(*trust, result);
   calibration.trust = *trust;
@@ -97,8 +99,9 @@ Calibration CalibrateObserved(ObservedSession observed, const CalibrateOptions& 
   calibration.assembly = std::move(*assembly);
   const std::vector<SolverPtr> solvers =
       options.solvers.empty() ? std::vector<SolverPtr>{DefaultSolver()} : options.solvers;
-  calibration.comparison = Compare(calibration.assembly.problem, solvers,
-                                   calibration.observed.session.true_cam_from_lidar);
+  calibration.comparison =
+      Compare(calibration.assembly.problem, solvers,
+              calibration.observed.session.true_cam_from_lidar, options.progress);
   calibration.warnings = WarningsFor(calibration, match);
   const Expected<SolveReport>& report = calibration.comparison.front().report;
   if (!report) {

@@ -83,7 +83,7 @@ Expected<ObservedSession> ObserveSession(const Session& session, const Calibrate
                                  "by the distinguishing part of their names",
                                  session.files.without_partner.size()));
   }
-  ProgressCounter counter(options.progress, pairs.size());
+  ProgressCounter counter(options.progress, "views", pairs.size());
   observed.views = ObserveFiles(observer, pairs, [&counter] { counter.Step(); });
   counter.Finish();
   return observed;
@@ -101,7 +101,7 @@ Expected<ObservedSession> ObserveFrames(std::span<const Frame> frames,
   SEXTANT_ASSIGN_OR_RETURN(const Observer observer,
                            Observer::Make(observed.boards, observed.camera, options.observe));
   observed.views.resize(frames.size());
-  ProgressCounter counter(options.progress, frames.size());
+  ProgressCounter counter(options.progress, "views", frames.size());
   tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
     observed.views[i].name = frames[i].name;
     observed.views[i].seen = observer.Observe(frames[i].image, frames[i].cloud);

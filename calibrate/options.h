@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.h"
 #include "calibrate/match/match.h"
 #include "calibrate/observe/observe.h"
-#include "calibrate/observe/progress.h"
 #include "geometry/board.h"
 #include "geometry/camera.h"
 #include "solvers/core/solver.h"
@@ -28,7 +28,7 @@ struct CalibrateOptions {
   /// Lines ("name: value") that describe observe.search in the result's configuration. Empty: its
   /// numbers, one line each.
   std::vector<std::string> search_description{};
-  ProgressCallback progress{};  ///< Called while views are observed; may be empty.
+  ProgressCallback progress{};  ///< Stages "views", "solvers" and "bootstrap"; may be empty.
 };
 
 /// joint(gnc(kabsch),board_size=scale): all views and their raw observations in one problem,

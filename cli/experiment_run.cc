@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/experiment_run.h"
 
-#include <memory>
+#include <system_error>
 #include <vector>
 
 #include "cli/output.h"
@@ -24,9 +24,11 @@ ReportSettings ReportSettingsOf(const ExperimentOptions& options) {
 
 Expected<void> WriteTiming(const Experiment& experiment, const std::filesystem::path& folder) {
   if (experiment.timed_trials == 0) return {};
-  Progress progress("timing",
-                    static_cast<long>(experiment.timed_trials * experiment.conditions.size()));
-  const std::vector<TimingRow> rows = TimeSubjects(experiment, [&progress] { progress.Step(); });
+  Progress progress;
+  ProgressCounter counter(progress.Callback(), "timing",
+                          experiment.timed_trials * experiment.conditions.size());
+  const std::vector<TimingRow> rows = TimeSubjects(experiment, [&counter] { counter.Step(); });
+  counter.Finish();
   if (Expected<void> ok = WriteFileAtomically(folder / kTimingJson, FormatTimingJson(rows)); !ok) {
     return ok;
   }
@@ -87,10 +89,9 @@ Expected<void> ClaimReport(const ExperimentOptions& options, const Experiment& e
 }
 
 Expected<RunOutcome> RunWithProgress(const Experiment& experiment, RunSettings settings) {
-  std::unique_ptr<Progress> progress;
+  Progress progress;
   settings.after_block = [&](std::uint64_t done, std::uint64_t all) {
-    if (!progress) progress = std::make_unique<Progress>(experiment.name, static_cast<long>(all));
-    if (done > 0) progress->Set(static_cast<long>(done));
+    progress.Report(experiment.name, done, all);
   };
   return RunTrials(experiment, settings);
 }

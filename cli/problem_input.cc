@@ -38,11 +38,12 @@ Expected<void> AddNamedFiles(const ProblemInputOptions& options, CalibrationProb
 std::string DiagnosticsText(const LoadedProblem& input, bool reordered) {
   std::string text;
   for (const std::string& line : input.notes) text += "  " + line + "\n";
-  for (const std::string& line : Describe(input.diagnostics)) text += "  " + line + "\n";
-  if (text.empty()) return text;
-  if (reordered && input.diagnostics.order) {
-    text += "  the order above was taken, because of --reorder\n";
+  for (const RepeatedPairs& repeated : input.repeated) {
+    for (const std::string& line : Describe(repeated)) text += "  " + line + "\n";
   }
+  for (const std::string& line : Describe(input.diagnostics)) text += "  " + line + "\n";
+  if (reordered) text += "  " + DescribeReordering(input.diagnostics.order) + "\n";
+  if (text.empty()) return text;
   return "\nData diagnostics:\n" + text;
 }
 
@@ -62,8 +63,8 @@ void DeclareProblemInput(ProblemInputOptions& options, Arguments& arguments) {
                 "Known board sizes: a board file (YAML), or marker_coordinates.txt of the\n"
                 "original package");
   arguments.Add("--reorder", options.reorder,
-                "Use the order of corners and boards that fits best, if it fits far better than\n"
-                "the order of the file");
+                "Use the order of the points of each board or view (up to 12) and of the boards\n"
+                "that fits best, if it fits far better than that of the file and than others");
   arguments.Add("--json", options.json_path, "Write the results as JSON; - for standard output",
                 {.writes = Writes::kFileOrStandardOutput});
 }
@@ -75,9 +76,10 @@ Expected<LoadedProblem> LoadProblem(const ProblemInputOptions& options) {
   input.notes = read.notes;
   CalibrationProblem& problem = input.file.problem;
   SEXTANT_RETURN_IF_ERROR(AddNamedFiles(options, problem));
+  input.repeated = MergeRepeatedPairs(problem);
   input.diagnostics = DiagnosePairs(problem);
-  if (options.reorder && input.diagnostics.order) {
-    problem = Reordered(problem, *input.diagnostics.order);
+  if (options.reorder && input.diagnostics.order.better) {
+    problem = Reordered(problem, *input.diagnostics.order.better);
   }
   input.summary = {.path = options.problem_path,
                    .format = std::string(ToString(read.format)),

@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "eval/diagnostics/pair_diagnostics.h"
+#include "eval/diagnostics/repeated_pairs.h"
 #include "eval/metrics/compare.h"
 #include "io/problems/problem_yaml.h"
 #include "io/results/results_json.h"
@@ -32,13 +33,14 @@ void DeclareProblemInput(ProblemInputOptions& options, Arguments& arguments);
 /// The input, ready for the solvers.
 struct LoadedProblem {
   ProblemFile file;
-  PairDiagnostics diagnostics;     ///< For the pairs in the file's own order.
-  std::vector<std::string> notes;  ///< What was corrected while reading.
+  std::vector<RepeatedPairs> repeated;  ///< Pairs that the file lists more than once.
+  PairDiagnostics diagnostics;          ///< For the pairs in the file's own order.
+  std::vector<std::string> notes;       ///< What was corrected while reading.
   ResultInput summary;
 };
 
-/// Reads the problem, adds the camera and the boards that the user names, diagnoses the pairs, and
-/// reorders them if requested. Errors: those of the files' readers.
+/// Reads the problem, adds the camera and the boards that the user names, merges repeated pairs,
+/// diagnoses the pairs, and reorders them if requested. Errors: those of the files' readers.
 Expected<LoadedProblem> LoadProblem(const ProblemInputOptions& options);
 
 /// Errors: those of SolverRegistry::Make.

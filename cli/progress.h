@@ -1,36 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <mutex>
 #include <string>
 
+#include "base/progress.h"
+
 namespace sextant::cli {
 
-/// A progress bar with the time left, on standard error if that is a terminal; else silent.
+/// The progress of a command's stages, one after the other, as a bar with the time left, on
+/// standard error if that is a terminal; else silent. A bar appears once its stage has taken half a
+/// second. Thread-safe.
 class Progress {
  public:
-  Progress(std::string what, long total);
+  Progress();
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Counts one more step as done. Thread-safe.
-  void Step() { Set(++done_); }
-  /// Sets the number of steps done. Thread-safe.
-  void Set(long done);
+  void Report(std::string_view stage, std::size_t done, std::size_t total);
+
+  /// Report as a callback, valid as long as this object.
+  ProgressCallback Callback() {
+    return [this](std::string_view stage, std::size_t done, std::size_t total) {
+      Report(stage, done, total);
+    };
+  }
 
  private:
-  void Draw(long done);
+  using Clock = std::chrono::steady_clock;
 
-  std::string what_;
-  long total_;
+  void Draw(std::size_t done, std::size_t total);
+  void Clear();
+
   bool visible_;
-  std::atomic<long> done_{0};
-  std::mutex drawing_;
-  std::chrono::steady_clock::time_point start_;
-  std::chrono::steady_clock::time_point drawn_;
+  std::mutex mutex_;
+  std::string stage_;
+  Clock::time_point start_;  ///< Of the stage.
+  Clock::time_point drawn_;
+  bool is_drawn_ = false;
 };
 
 }  // namespace sextant::cli

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Images and scans of boards -> cam_from_lidar. Usage: 02_calibrate SESSION [RESULT.yaml]
 #include <cstdio>
+#include <string>
+#include <string_view>
 
 #include "calibrate/calibrate.h"
 #include "io/output/output_file.h"
@@ -17,8 +19,8 @@ int main(int argc, char** argv) {
   if (!session) return Fail(session.error());
 
   sextant::CalibrateOptions options;
-  options.progress = [](std::size_t done, std::size_t total) {
-    std::fprintf(stderr, "view %zu of %zu\n", done, total);
+  options.progress = [](std::string_view stage, std::size_t done, std::size_t total) {
+    std::fprintf(stderr, "%s: %zu of %zu\n", std::string(stage).c_str(), done, total);
   };
   const auto calibration = sextant::Calibrate(*session, options);
   if (!calibration) return Fail(calibration.error());                  // Input that is unusable.

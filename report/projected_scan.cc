@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/projected_scan.h"
 
-#include <algorithm>
-#include <functional>
+#include <tbb/parallel_sort.h>
+
 #include <optional>
 #include <set>
 
@@ -22,10 +22,16 @@ std::vector<ProjectedReturn> ProjectScan(const PointCloud& scan, const Camera& c
       continue;
     }
     const int ring = scan.ring.empty() ? -1 : static_cast<int>(scan.ring[i]);
-    returns.push_back(
-        {.pixel = *pixel, .range_m = point.norm(), .distance_m = in_cam.norm(), .ring = ring});
+    returns.push_back({.pixel = *pixel,
+                       .range_m = point.norm(),
+                       .distance_m = in_cam.norm(),
+                       .ring = ring,
+                       .index = static_cast<int>(i)});
   }
-  std::ranges::stable_sort(returns, std::greater<>{}, &ProjectedReturn::range_m);
+  // By range, then index; not a stable sort, which would need memory for as many again.
+  tbb::parallel_sort(returns, [](const ProjectedReturn& a, const ProjectedReturn& b) {
+    return a.range_m > b.range_m || (a.range_m == b.range_m && a.index < b.index);
+  });
   return returns;
 }
 

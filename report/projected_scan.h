@@ -15,6 +15,7 @@ struct ProjectedReturn {
   double range_m = 0.0;     ///< Distance from the LiDAR.
   double distance_m = 0.0;  ///< Distance from the camera.
   int ring = -1;            ///< -1 if the scan has no rings.
+  int index = 0;            ///< Index into the scan.
 };
 
 /// The returns in front of the camera and in the picture or a margin of its size around it; sorted

@@ -11,6 +11,7 @@
 #include "report/fixed_point.h"
 #include "report/hidden_returns.h"
 #include "report/projected_scan.h"
+#include "report/thinned_scan.h"
 
 namespace sextant {
 namespace {
@@ -29,9 +30,10 @@ void MakePale(cv::Mat& canvas) {
 }
 
 SampleSpacing SpacingOf(const PointCloud& scan, const Camera& camera) {
-  const Expected<ScanRings> rings = ScanRings::Build(scan);
+  const std::size_t step = ThinningOf(scan);
+  const Expected<ScanRings> rings = ScanRings::Build(step > 1 ? Thinned(scan, step) : scan);
   if (!rings) return {};
-  return {.across_px = camera.fx_px * rings->azimuth_step_rad(),
+  return {.across_px = camera.fx_px * rings->azimuth_step_rad() / static_cast<double>(step),
           .down_px = camera.fy_px * rings->elevation_step_rad()};
 }
 
@@ -48,14 +50,36 @@ cv::Vec3b ColourOf(double share) {
       static_cast<int>(std::lround(30.0 + 215.0 * std::clamp(share, 0.0, 1.0))));
 }
 
+// `returns` are sorted from far to near.
 void SetColourRange(const std::vector<ProjectedReturn>& returns, ScanOnImage& drawn) {
   if (returns.empty()) return;
-  std::vector<double> ranges;
-  for (const ProjectedReturn& r : returns) ranges.push_back(r.range_m);
-  std::sort(ranges.begin(), ranges.end());
-  const auto last = static_cast<double>(ranges.size() - 1);
-  drawn.nearest_m = ranges[static_cast<std::size_t>(0.02 * last)];
-  drawn.farthest_m = ranges[static_cast<std::size_t>(0.98 * last)];
+  const std::size_t last = returns.size() - 1;
+  const auto place = [last](double share) {
+    return last - static_cast<std::size_t>(share * static_cast<double>(last));
+  };
+  drawn.nearest_m = returns[place(0.02)].range_m;
+  drawn.farthest_m = returns[place(0.98)].range_m;
+}
+
+// Where there are more returns than a scan has, keeps the nearest one in each square of a quarter
+// of a return's diameter: it covers nearly all of the others.
+void Thin(const cv::Mat& canvas, double diameter, std::vector<ProjectedReturn>& returns) {
+  constexpr std::size_t kMaxDrawn = 1'000'000;
+  if (returns.size() <= kMaxDrawn) return;
+  const double side = std::max(1.0, 0.25 * diameter);
+  const auto columns = static_cast<std::size_t>(canvas.cols / side) + 2;
+  const auto rows = static_cast<std::size_t>(canvas.rows / side) + 2;
+  std::vector<bool> is_taken(columns * rows, false);
+  std::size_t kept = returns.size();
+  for (std::size_t i = returns.size(); i-- > 0;) {
+    const Eigen::Vector2d at = (returns[i].pixel.array() + 0.5) / side;
+    const std::size_t square =
+        columns * static_cast<std::size_t>(at.y()) + static_cast<std::size_t>(at.x());
+    if (is_taken[square]) continue;
+    is_taken[square] = true;
+    returns[--kept] = returns[i];
+  }
+  returns.erase(returns.begin(), returns.begin() + static_cast<std::ptrdiff_t>(kept));
 }
 
 double ShareOf(double range_m, const ScanOnImage& drawn) {
@@ -94,22 +118,24 @@ ScanOnImage DrawScanOnImage(const PointCloud& scan, const Camera& camera,
   std::vector<ProjectedReturn> returns = ProjectScan(scan, camera, cam_from_lidar);
   const std::vector<bool> hidden = HiddenReturns(returns, SpacingOf(scan, camera));
   ScanOnImage drawn{.returns = static_cast<int>(scan.points.size())};
-  std::vector<ProjectedReturn> shown;
+  std::size_t shown = 0;
   for (std::size_t i = 0; i < returns.size(); ++i) {
     if (!IsWithin(returns[i].pixel, canvas)) continue;
     ++drawn.in_view;
     drawn.hidden += hidden[i] ? 1 : 0;
-    if (!hidden[i] || style.all_returns) shown.push_back(returns[i]);
+    if (!hidden[i] || style.all_returns) returns[shown++] = returns[i];
   }
-  SetColourRange(shown, drawn);
+  returns.resize(shown);
+  SetColourRange(returns, drawn);
   const double diameter =
       style.point_px > 0.0 ? style.point_px : std::max(3.0, canvas.cols / 320.0);
-  for (const ProjectedReturn& r : shown) {
+  Thin(canvas, diameter, returns);
+  for (const ProjectedReturn& r : returns) {
     const cv::Vec3b c = ColourOf(ShareOf(r.range_m, drawn));
     cv::circle(canvas, FixedPoint(r.pixel), cvRound(0.5 * diameter * (1 << kFixedPointShift)),
                cv::Scalar(c[0], c[1], c[2]), cv::FILLED, cv::LINE_AA, kFixedPointShift);
   }
-  if (!shown.empty()) DrawScale(drawn, canvas);
+  if (shown > 0) DrawScale(drawn, canvas);
   return drawn;
 }
 

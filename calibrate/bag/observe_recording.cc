@@ -23,7 +23,7 @@ Expected<RecordedViews> ObserveRecording(const std::filesystem::path& path,
   RecordedViews recorded{.camera = options.camera ? *options.camera : *plan->camera};
   SEXTANT_ASSIGN_OR_RETURN(const Observer observer,
                            Observer::Make(options.boards, recorded.camera, options.observe));
-  ProgressCounter counter(progress, plan->moments.size());
+  ProgressCounter counter(progress, "views", plan->moments.size());
   SEXTANT_ASSIGN_OR_RETURN(std::vector<SessionView> views,
                            ObserveBag(*bag, *plan, observer, [&counter] { counter.Step(); }));
   counter.Finish();

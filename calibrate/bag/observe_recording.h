@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "calibrate/bag/observe_bag.h"
 #include "calibrate/match/assemble.h"
 #include "calibrate/observe/observe.h"
-#include "calibrate/observe/progress.h"
 #include "geometry/board.h"
 #include "geometry/camera.h"
 

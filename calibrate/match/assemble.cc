@@ -21,8 +21,9 @@ std::string WhyMissing(const Observation& seen, int board, bool image) {
 
 class Rows {
  public:
-  Rows(std::span<const SessionView> views, std::span<const Board> boards, const Matching& matching)
-      : views_(views), boards_(boards) {
+  Rows(std::span<const SessionView> views, std::span<const Board> boards, const Matching& matching,
+       std::span<const std::optional<std::size_t>> copies)
+      : views_(views), boards_(boards), copies_(copies) {
     for (const MatchedBoard& kept : matching.kept) {
       fates_[{Index(kept.view), BoardOf(kept)}] = {.fate = BoardStatus::kKept};
     }
@@ -42,6 +43,10 @@ class Rows {
       const SessionView& view = views_[i];
       if (!view.seen) {
         rows.push_back({i, -1, BoardStatus::kUnreadable, view.seen.error().message});
+      } else if (!copies_.empty() && copies_[i]) {
+        rows.push_back({i, -1, BoardStatus::kCopy,
+                        fmt::format("its image and scan are those of view {}, so it adds nothing",
+                                    views_[*copies_[i]].name)});
       } else {
         for (int b = 0; b < static_cast<int>(boards_.size()); ++b) rows.push_back(RowOf(i, b));
       }
@@ -79,6 +84,7 @@ class Rows {
 
   std::span<const SessionView> views_;
   std::span<const Board> boards_;
+  std::span<const std::optional<std::size_t>> copies_;
   std::map<std::pair<std::size_t, int>, BoardRow> fates_;
 };
 
@@ -89,7 +95,7 @@ Error DescribeMissing(std::span<const SessionView> views, std::span<const Board>
                           views.size()));
   constexpr std::size_t kShown = 3;
   std::size_t shown = 0;
-  for (const BoardRow& row : Rows(views, boards, {}).All()) {
+  for (const BoardRow& row : Rows(views, boards, {}, {}).All()) {
     if (++shown > kShown) break;
     const std::string board =
         row.board < 0 ? std::string()
@@ -116,6 +122,8 @@ std::string_view ToString(BoardStatus fate) {
       return "not in the scan";
     case BoardStatus::kDisagrees:
       return "disagrees";
+    case BoardStatus::kCopy:
+      return "copy";
   }
   return "unknown";
 }
@@ -127,6 +135,10 @@ Expected<Assembly> Assemble(std::span<const SessionView> views, std::span<const 
   std::vector<Observation> observations(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (views[i].seen) observations[i] = *views[i].seen;
+  }
+  const std::vector<std::optional<std::size_t>> copies = FindCopies(observations);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (copies[i]) observations[i] = {};
   }
   Expected<Matching> matching = MatchViews(observations, settings);
   if (!matching && matching.error().code == ErrorCode::kTooFewPairs) {
@@ -143,8 +155,10 @@ Expected<Assembly> Assemble(std::span<const SessionView> views, std::span<const 
     problem.board_views.push_back(MakeBoardView(seen, kept, boards));
     AppendPairs(seen, kept, boards, matching->cam_from_lidar, problem);
   }
+  assembly.repeated = FindRepeatedPlacements(observations, matching->kept, settings.floor_m);
+  CountPlacementsOnce(assembly.repeated, boards, problem);
   problem.point_sets = WithholdPairing(problem.pairs_3d3d);
-  assembly.rows = Rows(views, boards, *matching).All();
+  assembly.rows = Rows(views, boards, *matching, copies).All();
   assembly.matching = std::move(*matching);
   return assembly;
 }

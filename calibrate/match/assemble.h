@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "calibrate/match/match.h"
+#include "calibrate/match/repeated_views.h"
 #include "calibrate/observe/observe.h"
 #include "geometry/calibration_problem.h"
 
@@ -31,6 +32,7 @@ enum class BoardStatus {
   kNotInImage,
   kNotInScan,
   kDisagrees,  ///< Its pose contradicts the other views.
+  kCopy,       ///< Its image and scan are those of an earlier view.
 };
 std::string_view ToString(BoardStatus fate);
 
@@ -48,12 +50,15 @@ struct Assembly {
   /// session's views. It has the camera, the boards, and the matching's pose as the initial one.
   CalibrationProblem problem{};
   Matching matching{};
+  std::vector<RepeatedPlacement>
+      repeated{};                ///< Their views weigh as much as one view in `problem`.
   std::vector<BoardRow> rows{};  ///< By view, then board.
 };
 
-/// Matches the boards of all views and collects both sensors' measurements of them.
-/// Errors: kMissingData where no view has a board that both sensors saw, with the reasons;
-/// kDegenerate where the matched boards do not determine a pose.
+/// Matches the boards of all views and collects both sensors' measurements of them. Copies of a
+/// view are left out, and views that show a board in one place count as one. Errors: kMissingData
+/// where no view has a board that both sensors saw, with the reasons; kDegenerate where the matched
+/// boards do not determine a pose.
 Expected<Assembly> Assemble(std::span<const SessionView> views, std::span<const Board> boards,
                             const Camera& camera, const MatchSettings& settings = {});
 

@@ -53,13 +53,31 @@ void AddPairing(const Observation& observation, const MatchedBoard& match, doubl
   pairings.meanings.push_back(match);
 }
 
+// The patches that may be the board: all that have its outline, or those that fit it best.
+std::vector<std::size_t> CandidatePatches(const Observation& observation, int board) {
+  std::vector<std::pair<double, std::size_t>> fitting;
+  for (std::size_t p = 0; p < observation.in_scan.size(); ++p) {
+    const auto& placements = observation.in_scan[p].placements;
+    const auto best = std::ranges::find(placements, board, &BoardPlacement::board);
+    if (best != placements.end()) fitting.emplace_back(best->misfit, p);
+  }
+  if (fitting.size() > kMaxPatchesPerBoard) {
+    std::ranges::sort(fitting);
+    fitting.resize(kMaxPatchesPerBoard);
+  }
+  std::vector<std::size_t> patches;
+  for (const auto& [misfit, patch] : fitting) patches.push_back(patch);
+  std::ranges::sort(patches);
+  return patches;
+}
+
 ViewPairings PairingsOf(const Observation& observation, int view, double floor_m) {
   ViewPairings pairings;
   for (std::size_t s = 0; s < observation.in_image.size(); ++s) {
     const CameraSighting& sighting = observation.in_image[s];
     if (!sighting.left_out.empty()) continue;
     const int poses = sighting.pose.ambiguous_with ? 2 : 1;
-    for (std::size_t p = 0; p < observation.in_scan.size(); ++p) {
+    for (const std::size_t p : CandidatePatches(observation, sighting.board)) {
       const auto& placements = observation.in_scan[p].placements;
       for (std::size_t k = 0; k < placements.size(); ++k) {
         if (placements[k].board != sighting.board) continue;
@@ -152,6 +170,10 @@ Expected<Matching> MatchViews(std::span<const Observation> views, const MatchSet
     if (!found) return tl::unexpected<Error>(found.error());
   }
   Matching matching;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (views[i].in_scan.size() > kMaxPatchesPerBoard)
+      matching.limited.push_back(static_cast<int>(i));
+  }
   if (found->size() > 1) matching.margin = ((*found)[1].cost - (*found)[0].cost) / scale;
   const Eigen::Quaterniond initial =
       settings.initial ? settings.initial->rotation : AxesCamFromLidar().rotation;
@@ -175,7 +197,17 @@ Expected<Matching> MatchViews(std::span<const Observation> views, const MatchSet
 
 std::vector<std::string> DescribeAmbiguity(const Matching& matching,
                                            const MatchSettings& settings) {
-  if (matching.alternatives.empty()) return {};
+  std::vector<std::string> lines;
+  if (!matching.limited.empty()) {
+    lines.push_back(fmt::format(
+        "patches: {} view{} {} more than {} board-like patches in the scan (first: view number "
+        "{}); "
+        "each board was matched with the {} that fit it best; restrict the search with --region",
+        matching.limited.size(), matching.limited.size() == 1 ? "" : "s",
+        matching.limited.size() == 1 ? "has" : "have", kMaxPatchesPerBoard,
+        matching.limited.front(), kMaxPatchesPerBoard));
+  }
+  if (matching.alternatives.empty()) return lines;
   const Eigen::Quaterniond initial =
       settings.initial ? settings.initial->rotation : AxesCamFromLidar().rotation;
   double next = std::numbers::pi;
@@ -183,11 +215,11 @@ std::vector<std::string> DescribeAmbiguity(const Matching& matching,
     next = std::min(next, RotationDistance(other.rotation, initial));
   }
   const double taken = RotationDistance(matching.cam_from_lidar.rotation, initial);
-  std::vector<std::string> lines = {
+  lines.push_back(
       fmt::format("ambiguous: {} poses explain the views equally well, because a scan does not "
                   "distinguish boards "
                   "of one shape or the quarter turns of a square one",
-                  matching.alternatives.size() + 1)};
+                  matching.alternatives.size() + 1));
   lines.push_back(fmt::format(
       "assumed: {}; the chosen pose is {:.0f} deg away from it, the next one {:.0f} deg. {}",
       settings.initial ? "the rotation of --initial"

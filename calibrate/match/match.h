@@ -40,7 +40,12 @@ struct Matching {
   /// Other poses that explain the views as well (margin under 9.2: 1 % by a likelihood-ratio test).
   /// cam_from_lidar was chosen among them only because it is nearest to the initial rotation.
   std::vector<Rigid3d> alternatives{};
+  /// Views with so many patches that only the kMaxPatchesPerBoard best ones for each board were
+  /// examined.
+  std::vector<int> limited{};
 };
+
+inline constexpr std::size_t kMaxPatchesPerBoard = 16;
 
 /// Associates the patches of each scan with the boards of its image, and their corners.
 ///
@@ -48,13 +53,15 @@ struct Matching {
 /// outline allows and every pose that an image leaves ambiguous is tested against one
 /// cam_from_lidar for all views (solvers/matching/object_match.h). A board that is more than four
 /// sigmas off that pose, in root mean square over its corners, is dropped. MatchedBoard::view is
-/// the index into `views`. Errors: kTooFewPairs where no view has a board that both sensors saw;
-/// kDegenerate.
+/// the index into `views`. In a view with more than kMaxPatchesPerBoard patches, each board is only
+/// matched with that many whose outlines fit it best, so that time and memory grow with the number
+/// of boards and not with its product with that of patches. Errors: kTooFewPairs where no view has
+/// a board that both sensors saw; kDegenerate.
 Expected<Matching> MatchViews(std::span<const Observation> views,
                               const MatchSettings& settings = {});
 
-/// Warnings about poses that are equally likely, and how one of them was chosen; empty where the
-/// pose is unique.
+/// Warnings about poses that are equally likely, and how one of them was chosen, and about views
+/// whose patches were not all examined; empty where the pose is unique.
 std::vector<std::string> DescribeAmbiguity(const Matching& matching, const MatchSettings& settings);
 
 }  // namespace sextant

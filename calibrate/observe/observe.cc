@@ -9,6 +9,8 @@
 
 #include "base/median.h"
 #include "calibrate/observe/face_returns.h"
+#include "features/camera/explain_missing.h"
+#include "features/camera/grey_image.h"
 
 namespace sextant {
 namespace {
@@ -26,6 +28,30 @@ std::string WhyUnseen(const Board& board, const SeenBoard& seen) {
   }
   return fmt::format("no checkerboard of {} x {} inner corners was found",
                      board.checker->inner_columns, board.checker->inner_rows);
+}
+
+// Why the image is a mirror image; none where a tag was found as it is, and where none is in the
+// mirror image either. A checkerboard alone does not show it.
+std::optional<std::string> WhyMirrored(const cv::Mat& grey, const std::vector<Board>& boards,
+                                       const SeenBoards& seen) {
+  const bool any_tag =
+      !seen.other_tags.empty() || std::ranges::any_of(seen.boards, [](const SeenBoard& board) {
+        return !board.tags.empty() || !board.duplicate_tags.empty();
+      });
+  if (any_tag) return std::nullopt;
+  TagTrials trials(grey);
+  for (const Board& board : boards) {
+    for (const BoardTag& tag : board.tags) {
+      const std::optional<TagDetection> found = trials.InMirrorImage(tag);
+      if (!found || found->hamming > 0) continue;
+      return fmt::format(
+          "it is mirrored: tag {} of {} is found in its mirror image only, so every pose from it "
+          "would be wrong; switch off the mirroring of the camera or of the program that wrote the "
+          "image, or print the tag unmirrored",
+          tag.id, tag.family);
+    }
+  }
+  return std::nullopt;
 }
 
 CameraSighting MakeSighting(const Board& board, const SeenBoard& seen) {
@@ -118,7 +144,11 @@ Expected<Observation> Observer::Observe(const cv::Mat& image, const PointCloud& 
 }
 
 Expected<void> Observer::ObserveImage(const cv::Mat& image, Observation& observation) const {
-  SEXTANT_ASSIGN_OR_RETURN(const SeenBoards seen, finder_.Find(image));
+  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat grey, ToGrey(image));
+  SEXTANT_ASSIGN_OR_RETURN(const SeenBoards seen, finder_.Find(grey));
+  if (const auto why = WhyMirrored(grey, boards(), seen)) {
+    return MakeError(ErrorCode::kMirrored, *why);
+  }
   for (const SeenBoard& board : seen.boards) {
     if (board.pose && *board.pose) {
       observation.in_image.push_back(MakeSighting(boards()[board.index], board));

@@ -74,7 +74,8 @@ class Observer {
   const Camera& camera() const { return *finder_.camera(); }
   const ObserveOptions& options() const { return options_; }
 
-  /// Errors: those of BoardFinder::Find and ScanRings::Build. A board that is not found is no
+  /// Errors: those of BoardFinder::Find and ScanRings::Build; kMirrored for an image that has a tag
+  /// of the boards only in its mirror image. A board that is not found is no
   /// error; it is listed in Observation::missing.
   Expected<Observation> Observe(const cv::Mat& image, const PointCloud& cloud) const;
 

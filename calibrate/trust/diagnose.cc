@@ -171,6 +171,41 @@ void DiagnoseSession(const Assembly& assembly, std::vector<std::string>& lines) 
                   views.size(), 100.0 * kSamePlace_m, kSameTurn_rad * 180.0 / std::numbers::pi));
 }
 
+// "3, 4 and 2 more", by the views' names.
+std::string NamesOf(std::span<const SessionView> views, const std::vector<int>& indices) {
+  constexpr std::size_t kMaxNamed = 6;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(indices.size(), kMaxNamed); ++i) {
+    const std::string& name = views[static_cast<std::size_t>(indices[i])].name;
+    text +=
+        fmt::format("{}{}", i == 0 ? "" : ", ", name.empty() ? std::to_string(indices[i]) : name);
+  }
+  if (indices.size() <= kMaxNamed) return text;
+  return text + fmt::format(" and {} more", indices.size() - kMaxNamed);
+}
+
+void DiagnoseRepeats(std::span<const SessionView> views, const Assembly& assembly,
+                     std::vector<std::string>& lines) {
+  std::vector<int> copies;
+  for (const BoardRow& row : assembly.rows) {
+    if (row.fate == BoardStatus::kCopy) copies.push_back(static_cast<int>(row.view));
+  }
+  if (!copies.empty()) {
+    lines.push_back(
+        fmt::format("copies: view{} {} left out, because image and scan are those of an earlier "
+                    "view; a copy adds nothing",
+                    copies.size() == 1 ? "" : "s",
+                    NamesOf(views, copies) + (copies.size() == 1 ? " is" : " are")));
+  }
+  for (const RepeatedPlacement& placement : assembly.repeated) {
+    lines.push_back(fmt::format(
+        "repeated: views {} show board {} in one place; they share its errors, so that they count "
+        "as one view in the covariance. Move the board between views",
+        NamesOf(views, placement.views),
+        assembly.problem.boards[static_cast<std::size_t>(placement.board)].id));
+  }
+}
+
 }  // namespace
 
 std::optional<ScaleFits> FitScales(const CalibrationProblem& problem,
@@ -189,6 +224,7 @@ std::vector<std::string> Diagnose(std::span<const SessionView> views, const Asse
                                   const Rigid3d& cam_from_lidar) {
   std::vector<std::string> lines;
   DiagnoseSession(assembly, lines);
+  DiagnoseRepeats(views, assembly, lines);
   DiagnoseSizes(views, assembly, lines);
   DiagnoseScale(assembly.problem, cam_from_lidar, lines);
   DiagnosePrints(views, assembly, lines);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 
 #include "base/random.h"
@@ -23,31 +24,56 @@ std::optional<Rigid3d> PoseOf(const CalibrationProblem& problem, const Solver& s
   return report->cam_from_lidar;
 }
 
+// Groups of views that are left out or drawn together, in the order of their first views.
+using ViewGroups = std::vector<std::vector<int>>;
+
+ViewGroups GroupsOf(const std::vector<int>& views, const ViewGroups& together) {
+  ViewGroups groups;
+  std::map<std::size_t, std::size_t> place;  // In `groups`, by the place in `together`.
+  for (const int view : views) {
+    const auto shared = std::ranges::find_if(together, [view](const std::vector<int>& group) {
+      return std::ranges::find(group, view) != group.end();
+    });
+    if (shared == together.end()) {
+      groups.push_back({view});
+      continue;
+    }
+    const auto [entry, is_first] =
+        place.try_emplace(static_cast<std::size_t>(shared - together.begin()), groups.size());
+    if (is_first) groups.emplace_back();
+    groups[entry->second].push_back(view);
+  }
+  return groups;
+}
+
 // The pose without each fold; none where the solver finds none.
-Poses SolveFolds(const CalibrationProblem& problem, const Solver& solver,
-                 const std::vector<int>& views, std::size_t folds) {
+Poses SolveFolds(const CalibrationProblem& problem, const Solver& solver, const ViewGroups& groups,
+                 std::size_t folds, ProgressCounter& counter) {
   Poses answers(folds);
   tbb::parallel_for(std::size_t{0}, folds, [&](std::size_t fold) {
     std::vector<int> others;
-    for (std::size_t i = 0; i < views.size(); ++i) {
-      if (i % folds != fold) others.push_back(views[i]);
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      if (i % folds != fold) others.insert(others.end(), groups[i].begin(), groups[i].end());
     }
     answers[fold] = PoseOf(SelectViews(problem, others), solver);
+    counter.Step();
   });
   return answers;
 }
 
 Poses SolveResamples(const CalibrationProblem& problem, const Solver& solver,
-                     const std::vector<int>& views, const TrustOptions& options) {
+                     const ViewGroups& groups, const TrustOptions& options,
+                     ProgressCounter& counter) {
   Poses answers(static_cast<std::size_t>(options.bootstrap_samples));
   tbb::parallel_for(std::size_t{0}, answers.size(), [&](std::size_t draw) {
     Random random(DeriveSeed(options.seed, "bootstrap of views", 0, draw));
     std::vector<int> drawn;
-    for (std::size_t i = 0; i < views.size(); ++i) {
-      const std::uint64_t place = random.Below(views.size());
-      drawn.push_back(views[place]);
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      const std::vector<int>& group = groups[random.Below(groups.size())];
+      drawn.insert(drawn.end(), group.begin(), group.end());
     }
     answers[draw] = PoseOf(ResampleViews(problem, drawn), solver);
+    counter.Step();
   });
   return answers;
 }
@@ -140,7 +166,12 @@ ViewFit FitOf(const CalibrationProblem& problem, int view, const Rigid3d& pose) 
 
 // The residuals of every view under the answer and under the pose of the other folds.
 void AddFits(const CalibrationProblem& problem, const std::vector<int>& views,
-             const SolveReport& answer, const Poses& folds, Trust& trust) {
+             const ViewGroups& groups, const SolveReport& answer, const Poses& folds,
+             Trust& trust) {
+  std::map<int, std::size_t> group_of;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    for (const int view : groups[i]) group_of[view] = i;
+  }
   ViewFit all;
   ViewFit all_held_out;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -151,8 +182,10 @@ void AddFits(const CalibrationProblem& problem, const std::vector<int>& views,
     view.rmse_px = fit.pixels.Value();
     all.metres.Add(fit.metres);
     all.pixels.Add(fit.pixels);
-    if (folds.empty() || !folds[i % folds.size()]) continue;
-    const ViewFit held_out = FitOf(problem, views[i], *folds[i % folds.size()]);
+    if (folds.empty()) continue;
+    const std::optional<Rigid3d>& others = folds[group_of[views[i]] % folds.size()];
+    if (!others) continue;
+    const ViewFit held_out = FitOf(problem, views[i], *others);
     view.held_out_m = held_out.metres.Value();
     view.held_out_px = held_out.pixels.Value();
     all_held_out.metres.Add(held_out.metres);
@@ -211,25 +244,30 @@ Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& sol
     return MakeError(ErrorCode::kMissingData,
                      "expected pairs or board views to compare with each other, got none");
   }
+  const ViewGroups groups = GroupsOf(views, options.together);
   Trust trust;
   TrustFigures& figures = trust.figures;
   if (answer.covariance) {
     figures.covariance_sigma = answer.covariance->diagonal().cwiseMax(0.0).cwiseSqrt();
   }
   Poses folds;
-  if (views.size() > 1) {
-    figures.folds = std::min(std::max(options.folds, 2), static_cast<int>(views.size()));
-    folds = SolveFolds(problem, solver, views, static_cast<std::size_t>(figures.folds));
+  if (groups.size() > 1) {
+    figures.folds = std::min(std::max(options.folds, 2), static_cast<int>(groups.size()));
   }
-  AddFits(problem, views, answer, folds, trust);
+  ProgressCounter counter(options.progress, "bootstrap",
+                          static_cast<std::size_t>(figures.folds + options.bootstrap_samples));
+  if (groups.size() > 1) {
+    folds = SolveFolds(problem, solver, groups, static_cast<std::size_t>(figures.folds), counter);
+  }
+  AddFits(problem, views, groups, answer, folds, trust);
   const std::vector<Vector6d> of_folds = DifferencesFrom(answer.cam_from_lidar, folds);
   if (of_folds.size() > 2 && of_folds.size() == folds.size()) {
     const double g = figures.folds;
     figures.jackknife_sigma = ((g - 1.0) / g * ScatterOf(of_folds)).cwiseSqrt();
   }
-  if (views.size() > 2 && options.bootstrap_samples > 1) {
-    const std::vector<Vector6d> draws =
-        DifferencesFrom(answer.cam_from_lidar, SolveResamples(problem, solver, views, options));
+  if (groups.size() > 2 && options.bootstrap_samples > 1) {
+    const std::vector<Vector6d> draws = DifferencesFrom(
+        answer.cam_from_lidar, SolveResamples(problem, solver, groups, options, counter));
     if (draws.size() > 1) AddBootstrap(draws, options, figures);
   }
   figures.bootstrap_over_covariance = MeanRatio(figures.bootstrap_sigma, figures.covariance_sigma);
@@ -239,7 +277,8 @@ Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& sol
     trust.views[i].outlier = marked[i];
     if (marked[i]) figures.outlier_views.push_back(views[i]);
   }
-  figures.verdict = TrustVerdict(figures, static_cast<int>(views.size()));
+  figures.verdict = TrustVerdict(figures, static_cast<int>(groups.size()));
+  counter.Finish();
   return trust;
 }
 

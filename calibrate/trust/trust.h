@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "geometry/calibration_problem.h"
 #include "io/results/calibration_result.h"
 #include "solvers/core/solver.h"
@@ -17,6 +18,10 @@ struct TrustOptions {
   int bootstrap_samples = 200;
   double level = 0.95;  ///< Confidence level of the bootstrap interval.
   std::uint64_t seed = 1;
+  /// Groups of views that share their errors and are left out or drawn together; a view in none of
+  /// them is a group of its own.
+  std::vector<std::vector<int>> together{};
+  ProgressCallback progress{};  ///< Stage "bootstrap": solutions without a fold, and of samples.
 };
 
 /// RMS residual of one view's corners; none where it has no pairs of that kind.

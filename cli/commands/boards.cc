@@ -114,10 +114,11 @@ int Run(const BoardsOptions& options) {
   }
   std::vector<ScanReport> reports(options.scans.size());
   {
-    Progress progress("Scans", static_cast<long>(reports.size()));
+    Progress progress;
+    ProgressCounter counter(progress.Callback(), "scans", reports.size());
     tbb::parallel_for(std::size_t{0}, reports.size(), [&](std::size_t i) {
       reports[i] = Examine(options.scans[i], *boards, options.extractor, *search, marks);
-      progress.Step();
+      counter.Step();
     });
   }
   int complete = 0;

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -153,12 +152,8 @@ Expected<CalibrateOptions> SettingsFrom(const CalibrateCommandOptions& options) 
 Expected<Calibration> CalibrateWithProgress(const CalibrateCommandOptions& options) {
   SEXTANT_ASSIGN_OR_RETURN(const Session session, SessionFrom(options));
   SEXTANT_ASSIGN_OR_RETURN(CalibrateOptions settings, SettingsFrom(options));
-  std::unique_ptr<Progress> progress;
-  settings.progress = [&progress](std::size_t done, std::size_t total) {
-    if (done == 0) progress = std::make_unique<Progress>("views", static_cast<long>(total));
-    progress->Set(static_cast<long>(done));
-    if (done == total) progress.reset();
-  };
+  Progress progress;
+  settings.progress = progress.Callback();
   return Calibrate(session, settings);
 }
 

@@ -8,6 +8,7 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/problem_input.h"
+#include "cli/progress.h"
 #include "eval/metrics/default_specs.h"
 #include "report/plot.h"
 #include "report/report_text.h"
@@ -61,8 +62,9 @@ int Run(const CompareOptions& options) {
   const Expected<std::vector<SolverPtr>> solvers =
       ParseSpecList(list).and_then([&](const auto& specs) { return MakeSolvers(registry, specs); });
   if (!solvers) return Refuse("compare", solvers.error());
+  Progress progress;
   const std::vector<ComparisonRow> rows =
-      Compare(problem, *solvers, input->file.true_cam_from_lidar);
+      Compare(problem, *solvers, input->file.true_cam_from_lidar, progress.Callback());
   if (!options.plot_path.empty()) {
     const Expected<void> drawn = DrawPlot(ResidualPlot(problem, rows), options.plot_path);
     if (!drawn) return Refuse("compare", drawn.error());

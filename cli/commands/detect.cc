@@ -87,11 +87,12 @@ Expected<Search> MakeSearch(const DetectOptions& options) {
 void ExplainAll(const Search& search, const cv::Mat& grey, ImageReport& report) {
   const std::vector<Board>& boards = search.finder->boards();
   const Camera* camera = search.finder->camera() ? &*search.finder->camera() : nullptr;
+  TagTrials trials(grey);
   for (const SeenBoard& seen : report.seen.boards) {
     const BoardPose* pose = seen.pose && *seen.pose ? &**seen.pose : nullptr;
     for (const std::size_t tag : seen.missing_tags) {
       MissingTag why{.cause = MissingCause::kNotThere, .text = "not examined (--quick)"};
-      if (search.explain) why = ExplainMissing(grey, boards[seen.index].tags[tag], camera, pose);
+      if (search.explain) why = ExplainMissing(trials, boards[seen.index].tags[tag], camera, pose);
       report.missing.push_back({.board = seen.index, .tag = tag, .why = std::move(why)});
     }
   }
@@ -111,7 +112,7 @@ Expected<ImageReport> Examine(const Search& search, const cv::Mat& image) {
   report.seen.other_tags = std::move(found.tags);
   report.checkers = std::move(found.checkers);
   const bool is_empty = report.seen.other_tags.empty() && report.checkers.empty();
-  if (is_empty && search.explain) report.other_families = FindOtherFamilies(grey, "", {});
+  if (is_empty && search.explain) report.other_families = OtherFamilies(FindFamilies(grey), "", {});
   return report;
 }
 
@@ -162,10 +163,11 @@ int Run(const DetectOptions& options) {
   if (const Expected<void> ok = CheckOverlays(options); !ok) return Refuse("detect", ok.error());
   std::vector<ImageResult> results(options.images.size());
   {
-    Progress progress("images", static_cast<long>(results.size()));
+    Progress progress;
+    ProgressCounter counter(progress.Callback(), "images", results.size());
     tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
       results[i] = ExamineFile(*search, options, options.images[i]);
-      progress.Step();
+      counter.Step();
     });
   }
   std::string text;

@@ -4,6 +4,7 @@
 #include "cli/commands/commands.h"
 #include "cli/experiment_run.h"
 #include "cli/output.h"
+#include "cli/progress.h"
 #include "eval/experiment/run/part_files.h"
 #include "io/output/output_folder.h"
 
@@ -29,8 +30,12 @@ int Run(const MergeOptions& options) {
   const std::vector<std::filesystem::path> shards(options.row_files.begin(),
                                                   options.row_files.end());
   Expected<void> ok = ClaimReport(options.experiment, *experiment, folder);
-  if (ok) ok = MergeRowFiles(shards, folder / "rows.sxtrows", ConfigurationOf(*experiment));
   if (!ok) return Refuse("merge", ok.error());
+  Progress progress;
+  ProgressCounter steps(progress.Callback(), "merging", 2);
+  ok = MergeRowFiles(shards, folder / "rows.sxtrows", ConfigurationOf(*experiment));
+  if (!ok) return Refuse("merge", ok.error());
+  steps.Step();
   return WriteTables("merge", options.experiment, *experiment, folder);
 }
 

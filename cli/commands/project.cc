@@ -8,12 +8,14 @@
 #include "calibrate/observe/photo_file.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
+#include "cli/progress.h"
 #include "io/boards/board_file.h"
 #include "io/cameras/camera_file.h"
 #include "io/clouds/cloud_file.h"
 #include "io/output/standard_output.h"
 #include "io/results/calibration_result.h"
 #include "report/scan_on_image.h"
+#include "report/thinned_scan.h"
 
 namespace sextant::cli {
 namespace {
@@ -127,7 +129,10 @@ Expected<std::vector<BoardInBoth>> FindInBoth(const Inputs& inputs) {
   if (boards.empty()) return boards;
   SEXTANT_ASSIGN_OR_RETURN(const Observer observer,
                            Observer::Make(inputs.result.boards, inputs.camera));
-  SEXTANT_ASSIGN_OR_RETURN(const Observation seen, observer.Observe(inputs.image, inputs.cloud));
+  const std::size_t step = ThinningOf(inputs.cloud);
+  SEXTANT_ASSIGN_OR_RETURN(const Observation seen,
+                           step > 1 ? observer.Observe(inputs.image, Thinned(inputs.cloud, step))
+                                    : observer.Observe(inputs.image, inputs.cloud));
   for (const CameraSighting& sighting : seen.in_image) {
     boards[static_cast<std::size_t>(sighting.board)].by_image = sighting.corners.points;
   }
@@ -162,17 +167,22 @@ std::string Describe(const BoardInBoth& board, const Board& known, const Camera&
 }
 
 int Run(const ProjectOptions& options) {
+  Progress progress;
+  ProgressCounter steps(progress.Callback(), "project", 4);
   Expected<Inputs> inputs = ReadInputs(options);
+  steps.Step();
   if (!inputs) return Refuse("project", inputs.error());
   if (const Expected<void> ok = FitCamera(options.image_path, *inputs); !ok) {
     return Refuse("project", ok.error());
   }
   const Expected<std::vector<BoardInBoth>> boards = FindInBoth(*inputs);
   if (!boards) return Refuse("project", boards.error());
+  steps.Step();
   cv::Mat canvas = inputs->image.clone();
   const ScanOnImage drawn =
       DrawScanOnImage(inputs->cloud, inputs->camera, inputs->result.cam_from_lidar,
                       {.point_px = options.point_px, .all_returns = options.all_returns}, canvas);
+  steps.Step();
   std::string text =
       fmt::format("{} on {}: {} of {} returns in view, {} of them hidden by something nearer{}\n",
                   options.cloud_path, options.image_path, drawn.in_view, drawn.returns,
@@ -185,6 +195,7 @@ int Run(const ProjectOptions& options) {
   if (const Expected<void> ok = WriteImage(canvas, options.out_path); !ok) {
     return Refuse("project", ok.error());
   }
+  steps.Finish();
   Print("{}{}", text, WroteLine(options.out_path, "the scan on its image"));
   if (drawn.in_view > 0) return kAnswered;
   return Refuse("project",

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <memory>
 #include <system_error>
 
 #include "cli/commands/commands.h"
@@ -55,23 +54,15 @@ Expected<void> CheckInputs(const ReproduceOptions& options) {
 
 int Run(const ReproduceOptions& options) {
   if (const Expected<void> ok = CheckInputs(options); !ok) return Refuse("reproduce", ok.error());
-  std::unique_ptr<Progress> progress;
-  std::string running;
+  Progress progress;
   ReproduceSettings settings{.experiments = options.experiments,
                              .claims = options.claims,
                              .out = options.out,
                              .quick = options.quick,
                              .threads = options.threads};
   if (settings.out.empty()) settings.out = options.quick ? "build/paper-quick" : "paper";
-  settings.progress = [&](const std::string& name, std::uint64_t done, std::uint64_t all) {
-    if (name != running) {
-      progress = std::make_unique<Progress>(name, static_cast<long>(all));
-      running = name;
-    }
-    if (done > 0) progress->Set(static_cast<long>(done));
-  };
+  settings.progress = progress.Callback();
   const Expected<Reproduction> reproduction = Reproduce(settings, AllSolvers());
-  progress.reset();
   if (!reproduction) return Refuse("reproduce", reproduction.error());
   TextTable table({"claim", "printed", "ours [95 %]", "verdict"}, TextTable::Columns::kWords);
   for (const JudgedClaim& judged : reproduction->claims) {

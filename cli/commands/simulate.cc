@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <memory>
 #include <vector>
 
 #include "cli/commands/commands.h"
@@ -144,10 +143,12 @@ int Run(const SimulateOptions& options) {
   Expected<void> checked = CheckSheet(options);
   if (checked && options.bag) checked = CheckSessionBag(*session);
   if (!checked) return Refuse("simulate", checked.error());
-  auto progress = std::make_unique<Progress>("simulating", CountSessionFiles(*scene, *session));
-  session->step = [&] { progress->Step(); };
+  Progress progress;
+  ProgressCounter counter(progress.Callback(), "simulating",
+                          static_cast<std::size_t>(CountSessionFiles(*scene, *session)));
+  session->step = [&counter] { counter.Step(); };
   const Expected<SessionReport> report = SimulateSession(*scene, *text, *session);
-  progress.reset();
+  counter.Finish();
   if (!report) {
     return Refuse("simulate", WithScene(report.error(), options.scene_path));
   }

@@ -18,15 +18,14 @@ std::string CornerName(int corner) {
   return kCornerNames[static_cast<std::size_t>(corner)];
 }
 
-std::string Describe(const OrderFinding& order) {
-  const std::string given = std::isfinite(order.rmse_as_given_m)
-                                ? fmt::format("RMSE {:.4f} m", order.rmse_as_given_m)
-                                : "no rotation fits";
+std::string Describe(const BoardContradiction& contradiction) {
   return fmt::format(
-      "order: another order of the LiDAR's corners{} fits far better: {} as given, RMSE {:.4f} m "
-      "with {} of {} pairs changed; --reorder uses it",
-      order.boards_swapped ? " and boards" : "", given, order.rmse_reordered_m, order.moved.size(),
-      order.lidar_index.size());
+      "contradiction: the boards fit to RMSE {:.1f} mm one by one, but only to {:.1f} mm together "
+      "under one pose: a board is up to {:.0f} mm elsewhere by another one's pose. A board moved "
+      "between the sensors' measurements, or its corners are in a wrong order; a robust solver "
+      "keeps some boards against the others, so more boards or views must decide",
+      1e3 * contradiction.rmse_alone_m, 1e3 * contradiction.rmse_together_m,
+      1e3 * contradiction.apart_m);
 }
 
 std::string Describe(const EdgeFinding& edge) {
@@ -54,8 +53,8 @@ std::string Describe(const WeakDirection& weak) {
 }  // namespace
 
 std::vector<std::string> Describe(const PairDiagnostics& diagnostics) {
-  std::vector<std::string> lines;
-  if (diagnostics.order) lines.push_back(Describe(*diagnostics.order));
+  std::vector<std::string> lines = Describe(diagnostics.order);
+  if (diagnostics.contradiction) lines.push_back(Describe(*diagnostics.contradiction));
   if (diagnostics.mirrored_rmse_m) {
     lines.push_back(fmt::format(
         "mirrored: a reflection would fit with RMSE {:.4f} m, less than half of what any rotation "

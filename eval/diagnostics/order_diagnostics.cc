@@ -1,220 +1,263 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/diagnostics/order_diagnostics.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numeric>
+#include <tuple>
 
-#include "solvers/kernels/kabsch.h"
-#include "solvers/matching/corner_order.h"
-#include "solvers/matching/object_match.h"
+#include "eval/diagnostics/facing.h"
+#include "solvers/matching/point_order.h"
 
 namespace sextant {
 namespace {
 
 constexpr double kFarBetter = 0.5;  // Relative to the RMSE of the given order.
-// Relative to the mean edge: below it, noise explains the misfit.
+// Relative to the distance between neighbours: below it, noise explains the misfit.
 constexpr double kMinMisfit = 0.1;
-constexpr double kMaxMisfit = 0.2;  // Relative to the mean edge: above it, no order is right.
+constexpr double kMaxMisfit = 0.2;  // The same: above it, no order is right.
+constexpr double kAboutEqual = 1.5;
+constexpr double kDecisive = 9.2;     // -2 ln(0.01): likelihood ratio of 1 %.
+constexpr double kNegligible = 1e-3;  // Relative to the distance between neighbours.
 
-// For each camera point, the pair whose LiDAR point belongs to it.
-using Assignment = std::vector<int>;
+std::size_t At(int index) { return static_cast<std::size_t>(index); }
 
-// Four rotations in the plane, each seen from the front or from behind.
-std::array<CornerOrder, 8> EveryOrder() {
-  std::array<CornerOrder, 8> orders;
-  for (int first = 0; first < kCornersPerBoard; ++first) {
-    orders[static_cast<std::size_t>(first)] = {first, false};
-    orders[static_cast<std::size_t>(first + kCornersPerBoard)] = {first, true};
+std::vector<PairId> IdsOf(const CalibrationProblem& problem, bool in_pixels) {
+  std::vector<PairId> ids;
+  for (const Pair3d3d& pair : problem.pairs_3d3d) {
+    if (!in_pixels) ids.push_back(pair.id);
   }
-  return orders;
+  for (const Pair2d3d& pair : problem.pairs_2d3d) {
+    if (in_pixels) ids.push_back(pair.id);
+  }
+  return ids;
 }
 
-struct OrderFit {
-  Rigid3d cam_from_lidar;
-  double rmse_m = std::numeric_limits<double>::infinity();
+// The groups within which points may be in any order.
+struct Grouping {
+  std::vector<OrderView> views;
+  std::size_t largest = 0;      // Points in the largest group, examined or not.
+  std::size_t most_boards = 0;  // Groups in one view.
+
+  void Add(OrderView& view, PointGroup group, std::size_t min_points) {
+    largest = std::max(largest, group.size());
+    if (group.size() < min_points || group.size() > kMaxOrderedPoints) return;
+    view.groups.push_back(std::move(group));
+    most_boards = std::max(most_boards, view.groups.size());
+  }
 };
 
-class OrderSearch {
+Grouping GroupByBoard(const std::vector<PairId>& ids) {
+  std::map<int, std::map<int, PointGroup>> views;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    views[ids[i].view][ids[i].board].push_back(static_cast<int>(i));
+  }
+  Grouping grouping;
+  for (auto& [view, boards] : views) {
+    OrderView members;
+    for (auto& [board, group] : boards) grouping.Add(members, std::move(group), 3);
+    if (!members.groups.empty()) grouping.views.push_back(std::move(members));
+  }
+  return grouping;
+}
+
+Grouping GroupByView(const std::vector<PairId>& ids, std::size_t min_points) {
+  std::map<int, PointGroup> views;
+  for (std::size_t i = 0; i < ids.size(); ++i) views[ids[i].view].push_back(static_cast<int>(i));
+  Grouping grouping;
+  for (auto& [view, group] : views) {
+    OrderView members;
+    grouping.Add(members, std::move(group), min_points);
+    if (!members.groups.empty()) grouping.views.push_back(std::move(members));
+  }
+  return grouping;
+}
+
+class OrderJudge {
  public:
-  explicit OrderSearch(std::span<const Pair3d3d> pairs)
-      : pairs_(pairs), groups_(CompleteBoards(pairs)) {
-    for (const BoardPairs& group : groups_) {
-      auto& members = views_[group.view];
-      members.push_back(&group);
+  OrderJudge(const CalibrationProblem& problem, bool in_pixels)
+      : in_pixels_(in_pixels),
+        ids_(IdsOf(problem, in_pixels)),
+        model_(in_pixels ? ModelOf(problem.pairs_2d3d, *problem.camera)
+                         : ModelOf(problem.pairs_3d3d)) {}
+
+  OrderDiagnosis Diagnose() {
+    OrderDiagnosis diagnosis{.in_pixels = in_pixels_};
+    const Grouping by_board = GroupByBoard(ids_);
+    const Grouping by_view = GroupByView(ids_, in_pixels_ ? 4 : 3);
+    const std::optional<PointOrder> given = FitGivenOrder(*model_);
+    if (given) diagnosis.rmse_as_given = given->rmse;
+    diagnosis.faces_as_given = given && FacesWith(by_board, by_view, given->cam_from_lidar);
+    if (by_board.views.empty() && by_view.views.empty()) {
+      diagnosis.not_searched = fmt::format(
+          "{} pairs of one board or view may be in any order, and at most {} are examined; state "
+          "which pairs belong to which board (columns view, board and corner)",
+          std::max(by_board.largest, by_view.largest), kMaxOrderedPoints);
+      return diagnosis;
     }
-  }
-
-  bool HasGroups() const { return !groups_.empty(); }
-
-  Assignment AsGiven() const {
-    Assignment identity(pairs_.size());
-    std::iota(identity.begin(), identity.end(), 0);
-    return identity;
-  }
-
-  double MeanEdge() const {
-    double sum = 0.0;
-    for (const BoardPairs& group : groups_) {
-      for (int i = 0; i < kCornersPerBoard; ++i) {
-        const Pair3d3d& from = pairs_[group.pair(i)];
-        const Pair3d3d& to = pairs_[group.pair((i + 1) % kCornersPerBoard)];
-        sum += (to.point_in_cam - from.point_in_cam).norm();
+    for (const Grouping* grouping : {&by_board, &by_view}) {
+      if (grouping->views.empty()) continue;
+      Use(*grouping);
+      const double as_given = given ? given->rmse : std::numeric_limits<double>::infinity();
+      if (as_given < kMinMisfit * spacing_ && !diagnosis.faces_as_given) break;
+      if (grouping->most_boards > kMaxExchangedGroups) {
+        diagnosis.not_searched =
+            fmt::format("a view has {} boards, and which board is which is examined up to {}",
+                        grouping->most_boards, kMaxExchangedGroups);
       }
+      Judge(*grouping, as_given, diagnosis);
+      if (diagnosis.better || !diagnosis.rivals.empty()) break;
     }
-    return sum / static_cast<double>(kCornersPerBoard * groups_.size());
-  }
-
-  OrderFit FitAll(const Assignment& assignment) const {
-    std::vector<Eigen::Vector3d> in_cam;
-    std::vector<Eigen::Vector3d> in_lidar;
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
-      in_cam.push_back(pairs_[i].point_in_cam);
-      in_lidar.push_back(pairs_[static_cast<std::size_t>(assignment[i])].point_in_lidar);
-    }
-    return FitPoints(in_cam, in_lidar);
-  }
-
-  // The assignments that belong to every distinct pose that explains all views. The starts are the
-  // fits of one common order for all boards.
-  std::vector<Assignment> Explanations() const {
-    std::vector<MatchView> match_views;
-    std::vector<std::vector<Pairing>> meanings;
-    for (const auto& [view, members] : views_) {
-      match_views.emplace_back();
-      meanings.emplace_back();
-      for (const BoardPairs* in_cam : members) {
-        for (const BoardPairs* in_lidar : members) {
-          AddPairings(members, *in_cam, *in_lidar, match_views.back(), meanings.back());
-        }
-      }
-    }
-    MatchOptions options;
-    for (const CornerOrder& order : EveryOrder()) {
-      Assignment assignment = AsGiven();
-      for (const BoardPairs& group : groups_) Assign(group, group, order, assignment);
-      const OrderFit fit = FitAll(assignment);
-      if (std::isfinite(fit.rmse_m)) options.starts.push_back(fit.cam_from_lidar);
-    }
-    const auto found = MatchObjects(match_views, options);
-    std::vector<Assignment> assignments;
-    if (!found) return assignments;
-    for (const MatchExplanation& explanation : *found) {
-      Assignment assignment = AsGiven();
-      for (const TakenPairing& taken : explanation.taken) {
-        const Pairing& pairing = meanings[taken.view][taken.pairing];
-        Assign(*pairing.in_cam, *pairing.in_lidar, pairing.order, assignment);
-      }
-      assignments.push_back(std::move(assignment));
-    }
-    return assignments;
-  }
-
-  bool SwapsBoards(const Assignment& assignment) const {
-    return std::any_of(groups_.begin(), groups_.end(), [&](const BoardPairs& group) {
-      const auto& own = group.pairs;
-      return std::find(own.begin(), own.end(), assignment[group.pair(0)]) == own.end();
-    });
+    return diagnosis;
   }
 
  private:
-  static OrderFit FitPoints(std::span<const Eigen::Vector3d> in_cam,
-                            std::span<const Eigen::Vector3d> in_lidar) {
-    const Expected<KabschFit> fit = FitKabsch(in_cam, in_lidar);
-    if (!fit) return {};
-    return {fit->b_from_a, std::sqrt(fit->sum_squares / static_cast<double>(in_cam.size()))};
-  }
-
-  struct Pairing {
-    const BoardPairs* in_cam = nullptr;
-    const BoardPairs* in_lidar = nullptr;
-    CornerOrder order;
-  };
-
-  // One board's camera corners with another's LiDAR corners, in every order.
-  void AddPairings(const std::vector<const BoardPairs*>& members, const BoardPairs& in_cam,
-                   const BoardPairs& in_lidar, MatchView& view,
-                   std::vector<Pairing>& meanings) const {
-    const auto place = [&](const BoardPairs& board) {
-      return static_cast<int>(std::find(members.begin(), members.end(), &board) - members.begin());
-    };
-    for (const CornerOrder& order : EveryOrder()) {
-      ObjectPairing pairing{.in_b = place(in_cam), .in_a = place(in_lidar)};
-      for (int i = 0; i < kCornersPerBoard; ++i) {
-        pairing.points_in_b.push_back(pairs_[in_cam.pair(i)].point_in_cam);
-        pairing.points_in_a.push_back(
-            pairs_[in_lidar.pair(order.IndexInA(i, kCornersPerBoard))].point_in_lidar);
+  // Takes the groups' points and the mean distance from a camera point to its nearest neighbour.
+  void Use(const Grouping& grouping) {
+    groups_in_lidar_.clear();
+    double sum = 0.0;
+    double count = 0.0;
+    for (const OrderView& view : grouping.views) {
+      for (const PointGroup& group : view.groups) {
+        std::vector<Eigen::Vector3d>& points = groups_in_lidar_.emplace_back();
+        for (const int i : group) {
+          points.push_back(model_->in_lidar()[At(i)]);
+          sum += ToNearest(group, i);
+          count += 1.0;
+        }
       }
-      view.pairings.push_back(std::move(pairing));
-      meanings.push_back({&in_cam, &in_lidar, order});
+    }
+    spacing_ = sum / count;
+  }
+
+  double ToNearest(const PointGroup& group, int i) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const int j : group) {
+      const double distance = (model_->observed()[At(j)] - model_->observed()[At(i)]).norm();
+      // A repeated point is no neighbour.
+      if (j != i && distance > 0.0) nearest = std::min(nearest, distance);
+    }
+    return std::isfinite(nearest) ? nearest : 0.0;
+  }
+
+  bool FacesWith(const Grouping& by_board, const Grouping& by_view, const Rigid3d& pose) {
+    const Grouping& grouping = by_board.views.empty() ? by_view : by_board;
+    if (grouping.views.empty()) return false;
+    Use(grouping);
+    return SensorsFaceEachOther(groups_in_lidar_, pose);
+  }
+
+  void Judge(const Grouping& grouping, double as_given, OrderDiagnosis& diagnosis) const {
+    const double most = kMaxMisfit * spacing_;
+    std::vector<PointOrder> candidates = FindPointOrders(*model_, grouping.views);
+    std::erase_if(candidates, [&](const PointOrder& order) {
+      return order.rmse > most || SensorsFaceEachOther(groups_in_lidar_, order.cam_from_lidar);
+    });
+    if (candidates.empty() || IsGiven(candidates.front())) return;
+    const PointOrder& best = candidates.front();
+    const double equal = EqualUpTo(best.rmse);
+    if (!diagnosis.faces_as_given && as_given < std::max(best.rmse / kFarBetter, equal)) return;
+    std::vector<OrderFinding> findings = {FindingOf(best, grouping)};
+    for (std::size_t i = 1; i < candidates.size() && candidates[i].rmse <= equal; ++i) {
+      if (!HaveSamePose(candidates[i], best))
+        findings.push_back(FindingOf(candidates[i], grouping));
+    }
+    if (findings.size() == 1) {
+      diagnosis.better = std::move(findings.front());
+    } else {
+      diagnosis.rivals = std::move(findings);
     }
   }
 
-  static void Assign(const BoardPairs& in_cam, const BoardPairs& in_lidar, const CornerOrder& order,
-                     Assignment& assignment) {
-    for (int i = 0; i < kCornersPerBoard; ++i) {
-      assignment[in_cam.pair(i)] =
-          static_cast<int>(in_lidar.pair(order.IndexInA(i, kCornersPerBoard)));
+  static bool IsGiven(const PointOrder& order) {
+    for (std::size_t i = 0; i < order.lidar_index.size(); ++i) {
+      if (order.lidar_index[i] != static_cast<int>(i)) return false;
     }
+    return true;
   }
 
-  std::span<const Pair3d3d> pairs_;
-  std::vector<BoardPairs> groups_;
-  std::map<int, std::vector<const BoardPairs*>> views_;
+  // The RMSE up to which another order fits about as well.
+  double EqualUpTo(double rmse) const {
+    const double redundant = model_->dimension() * static_cast<double>(model_->size()) - 6.0;
+    const double by_chance = std::exp(kDecisive / (2.0 * std::max(1.0, redundant)));
+    return rmse * std::max(kAboutEqual, by_chance) + kNegligible * spacing_;
+  }
+
+  // Whether the poses predict the same to within twice the residuals: points so near to each other
+  // that their order does not matter.
+  bool HaveSamePose(const PointOrder& a, const PointOrder& b) const {
+    double squares = 0.0;
+    for (const Eigen::Vector3d& point : model_->in_lidar()) {
+      const auto by_a = model_->Predict(a.cam_from_lidar, point);
+      const auto by_b = model_->Predict(b.cam_from_lidar, point);
+      if (!by_a || !by_b) return false;
+      squares += (*by_a - *by_b).squaredNorm();
+    }
+    const double apart = std::sqrt(squares / static_cast<double>(model_->size()));
+    return apart < 2.0 * std::max(a.rmse, b.rmse) + kNegligible * spacing_;
+  }
+
+  OrderFinding FindingOf(const PointOrder& order, const Grouping& grouping) const {
+    OrderFinding finding{.in_pixels = in_pixels_,
+                         .rmse = order.rmse,
+                         .cam_from_lidar = order.cam_from_lidar,
+                         .lidar_index = order.lidar_index};
+    for (std::size_t i = 0; i < order.lidar_index.size(); ++i) {
+      if (order.lidar_index[i] != static_cast<int>(i)) finding.moved.push_back(ids_[i]);
+    }
+    for (const OrderView& view : grouping.views) {
+      for (const PointGroup& group : view.groups) {
+        const int first = order.lidar_index[At(group.front())];
+        finding.boards_swapped |= std::ranges::count(group, first) == 0;
+      }
+    }
+    return finding;
+  }
+
+  bool in_pixels_;
+  std::vector<PairId> ids_;
+  std::unique_ptr<CorrespondenceModel> model_;
+  std::vector<std::vector<Eigen::Vector3d>> groups_in_lidar_;
+  double spacing_ = 0.0;
 };
 
 }  // namespace
 
-std::vector<BoardPairs> CompleteBoards(std::span<const Pair3d3d> pairs) {
-  std::map<std::pair<int, int>, std::vector<int>> by_board;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    by_board[{pairs[i].id.view, pairs[i].id.board}].push_back(static_cast<int>(i));
-  }
-  std::vector<BoardPairs> groups;
-  for (const auto& [key, members] : by_board) {
-    BoardPairs group{key.first, {-1, -1, -1, -1}};
-    for (const int i : members) {
-      const int corner = pairs[static_cast<std::size_t>(i)].id.corner;
-      if (corner >= 0 && corner < kCornersPerBoard) {
-        group.pairs[static_cast<std::size_t>(corner)] = i;
-      }
-    }
-    const bool complete = members.size() == kCornersPerBoard &&
-                          std::count(group.pairs.begin(), group.pairs.end(), -1) == 0;
-    if (complete) groups.push_back(group);
-  }
-  return groups;
+OrderDiagnosis DiagnoseOrder(const CalibrationProblem& problem) {
+  if (problem.pairs_3d3d.size() >= 3) return OrderJudge(problem, false).Diagnose();
+  if (problem.pairs_2d3d.size() >= 4 && problem.camera) return OrderJudge(problem, true).Diagnose();
+  OrderDiagnosis diagnosis;
+  diagnosis.not_searched =
+      "expected at least 3 3D-3D pairs, or 4 2D-3D pairs and the camera (--camera)";
+  return diagnosis;
 }
 
-std::optional<OrderFinding> FindBetterOrder(std::span<const Pair3d3d> pairs) {
-  const OrderSearch search(pairs);
-  if (!search.HasGroups()) return std::nullopt;
-  const double as_given = search.FitAll(search.AsGiven()).rmse_m;
-  if (as_given < kMinMisfit * search.MeanEdge()) return std::nullopt;
-
-  Assignment best;
-  double best_rmse = std::min(kFarBetter * as_given, kMaxMisfit * search.MeanEdge());
-  for (Assignment& assignment : search.Explanations()) {
-    const double rmse = search.FitAll(assignment).rmse_m;
-    // Improvements within rounding are ignored, so that ties do not depend on rounding.
-    if (rmse < best_rmse * (1.0 - 1e-9)) {
-      best_rmse = rmse;
-      best = std::move(assignment);
+CalibrationProblem Reordered(const CalibrationProblem& problem, const OrderFinding& order) {
+  CalibrationProblem reordered = problem;
+  if (order.in_pixels) {
+    for (std::size_t i = 0; i < order.lidar_index.size(); ++i) {
+      reordered.pairs_2d3d[i].point_in_lidar =
+          problem.pairs_2d3d[At(order.lidar_index[i])].point_in_lidar;
     }
+    return reordered;
   }
-  if (best.empty()) return std::nullopt;
-  OrderFinding finding;
-  finding.rmse_as_given_m = as_given;
-  finding.rmse_reordered_m = best_rmse;
-  finding.boards_swapped = search.SwapsBoards(best);
-  for (std::size_t i = 0; i < best.size(); ++i) {
-    if (best[i] != static_cast<int>(i)) finding.moved.push_back(pairs[i].id);
+  std::map<std::tuple<int, int, int>, Eigen::Vector3d> by_id;
+  for (std::size_t i = 0; i < order.lidar_index.size(); ++i) {
+    Pair3d3d& pair = reordered.pairs_3d3d[i];
+    pair.point_in_lidar = problem.pairs_3d3d[At(order.lidar_index[i])].point_in_lidar;
+    by_id[{pair.id.view, pair.id.board, pair.id.corner}] = pair.point_in_lidar;
   }
-  finding.lidar_index = std::move(best);
-  return finding;
+  // The 2D-3D pairs of the same corner change with it.
+  for (Pair2d3d& pair : reordered.pairs_2d3d) {
+    const auto found = by_id.find({pair.id.view, pair.id.board, pair.id.corner});
+    if (found != by_id.end()) pair.point_in_lidar = found->second;
+  }
+  return reordered;
 }
 
 }  // namespace sextant

@@ -2,9 +2,12 @@
 #include "eval/diagnostics/pair_diagnostics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <span>
 
-#include "eval/diagnostics/order_diagnostics.h"
+#include "eval/diagnostics/complete_boards.h"
 #include "geometry/pair_noise.h"
 #include "geometry/symmetric.h"
 #include "solvers/kernels/kabsch.h"
@@ -36,11 +39,18 @@ Edge MeasureEdge(const Pair3d3d& from, const Pair3d3d& to) {
   return edge;
 }
 
-std::optional<double> KnownLength(const CalibrationProblem& problem, int board_id, int edge) {
-  for (const Board& board : problem.boards) {
-    if (board.id == board_id) return board.EdgeLengths()[static_cast<std::size_t>(edge)];
-  }
-  return std::nullopt;
+using EdgesById = std::map<int, std::array<double, kCornersPerBoard>>;
+
+EdgesById KnownEdges(const CalibrationProblem& problem) {
+  EdgesById edges;
+  for (const Board& board : problem.boards) edges.emplace(board.id, board.EdgeLengths());
+  return edges;
+}
+
+std::optional<double> KnownLength(const EdgesById& edges, int board_id, int edge) {
+  const auto board = edges.find(board_id);
+  if (board == edges.end()) return std::nullopt;
+  return board->second[static_cast<std::size_t>(edge)];
 }
 
 // By how much the edge's error exceeds what noise explains; zero or negative if noise explains it.
@@ -56,6 +66,7 @@ double Excess(const Edge& edge, std::optional<double> known) {
 
 std::vector<EdgeFinding> DiagnoseEdges(const CalibrationProblem& problem) {
   std::vector<EdgeFinding> findings;
+  const EdgesById known_edges = KnownEdges(problem);
   for (const BoardPairs& group : CompleteBoards(problem.pairs_3d3d)) {
     double worst = 0.0;
     std::optional<EdgeFinding> finding;
@@ -63,7 +74,7 @@ std::vector<EdgeFinding> DiagnoseEdges(const CalibrationProblem& problem) {
       const Pair3d3d& from = problem.pairs_3d3d[group.pair(i)];
       const Pair3d3d& to = problem.pairs_3d3d[group.pair((i + 1) % kCornersPerBoard)];
       const Edge edge = MeasureEdge(from, to);
-      const std::optional<double> known = KnownLength(problem, from.id.board, i);
+      const std::optional<double> known = KnownLength(known_edges, from.id.board, i);
       const double excess = Excess(edge, known);
       if (excess <= worst) continue;
       worst = excess;
@@ -72,6 +83,67 @@ std::vector<EdgeFinding> DiagnoseEdges(const CalibrationProblem& problem) {
     if (finding) findings.push_back(*finding);
   }
   return findings;
+}
+
+// The points of complete boards, board after board, with the pose of each board alone.
+struct BoardsAlone {
+  std::vector<Eigen::Vector3d> in_cam;
+  std::vector<Eigen::Vector3d> in_lidar;
+  std::vector<Rigid3d> poses;
+  double sum_squares = 0.0;
+  double mean_edge_m = 0.0;
+};
+
+BoardsAlone FitBoardsAlone(std::span<const Pair3d3d> pairs) {
+  BoardsAlone boards;
+  for (const BoardPairs& group : CompleteBoards(pairs)) {
+    std::array<Eigen::Vector3d, kCornersPerBoard> in_cam;
+    std::array<Eigen::Vector3d, kCornersPerBoard> in_lidar;
+    for (int i = 0; i < kCornersPerBoard; ++i) {
+      in_cam[static_cast<std::size_t>(i)] = pairs[group.pair(i)].point_in_cam;
+      in_lidar[static_cast<std::size_t>(i)] = pairs[group.pair(i)].point_in_lidar;
+    }
+    const Expected<KabschFit> fit = FitKabsch(in_cam, in_lidar);
+    if (!fit) continue;
+    boards.in_cam.insert(boards.in_cam.end(), in_cam.begin(), in_cam.end());
+    boards.in_lidar.insert(boards.in_lidar.end(), in_lidar.begin(), in_lidar.end());
+    boards.poses.push_back(fit->b_from_a);
+    boards.sum_squares += fit->sum_squares;
+    for (std::size_t i = 0; i < 4; ++i) {
+      boards.mean_edge_m += 0.25 * (in_cam[(i + 1) % 4] - in_cam[i]).norm();
+    }
+  }
+  boards.mean_edge_m /= std::max(1.0, static_cast<double>(boards.poses.size()));
+  return boards;
+}
+
+// The largest distance between a board's centres by its own pose and by that of the board before
+// or after it: all pairs of boards would be a quadratic number.
+double LargestDistance(const BoardsAlone& boards) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < boards.poses.size(); ++i) {
+    const std::size_t other = i + 1 < boards.poses.size() ? i + 1 : i - 1;
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < 4; ++k) center += 0.25 * boards.in_lidar[4 * i + k];
+    largest = std::max(largest, (boards.poses[i] * center - boards.poses[other] * center).norm());
+  }
+  return largest;
+}
+
+std::optional<BoardContradiction> FindContradiction(std::span<const Pair3d3d> pairs) {
+  constexpr double kOfAlone = 3.0;
+  constexpr double kOfEdge = 0.1;
+  const BoardsAlone boards = FitBoardsAlone(pairs);
+  if (boards.poses.size() < 2) return std::nullopt;
+  const Expected<KabschFit> together = FitKabsch(boards.in_cam, boards.in_lidar);
+  if (!together) return std::nullopt;
+  const auto points = static_cast<double>(boards.in_cam.size());
+  const BoardContradiction found{.rmse_together_m = std::sqrt(together->sum_squares / points),
+                                 .rmse_alone_m = std::sqrt(boards.sum_squares / points),
+                                 .apart_m = LargestDistance(boards)};
+  const double least = std::max(kOfAlone * found.rmse_alone_m, kOfEdge * boards.mean_edge_m);
+  if (found.rmse_together_m < least) return std::nullopt;
+  return found;
 }
 
 std::optional<WeakDirection> Weakest(const Eigen::Matrix3d& covariance, bool is_rotation) {
@@ -83,27 +155,14 @@ std::optional<WeakDirection> Weakest(const Eigen::Matrix3d& covariance, bool is_
 
 }  // namespace
 
-CalibrationProblem Reordered(const CalibrationProblem& problem, const OrderFinding& order) {
-  CalibrationProblem reordered = problem;
-  for (std::size_t i = 0; i < order.lidar_index.size(); ++i) {
-    const auto from = static_cast<std::size_t>(order.lidar_index[i]);
-    reordered.pairs_3d3d[i].point_in_lidar = problem.pairs_3d3d[from].point_in_lidar;
-    // The 2D-3D pairs of the same corner change with it.
-    for (Pair2d3d& pair : reordered.pairs_2d3d) {
-      if (pair.id != problem.pairs_3d3d[i].id) continue;
-      pair.point_in_lidar = problem.pairs_3d3d[from].point_in_lidar;
-    }
-  }
-  return reordered;
-}
-
 PairDiagnostics DiagnosePairs(const CalibrationProblem& problem) {
   PairDiagnostics diagnostics;
+  diagnostics.order = DiagnoseOrder(problem);
   if (problem.pairs_3d3d.size() < 3) return diagnostics;
-  diagnostics.order = FindBetterOrder(problem.pairs_3d3d);
   const CalibrationProblem ordered =
-      diagnostics.order ? Reordered(problem, *diagnostics.order) : problem;
+      diagnostics.order.better ? Reordered(problem, *diagnostics.order.better) : problem;
   diagnostics.edges = DiagnoseEdges(ordered);
+  diagnostics.contradiction = FindContradiction(ordered.pairs_3d3d);
 
   const std::vector<Pair3d3d>& pairs = ordered.pairs_3d3d;
   const std::vector<double> weights(pairs.size(), 1.0);

@@ -5,19 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "eval/diagnostics/order_diagnostics.h"
 #include "geometry/calibration_problem.h"
 
 namespace sextant {
-
-/// An order of the LiDAR corners that fits far better than the given one.
-struct OrderFinding {
-  double rmse_as_given_m = 0.0;
-  double rmse_reordered_m = 0.0;
-  /// lidar_index[i]: the pair whose LiDAR point belongs to the camera point of pair i.
-  std::vector<int> lidar_index;
-  bool boards_swapped = false;
-  std::vector<PairId> moved;  ///< Pairs whose LiDAR point changes with the new order.
-};
 
 /// A board whose edges differ between the sensors, or from the nominal size, by more than noise
 /// explains.
@@ -39,9 +30,18 @@ struct WeakDirection {
   double best_sigma = 0.0;
 };
 
+/// Boards that fit well one by one, but not together under one pose.
+struct BoardContradiction {
+  double rmse_together_m = 0.0;
+  double rmse_alone_m = 0.0;  ///< Every board under its own pose.
+  /// Largest distance between the positions of a board by its own pose and by another board's.
+  double apart_m = 0.0;
+};
+
 /// Data diagnostics: properties of the pairs that make a pose from them unreliable.
 struct PairDiagnostics {
-  std::optional<OrderFinding> order;
+  OrderDiagnosis order;
+  std::optional<BoardContradiction> contradiction;
   std::vector<EdgeFinding> edges;
   std::optional<WeakDirection> weak_rotation;
   std::optional<WeakDirection> weak_translation;
@@ -49,21 +49,17 @@ struct PairDiagnostics {
   std::optional<double> mirrored_rmse_m;
 };
 
-/// Checks the 3D-3D pairs for wrong orders, wrong edges, mirrored data and weak directions; empty
-/// for a problem with fewer than three pairs.
+/// Checks the pairs for a wrong order (DiagnoseOrder), and the 3D-3D pairs, in the better order,
+/// for boards that contradict each other, wrong edges, mirrored data and weak directions; empty for
+/// a problem with too few pairs. O(n log n) time and O(n) memory in the number of pairs: 10^4 pairs
+/// take less than 0.3 s.
 ///
-/// Order: matching one board's camera corners with any board's LiDAR corners, in each of the eight
-/// orders of a rectangle, gives a start pose; all boards of each view are assigned under it and the
-/// pose is refitted until the assignment is stable. The best result over all starts is reported if
-/// its RMSE is less than half that of the given order, the latter is above a tenth and the former
-/// below a fifth of the mean edge. Boards need all four corners. Edges: compared in the better
-/// order, and reported if they differ by more than 5 percent of their length and by more than three
-/// standard deviations of their difference (if the noise is stated). Weak direction: its standard
-/// deviation is more than five times that of the best determined direction.
+/// Contradiction: the RMSE of all complete boards is more than three times their RMSE under poses
+/// of their own, and more than a tenth of the mean edge. Edges: reported if they differ by more
+/// than 5 percent of their length and by more than three standard deviations of their difference
+/// (if the noise is stated). Weak direction: its standard deviation is more than five times that of
+/// the best determined direction.
 PairDiagnostics DiagnosePairs(const CalibrationProblem& problem);
-
-/// The problem with its LiDAR points reordered as the finding says.
-CalibrationProblem Reordered(const CalibrationProblem& problem, const OrderFinding& order);
 
 /// One line of text per finding, with the figures and advice.
 std::vector<std::string> Describe(const PairDiagnostics& diagnostics);

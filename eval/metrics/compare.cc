@@ -5,9 +5,11 @@ namespace sextant {
 
 std::vector<ComparisonRow> Compare(const CalibrationProblem& problem,
                                    std::span<const SolverPtr> solvers,
-                                   const std::optional<Rigid3d>& true_cam_from_lidar) {
+                                   const std::optional<Rigid3d>& true_cam_from_lidar,
+                                   const ProgressCallback& progress) {
   std::vector<ComparisonRow> rows;
   std::optional<Rigid3d> first;
+  ProgressCounter counter(progress, "solvers", solvers.size());
   for (const SolverPtr& solver : solvers) {
     ComparisonRow row{solver->spec().name, solver->Solve(problem), {}, {}};
     if (row.report) {
@@ -17,7 +19,9 @@ std::vector<ComparisonRow> Compare(const CalibrationProblem& problem,
       if (true_cam_from_lidar) row.from_truth = DistanceBetween(pose, *true_cam_from_lidar);
     }
     rows.push_back(std::move(row));
+    counter.Step();
   }
+  counter.Finish();
   return rows;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.h"
 #include "geometry/calibration_problem.h"
 #include "solvers/core/solver.h"
 
@@ -20,9 +21,10 @@ struct ComparisonRow {
   std::optional<PoseDistance> from_truth;  ///< Distance to the truth, if it is known.
 };
 
-/// Runs every solver on the problem, in the order given.
+/// Runs every solver on the problem, in the order given; each is a step of the stage "solvers".
 std::vector<ComparisonRow> Compare(const CalibrationProblem& problem,
                                    std::span<const SolverPtr> solvers,
-                                   const std::optional<Rigid3d>& true_cam_from_lidar);
+                                   const std::optional<Rigid3d>& true_cam_from_lidar,
+                                   const ProgressCallback& progress = {});
 
 }  // namespace sextant

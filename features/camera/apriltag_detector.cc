@@ -51,11 +51,14 @@ int AffordableHamming(const apriltag_family_t& family) {
 // The library's detector, which processes one image at a time.
 class Engine {
  public:
-  explicit Engine(const AprilTagOptions& options)
-      : family_(MakeAprilTagFamily(AprilTagFamilyNames()[options.family])),
-        detector_(apriltag_detector_create(), apriltag_detector_destroy) {
-    const int hamming = options.hamming < 0 ? AffordableHamming(*family_) : options.hamming;
-    apriltag_detector_add_family_bits(detector_.get(), family_.get(), hamming);
+  Engine(const AprilTagOptions& options, const std::vector<std::string>& families)
+      : detector_(apriltag_detector_create(), apriltag_detector_destroy) {
+    for (const std::string& name : families) {
+      families_.push_back(MakeAprilTagFamily(name));
+      apriltag_family_t& family = *families_.back();
+      const int hamming = options.hamming < 0 ? AffordableHamming(family) : options.hamming;
+      apriltag_detector_add_family_bits(detector_.get(), &family, hamming);
+    }
     detector_->nthreads = options.threads;
     detector_->quad_decimate = static_cast<float>(options.decimate);
     detector_->quad_sigma = static_cast<float>(options.blur_px);
@@ -72,7 +75,7 @@ class Engine {
   }
 
  private:
-  AprilTagFamily family_;
+  std::vector<AprilTagFamily> families_;
   std::unique_ptr<apriltag_detector_t, void (*)(apriltag_detector_t*)> detector_;
 };
 
@@ -88,50 +91,72 @@ int MinRange(double noise_grey) {
   return std::clamp(static_cast<int>(kSigmas * noise_grey), kDefault, kMax);
 }
 
+// Whether the library works on unfiltered pixels: it decimates by skipping pixels, which keeps
+// their noise, and the tiles of the decimated image are those of the whole image.
+bool UsesRawPixels(const AprilTagOptions& options) {
+  const double decimate = options.decimate;
+  return (decimate == 1.0 || decimate == 2.0 || decimate == 4.0) && options.blur_px == 0.0;
+}
+
+std::vector<cv::Rect> RegionsOf(const AprilTagOptions& options, const cv::Mat& grey) {
+  if (UsesRawPixels(options)) return ContrastRegions(grey);
+  return {cv::Rect(0, 0, grey.cols, grey.rows)};
+}
+
+// The library's corners go counter-clockwise as seen, from the tag's own bottom-left.
+TagDetection FromLibrary(const AprilTagOptions& options, const apriltag_detection_t& tag) {
+  // Measured against rendered tags, see docs/detectors.md.
+  const double shift_px = options.refine_edges ? 0.5 : 0.445 - 0.075 * (options.decimate - 1.0);
+  TagDetection detection{.family = tag.family->name,
+                         .id = tag.id,
+                         .corners_px = {},
+                         .decision_margin = static_cast<double>(tag.decision_margin),
+                         .hamming = tag.hamming};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double* corner = tag.p[3 - k];
+    detection.corners_px[k] = Eigen::Vector2d(corner[0], corner[1]).array() - shift_px;
+  }
+  return detection;
+}
+
+void DetectIn(Engine& engine, const AprilTagOptions& options, const cv::Mat& grey,
+              const cv::Rect& region, std::vector<TagDetection>& tags) {
+  const cv::Mat part = grey(region);
+  const double noise_grey = UsesRawPixels(options) ? EstimateNoiseGrey(part) : 0.0;
+  const std::unique_ptr<zarray_t, void (*)(zarray_t*)> quads(
+      engine.Detect(part, MinRange(noise_grey)), apriltag_detections_destroy);
+  for (int i = 0; i < zarray_size(quads.get()); ++i) {
+    apriltag_detection_t* tag = nullptr;
+    zarray_get(quads.get(), i, &tag);
+    if (tag->decision_margin < options.min_margin) continue;
+    tags.push_back(FromLibrary(options, *tag));
+    for (Eigen::Vector2d& corner : tags.back().corners_px) {
+      corner += Eigen::Vector2d(region.x, region.y);
+    }
+  }
+}
+
 class AprilTagDetector final : public TagDetector {
  public:
   AprilTagDetector(std::string name, const AprilTagOptions& options)
       : TagDetector(std::move(name)), options_(options) {
-    idle_.push_back(std::make_unique<Engine>(options));
+    idle_.push_back(MakeEngine());
   }
 
  private:
+  std::unique_ptr<Engine> MakeEngine() const {
+    return std::make_unique<Engine>(options_, std::vector{AprilTagFamilyNames()[options_.family]});
+  }
+
   Detections DoDetect(const cv::Mat& grey) const override {
     std::unique_ptr<Engine> engine = Take();
     Detections found;
-    for (const cv::Rect& region : RegionsOf(grey)) DetectIn(*engine, grey, region, found);
+    for (const cv::Rect& region : RegionsOf(options_, grey)) {
+      DetectIn(*engine, options_, grey, region, found.tags);
+    }
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(engine));
     return found;
-  }
-
-  // Whether the library works on unfiltered pixels: it decimates by skipping pixels, which keeps
-  // their noise, and the tiles of the decimated image are those of the whole image.
-  bool UsesRawPixels() const {
-    const double decimate = options_.decimate;
-    return (decimate == 1.0 || decimate == 2.0 || decimate == 4.0) && options_.blur_px == 0.0;
-  }
-
-  std::vector<cv::Rect> RegionsOf(const cv::Mat& grey) const {
-    if (UsesRawPixels()) return ContrastRegions(grey);
-    return {cv::Rect(0, 0, grey.cols, grey.rows)};
-  }
-
-  void DetectIn(Engine& engine, const cv::Mat& grey, const cv::Rect& region,
-                Detections& found) const {
-    const cv::Mat part = grey(region);
-    const double noise_grey = UsesRawPixels() ? EstimateNoiseGrey(part) : 0.0;
-    const std::unique_ptr<zarray_t, void (*)(zarray_t*)> quads(
-        engine.Detect(part, MinRange(noise_grey)), apriltag_detections_destroy);
-    for (int i = 0; i < zarray_size(quads.get()); ++i) {
-      apriltag_detection_t* tag = nullptr;
-      zarray_get(quads.get(), i, &tag);
-      if (tag->decision_margin < options_.min_margin) continue;
-      found.tags.push_back(FromLibrary(*tag));
-      for (Eigen::Vector2d& corner : found.tags.back().corners_px) {
-        corner += Eigen::Vector2d(region.x, region.y);
-      }
-    }
   }
 
   std::unique_ptr<Engine> Take() const {
@@ -143,23 +168,7 @@ class AprilTagDetector final : public TagDetector {
         return engine;
       }
     }
-    return std::make_unique<Engine>(options_);
-  }
-
-  // The library's corners go counter-clockwise as seen, from the tag's own bottom-left.
-  TagDetection FromLibrary(const apriltag_detection_t& tag) const {
-    // Measured against rendered tags, see docs/detectors.md.
-    const double shift_px = options_.refine_edges ? 0.5 : 0.445 - 0.075 * (options_.decimate - 1.0);
-    TagDetection detection{.family = AprilTagFamilyNames()[options_.family],
-                           .id = tag.id,
-                           .corners_px = {},
-                           .decision_margin = static_cast<double>(tag.decision_margin),
-                           .hamming = tag.hamming};
-    for (std::size_t k = 0; k < 4; ++k) {
-      const double* corner = tag.p[3 - k];
-      detection.corners_px[k] = Eigen::Vector2d(corner[0], corner[1]).array() - shift_px;
-    }
-    return detection;
+    return MakeEngine();
   }
 
   AprilTagOptions options_;
@@ -168,6 +177,16 @@ class AprilTagDetector final : public TagDetector {
 };
 
 }  // namespace
+
+std::vector<TagDetection> DetectAllAprilTags(const cv::Mat& grey) {
+  const AprilTagOptions options{.hamming = 0};
+  Engine engine(options, AprilTagFamilyNames());
+  std::vector<TagDetection> tags;
+  for (const cv::Rect& region : RegionsOf(options, grey)) {
+    DetectIn(engine, options, grey, region, tags);
+  }
+  return tags;
+}
 
 TagDetectorEntry AprilTagDetectorEntry() {
   return {

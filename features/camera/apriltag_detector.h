@@ -13,4 +13,8 @@ namespace sextant {
 /// (docs/detectors.md has the measurement).
 TagDetectorEntry AprilTagDetectorEntry();
 
+/// The tags of all families that are read without a wrong bit, in an 8-bit grey image, in one
+/// search: the library reads each quadrilateral as a tag of every family.
+std::vector<TagDetection> DetectAllAprilTags(const cv::Mat& grey);
+
 }  // namespace sextant

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <opencv2/imgproc.hpp>
-#include <tuple>
 
 #include "features/camera/tag_detector.h"
 #include "features/camera/tag_reading.h"
@@ -17,10 +16,8 @@ namespace sextant {
 namespace {
 
 constexpr double kSmallest_px = 16.0;
-constexpr double kMinMargin = 20.0;
 constexpr double kMinVisible_grey = 2.0;
 constexpr double kMaxWrongShare = 0.1;
-constexpr int kMaxSideForTrials_px = 1600;
 constexpr double kMaxPixelsToEnlarge = 6e6;
 
 double MeanSide(const Quad& quad) {
@@ -76,16 +73,20 @@ std::vector<TagDetection> ReliableTags(const std::string& family, const cv::Mat&
   if (!found) return {};
   std::vector<TagDetection> reliable = found->tags;
   std::erase_if(reliable,
-                [](const TagDetection& tag) { return tag.decision_margin <= kMinMargin; });
+                [](const TagDetection& tag) { return tag.decision_margin <= kReliableMargin; });
   return reliable;
 }
 
-// The tag in a modified image.
-std::optional<TagDetection> FindIn(const cv::Mat& grey, const BoardTag& tag) {
-  const std::vector<TagDetection> tags = ReliableTags(tag.family, grey);
-  const auto found = std::ranges::find(tags, tag.id, &TagDetection::id);
-  if (found == tags.end()) return std::nullopt;
-  return *found;
+cv::Mat Mirrored(const cv::Mat& grey) {
+  cv::Mat mirrored;
+  cv::flip(grey, mirrored, 1);
+  return mirrored;
+}
+
+cv::Mat Enlarged(const cv::Mat& grey) {
+  cv::Mat enlarged;
+  cv::resize(grey, enlarged, {}, 2.0, 2.0, cv::INTER_CUBIC);
+  return enlarged;
 }
 
 cv::Mat Sharpened(const cv::Mat& grey) {
@@ -98,26 +99,20 @@ cv::Mat Sharpened(const cv::Mat& grey) {
   return sharp;
 }
 
-MissingTag ByTrial(const cv::Mat& grey, const BoardTag& tag) {
-  cv::Mat changed;
-  cv::flip(grey, changed, 1);
-  if (FindIn(changed, tag)) {
+MissingTag ByTrial(TagTrials& trials, const BoardTag& tag) {
+  if (trials.InMirrorImage(tag)) {
     return {MissingCause::kMirrored,
             "its mirror image is there: the tag was printed mirrored, or the image is flipped"};
   }
-  if (static_cast<double>(grey.total()) < kMaxPixelsToEnlarge) {
-    cv::resize(grey, changed, {}, 2.0, 2.0, cv::INTER_CUBIC);
-    if (const auto found = FindIn(changed, tag)) {
-      return {MissingCause::kTooSmall,
-              fmt::format("too small: {:.0f} px per side; it is found in the image enlarged twice",
-                          0.5 * MeanSide(found->corners_px))};
-    }
+  if (const auto found = trials.InEnlarged(tag)) {
+    return {MissingCause::kTooSmall,
+            fmt::format("too small: {:.0f} px per side; it is found in the image enlarged twice",
+                        0.5 * MeanSide(found->corners_px))};
   }
-  if (FindIn(Sharpened(grey), tag)) {
+  if (trials.InSharpened(tag)) {
     return {MissingCause::kBlurred, "blurred: it is found in the sharpened image"};
   }
-  const std::array wanted = {tag.id};
-  const std::vector<FamilyMatch> others = FindOtherFamilies(grey, tag.family, wanted);
+  const std::vector<FamilyMatch> others = trials.InOtherFamilies(tag);
   if (!others.empty()) {
     return {MissingCause::kOtherFamily,
             fmt::format("there is no tag of {}, but there are tags of {}: {}", tag.family,
@@ -127,18 +122,36 @@ MissingTag ByTrial(const cv::Mat& grey, const BoardTag& tag) {
           "not seen, and not in the enlarged, sharpened or mirrored image either"};
 }
 
-std::vector<int> ReliableIds(const std::string& family, const cv::Mat& grey) {
-  std::vector<int> ids;
-  for (const TagDetection& tag : ReliableTags(family, grey)) {
-    if (tag.hamming == 0) ids.push_back(tag.id);
+}  // namespace
+
+std::optional<TagDetection> TagTrials::FindIn(ByFamily& found, const BoardTag& tag,
+                                              cv::Mat (*modify)(const cv::Mat&)) const {
+  auto tags = found.find(tag.family);
+  if (tags == found.end()) {
+    tags = found.emplace(tag.family, ReliableTags(tag.family, modify(grey_))).first;
   }
-  std::ranges::sort(ids);
-  return ids;
+  const auto it = std::ranges::find(tags->second, tag.id, &TagDetection::id);
+  if (it == tags->second.end()) return std::nullopt;
+  return *it;
 }
 
-int CellsOf(const std::string& family) { return MakeTagPattern(family, 0)->cells; }
+std::optional<TagDetection> TagTrials::InMirrorImage(const BoardTag& tag) {
+  return FindIn(mirrored_, tag, Mirrored);
+}
 
-}  // namespace
+std::optional<TagDetection> TagTrials::InEnlarged(const BoardTag& tag) {
+  if (static_cast<double>(grey_.total()) >= kMaxPixelsToEnlarge) return std::nullopt;
+  return FindIn(enlarged_, tag, Enlarged);
+}
+
+std::optional<TagDetection> TagTrials::InSharpened(const BoardTag& tag) {
+  return FindIn(sharpened_, tag, Sharpened);
+}
+
+std::vector<FamilyMatch> TagTrials::InOtherFamilies(const BoardTag& tag) {
+  if (!families_) families_ = FindFamilies(grey_);
+  return OtherFamilies(*families_, tag.family, std::array{tag.id});
+}
 
 std::string_view ToString(MissingCause cause) {
   switch (cause) {
@@ -162,34 +175,10 @@ std::string_view ToString(MissingCause cause) {
   return "unknown";
 }
 
-MissingTag ExplainMissing(const cv::Mat& grey, const BoardTag& tag, const Camera* camera,
+MissingTag ExplainMissing(TagTrials& trials, const BoardTag& tag, const Camera* camera,
                           const BoardPose* pose) {
-  return camera != nullptr && pose != nullptr ? FromPose(grey, tag, *camera, *pose)
-                                              : ByTrial(grey, tag);
-}
-
-std::vector<FamilyMatch> FindOtherFamilies(const cv::Mat& grey, const std::string& except,
-                                           std::span<const int> wanted_ids) {
-  cv::Mat small = grey;
-  const int side = std::max(grey.cols, grey.rows);
-  if (side > kMaxSideForTrials_px) {
-    const double scale = static_cast<double>(kMaxSideForTrials_px) / side;
-    cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
-  }
-  std::vector<FamilyMatch> matches;
-  for (const std::string& family : TagFamilies()) {
-    if (family == except) continue;
-    FamilyMatch match{.family = family, .ids = ReliableIds(family, small)};
-    for (const int id : match.ids) {
-      match.wanted += std::ranges::count(wanted_ids, id) > 0 ? 1 : 0;
-    }
-    if (!match.ids.empty()) matches.push_back(std::move(match));
-  }
-  std::ranges::stable_sort(matches, [](const FamilyMatch& a, const FamilyMatch& b) {
-    return std::tuple(a.wanted, a.ids.size(), CellsOf(a.family)) >
-           std::tuple(b.wanted, b.ids.size(), CellsOf(b.family));
-  });
-  return matches;
+  return camera != nullptr && pose != nullptr ? FromPose(trials.grey(), tag, *camera, *pose)
+                                              : ByTrial(trials, tag);
 }
 
 }  // namespace sextant

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <opencv2/core/mat.hpp>
 #include <optional>
-#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "features/camera/board_pose.h"
 #include "features/camera/detection.h"
+#include "features/camera/find_families.h"
 
 namespace sextant {
 
@@ -29,22 +31,37 @@ struct MissingTag {
   std::string text{};  ///< One line for people, with figures.
 };
 
-/// Explains why a tag of a board was not found: from the board's pose if its other tags gave one,
-/// else by searching modified images. Slow (up to a second per megapixel).
-MissingTag ExplainMissing(const cv::Mat& grey, const BoardTag& tag, const Camera* camera,
-                          const BoardPose* pose);
+/// The tags in modified images, each searched once for a family, when first asked for.
+class TagTrials {
+ public:
+  explicit TagTrials(cv::Mat grey) : grey_(std::move(grey)) {}
 
-/// The tags of one family in an image.
-struct FamilyMatch {
-  std::string family{};
-  std::vector<int> ids{};  ///< Ascending.
-  int wanted = 0;          ///< How many of the wanted ids are among them.
+  const cv::Mat& grey() const { return grey_; }
+
+  /// The tag in the mirror image, in the image enlarged twice (only below 6 megapixels), and in the
+  /// sharpened image; none if it is not reliably there.
+  std::optional<TagDetection> InMirrorImage(const BoardTag& tag);
+  std::optional<TagDetection> InEnlarged(const BoardTag& tag);
+  std::optional<TagDetection> InSharpened(const BoardTag& tag);
+  /// Tags of other families in the image; see OtherFamilies.
+  std::vector<FamilyMatch> InOtherFamilies(const BoardTag& tag);
+
+ private:
+  using ByFamily = std::map<std::string, std::vector<TagDetection>>;
+  std::optional<TagDetection> FindIn(ByFamily& found, const BoardTag& tag,
+                                     cv::Mat (*modify)(const cv::Mat&)) const;
+
+  cv::Mat grey_;
+  ByFamily mirrored_;
+  ByFamily enlarged_;
+  ByFamily sharpened_;
+  std::optional<std::vector<FamilyMatch>> families_;
 };
 
-/// Every family except `except` with tags in the image that are read without a wrong cell, ordered
-/// by the number of wanted ids, then of tags, then of cells (tags with few cells are often false
-/// detections). Dictionaries that share their first tags (4x4_50 and 4x4_1000) are all listed.
-std::vector<FamilyMatch> FindOtherFamilies(const cv::Mat& grey, const std::string& except,
-                                           std::span<const int> wanted_ids);
+/// Explains why a tag of a board was not found: from the board's pose if its other tags gave one,
+/// else by searching modified images. Slow (up to a second per megapixel), but once per image for
+/// all tags of a family.
+MissingTag ExplainMissing(TagTrials& trials, const BoardTag& tag, const Camera* camera,
+                          const BoardPose* pose);
 
 }  // namespace sextant

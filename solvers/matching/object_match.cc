@@ -38,6 +38,18 @@ double CostOf(const ObjectPairing& pairing, const Rigid3d& b_from_a, double widt
   return squares / (pairing.sigma_m * pairing.sigma_m + width_m * width_m) + pairing.penalty;
 }
 
+// Marks both objects as taken unless one of them is.
+bool Take(int in_b, int in_a, std::vector<bool>& is_taken_in_b, std::vector<bool>& is_taken_in_a) {
+  const auto b = static_cast<std::size_t>(in_b);
+  const auto a = static_cast<std::size_t>(in_a);
+  if (is_taken_in_b.size() <= b) is_taken_in_b.resize(b + 1, false);
+  if (is_taken_in_a.size() <= a) is_taken_in_a.resize(a + 1, false);
+  if (is_taken_in_b[b] || is_taken_in_a[a]) return false;
+  is_taken_in_b[b] = true;
+  is_taken_in_a[a] = true;
+  return true;
+}
+
 // Greedy, nearest first: the distances of objects in one view are large compared with the error of
 // a reasonable pose.
 void PairView(const MatchView& view, std::size_t index, const Rigid3d& pose, double cap,
@@ -48,16 +60,11 @@ void PairView(const MatchView& view, std::size_t index, const Rigid3d& pose, dou
     all.push_back({.view = index, .pairing = i, .cost = cost, .fits = cost < cap});
   }
   std::ranges::stable_sort(all, {}, &TakenPairing::cost);
-  const std::size_t first = explanation.taken.size();
+  std::vector<bool> is_taken_in_b;
+  std::vector<bool> is_taken_in_a;
   for (const TakenPairing& candidate : all) {
     const ObjectPairing& pairing = view.pairings[candidate.pairing];
-    const bool is_free =
-        std::none_of(explanation.taken.begin() + static_cast<std::ptrdiff_t>(first),
-                     explanation.taken.end(), [&](const TakenPairing& taken) {
-                       const ObjectPairing& other = view.pairings[taken.pairing];
-                       return other.in_b == pairing.in_b || other.in_a == pairing.in_a;
-                     });
-    if (!is_free) continue;
+    if (!Take(pairing.in_b, pairing.in_a, is_taken_in_b, is_taken_in_a)) continue;
     explanation.taken.push_back(candidate);
     explanation.cost += candidate.fits ? candidate.cost : kDropped * cap;
   }
@@ -96,6 +103,7 @@ class Matcher {
     }
     pairings_ = static_cast<std::size_t>(count);
     if (pairings_ == 0) return;
+    ChooseScored();
     size_ = size / count;
     center_ /= count;
   }
@@ -129,7 +137,8 @@ class Matcher {
     };
     std::vector<Scored> scored;
     for (std::size_t i = 0; i < starts.size(); ++i) {
-      scored.push_back({i, Explain(views_, starts[i], options_.cap, kWidths[0] * size_).cost});
+      const double cost = Explain(scored_, starts[i], options_.cap, kWidths[0] * size_).cost;
+      scored.push_back({i, cost});
     }
     std::ranges::stable_sort(scored, {}, &Scored::cost);
     std::vector<std::size_t> chosen;
@@ -175,6 +184,13 @@ class Matcher {
   }
 
  private:
+  // All views, or an evenly spread subset of them: 512 starts in 10,000 views would take minutes.
+  void ChooseScored() {
+    constexpr std::size_t kMaxScoredPairings = 8192;
+    const std::size_t step = (pairings_ - 1) / kMaxScoredPairings + 1;
+    for (std::size_t i = 0; i < views_.size(); i += step) scored_.push_back(views_[i]);
+  }
+
   std::optional<Rigid3d> Fit(const MatchExplanation& explanation, double width_m) const {
     Points in_b;
     Points in_a;
@@ -193,6 +209,7 @@ class Matcher {
   }
 
   std::span<const MatchView> views_;
+  std::vector<MatchView> scored_;  // The views by which starts are ranked.
   const MatchOptions& options_;
   std::size_t pairings_ = 0;
   double noticeable_ = 0.0;

@@ -4,6 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/random.h"
+
 namespace sextant {
 namespace {
 
@@ -39,6 +45,55 @@ TEST(HiddenReturns, NoneOfAPlateHidesAnother) {
   EXPECT_THAT(HiddenReturns(plate, {.across_px = 10.0, .down_px = 20.0}),
               testing::Each(testing::Eq(false)));
   EXPECT_THAT(HiddenReturns({}, {}), testing::IsEmpty());
+}
+
+// The definition itself, pair by pair.
+std::vector<bool> HiddenByDefinition(const std::vector<ProjectedReturn>& returns,
+                                     const Eigen::Vector2d& window) {
+  std::vector<bool> hidden;
+  for (const ProjectedReturn& seen : returns) {
+    std::array<bool, 4> quadrants{};
+    for (const ProjectedReturn& other : returns) {
+      const Eigen::Vector2d to = other.pixel - seen.pixel;
+      if ((to.cwiseAbs().array() > window.array()).any()) continue;
+      if (other.distance_m > 0.9 * seen.distance_m - 0.2) continue;
+      quadrants[(to.x() > 0.0 ? 1U : 0U) + (to.y() > 0.0 ? 2U : 0U)] = true;
+    }
+    hidden.push_back(std::ranges::count(quadrants, true) >= 3);
+  }
+  return hidden;
+}
+
+TEST(HiddenReturns, AreThoseOfTheDefinition) {
+  Random random(1);
+  for (int trial = 0; trial < 30; ++trial) {
+    // From few returns in a window to hundreds; on a grid, so that many coordinates are equal.
+    const double step = trial % 3 == 0 ? 1.0 : 0.25;
+    const double size = random.Uniform(20.0, 400.0);
+    std::vector<ProjectedReturn> returns;
+    for (int i = 0; i < 1500; ++i) {
+      const double u = step * std::round(random.Uniform(-size, size) / step);
+      const double v = step * std::round(random.Uniform(-size, size) / step);
+      const double distance = random.Uniform(1.0, 6.0);
+      returns.push_back({.pixel = {u, v}, .range_m = distance, .distance_m = distance});
+    }
+    const SampleSpacing spacing{.across_px = 4.0, .down_px = 10.0};
+    EXPECT_EQ(HiddenReturns(returns, spacing), HiddenByDefinition(returns, {8.0, 20.0})) << trial;
+  }
+}
+
+TEST(HiddenReturns, AMillionInOneWindowTakeNoQuadraticTime) {
+  Random random(2);
+  std::vector<ProjectedReturn> returns;
+  for (int i = 0; i < 1'000'000; ++i) {
+    const double u = random.Uniform(0.0, 100.0);
+    const double v = random.Uniform(0.0, 100.0);
+    const double distance = random.Uniform(1.0, 6.0);
+    returns.push_back({.pixel = {u, v}, .range_m = distance, .distance_m = distance});
+  }
+  const std::vector<bool> hidden = HiddenReturns(returns, {.across_px = 50.0, .down_px = 50.0});
+  // Nearly all that are more than 0.3 m behind the nearest, but for the corners of the picture.
+  EXPECT_GT(std::ranges::count(hidden, true), 900'000);
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ void RotateLabels(CalibrationProblem& problem, int view, int board, int turns) {
 
 TEST(PairDiagnostics, ReportsNothingForGoodData) {
   const PairDiagnostics diagnostics = DiagnosePairs(CleanProblem(3));
-  EXPECT_FALSE(diagnostics.order);
+  EXPECT_FALSE(diagnostics.order.better);
+  EXPECT_THAT(diagnostics.order.rivals, testing::IsEmpty());
   EXPECT_FALSE(diagnostics.mirrored_rmse_m);
   EXPECT_THAT(diagnostics.edges, testing::IsEmpty());
 }
@@ -44,11 +45,11 @@ TEST(PairDiagnostics, FindsRotatedLabelsOfOneBoard) {
     CalibrationProblem problem = truth;
     RotateLabels(problem, 0, 1, turns);
     const PairDiagnostics diagnostics = DiagnosePairs(problem);
-    ASSERT_TRUE(diagnostics.order);
-    EXPECT_FALSE(diagnostics.order->boards_swapped);
-    EXPECT_EQ(diagnostics.order->moved.size(), 4U);
-    EXPECT_LT(diagnostics.order->rmse_reordered_m, 0.03);
-    const CalibrationProblem reordered = Reordered(problem, *diagnostics.order);
+    ASSERT_TRUE(diagnostics.order.better);
+    EXPECT_FALSE(diagnostics.order.better->boards_swapped);
+    EXPECT_EQ(diagnostics.order.better->moved.size(), 4U);
+    EXPECT_LT(diagnostics.order.better->rmse, 0.03);
+    const CalibrationProblem reordered = Reordered(problem, *diagnostics.order.better);
     for (std::size_t i = 0; i < truth.pairs_3d3d.size(); ++i) {
       EXPECT_EQ(reordered.pairs_3d3d[i].point_in_lidar, truth.pairs_3d3d[i].point_in_lidar);
     }
@@ -64,9 +65,9 @@ TEST(PairDiagnostics, FindsSwappedBoardsAndReversedOrders) {
     std::swap(pairs[i].point_in_lidar, pairs[i + 4].point_in_lidar);
   std::swap(pairs[9].point_in_lidar, pairs[11].point_in_lidar);
   const PairDiagnostics diagnostics = DiagnosePairs(problem);
-  ASSERT_TRUE(diagnostics.order);
-  EXPECT_TRUE(diagnostics.order->boards_swapped);
-  const CalibrationProblem reordered = Reordered(problem, *diagnostics.order);
+  ASSERT_TRUE(diagnostics.order.better);
+  EXPECT_TRUE(diagnostics.order.better->boards_swapped);
+  const CalibrationProblem reordered = Reordered(problem, *diagnostics.order.better);
   for (std::size_t i = 0; i < truth.pairs_3d3d.size(); ++i) {
     EXPECT_EQ(reordered.pairs_3d3d[i].point_in_lidar, truth.pairs_3d3d[i].point_in_lidar);
   }

@@ -64,7 +64,7 @@ TEST(Examples, ASessionIsCalibratedAndWritten) {
   ASSERT_EQ(run.exit_code, 0) << run.out << run.err;
   EXPECT_THAT(run.out, HasSubstr("view 003, board 0: kept"));
   EXPECT_THAT(run.out, HasSubstr("It rests on 4 boards in 4 of 4 views"));
-  EXPECT_THAT(run.err, HasSubstr("view 4 of 4"));
+  EXPECT_THAT(run.err, HasSubstr("views: 4 of 4"));
   const Expected<CalibrationResult> result = ReadCalibrationResult(written);
   ASSERT_TRUE(result) << result.error().message;
   // The camera stands 5 cm before, 10 cm left of and 8 cm below the LiDAR.

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <string>
+#include <string_view>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "eval/experiment/reproduction/judge_claim.h"
 #include "solvers/core/registry.h"
 
@@ -18,9 +19,8 @@ struct ReproduceSettings {
   std::filesystem::path out{"paper"};
   bool quick = false;
   int threads = 0;  ///< 0: one per hardware thread.
-  /// Called with the name of the experiment, trials done and trials to do.
-  std::function<void(const std::string&, std::uint64_t, std::uint64_t)> progress =
-      [](const std::string&, std::uint64_t, std::uint64_t) {};
+  /// A stage for each experiment, with its trials as steps.
+  ProgressCallback progress = [](std::string_view, std::size_t, std::size_t) {};
 };
 
 struct Reproduction {

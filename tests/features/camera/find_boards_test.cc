@@ -215,13 +215,19 @@ TEST(FindBoards, RefusesBoardsThatCannotBeDetected) {
   EXPECT_THAT(seen.error().message, HasSubstr("640 x 480"));
 }
 
+MissingTag Explain(const cv::Mat& image, const BoardTag& tag, const Camera* camera,
+                   const BoardPose* pose) {
+  TagTrials trials(image);
+  return ExplainMissing(trials, tag, camera, pose);
+}
+
 TEST(ExplainMissing, NamesTheCause) {
   const Board board = HollowBoard();
   const Rigid3d pose = HeldByACorner({0.0, 0.0, 1.5}, 0.2);
   const Photo photo = Photograph({board}, {pose}, 4);
   const BoardTag& tag = board.tags[0];
   const auto cause = [](const cv::Mat& image, const BoardTag& missing) {
-    return std::string(ToString(ExplainMissing(image, missing, nullptr, nullptr).cause));
+    return std::string(ToString(Explain(image, missing, nullptr, nullptr).cause));
   };
   cv::Mat changed;
   cv::flip(photo.image, changed, 1);
@@ -230,7 +236,7 @@ TEST(ExplainMissing, NamesTheCause) {
   EXPECT_THAT(cause(changed, tag), testing::AnyOf("blurred", "not_there"));
   BoardTag wrong = tag;
   wrong.family = "aruco_5x5_250";
-  const MissingTag other = ExplainMissing(photo.image, wrong, nullptr, nullptr);
+  const MissingTag other = Explain(photo.image, wrong, nullptr, nullptr);
   EXPECT_EQ(other.cause, MissingCause::kOtherFamily);
   EXPECT_THAT(other.text, HasSubstr("36h11: 3, 4, 5, 6"));
   EXPECT_EQ(cause(cv::Mat(200, 300, CV_8U, cv::Scalar(90)), tag), "not_there");
@@ -238,17 +244,16 @@ TEST(ExplainMissing, NamesTheCause) {
   // The board's pose predicts the position of the tag.
   const BoardPose known{.cam_from_board = pose};
   changed = cv::Mat(photo.image.size(), CV_8U, cv::Scalar(128));
-  EXPECT_EQ(ExplainMissing(changed, tag, &photo.camera, &known).cause, MissingCause::kCovered);
-  const MissingTag seen = ExplainMissing(photo.image, tag, &photo.camera, &known);
+  EXPECT_EQ(Explain(changed, tag, &photo.camera, &known).cause, MissingCause::kCovered);
+  const MissingTag seen = Explain(photo.image, tag, &photo.camera, &known);
   EXPECT_EQ(seen.cause, MissingCause::kOverlooked);
   EXPECT_THAT(seen.text, HasSubstr("36 of its 36 cells are read correctly"));
   BoardPose far = known;
   far.cam_from_board.translation.z() = 30.0;
-  EXPECT_EQ(ExplainMissing(photo.image, tag, &photo.camera, &far).cause, MissingCause::kTooSmall);
+  EXPECT_EQ(Explain(photo.image, tag, &photo.camera, &far).cause, MissingCause::kTooSmall);
   far = known;
   far.cam_from_board.translation.x() = 2.0;
-  EXPECT_EQ(ExplainMissing(photo.image, tag, &photo.camera, &far).cause,
-            MissingCause::kOutsideImage);
+  EXPECT_EQ(Explain(photo.image, tag, &photo.camera, &far).cause, MissingCause::kOutsideImage);
 }
 
 }  // namespace

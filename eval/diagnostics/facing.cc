@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/diagnostics/facing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/symmetric.h"
+
+namespace sextant {
+namespace {
+
+// The side of the group's plane on which a point is: 1 or -1; 0 where that is not clear.
+class GroupPlane {
+ public:
+  explicit GroupPlane(const std::vector<Eigen::Vector3d>& points) {
+    for (const Eigen::Vector3d& point : points) middle_ += point;
+    middle_ /= static_cast<double>(points.size());
+    Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+    for (const Eigen::Vector3d& point : points) {
+      scatter += (point - middle_) * (point - middle_).transpose();
+    }
+    const SymmetricEigen<3> eigen = EigenOf<3>(scatter / static_cast<double>(points.size()));
+    const Eigen::Vector3d extent = eigen.values.cwiseMax(0.0).cwiseSqrt();
+    normal_ = eigen.vectors.col(0);
+    constexpr double kMaxThickness = 0.15;
+    is_plane_ = extent[1] > 0.0 && extent[0] < kMaxThickness * extent[1];
+    margin_ = std::max(0.1 * extent[2], 3.0 * extent[0]);
+  }
+
+  int SideOf(const Eigen::Vector3d& point) const {
+    const double distance = normal_.dot(point - middle_);
+    if (!is_plane_ || std::abs(distance) < margin_) return 0;
+    return distance > 0.0 ? 1 : -1;
+  }
+
+ private:
+  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal_;
+  bool is_plane_ = false;
+  double margin_ = 0.0;
+};
+
+}  // namespace
+
+bool SensorsFaceEachOther(std::span<const std::vector<Eigen::Vector3d>> groups_in_lidar,
+                          const Rigid3d& cam_from_lidar) {
+  const Eigen::Vector3d camera_in_lidar = cam_from_lidar.Inverse().translation;
+  int between = 0;
+  int beside = 0;
+  for (const std::vector<Eigen::Vector3d>& points : groups_in_lidar) {
+    if (points.size() < 3) continue;
+    const GroupPlane plane(points);
+    const int sides = plane.SideOf(Eigen::Vector3d::Zero()) * plane.SideOf(camera_in_lidar);
+    if (sides < 0) ++between;
+    if (sides > 0) ++beside;
+  }
+  return between > beside;
+}
+
+}  // namespace sextant

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "eval/diagnostics/order_diagnostics.h"
+
+namespace sextant {
+namespace {
+
+std::string Rmse(double rmse, bool in_pixels) {
+  return in_pixels ? fmt::format("RMSE {:.3f} px", rmse) : fmt::format("RMSE {:.4f} m", rmse);
+}
+
+std::string RmseAsGiven(const OrderDiagnosis& order) {
+  if (!order.rmse_as_given) return "no pose fits as given";
+  return Rmse(*order.rmse_as_given, order.in_pixels) + " as given";
+}
+
+std::string Facing(const OrderDiagnosis& order) {
+  if (!order.faces_as_given) return "";
+  return ", with the sensors facing each other through the boards, as if one sensor lists corners "
+         "clockwise and the other counter-clockwise";
+}
+
+// The order itself where it is short enough to be read.
+std::string IndicesOf(const OrderFinding& order) {
+  constexpr std::size_t kMaxShown = 24;
+  if (order.lidar_index.size() > kMaxShown) return "";
+  return fmt::format(", LiDAR order [{}] (counted from 0)", fmt::join(order.lidar_index, ","));
+}
+
+std::string DescribeBetter(const OrderDiagnosis& order) {
+  const OrderFinding& better = *order.better;
+  return fmt::format(
+      "order: another order of the LiDAR's points{} fits {}: {}{}, {} with {} of {} pairs "
+      "changed{}; --reorder uses it",
+      better.boards_swapped ? " and boards" : "", order.faces_as_given ? "them" : "far better",
+      RmseAsGiven(order), Facing(order), Rmse(better.rmse, better.in_pixels), better.moved.size(),
+      better.lidar_index.size(), IndicesOf(better));
+}
+
+std::string DescribeRivals(const OrderDiagnosis& order) {
+  constexpr std::size_t kMaxListed = 4;
+  std::string text = fmt::format(
+      "order: {}{}; {} other orders of the LiDAR's points fit about equally well, so that none is "
+      "taken:",
+      RmseAsGiven(order), Facing(order), order.rivals.size());
+  for (std::size_t i = 0; i < order.rivals.size() && i < kMaxListed; ++i) {
+    const OrderFinding& rival = order.rivals[i];
+    text += fmt::format("{} {}{}", i == 0 ? "" : ";", Rmse(rival.rmse, rival.in_pixels),
+                        IndicesOf(rival));
+  }
+  return text + "; list the points of both sensors in the same order, or add points or a view";
+}
+
+}  // namespace
+
+std::vector<std::string> Describe(const OrderDiagnosis& order) {
+  if (order.better) return {DescribeBetter(order)};
+  if (!order.rivals.empty()) return {DescribeRivals(order)};
+  if (!order.faces_as_given) return {};
+  return {fmt::format("order: {}{}; no other order fits", RmseAsGiven(order), Facing(order))};
+}
+
+std::string DescribeReordering(const OrderDiagnosis& order) {
+  if (order.better) return "the order above was taken, because of --reorder";
+  if (!order.rivals.empty()) {
+    return "--reorder keeps the given order, because the data does not determine another one";
+  }
+  if (!order.not_searched.empty()) {
+    return "--reorder keeps the given order: " + order.not_searched;
+  }
+  return fmt::format("--reorder keeps the given order ({}): no other order fits twice as well",
+                     RmseAsGiven(order));
+}
+
+}  // namespace sextant

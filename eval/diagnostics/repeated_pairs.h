@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geometry/calibration_problem.h"
+
+namespace sextant {
+
+/// A pair with the LiDAR point of an earlier one. Indices into the pairs of the kind.
+struct RepeatedPair {
+  int first = 0;
+  int repeat = 0;
+  double apart = 0.0;  ///< Between the two camera observations [m or px].
+};
+
+/// Pairs that occur more than once.
+struct RepeatedPairs {
+  bool in_pixels = false;
+  std::vector<RepeatedPair> merged;         ///< They agree, so that they count once.
+  std::vector<RepeatedPair> contradictory;  ///< They cannot both be right; both remain.
+};
+
+/// Finds the pairs with exactly the LiDAR point of another pair and replaces those that agree by
+/// one pair with the mean of their camera observations, because one measurement listed several
+/// times would otherwise lower the covariance. Two observations contradict each other if they
+/// differ by more than a fiftieth of the RMS distance of all observations from their mean and,
+/// where the noise is stated, by more than 5 sigmas of their difference. `point_sets` are those of
+/// the remaining pairs. O(n log n). Returns what was found in the 3D-3D and in the 2D-3D pairs, if
+/// anything.
+std::vector<RepeatedPairs> MergeRepeatedPairs(CalibrationProblem& problem);
+
+/// One line each, with pairs counted from 1.
+std::vector<std::string> Describe(const RepeatedPairs& repeated);
+
+}  // namespace sextant

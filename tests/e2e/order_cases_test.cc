@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs in a wrong order, repeated or contradictory, as people sent them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "e2e/run_sextant.h"
+#include "support/real_data.h"
+
+namespace sextant::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::string Solve(const std::filesystem::path& file, const std::string& options) {
+  const ProgramRun run = RunSextant("solve " + file.string() + " " + options);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  return run.out;
+}
+
+TEST(OrderCases, ElevenPointsInAWrongOrder) {
+  SEXTANT_REAL_DATA(pairs, "../cases/eleven_in_wrong_order/pairs.csv");
+  EXPECT_THAT(Solve(pairs, "--solver kabsch"), HasSubstr("[0,6,8,2,9,4,5,7,10,3,1]"));
+  EXPECT_THAT(Solve(pairs, "--solver kabsch --reorder"), HasSubstr("order above was taken"));
+}
+
+TEST(OrderCases, BoardsThatContradictEachOtherInTheBestOrder) {
+  SEXTANT_REAL_DATA(points, "../cases/rival_orders/points.txt");
+  const std::string text = Solve(points, "--solver kabsch --reorder");
+  EXPECT_THAT(text, HasSubstr("[3,2,1,0,5,6,7,4]"));
+  EXPECT_THAT(text, HasSubstr("contradiction: the boards fit"));
+}
+
+TEST(OrderCases, RowsOfABoardMirrored) {
+  SEXTANT_REAL_DATA(pairs, "../cases/mirrored_rows/pairs.csv");
+  const std::string camera = " --camera " + (pairs.parent_path() / "camera.yaml").string();
+  const std::string text = Solve(pairs, "--solver 'refine(sqpnp)' --reorder" + camera);
+  EXPECT_THAT(text, HasSubstr("facing each other"));
+  EXPECT_THAT(text, HasSubstr("3.192 px"));
+}
+
+TEST(OrderCases, ABoardWhoseCornersRunTheOtherWay) {
+  SEXTANT_REAL_DATA(points, "../cases/points_txt_variants/one_board_reversed.txt");
+  EXPECT_THAT(Solve(points, "--solver kabsch"), HasSubstr("facing each other"));
+  const auto good = points.parent_path() / "good.txt";
+  EXPECT_THAT(Solve(good, "--solver kabsch"), Not(HasSubstr("facing each other")));
+  EXPECT_THAT(Solve(good, "--solver kabsch --reorder"),
+              HasSubstr("--reorder keeps the given order"));
+}
+
+TEST(OrderCases, TooManyPointsWithoutBoardsAreSaid) {
+  SEXTANT_REAL_DATA(pairs, "../cases/bad_line_92_pairs/pairs.csv");
+  const std::string camera = " --camera " + (pairs.parent_path() / "camera.yaml").string();
+  const std::string text = Solve(pairs, "--solver 'refine(sqpnp)' --reorder" + camera);
+  EXPECT_THAT(text, HasSubstr("at most 12 are examined"));
+  EXPECT_THAT(text, HasSubstr("have the same LiDAR point"));
+}
+
+// The text of an answer from its pose on, without the name of the file.
+std::string Sigmas(const std::string& text) {
+  const std::size_t begin = text.find("sigma");
+  return begin == std::string::npos ? text : text.substr(begin, 120);
+}
+
+TEST(OrderCases, RepeatedPairsDoNotLowerTheSigma) {
+  SEXTANT_REAL_DATA(repeated, "../cases/units_and_roles/v_duplicates.csv");
+  const auto unique = repeated.parent_path() / "v_duplicates_unique.csv";
+  const std::string text = Solve(repeated, "--solver kabsch");
+  EXPECT_THAT(text, HasSubstr("6 pairs repeat others"));
+  EXPECT_EQ(Sigmas(text), Sigmas(Solve(unique, "--solver kabsch")));
+}
+
+}  // namespace
+}  // namespace sextant::test

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/diagnostics/repeated_pairs.h"
+
+#include <gmock/gmock.h>
+
+#include "eval/diagnostics/facing.h"
+
+namespace sextant {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+CalibrationProblem PixelPairs() {
+  CalibrationProblem problem;
+  for (int i = 0; i < 6; ++i) {
+    problem.pairs_2d3d.push_back({.pixel = {100.0 * i, 40.0 * i * i},
+                                  .point_in_lidar = {0.3 * i, 2.0, 0.1 * i * i},
+                                  .sigma_px = 0.0,
+                                  .id = {.view = 0, .board = i, .corner = 0}});
+  }
+  return problem;
+}
+
+TEST(RepeatedPairs, CopiesCountOnce) {
+  CalibrationProblem problem = PixelPairs();
+  for (const int i : {0, 0, 4}) {
+    problem.pairs_2d3d.push_back(problem.pairs_2d3d[static_cast<std::size_t>(i)]);
+  }
+  const std::vector<RepeatedPairs> found = MergeRepeatedPairs(problem);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(found[0].in_pixels);
+  ASSERT_EQ(problem.pairs_2d3d.size(), 6U);
+  for (int i = 0; i < 6; ++i)
+    EXPECT_EQ(problem.pairs_2d3d[static_cast<std::size_t>(i)].id.board, i);
+  const std::vector<std::string> lines = Describe(found[0]);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_THAT(lines[0], HasSubstr("3 pairs repeat others"));
+  EXPECT_THAT(lines[0], HasSubstr("7 of 1, 8 of 1, 9 of 5"));
+}
+
+TEST(RepeatedPairs, ObservationsThatAgreeAreAveraged) {
+  CalibrationProblem problem = PixelPairs();
+  problem.pairs_2d3d.push_back(problem.pairs_2d3d[2]);
+  problem.pairs_2d3d.push_back(problem.pairs_2d3d[2]);
+  problem.pairs_2d3d[6].pixel.x() += 3.0;
+  problem.pairs_2d3d[7].pixel.x() += 1.5;
+  EXPECT_EQ(MergeRepeatedPairs(problem).at(0).merged.size(), 2U);
+  EXPECT_NEAR(problem.pairs_2d3d[2].pixel.x(), 201.5, 1e-12);
+}
+
+TEST(RepeatedPairs, ContradictionsAreNamedAndRemain) {
+  CalibrationProblem problem = PixelPairs();
+  problem.pairs_2d3d.push_back(problem.pairs_2d3d[1]);
+  problem.pairs_2d3d.back().pixel += Eigen::Vector2d(0.0, 300.0);
+  const std::vector<RepeatedPairs> found = MergeRepeatedPairs(problem);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(problem.pairs_2d3d.size(), 7U);
+  EXPECT_THAT(Describe(found[0]).at(0),
+              HasSubstr("pairs 2 and 7 have the same LiDAR point, but are 300 px apart"));
+  CalibrationProblem distinct = PixelPairs();
+  EXPECT_THAT(MergeRepeatedPairs(distinct), IsEmpty());
+}
+
+TEST(RepeatedPairs, PointsAreMergedInTheUnpairedSetsToo) {
+  CalibrationProblem problem;
+  for (int i = 0; i < 4; ++i) {
+    problem.pairs_3d3d.push_back({.point_in_cam = {0.5 * i, 0.2 * i * i, 2.0},
+                                  .point_in_lidar = {2.0, -0.5 * i, -0.2 * i * i},
+                                  .sigma_m = 0.01,
+                                  .covariance_in_cam = {},
+                                  .id = {}});
+  }
+  problem.pairs_3d3d.push_back(problem.pairs_3d3d[3]);
+  problem.pairs_3d3d.back().point_in_cam.z() += 0.02;
+  EXPECT_EQ(MergeRepeatedPairs(problem).at(0).merged.size(), 1U);
+  EXPECT_EQ(problem.pairs_3d3d.size(), 4U);
+  EXPECT_EQ(problem.point_sets.in_cam.size(), 4U);
+}
+
+TEST(Facing, TellsOppositeSidesOfABoardFromTheSame) {
+  const std::vector<Eigen::Vector3d> board = {
+      {3.0, 0.5, 0.5}, {3.0, -0.5, 0.5}, {3.0, -0.5, -0.5}, {3.0, 0.5, -0.5}};
+  const std::vector<std::vector<Eigen::Vector3d>> boards = {board};
+  const auto camera_at = [](double x) { return Rigid3d{{1.0, 0.0, 0.0, 0.0}, {-x, 0.0, 0.0}}; };
+  EXPECT_FALSE(SensorsFaceEachOther(boards, camera_at(0.2)));
+  EXPECT_TRUE(SensorsFaceEachOther(boards, camera_at(6.0)));
+  EXPECT_FALSE(SensorsFaceEachOther(boards, camera_at(3.01)));  // In the plane.
+  EXPECT_FALSE(SensorsFaceEachOther({}, camera_at(6.0)));
+}
+
+}  // namespace
+}  // namespace sextant
