@@ -6,7 +6,11 @@
 #include <chrono>
 #include <utility>
 
+#include "solvers/core/alternatives.h"
 #include "solvers/core/board_view_check.h"
+#include "solvers/core/local_frame.h"
+#include "solvers/core/plausible.h"
+#include "solvers/core/rivals.h"
 #include "solvers/core/subset.h"
 
 namespace sextant {
@@ -184,16 +188,36 @@ Expected<void> CheckProblem(const CalibrationProblem& problem, const SolverSpec&
   return ok;
 }
 
-Expected<SolveReport> Solver::Solve(const CalibrationProblem& problem) const {
-  const auto start = std::chrono::steady_clock::now();
-  SEXTANT_RETURN_IF_ERROR(CheckProblem(problem, spec_));
+Expected<Estimate> Solver::SolveWithAlternatives(const CalibrationProblem& problem) const {
   Expected<Estimate> estimate = DoSolve(problem);
-  const auto end = std::chrono::steady_clock::now();
-  if (!estimate) return tl::unexpected<Error>(std::move(estimate.error()));
+  if (!estimate) return estimate;
   if (!estimate->cam_from_lidar.IsFinite()) {
     return MakeError(ErrorCode::kNonFinite,
                      spec_.name + ": the arithmetic overflowed; are the coordinates in metres?");
   }
+  LikelyPoses likely = FindLikelyPoses(problem, spec_, *estimate);
+  std::size_t answer = likely.of_answer.value_or(likely.poses.size());
+  if (answer > 0 && !likely.poses.empty()) {
+    if (auto lowest = DoSolveFrom(problem, *estimate, likely.poses.front())) {
+      *estimate = *std::move(lowest);
+      answer = 0;
+    }
+  }
+  if (answer < likely.poses.size()) {
+    likely.poses.erase(likely.poses.begin() + static_cast<std::ptrdiff_t>(answer));
+  }
+  estimate->alternatives = std::move(likely.poses);
+  for (Rigid3d& rival : FindRivals(problem, spec_, *estimate)) {
+    estimate->alternatives.push_back(std::move(rival));
+  }
+  return estimate;
+}
+
+Expected<SolveReport> Solver::SolveLocalised(const CalibrationProblem& problem) const {
+  const auto start = std::chrono::steady_clock::now();
+  Expected<Estimate> estimate = SolveWithAlternatives(problem);
+  const auto end = std::chrono::steady_clock::now();
+  if (!estimate) return tl::unexpected<Error>(std::move(estimate.error()));
   SolveReport report;
   static_cast<Estimate&>(report) = std::move(*estimate);
   report.solver = spec_.name;
@@ -205,6 +229,16 @@ Expected<SolveReport> Solver::Solve(const CalibrationProblem& problem) const {
   } else {
     report.evaluation = Evaluate(problem, report.cam_from_lidar);
   }
+  SEXTANT_RETURN_IF_ERROR(CheckPlausible(problem, spec_, report));
+  return report;
+}
+
+Expected<SolveReport> Solver::Solve(const CalibrationProblem& problem) const {
+  SEXTANT_RETURN_IF_ERROR(CheckProblem(problem, spec_));
+  const std::optional<LocalFrame> frame = LocalFrame::For(problem, spec_.needs);
+  if (!frame) return SolveLocalised(problem);
+  Expected<SolveReport> report = SolveLocalised(frame->Localised(problem));
+  if (report) frame->Restore(*report);
   return report;
 }
 
