@@ -19,6 +19,7 @@
 namespace sextant {
 namespace {
 
+constexpr int kMinSamples = 8;
 constexpr int kMaxSamples = 64;
 constexpr std::size_t kSampleSize = 3;
 constexpr int kMaxRefits = 3;
@@ -155,6 +156,8 @@ struct Consensus {
 
 Consensus SearchAmong(const std::vector<int>& among, const Pairs& pairs, double max_squared,
                       int samples) {
+  // Poses of three pairs carry their noise, so that the others are further off than in the end.
+  constexpr double kWidening = 4.0;
   Random random(1);
   Consensus best;
   Sample sample{};
@@ -162,16 +165,14 @@ Consensus SearchAmong(const std::vector<int>& among, const Pairs& pairs, double 
     random.Sample(static_cast<int>(among.size()), sample);
     for (int& index : sample) index = among[static_cast<std::size_t>(index)];
     for (const Rigid3d& pose : pairs.PosesOf(sample)) {
-      std::vector<int> agreeing = pairs.Agreeing(among, pose, max_squared);
+      std::vector<int> agreeing = pairs.Agreeing(among, pose, kWidening * max_squared);
       if (agreeing.size() > best.agreeing.size()) best = {pose, std::move(agreeing)};
     }
   }
   for (int refit = 0; refit < kMaxRefits && best.agreeing.size() > kSampleSize; ++refit) {
     const std::optional<Rigid3d> pose = pairs.LeastSquares(best.agreeing, best.pose);
     if (!pose) break;
-    std::vector<int> agreeing = pairs.Agreeing(among, *pose, max_squared);
-    if (agreeing.size() < best.agreeing.size()) break;
-    best = {*pose, std::move(agreeing)};
+    best = {*pose, pairs.Agreeing(among, *pose, max_squared)};
   }
   return best;
 }
@@ -202,7 +203,7 @@ std::vector<Rigid3d> FindRivals(const CalibrationProblem& problem, const SolverS
   constexpr double kRounding = 1e-12;
   const double max_squared = 4.0 * largest + kRounding;
   const Consensus rival = SearchAmong(OthersOf(answer.inliers, count), pairs, max_squared,
-                                      static_cast<int>(samples));
+                                      std::max(kMinSamples, static_cast<int>(samples)));
   constexpr double kMaxChance = 0.01;
   if (rival.agreeing.size() < wanted ||
       ChanceOf(kind, rival.agreeing.size(), count - used, pairs.ChanceOfOne(max_squared)) >
