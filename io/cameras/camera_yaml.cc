@@ -25,9 +25,19 @@ const YamlNode* FindAny(const YamlNode& map, std::initializer_list<std::string_v
 
 // A list of numbers, or a matrix {rows, cols, data}.
 std::vector<double> ReadNumbers(YamlFields& in, const YamlNode& node, std::string_view name) {
-  constexpr std::size_t kMax = 14;
+  constexpr std::size_t kMax = kMaxDistortion;
   const bool is_matrix = node.kind == YamlNode::Kind::kMap;
   return in.RealList(is_matrix ? in.Require(node, "data") : node, name, kMax);
+}
+
+// A number, or a matrix of one; 0 if absent.
+double ReadNumber(YamlFields& in, const YamlNode& root, std::string_view key) {
+  const YamlNode* node = root.Find(key);
+  if (node == nullptr) return 0.0;
+  if (node->kind != YamlNode::Kind::kMap) return in.Real(*node, key);
+  const std::vector<double> numbers = ReadNumbers(in, *node, key);
+  if (in.ok() && numbers.size() != 1) in.Fail(node->line, key, "expected one number");
+  return numbers.size() == 1 ? numbers.front() : 0.0;
 }
 
 int ReadSize(YamlFields& in, const YamlNode& root, std::string_view key, std::string_view other) {
@@ -88,6 +98,8 @@ Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file)
   parts.height_px = ReadSize(in, root, "height", "image_height");
   std::string model;
   if (root.Find("distortion_model") != nullptr) model = in.TextAt(root, "distortion_model");
+  parts.xi = ReadNumber(in, root, "xi");
+  parts.alpha = ReadNumber(in, root, "alpha");
   if (!in.ok()) return in.TakeError();
   parts.distortion = distortion;
   parts.model = model;
