@@ -128,7 +128,8 @@ class Solver {
   }
 
   Expected<Estimate> SolveWithAlternatives(const CalibrationProblem& problem) const;
-  Expected<SolveReport> SolveLocalised(const CalibrationProblem& problem) const;
+  Expected<SolveReport> SolveAndEvaluate(const CalibrationProblem& problem) const;
+  Expected<SolveReport> SolveSeenPairs(const CalibrationProblem& problem) const;
 
   SolverSpec spec_;
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "geometry/lens_domain.h"
 #include "geometry/so3.h"
 
 namespace sextant {
@@ -48,8 +49,9 @@ Expected<PnpView> MakeView(const Camera& camera, std::span<const Pair2d3d> pairs
     if (!ray) {
       return MakeError(ErrorCode::kInvalidInput,
                        fmt::format("2D-3D pair {} of {}: no ray of the camera model meets pixel "
-                                   "({:g}, {:g}); check the pixel and the distortion",
-                                   i + 1, pairs.size(), pairs[i].pixel.x(), pairs[i].pixel.y()));
+                                   "({:g}, {:g}): {}; check the pixel and the distortion",
+                                   i + 1, pairs.size(), pairs[i].pixel.x(), pairs[i].pixel.y(),
+                                   DomainText(camera)));
     }
     rays[i] = *ray;
     view.points[i] = pairs[i].point_in_lidar;

@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "geometry/lens_domain.h"
 #include "geometry/symmetric.h"
 #include "solvers/core/registry.h"
 #include "solvers/least_squares/refine_pose.h"
@@ -110,6 +111,7 @@ class RefineSolver final : public Solver {
   Expected<Estimate> RefineFrom(const CalibrationProblem& problem, const Estimate& start) const {
     const UsedPairs used = Choose(problem, start);
     const PairTerms terms = TermsOf(problem, used);
+    SEXTANT_RETURN_IF_ERROR(CheckProjects(problem, used, start.cam_from_lidar));
     Expected<Estimate> estimate = options_.intrinsics == 0U
                                       ? PoseOf(terms, start.cam_from_lidar)
                                       : PoseAndCameraOf(terms, start.cam_from_lidar);
@@ -151,6 +153,24 @@ class RefineSolver final : public Solver {
     estimate->inliers = AllOf(terms.size());
     estimate->stages.push_back({inner_->spec().name, *start, 0, wall_time.count()});
     return *std::move(estimate);
+  }
+
+  // Names the first pixel whose point does not project at the start.
+  Expected<void> CheckProjects(const CalibrationProblem& problem, const UsedPairs& used,
+                               const Rigid3d& start) const {
+    if (!Uses2d3d(options_.on)) return {};
+    for (const int i : used.pixels) {
+      const Eigen::Vector3d in_cam =
+          start * problem.pairs_2d3d[static_cast<std::size_t>(i)].point_in_lidar;
+      if (Project(*problem.camera, in_cam)) continue;
+      return MakeError(
+          ErrorCode::kNoConvergence,
+          fmt::format("at the answer of '{}' the point of pair {} of {} does not project into the "
+                      "image: {}; check this pair, wrap it in ransac or give a better start",
+                      inner_->spec().name, i + 1, problem.pairs_2d3d.size(),
+                      WhyNotProjected(*problem.camera, in_cam)));
+    }
+    return {};
   }
 
   // The sum of squared residuals [px^2], to the accuracy with which the sigmas are alike.
