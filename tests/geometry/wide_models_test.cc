@@ -67,7 +67,9 @@ TEST(WideModels, UnprojectInvertsProjectOverTheWholeDomain) {
       EXPECT_NEAR(back->norm(), 1.0, 1e-14);
       // Where the image hardly grows any more, the pixel tells less of the ray.
       EXPECT_LT((*Project(camera, *back) - *pixel).norm(), 1e-9);
-      if (from_axis < 0.9 * end) EXPECT_LT((*back - ray).norm(), 1e-11);
+      if (from_axis < 0.9 * end) {
+        EXPECT_LT((*back - ray).norm(), 1e-11);
+      }
     }
     EXPECT_FALSE(Project(camera, RayAt(std::min(1.001 * end, std::numbers::pi), 0.3)));
   }
