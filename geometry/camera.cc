@@ -17,8 +17,7 @@ namespace {
 bool IsFinite(const Camera& camera) {
   return std::isfinite(camera.fx_px) && std::isfinite(camera.fy_px) &&
          std::isfinite(camera.cx_px) && std::isfinite(camera.cy_px) &&
-         std::isfinite(camera.skew_px) && std::isfinite(camera.xi) &&
-         std::isfinite(camera.alpha) &&
+         std::isfinite(camera.skew_px) && std::isfinite(camera.xi) && std::isfinite(camera.alpha) &&
          std::all_of(camera.distortion.begin(), camera.distortion.end(),
                      [](double k) { return std::isfinite(k); });
 }
@@ -40,8 +39,8 @@ Eigen::Vector2d PixelOf(const Camera& camera, const Eigen::Vector2d& image) {
 
 // The numbers that are not the distortion's.
 Expected<void> CheckShape(const Camera& camera) {
-  const bool has_xi = camera.model == CameraModel::kOmnidirectional ||
-                      camera.model == CameraModel::kDoubleSphere;
+  const bool has_xi =
+      camera.model == CameraModel::kOmnidirectional || camera.model == CameraModel::kDoubleSphere;
   const bool has_alpha = camera.model == CameraModel::kDoubleSphere;
   const double least_xi = has_alpha ? -1.0 : 0.0;
   if (has_xi ? !(camera.xi >= least_xi && (!has_alpha || camera.xi > -1.0)) : camera.xi != 0.0) {

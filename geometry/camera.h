@@ -10,10 +10,10 @@
 namespace sextant {
 
 enum class CameraModel {
-  kPinhole,          ///< No distortion and no skew.
-  kBrownConrady,     ///< k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tau_x tau_y (OpenCV's order): rational
-                     ///< where k4..k6 are set, with a thin prism (s) and a tilted sensor (tau [rad]).
-  kEquidistant,      ///< Fisheye, k1 k2 k3 k4 (Kannala and Brandt 2006, OpenCV's `fisheye`).
+  kPinhole,       ///< No distortion and no skew.
+  kBrownConrady,  ///< k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tau_x tau_y (OpenCV's order): rational
+                  ///< where k4..k6 are set, with a thin prism (s) and a tilted sensor (tau [rad]).
+  kEquidistant,   ///< Fisheye, k1 k2 k3 k4 (Kannala and Brandt 2006, OpenCV's `fisheye`).
   kOmnidirectional,  ///< Unified model (Mei and Rives 2007): xi, then k1 k2 p1 p2 k3.
   kDoubleSphere,     ///< xi and alpha (Usenko, Demmel and Cremers 2018); no distortion.
 };

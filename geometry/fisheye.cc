@@ -63,8 +63,8 @@ std::optional<LensImage> ProjectFisheye(const Camera& camera, const Eigen::Vecto
   const double across = angle->value / radius;
   LensImage image;
   image.point = angle->value * outward;
-  const Eigen::Matrix2d by_xy = across * Eigen::Matrix2d::Identity() +
-                                (along * z - across) * outward * outward.transpose();
+  const Eigen::Matrix2d by_xy =
+      across * Eigen::Matrix2d::Identity() + (along * z - across) * outward * outward.transpose();
   image.by_point << by_xy, -along * radius * outward;
   return image;
 }

@@ -54,9 +54,10 @@ std::string PlaneText(const Camera& camera) {
   if (end >= kMaxRadius) return "the model has no limit but the plane of the camera";
   constexpr double kBeyond = 1.05;
   if (const double pole = PoleRadius(camera); pole < std::min(kBeyond * end, kMaxRadius)) {
-    return fmt::format("the rational distortion has a pole at r = {:.4g}, {:.1f} deg from the "
-                       "axis, where 1 + k4 r^2 + k5 r^4 + k6 r^6 is 0",
-                       pole, std::atan(pole) * kDegPerRad);
+    return fmt::format(
+        "the rational distortion has a pole at r = {:.4g}, {:.1f} deg from the "
+        "axis, where 1 + k4 r^2 + k5 r^4 + k6 r^6 is 0",
+        pole, std::atan(pole) * kDegPerRad);
   }
   return fmt::format("the distortion folds the image at r = {:.4g}, {:.1f} deg from the axis", end,
                      DomainEnd(camera) * kDegPerRad);
@@ -107,9 +108,9 @@ double DomainEnd(const Camera& camera) {
 }
 
 std::string DomainText(const Camera& camera) {
-  const bool of_plane = camera.model == CameraModel::kBrownConrady ||
-                        (camera.model == CameraModel::kOmnidirectional &&
-                         PlaneEnd(camera) < kMaxRadius);
+  const bool of_plane =
+      camera.model == CameraModel::kBrownConrady ||
+      (camera.model == CameraModel::kOmnidirectional && PlaneEnd(camera) < kMaxRadius);
   if (of_plane) return PlaneText(camera);
   const char* what = camera.model == CameraModel::kEquidistant ? "the fisheye's polynomial grows"
                                                                : "the model projects";

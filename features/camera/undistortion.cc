@@ -20,8 +20,8 @@ std::optional<Undistortion::Point> Undistortion::Undistort(const Eigen::Vector2d
   const std::optional<Distorted> distorted = sextant::Distort(*camera_, undistorted);
   if (!distorted) return std::nullopt;
   return Point{.straight_px = pixel_by_image * undistorted + centre,
-               .straight_by_pixel = pixel_by_image * distorted->by_undistorted.inverse() *
-                                    pixel_by_image.inverse()};
+               .straight_by_pixel =
+                   pixel_by_image * distorted->by_undistorted.inverse() * pixel_by_image.inverse()};
 }
 
 std::optional<Undistortion::Point> Undistortion::UndistortNear(const Eigen::Vector2d& pixel,
@@ -55,9 +55,9 @@ std::optional<Undistortion::DistortedPoint> Undistortion::Distort(
   const std::optional<Distorted> distorted =
       sextant::Distort(*camera_, image_by_pixel * (straight_px - centre));
   if (!distorted) return std::nullopt;
-  return DistortedPoint{.pixel = pixel_by_image * distorted->point + centre,
-                        .pixel_by_straight =
-                            pixel_by_image * distorted->by_undistorted * image_by_pixel};
+  return DistortedPoint{
+      .pixel = pixel_by_image * distorted->point + centre,
+      .pixel_by_straight = pixel_by_image * distorted->by_undistorted * image_by_pixel};
 }
 
 }  // namespace sextant

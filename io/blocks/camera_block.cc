@@ -15,8 +15,8 @@ namespace sextant {
 namespace {
 
 // In the order of CameraModel.
-constexpr std::array<std::string_view, 5> kModelNames = {
-    "pinhole", "brown_conrady", "equidistant", "omnidirectional", "double_sphere"};
+constexpr std::array<std::string_view, 5> kModelNames = {"pinhole", "brown_conrady", "equidistant",
+                                                         "omnidirectional", "double_sphere"};
 
 }  // namespace
 
@@ -31,9 +31,9 @@ std::optional<CameraModel> CameraModelNamed(std::string_view name) {
 }
 
 Camera ReadCameraBlock(YamlFields& in, const YamlNode& node) {
-  static const std::vector<std::string> kKeys = {"model", "width_px", "height_px", "fx_px",
-                                                 "fy_px", "cx_px",    "cy_px",     "distortion",
-                                                 "skew_px", "xi", "alpha"};
+  static const std::vector<std::string> kKeys = {"model",   "width_px", "height_px", "fx_px",
+                                                 "fy_px",   "cx_px",    "cy_px",     "distortion",
+                                                 "skew_px", "xi",       "alpha"};
   Camera camera;
   if (!in.IsMap(node, "camera", kKeys)) return camera;
   const std::string model = in.TextAt(node, "model");

@@ -19,7 +19,8 @@ void WriteMatrix(YamlText& out, const char* key, int rows, int columns,
 }  // namespace
 
 std::string FormatCameraInfo(const Camera& camera, const std::string& name) {
-  const double k[] = {camera.fx_px, camera.skew_px, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0, 1};
+  const double k[] = {
+      camera.fx_px, camera.skew_px, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0, 1};
   const double identity[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const double projection[] = {
       camera.fx_px, camera.skew_px, camera.cx_px, 0, 0, camera.fy_px, camera.cy_px, 0, 0, 0, 1, 0};

@@ -41,8 +41,7 @@ std::string OpenCvCamera(const Camera& camera) {
   const bool fisheye = camera.model == CameraModel::kEquidistant;
   const std::span<const double> written = WrittenDistortion(camera);
   const auto count = fisheye ? 4 : static_cast<Eigen::Index>(written.size());
-  const Eigen::RowVectorXd distortion =
-      Eigen::Map<const Eigen::RowVectorXd>(written.data(), count);
+  const Eigen::RowVectorXd distortion = Eigen::Map<const Eigen::RowVectorXd>(written.data(), count);
   return fmt::format("image_width: {}\nimage_height: {}\ndistortion_model: \"{}\"\n",
                      camera.width_px, camera.height_px,
                      fisheye ? "fisheye" : "plumb_bob_or_rational") +

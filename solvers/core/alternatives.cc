@@ -105,8 +105,8 @@ class Minima {
   void SearchFrom(const Rigid3d& start, bool of_answer) {
     constexpr RefineLimits kLimits = {.max_iterations = 100, .step_tolerance = 1e-10};
     const RefinedPose refined = RefinePose(terms_.View(), start, kLimits);
-    const bool settled = refined.outcome == RefineOutcome::kConverged ||
-                         refined.outcome == RefineOutcome::kStalled;
+    const bool settled =
+        refined.outcome == RefineOutcome::kConverged || refined.outcome == RefineOutcome::kStalled;
     if (!settled || !refined.cam_from_lidar.IsFinite()) return;
     const Minimum minimum = {refined.cam_from_lidar, 2.0 * refined.cost, of_answer};
     for (const Minimum& other : found_) {

@@ -30,8 +30,8 @@ class Cloud {
   bool IsOrdinary() const {
     if (size_ == 0) return true;
     const Eigen::Vector3d& first = get_(0);
-    const double extent2 = std::max((get_(size_ / 2) - first).squaredNorm(),
-                                    (get_(size_ - 1) - first).squaredNorm());
+    const double extent2 =
+        std::max((get_(size_ / 2) - first).squaredNorm(), (get_(size_ - 1) - first).squaredNorm());
     return first.squaredNorm() < 0.25 * kMaxOffset * kMaxOffset * extent2 &&
            extent2 > 4.0 * kMinExtent_m * kMinExtent_m &&
            extent2 < 0.25 * kMaxExtent_m * kMaxExtent_m;
@@ -127,8 +127,7 @@ std::string FarOriginNote(const Eigen::Vector3d& centre, const Estimate& local, 
   return fmt::format(
       "{}; the sigma of the translation is that of this far origin, which the rotation's error "
       "moves; at the centre of the points it is {:.3g} {:.3g} {:.3g} mm",
-      where, unit_m * sigma[3] * kMmPerM, unit_m * sigma[4] * kMmPerM,
-      unit_m * sigma[5] * kMmPerM);
+      where, unit_m * sigma[3] * kMmPerM, unit_m * sigma[4] * kMmPerM, unit_m * sigma[5] * kMmPerM);
 }
 
 }  // namespace

@@ -189,7 +189,8 @@ std::vector<Rigid3d> FindRivals(const CalibrationProblem& problem, const SolverS
       kind == PairKind::k3d3d ? problem.pairs_3d3d.size() : problem.pairs_2d3d.size();
   const std::size_t used = answer.inliers.size();
   const auto wanted = std::max<std::size_t>(
-      kSampleSize + 1, static_cast<std::size_t>(std::ceil(kRivalShare * static_cast<double>(used))));
+      kSampleSize + 1,
+      static_cast<std::size_t>(std::ceil(kRivalShare * static_cast<double>(used))));
   if (used == 0 || count < used + wanted) return {};
   const double samples = SamplesFor(count - used, wanted);
   if (samples > kMaxSamples) return {};

@@ -145,8 +145,7 @@ class P3pSolver final : public Solver {
       Append(SolveTriple(problem, triple), steady);
       if (!steady.empty()) poses = {Best(problem, steady)};
     }
-    if (Expected<void> ok =
-            CheckExplained(*problem.camera, problem.pairs_2d3d, poses.front());
+    if (Expected<void> ok = CheckExplained(*problem.camera, problem.pairs_2d3d, poses.front());
         !ok) {
       return MakeError(ok.error().code, spec().name + ": " + ok.error().message);
     }

@@ -159,7 +159,8 @@ TEST_P(SolverContract, AnswerMovesWithTheLidarFrame) {
   ExpectSamePose(there->cam_from_lidar * other_from_lidar, here->cam_from_lidar, 1e-5);
 }
 
-// Georeferenced points: a double resolves 2e-9 m at 1e7 m. Raw views have their rays from the LiDAR.
+// Georeferenced points: a double resolves 2e-9 m at 1e7 m. Raw views have their rays from the
+// LiDAR.
 TEST_P(SolverContract, AnswerDoesNotDependOnTheDistanceOfTheLidarsOrigin) {
   if (spec().needs.board_views > 0) return;
   Random random(14);

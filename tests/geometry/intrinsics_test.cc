@@ -11,8 +11,8 @@ namespace {
 Camera CameraOf(CameraModel model) {
   Camera camera{.model = model, .fx_px = 700.0, .fy_px = 690.0, .cx_px = 640.0, .cy_px = 360.0};
   if (model == CameraModel::kBrownConrady) {
-    camera.distortion = {-0.1, 0.02, 1e-3, -2e-3, 0.003, 0.02, 0.01, 0.004,
-                         1e-3, -1e-3, 2e-3, 1e-3, 0.02, -0.03};
+    camera.distortion = {-0.1,  0.02, 1e-3,  -2e-3, 0.003, 0.02, 0.01,
+                         0.004, 1e-3, -1e-3, 2e-3,  1e-3,  0.02, -0.03};
     camera.skew_px = 3.0;
   }
   if (model == CameraModel::kOmnidirectional) {

@@ -134,7 +134,6 @@ TEST(WideModels, ValuesAtNinetyDegrees) {
               320.0 + 100.0 * std::numbers::pi, 1e-11);
 }
 
-
 TEST(ThinPrismAndTilt, AnUprightSensorWithoutPrismIsAsBefore) {
   Camera camera = WideCamera(CameraModel::kBrownConrady);
   camera.distortion = {-0.1, 0.02, 1e-3, -1e-3, 0.0, 0.01};
@@ -158,7 +157,7 @@ TEST(ThinPrismAndTilt, TiltAboutXIsThatOfItsDefinition) {
 
 TEST(LensDomain, NamesThePoleOfARationalDistortion) {
   Camera camera = WideCamera(CameraModel::kBrownConrady);
-  camera.distortion = {2.9972164630889893,    -6.0928826332092285, 0.0005746248061768711,
+  camera.distortion = {2.9972164630889893,     -6.0928826332092285, 0.0005746248061768711,
                        -4.857033854932524e-05, -1.2618762254714966, 3.5340938568115234,
                        -4.270793914794922,     -5.302351951599121};
   EXPECT_THAT(DomainText(camera), HasSubstr("pole at r = 0.8088"));

@@ -77,16 +77,15 @@ CalibrationProblem TinyFocalLength() {
 }
 
 CalibrationProblem TiltedBoard() {
-  return ProblemOf(
-      800.0, 800.0, 640.0, 360.0,
-      {{690.6633370680253, 244.03336143664717, 0.10649643532668149, -1.873894449117018,
-        0.09086554941995519},
-       {930.909225651966, 342.9423260379773, -0.12001528647798475, -1.4787179319863037,
-        0.4814138309339367},
-       {802.8617010727826, 564.4527117515029, -0.507689355044133, -1.4751405695251525,
-        0.25294935002018293},
-       {590.2811372813518, 417.97598805386417, -0.2811776332394669, -1.8703170866558665,
-        -0.13759893149379865}});
+  return ProblemOf(800.0, 800.0, 640.0, 360.0,
+                   {{690.6633370680253, 244.03336143664717, 0.10649643532668149, -1.873894449117018,
+                     0.09086554941995519},
+                    {930.909225651966, 342.9423260379773, -0.12001528647798475, -1.4787179319863037,
+                     0.4814138309339367},
+                    {802.8617010727826, 564.4527117515029, -0.507689355044133, -1.4751405695251525,
+                     0.25294935002018293},
+                    {590.2811372813518, 417.97598805386417, -0.2811776332394669,
+                     -1.8703170866558665, -0.13759893149379865}});
 }
 
 CalibrationProblem MirroredFive() {
@@ -202,7 +201,8 @@ TEST(OnePose, HasNoAlternativeThatFitsFarWorse) {
 }
 
 TEST(NoPose, IsRefusedByEverySolverForTheSameReason) {
-  for (const char* spec : {"sqpnp", "epnp", "p3p", "refine(epnp)", "refine(p3p)", "average(epnp)"}) {
+  for (const char* spec :
+       {"sqpnp", "epnp", "p3p", "refine(epnp)", "refine(p3p)", "average(epnp)"}) {
     const Expected<SolveReport> mirrored = test::MakeSolver(spec)->Solve(MirroredFive());
     ASSERT_FALSE(mirrored) << spec;
     EXPECT_EQ(mirrored.error().code, ErrorCode::kMirrored) << spec;
