@@ -1,75 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/distortion.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "geometry/lens.h"
+#include "geometry/positive_polynomial.h"
 
 namespace sextant {
 namespace {
 
-// Coefficients from the constant up.
-template <std::size_t kTerms>
-using Polynomial = std::array<double, kTerms>;
-
-template <std::size_t kTerms>
-double Value(const Polynomial<kTerms>& p, double x) {
-  double sum = 0.0;
-  for (std::size_t i = kTerms; i-- > 0;) sum = sum * x + p[i];
-  return sum;
-}
-
-template <std::size_t kTerms>
-double Slope(const Polynomial<kTerms>& p, double x) {
-  double sum = 0.0;
-  for (std::size_t i = kTerms; i-- > 1;) sum = sum * x + static_cast<double>(i) * p[i];
-  return sum;
-}
-
-// A polynomial lies between the smallest and the largest of its Bernstein coefficients, which
-// converge to it as the interval is halved. Undecided after 30 halvings means that it touches zero.
-constexpr int kMaxHalvings = 30;
-
-template <std::size_t kTerms>
-bool IsPositiveByHalving(Polynomial<kTerms> bernstein, int halvings) {
-  if (!(bernstein.front() > 0.0 && bernstein.back() > 0.0)) return false;
-  if (*std::min_element(bernstein.begin(), bernstein.end()) > 0.0) return true;
-  if (halvings == 0) return false;
-  Polynomial<kTerms> left;
-  for (std::size_t level = 0; level < kTerms; ++level) {
-    left[level] = bernstein[0];
-    for (std::size_t i = 0; i + level + 1 < kTerms; ++i) {
-      bernstein[i] = 0.5 * (bernstein[i] + bernstein[i + 1]);
-    }
-  }
-  return IsPositiveByHalving(left, halvings - 1) && IsPositiveByHalving(bernstein, halvings - 1);
-}
-
-// Whether p > 0 on all of [0, end]. Allocates nothing and needs no root search, so that the
-// domain of a camera is checked without a cache besides its coefficients.
-template <std::size_t kTerms>
-bool IsPositiveUpTo(const Polynomial<kTerms>& p, double end) {
-  Polynomial<kTerms> scaled;
-  double power = 1.0;
-  double lower_bound = p[0];
-  for (std::size_t i = 0; i < kTerms; ++i) {
-    scaled[i] = p[i] * power;
-    if (i > 0) lower_bound += std::min(0.0, scaled[i]);
-    power *= end;
-  }
-  if (lower_bound > 0.0) return true;
-  // Bernstein coefficient i is sum_j C(i, j) / C(degree, j) scaled_j.
-  Polynomial<kTerms> bernstein{};
-  for (std::size_t i = 0; i < kTerms; ++i) {
-    double ratio = 1.0;
-    for (std::size_t j = 0; j <= i; ++j) {
-      bernstein[i] += ratio * scaled[j];
-      if (j < i) ratio *= static_cast<double>(i - j) / static_cast<double>(kTerms - 1 - j);
-    }
-  }
-  return IsPositiveByHalving(bernstein, kMaxHalvings);
-}
+// No lens magnifies its border ten times as much as its centre.
+constexpr double kMaxRationalSlope = 10.0;
 
 struct RadialTerms {
   Polynomial<4> numerator;
@@ -77,7 +20,7 @@ struct RadialTerms {
 };
 
 RadialTerms BrownTerms(const Camera& camera) {
-  const std::array<double, 8>& k = camera.distortion;
+  const auto& k = camera.distortion;
   return {{1.0, k[0], k[1], k[4]}, {1.0, k[5], k[6], k[7]}};
 }
 
@@ -92,17 +35,13 @@ bool BrownGrowsUpTo(const RadialTerms& terms, double s) {
       slope[i + j] += (grown[i] - 2.0 * static_cast<double>(j) * n[i]) * d[j];
     }
   }
-  return IsPositiveUpTo(d, s) && IsPositiveUpTo(slope, s);
-}
-
-Polynomial<5> EquidistantTerms(const Camera& camera) {
-  const std::array<double, 8>& k = camera.distortion;
-  return {1.0, k[0], k[1], k[2], k[3]};
-}
-
-bool EquidistantGrowsUpTo(const Polynomial<5>& p, double theta) {
-  const Polynomial<5> slope = {1.0, 3.0 * p[1], 5.0 * p[2], 7.0 * p[3], 9.0 * p[4]};
-  return IsPositiveUpTo(slope, theta * theta);
+  // Close to a pole, where D falls to 0 before N does, the image runs away.
+  Polynomial<7> below_limit{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) below_limit[i + j] += kMaxRationalSlope * d[i] * d[j];
+  }
+  for (std::size_t i = 0; i < 7; ++i) below_limit[i] -= slope[i];
+  return IsPositiveUpTo(d, s) && IsPositiveUpTo(slope, s) && IsPositiveUpTo(below_limit, s);
 }
 
 // c and dc/ds of the header.
@@ -119,31 +58,59 @@ std::optional<RadialFactor> BrownFactor(const Camera& camera, double s) {
   return RadialFactor{c, (Slope(terms.numerator, s) - c * Slope(terms.denominator, s)) * inverse};
 }
 
-std::optional<RadialFactor> EquidistantFactor(const Camera& camera, double s) {
-  // Here the next term of the series is under 1e-16.
-  constexpr double kOnAxis = 1e-16;
-  if (s < kOnAxis) return RadialFactor{1.0, camera.distortion[0] - 1.0 / 3.0};
-  const double r = std::sqrt(s);
-  const std::optional<DistortedAngle> theta = DistortAngle(camera, std::atan(r));
-  if (!theta) return std::nullopt;
-  const double c = theta->value / r;
-  return RadialFactor{c, 0.5 * (theta->slope / (1.0 + s) - c) / s};
+void AddPrism(const Camera& camera, const Eigen::Vector2d& m, Distorted& image) {
+  const double* prism = camera.distortion.data() + 8;
+  const double s = m.squaredNorm();
+  const Eigen::Vector2d by_square(prism[0] + 2.0 * s * prism[1], prism[2] + 2.0 * s * prism[3]);
+  image.point += Eigen::Vector2d(s * (prism[0] + s * prism[1]), s * (prism[2] + s * prism[3]));
+  image.by_undistorted += 2.0 * by_square * m.transpose();
+}
+
+void Tilt(const Camera& camera, Distorted& image) {
+  const Eigen::Matrix3d h = TiltHomography(camera.distortion[12], camera.distortion[13]);
+  const Eigen::Vector3d tilted = h * image.point.homogeneous();
+  image.point = tilted.hnormalized();
+  const Eigen::Matrix2d by_point =
+      (h.topLeftCorner<2, 2>() - image.point * h.bottomLeftCorner<1, 2>()) / tilted.z();
+  image.by_undistorted = by_point * image.by_undistorted;
+  // A point that the tilt puts behind the sensor has no image.
+  if (!(tilted.z() > 0.0)) image.by_undistorted.setZero();
+}
+
+bool HasPrism(const Camera& camera) {
+  const auto& k = camera.distortion;
+  return k[8] != 0.0 || k[9] != 0.0 || k[10] != 0.0 || k[11] != 0.0;
+}
+
+bool IsTilted(const Camera& camera) {
+  return camera.distortion[12] != 0.0 || camera.distortion[13] != 0.0;
 }
 
 }  // namespace
 
-std::optional<Distorted> Distort(const Camera& camera, const Eigen::Vector2d& undistorted) {
-  if (camera.model == CameraModel::kPinhole) {
-    return Distorted{undistorted, Eigen::Matrix2d::Identity()};
-  }
+Eigen::Matrix3d TiltHomography(double tau_x, double tau_y) {
+  Eigen::Matrix3d about_x;
+  Eigen::Matrix3d about_y;
+  about_x << 1.0, 0.0, 0.0, 0.0, std::cos(tau_x), std::sin(tau_x), 0.0, -std::sin(tau_x),
+      std::cos(tau_x);
+  about_y << std::cos(tau_y), 0.0, -std::sin(tau_y), 0.0, 1.0, 0.0, std::sin(tau_y), 0.0,
+      std::cos(tau_y);
+  const Eigen::Matrix3d r = about_y * about_x;
+  Eigen::Matrix3d onto_sensor = Eigen::Matrix3d::Identity();
+  onto_sensor(0, 0) = onto_sensor(1, 1) = r(2, 2);
+  onto_sensor(0, 2) = -r(0, 2);
+  onto_sensor(1, 2) = -r(1, 2);
+  return onto_sensor * r;
+}
+
+std::optional<Distorted> DistortPlane(const Camera& camera, const Eigen::Vector2d& undistorted) {
   const double x = undistorted.x();
   const double y = undistorted.y();
   const double s = undistorted.squaredNorm();
-  const bool is_brown = camera.model == CameraModel::kBrownConrady;
-  const auto radial = is_brown ? BrownFactor(camera, s) : EquidistantFactor(camera, s);
+  const auto radial = BrownFactor(camera, s);
   if (!radial) return std::nullopt;
-  const double p1 = is_brown ? camera.distortion[2] : 0.0;
-  const double p2 = is_brown ? camera.distortion[3] : 0.0;
+  const double p1 = camera.distortion[2];
+  const double p2 = camera.distortion[3];
 
   Distorted result;
   result.point = radial->value * undistorted;
@@ -153,28 +120,65 @@ std::optional<Distorted> Distort(const Camera& camera, const Eigen::Vector2d& un
   const double mixed = stretch * x * y + 2.0 * (p1 * x + p2 * y);
   result.by_undistorted << radial->value + stretch * x * x + 2.0 * p1 * y + 6.0 * p2 * x, mixed,
       mixed, radial->value + stretch * y * y + 6.0 * p1 * y + 2.0 * p2 * x;
+  if (HasPrism(camera)) AddPrism(camera, undistorted, result);
+  if (IsTilted(camera)) Tilt(camera, result);
   if (!(result.by_undistorted.determinant() > 0.0)) return std::nullopt;
   return result;
 }
 
-std::optional<DistortedAngle> DistortAngle(const Camera& equidistant, double theta) {
-  const Polynomial<5> terms = EquidistantTerms(equidistant);
-  if (!EquidistantGrowsUpTo(terms, theta)) return std::nullopt;
-  const double squared = theta * theta;
-  const double factor = Value(terms, squared);
-  return DistortedAngle{theta * factor, factor + 2.0 * squared * Slope(terms, squared)};
+// Newton's method with step halving. The image of the domain is star-shaped about the axis, so
+// from there each step can reduce the residual, unless the target lies outside.
+std::optional<Eigen::Vector2d> UndistortPlane(const Camera& camera,
+                                              const Eigen::Vector2d& distorted) {
+  constexpr int kMaxSteps = 100;
+  constexpr double kMinFraction = 1e-6;
+  constexpr double kLastStep = 1e-9;
+  Eigen::Vector2d guess = distorted;
+  std::optional<Distorted> image = DistortPlane(camera, guess);
+  if (!image) {
+    guess.setZero();
+    image = DistortPlane(camera, guess);
+  }
+  const double rounding = 1e-15 * (1.0 + distorted.norm());
+  for (int step = 0; step < kMaxSteps && image; ++step) {
+    const Eigen::Vector2d residual = distorted - image->point;
+    if (residual.norm() <= rounding) return guess;
+    const Eigen::Vector2d full = image->by_undistorted.inverse() * residual;
+    // Newton's method squares its error: the next step would be rounding.
+    if (full.norm() < kLastStep) return DistortPlane(camera, guess + full) ? guess + full : guess;
+    double fraction = 1.0;
+    std::optional<Distorted> next;
+    // NOLINTNEXTLINE(clang-analyzer-security.FloatLoopCounter): halved exactly.
+    for (; fraction > kMinFraction; fraction *= 0.5) {
+      next = DistortPlane(camera, guess + fraction * full);
+      if (next && (distorted - next->point).norm() < residual.norm()) break;
+    }
+    if (fraction <= kMinFraction) {
+      // The residual is rounding, or the step ends at the border of the domain.
+      return residual.norm() <= 1e3 * rounding ? std::optional(guess) : std::nullopt;
+    }
+    guess += fraction * full;
+    image = next;
+  }
+  return std::nullopt;
 }
 
-bool GrowsUpTo(const Camera& camera, double radius) {
-  switch (camera.model) {
-    case CameraModel::kPinhole:
-      return true;
-    case CameraModel::kBrownConrady:
-      return BrownGrowsUpTo(BrownTerms(camera), radius * radius);
-    case CameraModel::kEquidistant:
-      return EquidistantGrowsUpTo(EquidistantTerms(camera), radius);
+std::optional<Distorted> Distort(const Camera& camera, const Eigen::Vector2d& undistorted) {
+  if (camera.model == CameraModel::kPinhole) {
+    return Distorted{undistorted, Eigen::Matrix2d::Identity()};
   }
-  return false;
+  if (camera.model == CameraModel::kBrownConrady) return DistortPlane(camera, undistorted);
+  const std::optional<LensImage> image = ProjectThroughLens(camera, undistorted.homogeneous());
+  if (!image) return std::nullopt;
+  return Distorted{image->point, image->by_point.leftCols<2>()};
+}
+
+bool PlaneGrowsUpTo(const Camera& camera, double radius) {
+  return BrownGrowsUpTo(BrownTerms(camera), radius * radius);
+}
+
+bool HasNoPoleUpTo(const Camera& camera, double radius) {
+  return IsPositiveUpTo(BrownTerms(camera).denominator, radius * radius);
 }
 
 }  // namespace sextant

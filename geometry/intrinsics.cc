@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/intrinsics.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "geometry/distortion.h"
+#include "geometry/lens.h"
 
 namespace sextant {
 namespace {
 
 using ByDistortion = Eigen::Matrix<double, 2, 8>;
 
-// Derivative of the point of Distort by the coefficients; the equations are in distortion.h.
-ByDistortion BrownByCoefficients(const Camera& camera, const Eigen::Vector2d& m) {
-  const std::array<double, 8>& k = camera.distortion;
+// Derivative of the point of DistortPlane by its first eight coefficients; the equations are in
+// distortion.h.
+ByDistortion PlaneByCoefficients(const Camera& camera, const Eigen::Vector2d& m) {
+  const auto& k = camera.distortion;
   const double s = m.squaredNorm();
   const double numerator = 1.0 + s * (k[0] + s * (k[1] + s * k[4]));
   const double denominator = 1.0 + s * (k[5] + s * (k[6] + s * k[7]));
@@ -33,17 +36,56 @@ ByDistortion BrownByCoefficients(const Camera& camera, const Eigen::Vector2d& m)
   return d;
 }
 
-ByDistortion EquidistantByCoefficients(const Eigen::Vector2d& m) {
+// A tilted sensor sees the distorted point through a homography, which depends on the point alone.
+ByDistortion BrownByCoefficients(const Camera& camera, const Eigen::Vector2d& m) {
+  const ByDistortion on_plane = PlaneByCoefficients(camera, m);
+  const double tau_x = camera.distortion[12];
+  const double tau_y = camera.distortion[13];
+  if (tau_x == 0.0 && tau_y == 0.0) return on_plane;
+  Camera upright = camera;
+  upright.distortion[12] = upright.distortion[13] = 0.0;
+  const std::optional<Distorted> before = DistortPlane(upright, m);
+  if (!before) return ByDistortion::Zero();
+  const Eigen::Matrix3d h = TiltHomography(tau_x, tau_y);
+  const Eigen::Vector3d tilted = h * before->point.homogeneous();
+  const Eigen::Matrix2d by_point =
+      (h.topLeftCorner<2, 2>() - tilted.hnormalized() * h.bottomLeftCorner<1, 2>()) / tilted.z();
+  return by_point * on_plane;
+}
+
+ByDistortion OmnidirectionalByCoefficients(const Camera& camera, const Eigen::Vector3d& point) {
+  const double depth = point.z() + camera.xi * point.norm();
+  ByDistortion d = PlaneByCoefficients(camera, point.head<2>() / depth);
+  d.rightCols<3>().setZero();
+  return d;
+}
+
+ByDistortion EquidistantByCoefficients(const Eigen::Vector3d& point) {
   ByDistortion d = ByDistortion::Zero();
-  const double r = m.norm();
+  const double r = point.head<2>().norm();
   if (r == 0.0) return d;
-  const double theta = std::atan(r);
+  const double theta = std::atan2(r, point.z());
   double power = theta;
   for (int i = 0; i < 4; ++i) {
     power *= theta * theta;
-    d.col(i) = power / r * m;
+    d.col(i) = power / r * point.head<2>();
   }
   return d;
+}
+
+ByDistortion ByCoefficients(const Camera& camera, const Eigen::Vector3d& point) {
+  switch (camera.model) {
+    case CameraModel::kPinhole:
+    case CameraModel::kDoubleSphere:
+      break;
+    case CameraModel::kBrownConrady:
+      return BrownByCoefficients(camera, point.hnormalized());
+    case CameraModel::kEquidistant:
+      return EquidistantByCoefficients(point);
+    case CameraModel::kOmnidirectional:
+      return OmnidirectionalByCoefficients(camera, point);
+  }
+  return ByDistortion::Zero();
 }
 
 }  // namespace
@@ -66,6 +108,14 @@ Camera WithIntrinsics(const Camera& camera, const IntrinsicVector& numbers) {
   return changed;
 }
 
+std::span<const double> WrittenDistortion(const Camera& camera) {
+  const std::span<const double> all = camera.distortion;
+  const std::span<const double> beyond = all.subspan(kIntrinsicCount - kFirstDistortion);
+  const bool is_usual =
+      std::all_of(beyond.begin(), beyond.end(), [](double k) { return k == 0.0; });
+  return is_usual ? all.first(kIntrinsicCount - kFirstDistortion) : all;
+}
+
 std::string_view IntrinsicName(CameraModel model, int index) {
   constexpr std::array<std::string_view, 4> kFirst = {"fx_px", "fy_px", "cx_px", "cy_px"};
   constexpr std::array<std::string_view, 8> kBrown = {"k1", "k2", "p1", "p2",
@@ -78,20 +128,14 @@ std::string_view IntrinsicName(CameraModel model, int index) {
 
 std::optional<Eigen::Matrix<double, 2, kIntrinsicCount>> PixelByIntrinsics(
     const Camera& camera, const Eigen::Vector3d& point_in_cam) {
-  if (!(point_in_cam.z() > 0.0)) return std::nullopt;
-  const Eigen::Vector2d undistorted = point_in_cam.head<2>() / point_in_cam.z();
-  const std::optional<Distorted> distorted = Distort(camera, undistorted);
-  if (!distorted) return std::nullopt;
+  const std::optional<LensImage> image = ProjectThroughLens(camera, point_in_cam);
+  if (!image) return std::nullopt;
   Eigen::Matrix<double, 2, kIntrinsicCount> d = Eigen::Matrix<double, 2, kIntrinsicCount>::Zero();
-  d(0, 0) = distorted->point.x();
-  d(1, 1) = distorted->point.y();
+  d(0, 0) = image->point.x();
+  d(1, 1) = image->point.y();
   d.block<2, 2>(0, 2).setIdentity();
   if (camera.model == CameraModel::kPinhole) return d;
-  const ByDistortion by_distortion = camera.model == CameraModel::kBrownConrady
-                                         ? BrownByCoefficients(camera, undistorted)
-                                         : EquidistantByCoefficients(undistorted);
-  d.row(0).tail<8>() = camera.fx_px * by_distortion.row(0);
-  d.row(1).tail<8>() = camera.fy_px * by_distortion.row(1);
+  d.rightCols<8>() = PixelByImage(camera) * ByCoefficients(camera, point_in_cam);
   return d;
 }
 

@@ -34,9 +34,25 @@ std::string DescribePose(const Rigid3d& pose) {
   return text;
 }
 
+std::size_t CountProjected(const Evaluation& evaluation) {
+  return static_cast<std::size_t>(std::count_if(evaluation.per_pair_px.begin(),
+                                                evaluation.per_pair_px.end(),
+                                                [](double r) { return std::isfinite(r); }));
+}
+
+// Three pairs of any kind determine a pose; with more there is another reason.
+const char* WhyNoCovariance(const SolveReport& report) {
+  constexpr std::size_t kExact = 3;
+  if (report.inliers.size() <= kExact) return "no redundant data";
+  return CountProjected(report.evaluation) < report.evaluation.per_pair_px.size()
+             ? "a point that the answer uses does not project"
+             : "the data leaves a direction of the pose undetermined";
+}
+
 std::string DescribeUncertainty(const SolveReport& report) {
   if (!report.covariance) {
-    return "  1 sigma                    uncertainty unavailable: no redundant data\n";
+    return fmt::format("  1 sigma                    uncertainty unavailable: {}\n",
+                       WhyNoCovariance(report));
   }
   const Vector6d sigma = report.covariance->diagonal().cwiseMax(0.0).cwiseSqrt();
   return fmt::format(
@@ -120,7 +136,7 @@ std::string DescribeAnswer(const SolveReport& report) {
   }
   if (evaluation.rmse_px) {
     text += fmt::format("  reprojection RMSE          {:.4f} px over {} pairs\n",
-                        *evaluation.rmse_px, evaluation.per_pair_px.size());
+                        *evaluation.rmse_px, CountProjected(evaluation));
   }
   text += DescribeUncertainty(report);
   if (report.camera) text += DescribeNumbers("camera, also estimated", report.camera->estimated);

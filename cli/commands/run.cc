@@ -45,7 +45,7 @@ Expected<Shard> ParseShard(const std::string& text) {
 
 void PrintKept(const RunOutcome& outcome, const std::filesystem::path& rows) {
   for (const std::string& line : outcome.damage) {
-    fmt::print(stderr, "sextant run: {}; its trials were run again\n", line);
+    PrintError("sextant run: {}; its trials were run again\n", line);
   }
   if (outcome.kept_trials == 0) return;
   PrintError("sextant run: {} of {} trials were already in {}{}\n", outcome.kept_trials,

@@ -14,14 +14,14 @@ std::optional<Undistortion::Point> Undistortion::Undistort(const Eigen::Vector2d
   }
   const std::optional<Eigen::Vector3d> ray = Unproject(*camera_, pixel);
   if (!ray || !(ray->z() > 0.0)) return std::nullopt;
-  const Eigen::Vector2d focal(camera_->fx_px, camera_->fy_px);
+  const Eigen::Matrix2d pixel_by_image = PixelByImage(*camera_);
   const Eigen::Vector2d centre(camera_->cx_px, camera_->cy_px);
   const Eigen::Vector2d undistorted = ray->hnormalized();
   const std::optional<Distorted> distorted = sextant::Distort(*camera_, undistorted);
   if (!distorted) return std::nullopt;
-  return Point{.straight_px = focal.cwiseProduct(undistorted) + centre,
-               .straight_by_pixel = focal.asDiagonal() * distorted->by_undistorted.inverse() *
-                                    focal.cwiseInverse().asDiagonal()};
+  return Point{.straight_px = pixel_by_image * undistorted + centre,
+               .straight_by_pixel =
+                   pixel_by_image * distorted->by_undistorted.inverse() * pixel_by_image.inverse()};
 }
 
 std::optional<Undistortion::Point> Undistortion::UndistortNear(const Eigen::Vector2d& pixel,
@@ -49,14 +49,15 @@ std::optional<Undistortion::DistortedPoint> Undistortion::Distort(
   if (!camera_ || camera_->model == CameraModel::kPinhole) {
     return DistortedPoint{.pixel = straight_px, .pixel_by_straight = Eigen::Matrix2d::Identity()};
   }
-  const Eigen::Vector2d focal(camera_->fx_px, camera_->fy_px);
+  const Eigen::Matrix2d pixel_by_image = PixelByImage(*camera_);
+  const Eigen::Matrix2d image_by_pixel = pixel_by_image.inverse();
   const Eigen::Vector2d centre(camera_->cx_px, camera_->cy_px);
   const std::optional<Distorted> distorted =
-      sextant::Distort(*camera_, (straight_px - centre).cwiseQuotient(focal));
+      sextant::Distort(*camera_, image_by_pixel * (straight_px - centre));
   if (!distorted) return std::nullopt;
-  return DistortedPoint{.pixel = focal.cwiseProduct(distorted->point) + centre,
-                        .pixel_by_straight = focal.asDiagonal() * distorted->by_undistorted *
-                                             focal.cwiseInverse().asDiagonal()};
+  return DistortedPoint{
+      .pixel = pixel_by_image * distorted->point + centre,
+      .pixel_by_straight = pixel_by_image * distorted->by_undistorted * image_by_pixel};
 }
 
 }  // namespace sextant

@@ -141,7 +141,8 @@ std::string Ros1Message(const CameraInfoMessage& message) {
   AppendCounted(out, model);
   AppendNumber(out, static_cast<std::uint32_t>(count));
   for (std::size_t i = 0; i < count; ++i) AppendNumber(out, camera.distortion[i]);
-  for (const double value : {fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0}) AppendNumber(out, value);
+  for (const double value : {fx, camera.skew_px, cx, 0.0, fy, cy, 0.0, 0.0, 1.0})
+    AppendNumber(out, value);
   for (const double value : {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}) AppendNumber(out, value);
   for (const double value : {fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0}) {
     AppendNumber(out, value);

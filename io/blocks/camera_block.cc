@@ -8,13 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "geometry/intrinsics.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
 namespace {
 
 // In the order of CameraModel.
-constexpr std::array<std::string_view, 3> kModelNames = {"pinhole", "brown_conrady", "equidistant"};
+constexpr std::array<std::string_view, 5> kModelNames = {"pinhole", "brown_conrady", "equidistant",
+                                                         "omnidirectional", "double_sphere"};
 
 }  // namespace
 
@@ -29,8 +31,9 @@ std::optional<CameraModel> CameraModelNamed(std::string_view name) {
 }
 
 Camera ReadCameraBlock(YamlFields& in, const YamlNode& node) {
-  static const std::vector<std::string> kKeys = {"model", "width_px", "height_px", "fx_px",
-                                                 "fy_px", "cx_px",    "cy_px",     "distortion"};
+  static const std::vector<std::string> kKeys = {"model",   "width_px", "height_px", "fx_px",
+                                                 "fy_px",   "cx_px",    "cy_px",     "distortion",
+                                                 "skew_px", "xi",       "alpha"};
   Camera camera;
   if (!in.IsMap(node, "camera", kKeys)) return camera;
   const std::string model = in.TextAt(node, "model");
@@ -49,6 +52,9 @@ Camera ReadCameraBlock(YamlFields& in, const YamlNode& node) {
   camera.fy_px = in.RealAt(node, "fy_px");
   camera.cx_px = in.RealAt(node, "cx_px");
   camera.cy_px = in.RealAt(node, "cy_px");
+  camera.skew_px = in.RealAt(node, "skew_px", 0.0);
+  camera.xi = in.RealAt(node, "xi", 0.0);
+  camera.alpha = in.RealAt(node, "alpha", 0.0);
   if (const YamlNode* list = node.Find("distortion")) {
     const std::vector<double> values = in.RealList(*list, "distortion", camera.distortion.size());
     std::copy(values.begin(), values.end(), camera.distortion.begin());
@@ -73,7 +79,10 @@ void WriteCameraKeys(YamlText& out, const std::string& indent, const Camera& cam
   out.Line("{}fy_px: {}", indent, camera.fy_px);
   out.Line("{}cx_px: {}", indent, camera.cx_px);
   out.Line("{}cy_px: {}", indent, camera.cy_px);
-  out.Line("{}distortion: {}", indent, YamlList(camera.distortion));
+  out.Line("{}distortion: {}", indent, YamlList(WrittenDistortion(camera)));
+  if (camera.skew_px != 0.0) out.Line("{}skew_px: {}", indent, camera.skew_px);
+  if (camera.xi != 0.0) out.Line("{}xi: {}", indent, camera.xi);
+  if (camera.alpha != 0.0) out.Line("{}alpha: {}", indent, camera.alpha);
 }
 
 }  // namespace sextant

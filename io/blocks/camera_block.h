@@ -11,12 +11,13 @@
 
 namespace sextant {
 
-/// "pinhole", "brown_conrady" or "equidistant".
+/// "pinhole", "brown_conrady", "equidistant", "omnidirectional" or "double_sphere".
 std::string_view CameraModelName(CameraModel model);
 std::optional<CameraModel> CameraModelNamed(std::string_view name);
 
 /// Reads the map `camera` of problem and result files, with the keys model, width_px, height_px,
-/// fx_px, fy_px, cx_px, cy_px and distortion, and validates it. Errors go to `in`.
+/// fx_px, fy_px, cx_px, cy_px, distortion, skew_px, xi and alpha, and validates it. Errors go to
+/// `in`.
 Camera ReadCameraBlock(YamlFields& in, const YamlNode& node);
 
 /// Writes "camera:" and the lines of its keys.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/units.h"
+#include "geometry/intrinsics.h"
 #include "io/blocks/camera_block.h"
 #include "io/text/degrees.h"
 
@@ -44,14 +45,19 @@ Json PoseJson(const Rigid3d& pose) {
 }
 
 Json CameraJson(const Camera& camera) {
-  return {{"model", CameraModelName(camera.model)},
-          {"width_px", camera.width_px},
-          {"height_px", camera.height_px},
-          {"fx_px", camera.fx_px},
-          {"fy_px", camera.fy_px},
-          {"cx_px", camera.cx_px},
-          {"cy_px", camera.cy_px},
-          {"distortion", camera.distortion}};
+  const std::span<const double> distortion = WrittenDistortion(camera);
+  Json json = {{"model", CameraModelName(camera.model)},
+               {"width_px", camera.width_px},
+               {"height_px", camera.height_px},
+               {"fx_px", camera.fx_px},
+               {"fy_px", camera.fy_px},
+               {"cx_px", camera.cx_px},
+               {"cy_px", camera.cy_px},
+               {"distortion", std::vector<double>(distortion.begin(), distortion.end())}};
+  if (camera.skew_px != 0.0) json["skew_px"] = camera.skew_px;
+  if (camera.xi != 0.0) json["xi"] = camera.xi;
+  if (camera.alpha != 0.0) json["alpha"] = camera.alpha;
+  return json;
 }
 
 Json BoardJson(const Board& board) {

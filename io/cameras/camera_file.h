@@ -13,7 +13,8 @@ namespace sextant {
 /// top-left pixel in all of them. Other keys are ignored.
 /// - ROS camera_info YAML: K (or k, or camera_matrix: {rows, cols, data}) of 9 numbers, D (or d, or
 ///   distortion_coefficients), distortion_model plumb_bob | rational_polynomial | fisheye |
-///   equidistant, width and height (or image_width and image_height).
+///   equidistant, width and height (or image_width and image_height); also omnidirectional with the
+///   key xi, and double_sphere with xi and alpha.
 /// - OpenCV FileStorage, YAML or XML: camera_matrix or cameraMatrix, distortion_coefficients,
 ///   distCoeffs or dist_coeffs, image_width, image_height.
 /// - flat YAML: fx, fy, cx, cy, k1, k2, p1, p2, k3, also with the prefixes and underscores of
@@ -36,8 +37,8 @@ Expected<Camera> ParseCamera(std::string_view text, const std::string& file,
                              std::string_view name = {});
 
 /// Formats the ROS calibration YAML of a camera; ParseCamera reads it back to the same bits. The
-/// model is plumb_bob, rational_polynomial or equidistant, the rectification the identity, and the
-/// projection K.
+/// model is plumb_bob, rational_polynomial (with up to 14 coefficients), equidistant,
+/// omnidirectional or double_sphere, the rectification the identity, and the projection K.
 std::string FormatCameraInfo(const Camera& camera, const std::string& name);
 
 Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file,

@@ -18,9 +18,12 @@ struct CameraParts {
   std::array<double, 9> matrix{};  ///< K, row by row.
   std::span<const double> distortion;
   std::string_view model;  ///< The distortion model in ROS's terms; empty if the file has none.
+  double xi = 0.0;         ///< Of the omnidirectional and double-sphere models.
+  double alpha = 0.0;      ///< Of the double-sphere model.
 };
 
-/// ROS's name of a camera's distortion model, and the number of coefficients that it has.
+/// The name of a camera's distortion model in ROS's files, ours where ROS has none, and the number
+/// of coefficients that it has.
 struct RosDistortion {
   const char* model;
   std::size_t coefficients;

@@ -91,6 +91,15 @@ void ReadMatrix(YamlFields& in, const YamlNode& matrix, CameraParts& parts) {
   if (in.ok()) std::copy(k.begin(), k.end(), parts.matrix.begin());
 }
 
+// A number, or a matrix of one; 0 if absent.
+double OneNumber(YamlFields& in, const YamlNode& camera, std::string_view key) {
+  const YamlNode* node = FindCameraKey(camera, {key});
+  if (node == nullptr) return 0.0;
+  const std::vector<double> numbers = CameraNumbers(in, *node, key, 1);
+  if (in.ok() && numbers.size() != 1) in.Fail(node->line, key, "expected one number");
+  return in.ok() ? numbers.front() : 0.0;
+}
+
 // Kalibr's `intrinsics`: the parameters of the model, then fx, fy, cx, cy.
 void ReadKalibr(YamlFields& in, const YamlNode& camera, const YamlNode& list, CameraParts& parts) {
   const std::string model = TextOf(camera.Find("camera_model"));
@@ -105,6 +114,8 @@ void ReadKalibr(YamlFields& in, const YamlNode& camera, const YamlNode& list, Ca
   }
   if (!in.ok()) return;
   parts.matrix = {k[extra], 0, k[extra + 2], 0, k[extra + 1], k[extra + 3], 0, 0, 1};
+  if (extra > 0) parts.xi = k[0];
+  if (extra > 1) parts.alpha = k[1];
 }
 
 // P = K [I | t]: the camera's own matrix is its left part.
@@ -126,6 +137,7 @@ std::vector<double> ReadDistortion(YamlFields& in, const YamlNode& camera, std::
                                  "distortion_coeffs", "cam_dist"})) {
     return CameraNumbers(in, *list, "distortion coefficients", kMaxCoefficients);
   }
+  if (model == "double_sphere") return {};
   using Names = std::initializer_list<std::string_view>;
   const bool is_camodocal_fisheye = FindCameraKey(camera, {"mu"}) != nullptr;
   static const std::vector<Names> kRadialTangential = {{"k1", "k_1", "Camera.k1", "cam_d0"},
@@ -167,6 +179,8 @@ Expected<Camera> ReadCameraNode(const CameraNode& node, const std::string& file)
   } else {
     ReadFocals(in, camera, parts);
   }
+  if (list == nullptr) parts.xi = OneNumber(in, camera, "xi");
+  if (list == nullptr) parts.alpha = OneNumber(in, camera, "alpha");
   const std::vector<double> distortion = ReadDistortion(in, camera, model);
   parts.width_px =
       ReadSize(in, camera, 0, {"width", "image_width", "cam_width", "Camera.width", "img_dist_w"});

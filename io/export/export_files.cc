@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/intrinsics.h"
 #include "geometry/so3.h"
 #include "io/export/export_texts.h"
 
@@ -26,7 +27,7 @@ std::string Numbers(const Matrix& matrix, const char* between) {
 
 Eigen::Matrix3d IntrinsicMatrix(const Camera& camera) {
   Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
-  k << camera.fx_px, 0.0, camera.cx_px, 0.0, camera.fy_px, camera.cy_px, 0.0, 0.0, 1.0;
+  k << camera.fx_px, camera.skew_px, camera.cx_px, 0.0, camera.fy_px, camera.cy_px, 0.0, 0.0, 1.0;
   return k;
 }
 
@@ -38,9 +39,9 @@ std::string OpenCvMatrix(const char* name, const Matrix& matrix) {
 
 std::string OpenCvCamera(const Camera& camera) {
   const bool fisheye = camera.model == CameraModel::kEquidistant;
-  const Eigen::Index count = fisheye ? 4 : 8;
-  const Eigen::RowVectorXd distortion =
-      Eigen::Map<const Eigen::RowVectorXd>(camera.distortion.data(), count);
+  const std::span<const double> written = WrittenDistortion(camera);
+  const auto count = fisheye ? 4 : static_cast<Eigen::Index>(written.size());
+  const Eigen::RowVectorXd distortion = Eigen::Map<const Eigen::RowVectorXd>(written.data(), count);
   return fmt::format("image_width: {}\nimage_height: {}\ndistortion_model: \"{}\"\n",
                      camera.width_px, camera.height_px,
                      fisheye ? "fisheye" : "plumb_bob_or_rational") +

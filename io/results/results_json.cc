@@ -190,7 +190,14 @@ CameraEstimate ParseCameraEstimate(const ParsedJson& json) {
   camera.fy_px = Get<double>(json, "fy_px");
   camera.cx_px = Get<double>(json, "cx_px");
   camera.cy_px = Get<double>(json, "cy_px");
-  camera.distortion = Get<std::array<double, 8>>(json, "distortion");
+  const auto distortion = Get<std::vector<double>>(json, "distortion");
+  if (distortion.size() > camera.distortion.size()) {
+    Refuse(fmt::format("key 'distortion': expected at most {} numbers", camera.distortion.size()));
+  }
+  std::copy(distortion.begin(), distortion.end(), camera.distortion.begin());
+  camera.skew_px = json.value("skew_px", 0.0);
+  camera.xi = json.value("xi", 0.0);
+  camera.alpha = json.value("alpha", 0.0);
   estimate.estimated = ParseNumbers(json.at("estimated"));
   return estimate;
 }

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <utility>
 
 #include "solvers/averaging/rotation_average.h"
 #include "solvers/core/inner_solver.h"
@@ -73,6 +75,34 @@ Expected<Rigid3d> AveragePoses(std::span<const Rigid3d> poses, RotationAverage k
   return Rigid3d{rotation, sum / static_cast<double>(poses.size())};
 }
 
+std::vector<Rigid3d> AgreeingPoses(std::span<const PoseCandidates> views) {
+  std::vector<Rigid3d> best;
+  for (const PoseCandidates& candidates : views) best.push_back(candidates.front());
+  const bool one_each = std::all_of(views.begin(), views.end(),
+                                    [](const PoseCandidates& c) { return c.size() == 1; });
+  if (one_each) return best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const PoseCandidates& candidates : views) {
+    for (const Rigid3d& reference : candidates) {
+      std::vector<Rigid3d> nearest;
+      double sum = 0.0;
+      for (const PoseCandidates& of_view : views) {
+        const auto angle = [&](const Rigid3d& pose) {
+          return RotationDistance(pose.rotation, reference.rotation);
+        };
+        nearest.push_back(*std::min_element(
+            of_view.begin(), of_view.end(),
+            [&](const Rigid3d& a, const Rigid3d& b) { return angle(a) < angle(b); }));
+        sum += angle(nearest.back());
+      }
+      if (!(sum < least)) continue;
+      least = sum;
+      best = std::move(nearest);
+    }
+  }
+  return best;
+}
+
 std::optional<Matrix6d> AverageCovariance(std::span<const Rigid3d> poses,
                                           std::span<const std::optional<Matrix6d>> covariances,
                                           const Rigid3d& average, RotationAverage kind) {
@@ -113,7 +143,7 @@ class AverageSolver final : public Solver {
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
     Estimate estimate;
-    std::vector<Rigid3d> poses;
+    std::vector<PoseCandidates> candidates;
     std::vector<std::optional<Matrix6d>> covariances;
     std::optional<Error> first_error;
     std::string failures;
@@ -124,15 +154,21 @@ class AverageSolver final : public Solver {
         failures += fmt::format("; view {}: {}", view, report.error().message);
         continue;
       }
-      poses.push_back(report->cam_from_lidar);
+      candidates.push_back({report->cam_from_lidar});
+      candidates.back().insert(candidates.back().end(), report->alternatives.begin(),
+                               report->alternatives.end());
       covariances.push_back(report->covariance);
       Append(*report, view, indices, estimate);
     }
-    if (poses.empty()) {
+    if (candidates.empty()) {
       return MakeError(first_error->code,
                        fmt::format("{}: no view could be solved{}", spec().name, failures));
     }
+    const std::vector<Rigid3d> poses = AgreeingPoses(candidates);
     SEXTANT_ASSIGN_OR_RETURN(const Rigid3d average, AveragePoses(poses, options_.rotation));
+    if (candidates.size() == 1) {
+      estimate.alternatives.assign(candidates[0].begin() + 1, candidates[0].end());
+    }
     estimate.cam_from_lidar = average;
     estimate.covariance = AverageCovariance(poses, covariances, average, options_.rotation);
     std::sort(estimate.inliers.begin(), estimate.inliers.end());

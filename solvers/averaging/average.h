@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "base/error.h"
 #include "geometry/rigid3d.h"
@@ -15,6 +16,15 @@ enum class RotationAverage { kChordal, kQuaternionSum, kOriginalRunning };
 /// Mean of the translations (as in the original package) and average of the rotations, in the given
 /// order. Errors: kMissingData (no poses), kDegenerate (rotations without a mean).
 Expected<Rigid3d> AveragePoses(std::span<const Rigid3d> poses, RotationAverage kind);
+
+/// The answer of one view, followed by its alternatives.
+using PoseCandidates = std::vector<Rigid3d>;
+
+/// One candidate of each view, so that their rotations agree best: those nearest to the candidate
+/// for which the sum of the angles to them is the least. The average of a pose and of the mirror
+/// image of another explains neither view. Takes time in the square of the number of candidates
+/// where a view has alternatives; else each view's only one.
+std::vector<Rigid3d> AgreeingPoses(std::span<const PoseCandidates> views);
 
 /// Covariance of (dphi, dt) of the average of independent answers.
 ///

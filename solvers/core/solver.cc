@@ -3,11 +3,18 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
+#include "solvers/core/alternatives.h"
 #include "solvers/core/board_view_check.h"
+#include "solvers/core/local_frame.h"
+#include "solvers/core/plausible.h"
+#include "solvers/core/rivals.h"
 #include "solvers/core/subset.h"
+#include "solvers/core/unseen_pairs.h"
 
 namespace sextant {
 namespace {
@@ -117,6 +124,30 @@ Expected<void> CheckPoints(std::span<const Eigen::Vector3d> points, const char* 
   return {};
 }
 
+// The pose with its camera, over all data.
+void EvaluateReport(const CalibrationProblem& problem, SolveReport& report) {
+  if (!report.camera) {
+    report.evaluation = Evaluate(problem, report.cam_from_lidar);
+    return;
+  }
+  CalibrationProblem with_camera = problem;
+  with_camera.camera = report.camera->camera;
+  report.evaluation = Evaluate(with_camera, report.cam_from_lidar);
+}
+
+// For a solver of pixels alone, to which the inliers then belong.
+bool AllUsedProject(const SolveReport& report) {
+  return std::all_of(report.inliers.begin(), report.inliers.end(), [&](int i) {
+    return std::isfinite(report.evaluation.per_pair_px[static_cast<std::size_t>(i)]);
+  });
+}
+
+bool HasUnseenPair(const SolveReport& report) {
+  const std::vector<double>& residuals = report.evaluation.per_pair_px;
+  return std::any_of(residuals.begin(), residuals.end(),
+                     [](double r) { return !std::isfinite(r); });
+}
+
 }  // namespace
 
 std::string_view ToString(Termination termination) {
@@ -184,28 +215,78 @@ Expected<void> CheckProblem(const CalibrationProblem& problem, const SolverSpec&
   return ok;
 }
 
-Expected<SolveReport> Solver::Solve(const CalibrationProblem& problem) const {
-  const auto start = std::chrono::steady_clock::now();
-  SEXTANT_RETURN_IF_ERROR(CheckProblem(problem, spec_));
+Expected<Estimate> Solver::SolveWithAlternatives(const CalibrationProblem& problem) const {
   Expected<Estimate> estimate = DoSolve(problem);
-  const auto end = std::chrono::steady_clock::now();
-  if (!estimate) return tl::unexpected<Error>(std::move(estimate.error()));
+  if (!estimate) return estimate;
   if (!estimate->cam_from_lidar.IsFinite() ||
       (estimate->covariance && !estimate->covariance->allFinite())) {
     return MakeError(ErrorCode::kNonFinite,
                      spec_.name + ": the arithmetic overflowed; are the coordinates in metres?");
   }
+  LikelyPoses likely = FindLikelyPoses(problem, spec_, *estimate);
+  std::size_t answer = likely.of_answer.value_or(likely.poses.size());
+  if (answer > 0 && !likely.poses.empty()) {
+    if (auto lowest = DoSolveFrom(problem, *estimate, likely.poses.front())) {
+      *estimate = *std::move(lowest);
+      answer = 0;
+    }
+  }
+  if (answer < likely.poses.size()) {
+    likely.poses.erase(likely.poses.begin() + static_cast<std::ptrdiff_t>(answer));
+  }
+  estimate->alternatives = std::move(likely.poses);
+  for (Rigid3d& rival : FindRivals(problem, spec_, *estimate)) {
+    estimate->alternatives.push_back(std::move(rival));
+  }
+  return estimate;
+}
+
+Expected<SolveReport> Solver::SolveAndEvaluate(const CalibrationProblem& problem) const {
+  const auto start = std::chrono::steady_clock::now();
+  Expected<Estimate> estimate = SolveWithAlternatives(problem);
+  const auto end = std::chrono::steady_clock::now();
+  if (!estimate) return tl::unexpected<Error>(std::move(estimate.error()));
   SolveReport report;
   static_cast<Estimate&>(report) = std::move(*estimate);
   report.solver = spec_.name;
   report.wall_time_us = std::chrono::duration<double, std::micro>(end - start).count();
-  if (report.camera) {
-    CalibrationProblem with_camera = problem;
-    with_camera.camera = report.camera->camera;
-    report.evaluation = Evaluate(with_camera, report.cam_from_lidar);
-  } else {
-    report.evaluation = Evaluate(problem, report.cam_from_lidar);
+  EvaluateReport(problem, report);
+  SEXTANT_RETURN_IF_ERROR(CheckPlausible(problem, spec_, report));
+  return report;
+}
+
+// Where the answer is based on a pixel that the camera model cannot explain, or where there is none
+// and such pixels may be the reason, the others decide.
+Expected<SolveReport> Solver::SolveSeenPairs(const CalibrationProblem& problem) const {
+  Expected<SolveReport> report = SolveAndEvaluate(problem);
+  const bool of_pixels = spec_.needs.pairs_2d3d > 0 && spec_.needs.pairs_3d3d == 0;
+  if (!of_pixels || problem.camera->model == CameraModel::kPinhole) return report;
+  if (report && AllUsedProject(*report)) return report;
+  const std::vector<int> seen = PairsWithRay(problem);
+  const bool are_enough = seen.size() >= static_cast<std::size_t>(spec_.needs.pairs_2d3d);
+  if (seen.size() == problem.pairs_2d3d.size() || !are_enough) return report;
+  report = SolveAndEvaluate(SubsetOf(problem, spec_.needs, seen));
+  if (!report) return report;
+  for (int& i : report->inliers) i = seen[static_cast<std::size_t>(i)];
+  EvaluateReport(problem, *report);
+  return report;
+}
+
+Expected<SolveReport> Solver::Solve(const CalibrationProblem& problem) const {
+  SEXTANT_RETURN_IF_ERROR(CheckProblem(problem, spec_));
+  const std::optional<LocalFrame> frame = LocalFrame::For(problem, spec_.needs);
+  const std::optional<CalibrationProblem> moved =
+      frame ? std::optional(frame->Localised(problem)) : std::nullopt;
+  const CalibrationProblem& local = moved ? *moved : problem;
+  Expected<SolveReport> report = SolveSeenPairs(local);
+  if (!report) return report;
+  if (HasUnseenPair(*report)) {
+    const Camera& camera = report->camera ? report->camera->camera : *problem.camera;
+    for (std::string& note : NotesOnUnseenPairs(local, camera, report->cam_from_lidar)) {
+      report->warnings.push_back(std::move(note));
+    }
   }
+  if (frame) frame->Restore(*report);
   return report;
 }
 

@@ -74,7 +74,8 @@ struct Estimate {
   std::vector<std::string> warnings;
   /// One for each of problem.board_views, in their order, where the solver uses raw observations.
   std::vector<BoardViewFit> board_views;
-  /// Other poses that explain the data about as well, best first (p3p, ippe).
+  /// Other poses that explain the data about as well, best first: see FindLikelyPoses and
+  /// FindRivals, which complete what the solver itself found.
   std::vector<Rigid3d> alternatives;
   std::vector<Stage> stages;
 };
@@ -94,9 +95,10 @@ class Solver {
 
   const SolverSpec& spec() const { return spec_; }
 
-  /// Checks that the problem has the data that the solver needs and that it is finite; solves,
-  /// measures the time and evaluates. Errors: kMissingData, kTooFewPairs, kNonFinite,
-  /// kInvalidInput, and those of the method itself.
+  /// Checks that the problem has the data that the solver needs and that it is finite; solves, in
+  /// coordinates near the data (LocalFrame), measures the time, finds alternatives and evaluates.
+  /// Errors: kMissingData, kTooFewPairs, kNonFinite, kInvalidInput, kNoConsensus (CheckPlausible),
+  /// and those of the method itself.
   Expected<SolveReport> Solve(const CalibrationProblem& problem) const;
 
   /// Appends every pose that explains the sampled pairs (indices into the kind of pairs that the
@@ -116,6 +118,18 @@ class Solver {
 
  private:
   virtual Expected<Estimate> DoSolve(const CalibrationProblem& problem) const = 0;
+
+  /// The answer at the minimum next to `start`, for the pairs of `answer`: for solvers whose answer
+  /// is the lowest of several minima. None: `answer` stays, whatever other poses explain the data.
+  virtual std::optional<Estimate> DoSolveFrom(const CalibrationProblem& /*problem*/,
+                                              const Estimate& /*answer*/,
+                                              const Rigid3d& /*start*/) const {
+    return std::nullopt;
+  }
+
+  Expected<Estimate> SolveWithAlternatives(const CalibrationProblem& problem) const;
+  Expected<SolveReport> SolveAndEvaluate(const CalibrationProblem& problem) const;
+  Expected<SolveReport> SolveSeenPairs(const CalibrationProblem& problem) const;
 
   SolverSpec spec_;
 };

@@ -10,6 +10,7 @@
 #include "geometry/residuals.h"
 #include "solvers/core/registry.h"
 #include "solvers/kernels/p3p.h"
+#include "solvers/pnp/explained.h"
 #include "solvers/pnp/reprojection_covariance.h"
 
 namespace sextant {
@@ -143,6 +144,10 @@ class P3pSolver final : public Solver {
       std::vector<Rigid3d> steady;
       Append(SolveTriple(problem, triple), steady);
       if (!steady.empty()) poses = {Best(problem, steady)};
+    }
+    if (Expected<void> ok = CheckExplained(*problem.camera, problem.pairs_2d3d, poses.front());
+        !ok) {
+      return MakeError(ok.error().code, spec().name + ": " + ok.error().message);
     }
     Estimate estimate;
     estimate.cam_from_lidar = poses.front();

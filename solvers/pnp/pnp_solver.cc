@@ -1,76 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/pnp/pnp_solver.h"
 
-#include <fmt/core.h>
-
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <numeric>
 
-#include "geometry/so3.h"
+#include "solvers/pnp/explained.h"
 #include "solvers/pnp/moment_covariance.h"
 #include "solvers/pnp/object_space_covariance.h"
 #include "solvers/pnp/plane_frame.h"
+#include "solvers/pnp/pnp_view.h"
 #include "solvers/pnp/reprojection_covariance.h"
 
 namespace sextant {
 namespace {
-
-// On the image plane, rays more than 84 deg off the view's axis would outweigh all others.
-constexpr double kMinRayZ = 0.1;
-
-/// Projects unit rays onto the image plane of a view that contains them all. Returns the rotation
-/// of that view in the camera frame.
-Expected<Eigen::Quaterniond> ProjectRays(std::span<const Eigen::Vector3d> rays,
-                                         std::span<Eigen::Vector2d> image_points) {
-  Eigen::Quaterniond cam_from_view = Eigen::Quaterniond::Identity();
-  const auto is_wide = [&](const Eigen::Vector3d& ray) {
-    return !((cam_from_view.conjugate() * ray).z() > kMinRayZ);
-  };
-  if (std::any_of(rays.begin(), rays.end(), is_wide)) {
-    const Eigen::Vector3d sum =
-        std::accumulate(rays.begin(), rays.end(), Eigen::Vector3d(Eigen::Vector3d::Zero()));
-    cam_from_view = RotationBetween(Eigen::Vector3d::UnitZ(), sum);
-  }
-  if (std::any_of(rays.begin(), rays.end(), is_wide)) {
-    return MakeError(ErrorCode::kInvalidInput,
-                     "the pixels span more than 168 deg of view, which this solver cannot put on "
-                     "one image plane; use p3p or ransac(p3p)");
-  }
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    image_points[i] = (cam_from_view.conjugate() * rays[i]).hnormalized();
-  }
-  return cam_from_view;
-}
-
-/// The input of the kernel, and the rotation from its view to the camera.
-struct View {
-  Eigen::Quaterniond cam_from_view = Eigen::Quaterniond::Identity();
-  std::vector<Eigen::Vector2d> image_points = {};
-  std::vector<Eigen::Vector3d> points = {};
-};
-
-Expected<View> MakeView(const Camera& camera, std::span<const Pair2d3d> pairs) {
-  View view;
-  view.image_points.resize(pairs.size());
-  view.points.resize(pairs.size());
-  std::vector<Eigen::Vector3d> rays(pairs.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const std::optional<Eigen::Vector3d> ray = Unproject(camera, pairs[i].pixel);
-    if (!ray) {
-      return MakeError(ErrorCode::kInvalidInput,
-                       fmt::format("2D-3D pair {} of {}: no ray of the camera model meets pixel "
-                                   "({:g}, {:g}); check the pixel and the distortion",
-                                   i + 1, pairs.size(), pairs[i].pixel.x(), pairs[i].pixel.y()));
-    }
-    rays[i] = *ray;
-    view.points[i] = pairs[i].point_in_lidar;
-  }
-  SEXTANT_ASSIGN_OR_RETURN(const Eigen::Quaterniond cam_from_view,
-                           ProjectRays(rays, view.image_points));
-  view.cam_from_view = cam_from_view;
-  return view;
-}
 
 Rigid3d Turned(const Eigen::Quaterniond& turn, const Rigid3d& pose) {
   return Rigid3d{turn, Eigen::Vector3d::Zero()} * pose;
@@ -80,7 +24,7 @@ double FocalLengthPx(const Camera& camera) { return 0.5 * (camera.fx_px + camera
 
 /// The covariance through the moments; none for four different points, where the kernel also uses
 /// the pixels themselves.
-std::optional<Matrix6d> ThroughChain(const MomentsKernel& of_moments, const View& view,
+std::optional<Matrix6d> ThroughChain(const MomentsKernel& of_moments, const PnpView& view,
                                      std::span<const Eigen::Matrix2d> image_covariances,
                                      const Rigid3d& view_from_lidar) {
   constexpr std::size_t kMinDifferent = 5;
@@ -94,7 +38,7 @@ std::optional<Matrix6d> ThroughChain(const MomentsKernel& of_moments, const View
 
 /// The covariance through the kernel, with its solution `view_from_lidar`.
 std::optional<Matrix6d> ThroughMoments(const PnpKernel& kernel, double focal_length_px,
-                                       const View& view,
+                                       const PnpView& view,
                                        std::span<const Eigen::Matrix2d> image_covariances,
                                        const Rigid3d& view_from_lidar) {
   const auto estimate = [&](std::span<const Eigen::Vector2d> image) -> std::optional<Rigid3d> {
@@ -139,7 +83,7 @@ std::optional<std::vector<Eigen::Matrix2d>> ImageCovariances(
 /// The covariance in the camera frame; the rotation of the kernel's view is not differentiated.
 std::optional<Matrix6d> KernelCovariance(const PnpKernel& kernel, PnpCovariance kind,
                                          const MomentsKernel& of_moments, const Camera& camera,
-                                         std::span<const Pair2d3d> pairs, const View& view,
+                                         std::span<const Pair2d3d> pairs, const PnpView& view,
                                          const Rigid3d& cam_from_lidar) {
   const auto unstated = UnstatedVariance(camera, pairs, cam_from_lidar);
   if (!unstated) return std::nullopt;
@@ -179,10 +123,14 @@ PnpSolver::PnpSolver(SolverSpec spec, PnpKernel kernel, MomentsKernel of_moments
 Expected<Estimate> PnpSolver::DoSolve(const CalibrationProblem& problem) const {
   const Camera& camera = *problem.camera;
   const std::vector<Pair2d3d>& pairs = problem.pairs_2d3d;
-  Expected<View> view = MakeView(camera, pairs);
+  Expected<PnpView> view = MakeView(camera, pairs);
   if (!view) return tl::unexpected<Error>(Named(view.error()));
   Expected<PnpPoses> found = kernel_({view->image_points, view->points, FocalLengthPx(camera)});
   if (!found) return tl::unexpected<Error>(Named(found.error()));
+  if (found->inliers.empty()) {
+    const Expected<void> explained = CheckExplained(*view, found->poses[0]);
+    if (!explained) return tl::unexpected<Error>(Named(explained.error()));
+  }
   for (Rigid3d& pose : found->poses) pose = Turned(view->cam_from_view, pose);
   Estimate estimate;
   estimate.cam_from_lidar = found->poses[0];
@@ -232,7 +180,7 @@ void PnpSolver::DoHypothesize(const CalibrationProblem& problem, std::span<const
   if (sample.size() > kMaxOnStack) {
     std::vector<Pair2d3d> pairs;
     for (std::size_t i = 0; i < sample.size(); ++i) pairs.push_back(pair(i));
-    const Expected<View> view = MakeView(camera, pairs);
+    const Expected<PnpView> view = MakeView(camera, pairs);
     if (view) append(view->image_points, view->points, view->cam_from_view);
     return;
   }

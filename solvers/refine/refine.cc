@@ -9,9 +9,11 @@
 #include <set>
 #include <tuple>
 
+#include "geometry/lens_domain.h"
 #include "geometry/symmetric.h"
 #include "solvers/core/registry.h"
 #include "solvers/least_squares/refine_pose.h"
+#include "solvers/pnp/explained.h"
 #include "solvers/pnp/p3p_solver.h"
 #include "solvers/refine/p3p_start.h"
 #include "solvers/refine/refine_camera.h"
@@ -91,17 +93,33 @@ class RefineSolver final : public Solver {
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
     if (std::optional<Estimate> quick = FromTriples(problem)) return *std::move(quick);
     SEXTANT_ASSIGN_OR_RETURN(SolveReport start, inner_->Solve(problem));
+    start.stages.push_back(
+        {start.solver, start.cam_from_lidar, start.iterations, start.wall_time_us});
+    return RefineFrom(problem, start);
+  }
+
+  std::optional<Estimate> DoSolveFrom(const CalibrationProblem& problem, const Estimate& answer,
+                                      const Rigid3d& start) const override {
+    Estimate other = answer;
+    other.cam_from_lidar = start;
+    Expected<Estimate> estimate = RefineFrom(problem, other);
+    if (!estimate) return std::nullopt;
+    return *std::move(estimate);
+  }
+
+  // Least squares from the pose of `start` over its inliers; keeps its alternatives and stages.
+  Expected<Estimate> RefineFrom(const CalibrationProblem& problem, const Estimate& start) const {
     const UsedPairs used = Choose(problem, start);
     const PairTerms terms = TermsOf(problem, used);
+    SEXTANT_RETURN_IF_ERROR(CheckProjects(problem, used, start.cam_from_lidar));
     Expected<Estimate> estimate = options_.intrinsics == 0U
                                       ? PoseOf(terms, start.cam_from_lidar)
                                       : PoseAndCameraOf(terms, start.cam_from_lidar);
     if (!estimate) return estimate;
     estimate->termination = Termination::kConverged;
     estimate->inliers = spec().needs.pairs_3d3d > 0 ? used.points : used.pixels;
-    estimate->stages = std::move(start.stages);
-    estimate->stages.push_back(
-        {start.solver, start.cam_from_lidar, start.iterations, start.wall_time_us});
+    estimate->alternatives = start.alternatives;
+    estimate->stages = start.stages;
     return estimate;
   }
 
@@ -125,12 +143,41 @@ class RefineSolver final : public Solver {
     limits.wants_information = false;
     const RefinedPose refined = RefinePose(terms.View(), *start, limits);
     if (terms.noise_known && !IsExplained(refined, terms.size())) return std::nullopt;
+    // Where no pose explains the pixels well, the inner solver decides whether to answer.
+    if (!IsSmallAgainstImage(problem.pairs_2d3d, SquaredPixels(problem, refined))) {
+      return std::nullopt;
+    }
     Expected<Estimate> estimate = EstimateOf(terms, refined);
     if (!estimate) return std::nullopt;
     estimate->termination = Termination::kConverged;
     estimate->inliers = AllOf(terms.size());
     estimate->stages.push_back({inner_->spec().name, *start, 0, wall_time.count()});
     return *std::move(estimate);
+  }
+
+  // Names the first pixel whose point does not project at the start.
+  Expected<void> CheckProjects(const CalibrationProblem& problem, const UsedPairs& used,
+                               const Rigid3d& start) const {
+    if (!Uses2d3d(options_.on)) return {};
+    for (const int i : used.pixels) {
+      const Eigen::Vector3d in_cam =
+          start * problem.pairs_2d3d[static_cast<std::size_t>(i)].point_in_lidar;
+      if (Project(*problem.camera, in_cam)) continue;
+      return MakeError(
+          ErrorCode::kNoConvergence,
+          fmt::format("at the answer of '{}' the point of pair {} of {} does not project into the "
+                      "image: {}; check this pair, wrap it in ransac or give a better start",
+                      inner_->spec().name, i + 1, problem.pairs_2d3d.size(),
+                      WhyNotProjected(*problem.camera, in_cam)));
+    }
+    return {};
+  }
+
+  // The sum of squared residuals [px^2], to the accuracy with which the sigmas are alike.
+  double SquaredPixels(const CalibrationProblem& problem, const RefinedPose& refined) const {
+    const Pair2d3d& first = problem.pairs_2d3d.front();
+    const double sigma_px = HasKnownNoise(first) ? first.sigma_px : options_.sigma_px;
+    return 2.0 * refined.cost * sigma_px * sigma_px;
   }
 
   Expected<Estimate> PoseOf(const PairTerms& terms, const Rigid3d& start) const {

@@ -185,7 +185,12 @@ Expected<std::vector<int>> FreeIntrinsics(const Camera& camera, unsigned kinds) 
                      "intrinsics=distortion: the camera is a pinhole; expected the model "
                      "Brown-Conrady or equidistant, with its coefficients near what they are");
   }
-  const int always = camera.model == CameraModel::kBrownConrady ? 4 : 2;
+  if (camera.model == CameraModel::kDoubleSphere) {
+    return MakeError(ErrorCode::kInvalidInput,
+                     "intrinsics=distortion: xi and alpha of a double-sphere camera are not "
+                     "estimated; expected intrinsics=focal+center");
+  }
+  const int always = camera.model == CameraModel::kEquidistant ? 2 : 4;
   for (int i = 0; i < 8; ++i) {
     if (i < always || camera.distortion[static_cast<std::size_t>(i)] != 0.0) {
       free.push_back(kFirstDistortion + i);

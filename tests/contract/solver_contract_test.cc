@@ -159,6 +159,65 @@ TEST_P(SolverContract, AnswerMovesWithTheLidarFrame) {
   ExpectSamePose(there->cam_from_lidar * other_from_lidar, here->cam_from_lidar, 1e-5);
 }
 
+// Georeferenced points: a double resolves 2e-9 m at 1e7 m. Raw views have their rays from the
+// LiDAR.
+TEST_P(SolverContract, AnswerDoesNotDependOnTheDistanceOfTheLidarsOrigin) {
+  if (spec().needs.board_views > 0) return;
+  Random random(14);
+  const PairScene scene = SceneFor(Noisy(), random);
+  const Expected<SolveReport> here = solver_->Solve(scene.problem);
+  ASSERT_TRUE(here) << here.error().message;
+  for (const double distance : {3e2, 1e4, 1e7}) {
+    const Rigid3d other_from_lidar{Eigen::Quaterniond::Identity(),
+                                   distance * Eigen::Vector3d(0.1, 1.0, 2e-4)};
+    const Expected<SolveReport> there = solver_->Solve(MoveLidar(scene.problem, other_from_lidar));
+    ASSERT_TRUE(there) << distance << " m: " << there.error().message;
+    ExpectSamePose(there->cam_from_lidar * other_from_lidar, here->cam_from_lidar, 1e-6);
+    EXPECT_EQ(there->inliers, here->inliers);
+    EXPECT_EQ(there->alternatives.size(), here->alternatives.size());
+  }
+}
+
+// The covariance of the point that the pose gives for a LiDAR point near the others.
+TEST_P(PairContract, CovarianceOfAPointDoesNotDependOnTheDistanceOfTheLidarsOrigin) {
+  if (spec().needs.board_views > 0) return;
+  Random random(15);
+  const PairScene scene = SceneFor(Noisy(), random);
+  const Rigid3d other_from_lidar{Eigen::Quaterniond::Identity(), {1e4, -2e4, 1e3}};
+  const Expected<SolveReport> here = solver_->Solve(scene.problem);
+  const Expected<SolveReport> there = solver_->Solve(MoveLidar(scene.problem, other_from_lidar));
+  ASSERT_TRUE(here && there);
+  ASSERT_TRUE(here->covariance && there->covariance);
+  const auto of_point = [](const SolveReport& report, const Eigen::Vector3d& point) {
+    Eigen::Matrix<double, 3, 6> by_pose;
+    by_pose << -Hat(report.cam_from_lidar.rotation * point), Eigen::Matrix3d::Identity();
+    return Eigen::Matrix3d(by_pose * *report.covariance * by_pose.transpose());
+  };
+  const Eigen::Vector3d point = scene.cam_from_lidar.Inverse() * Eigen::Vector3d(0.2, 0.1, 3.0);
+  const Eigen::Matrix3d near = of_point(*here, point);
+  const Eigen::Matrix3d far = of_point(*there, other_from_lidar * point);
+  EXPECT_TRUE(far.isApprox(near, 1e-4)) << far << " and " << near;
+}
+
+TEST_P(PairContract, UnitOfThePointsDoesNotMatterToPixels) {
+  const bool of_pixels = spec().needs.pairs_2d3d > 0 && spec().needs.pairs_3d3d == 0;
+  if (!of_pixels) return;
+  Random random(16);
+  const PairScene scene = SceneFor(Noisy(), random);
+  const Expected<SolveReport> here = solver_->Solve(scene.problem);
+  ASSERT_TRUE(here) << here.error().message;
+  for (const double scale : {1e-6, 1e-3, 1e3, 1e6}) {
+    CalibrationProblem scaled = scene.problem;
+    for (Pair2d3d& pair : scaled.pairs_2d3d) pair.point_in_lidar *= scale;
+    if (scaled.initial_cam_from_lidar) scaled.initial_cam_from_lidar->translation *= scale;
+    const Expected<SolveReport> there = solver_->Solve(scaled);
+    ASSERT_TRUE(there) << scale << ": " << there.error().message;
+    Rigid3d back = there->cam_from_lidar;
+    back.translation /= scale;
+    ExpectSamePose(back, here->cam_from_lidar, 1e-6);
+  }
+}
+
 TEST_P(GlobalPointPairContract, AnswerMovesWithTheCameraFrame) {
   Random random(3);
   const PairScene scene = SceneFor(Noisy(), random);

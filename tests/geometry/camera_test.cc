@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "base/random.h"
 
@@ -25,7 +26,7 @@ Camera PlainCamera(CameraModel model) {
 // Coefficients in the range of calibrations of real lenses.
 Camera RandomCamera(CameraModel model, Random& random) {
   Camera camera = PlainCamera(model);
-  std::array<double, 8>& k = camera.distortion;
+  auto& k = camera.distortion;
   if (model == CameraModel::kBrownConrady) {
     k[0] = random.Uniform(-0.35, 0.2);
     k[1] = random.Uniform(-0.05, 0.15);
@@ -35,8 +36,20 @@ Camera RandomCamera(CameraModel model, Random& random) {
     if (random.Below(2) == 0) {
       for (const std::size_t i : {5U, 6U, 7U}) k[i] = random.Uniform(-0.1, 0.3);
     }
+    if (random.Below(2) == 0) {
+      for (std::size_t i = 8; i < 12; ++i) k[i] = random.Uniform(-3e-3, 3e-3);
+      for (std::size_t i = 12; i < 14; ++i) k[i] = random.Uniform(-0.03, 0.03);
+      camera.skew_px = random.Uniform(-5.0, 5.0);
+    }
   } else if (model == CameraModel::kEquidistant) {
     for (std::size_t i = 0; i < 4; ++i) k[i] = random.Uniform(-0.05, 0.05);
+  } else if (model == CameraModel::kOmnidirectional) {
+    camera.xi = random.Uniform(0.0, 2.0);
+    for (const std::size_t i : {0U, 1U}) k[i] = random.Uniform(-0.1, 0.2);
+    for (const std::size_t i : {2U, 3U}) k[i] = random.Uniform(-2e-3, 2e-3);
+  } else if (model == CameraModel::kDoubleSphere) {
+    camera.xi = random.Uniform(-0.4, 1.0);
+    camera.alpha = random.Uniform(0.0, 0.8);
   }
   return camera;
 }
@@ -93,7 +106,10 @@ TEST_P(CameraModels, UnprojectInvertsProject) {
 
 TEST_P(CameraModels, RefusesPointsBehindTheCamera) {
   const Camera camera = PlainCamera(GetParam());
-  for (const double z : {-2.0, -0.0, 0.0, std::numeric_limits<double>::quiet_NaN()}) {
+  std::vector<double> depths = {std::numeric_limits<double>::quiet_NaN()};
+  const bool is_wide = GetParam() == CameraModel::kEquidistant;
+  if (!is_wide) depths.insert(depths.end(), {-2.0, -0.0, 0.0});
+  for (const double z : depths) {
     EXPECT_FALSE(Project(camera, {0.1, 0.2, z}));
     EXPECT_FALSE(ProjectWithJacobian(camera, {0.1, 0.2, z}));
   }
@@ -101,7 +117,9 @@ TEST_P(CameraModels, RefusesPointsBehindTheCamera) {
 
 TEST_P(CameraModels, CentreIsOnTheAxis) {
   Camera camera = PlainCamera(GetParam());
-  if (GetParam() != CameraModel::kPinhole) camera.distortion[0] = -0.1;
+  const bool has_distortion =
+      GetParam() != CameraModel::kPinhole && GetParam() != CameraModel::kDoubleSphere;
+  if (has_distortion) camera.distortion[0] = -0.1;
   EXPECT_EQ(*Unproject(camera, {639.5, 359.5}), Eigen::Vector3d::UnitZ());
   const auto centre = ProjectWithJacobian(camera, {0.0, 0.0, 2.0});
   ASSERT_TRUE(centre);
@@ -112,14 +130,15 @@ TEST_P(CameraModels, CentreIsOnTheAxis) {
 
 INSTANTIATE_TEST_SUITE_P(All, CameraModels,
                          testing::Values(CameraModel::kPinhole, CameraModel::kBrownConrady,
-                                         CameraModel::kEquidistant));
+                                         CameraModel::kEquidistant, CameraModel::kOmnidirectional,
+                                         CameraModel::kDoubleSphere));
 
 // Pixels computed once by cv::projectPoints and cv::fisheye::projectPoints of OpenCV 4.6.
 TEST(Project, AgreesWithOpenCv) {
   using Pixels = std::array<Eigen::Vector2d, 3>;
   const std::array<Eigen::Vector3d, 3> points = {
       Eigen::Vector3d(0.8, -0.5, 2.0), {-1.1, 0.7, 1.9}, {0.05, 0.02, 1.0}};
-  const auto expect = [&](CameraModel model, const std::array<double, 8>& k,
+  const auto expect = [&](CameraModel model, const std::array<double, kMaxDistortion>& k,
                           const Pixels& expected) {
     Camera camera = PlainCamera(model);
     camera.distortion = k;
@@ -174,18 +193,24 @@ TEST(CameraDomain, DoesNotReturnBehindTheFold) {
 TEST(CameraDomain, EndsAtAPoleOfTheRationalModel) {
   Camera camera = PlainCamera(CameraModel::kBrownConrady);
   camera.distortion[5] = -1.0;  // r / (1 - r^2)
-  EXPECT_TRUE(Project(camera, {0.999, 0.0, 1.0}));
+  // Its slope (1 + r^2) / (1 - r^2)^2 is 10 at r = 0.7618: from there on it runs away.
+  EXPECT_TRUE(Project(camera, {0.761, 0.0, 1.0}));
+  EXPECT_FALSE(Project(camera, {0.763, 0.0, 1.0}));
   EXPECT_FALSE(Project(camera, {1.0, 0.0, 1.0}));
   EXPECT_FALSE(Project(camera, {1.5, 0.0, 1.0}));
   EXPECT_NEAR(Unproject(camera, {639.5 + 700.0 * 0.6 / 0.64, 359.5})->x(), 0.6 / std::hypot(0.6, 1),
               1e-14);
 }
 
-TEST(CameraDomain, FisheyeEndsAtItsFoldOrAtNinetyDegrees) {
+TEST(CameraDomain, FisheyeEndsAtItsFoldOrStraightBack) {
   Camera camera = PlainCamera(CameraModel::kEquidistant);
   EXPECT_TRUE(Project(camera, {1e3, 0.0, 1.0}));
-  EXPECT_TRUE(Unproject(camera, {639.5 + 700.0 * 1.57, 359.5}));
-  EXPECT_FALSE(Unproject(camera, {639.5 + 700.0 * 1.58, 359.5}));
+  EXPECT_TRUE(Project(camera, {1.0, 0.0, 0.0}));
+  EXPECT_TRUE(Project(camera, {0.1, 0.2, -2.0}));
+  EXPECT_FALSE(Project(camera, {0.0, 0.0, -2.0}));
+  EXPECT_FALSE(Project(camera, {0.0, 0.0, 0.0}));
+  EXPECT_TRUE(Unproject(camera, {639.5 + 700.0 * 3.14, 359.5}));
+  EXPECT_FALSE(Unproject(camera, {639.5 + 700.0 * 3.15, 359.5}));
   camera.distortion[0] = -1.0 / 3.0;  // Maximum at 1 rad.
   EXPECT_TRUE(Project(camera, {std::tan(1.0 - 1e-6), 0.0, 1.0}));
   EXPECT_FALSE(Project(camera, {std::tan(1.0 + 1e-6), 0.0, 1.0}));

@@ -11,17 +11,44 @@ namespace {
 Camera CameraOf(CameraModel model) {
   Camera camera{.model = model, .fx_px = 700.0, .fy_px = 690.0, .cx_px = 640.0, .cy_px = 360.0};
   if (model == CameraModel::kBrownConrady) {
-    camera.distortion = {-0.1, 0.02, 1e-3, -2e-3, 0.003, 0.02, 0.01, 0.004};
+    camera.distortion = {-0.1,  0.02, 1e-3,  -2e-3, 0.003, 0.02, 0.01,
+                         0.004, 1e-3, -1e-3, 2e-3,  1e-3,  0.02, -0.03};
+    camera.skew_px = 3.0;
+  }
+  if (model == CameraModel::kOmnidirectional) {
+    camera.distortion = {-0.1, 0.02, 1e-3, -2e-3, 0.003};
+    camera.xi = 0.9;
+  }
+  if (model == CameraModel::kDoubleSphere) {
+    camera.xi = 0.2;
+    camera.alpha = 0.6;
   }
   if (model == CameraModel::kEquidistant) camera.distortion = {0.02, -0.01, 0.003, -0.001};
   return camera;
+}
+
+int UsedNumbers(CameraModel model) {
+  switch (model) {
+    case CameraModel::kPinhole:
+    case CameraModel::kDoubleSphere:
+      return 4;
+    case CameraModel::kEquidistant:
+      return 8;
+    case CameraModel::kOmnidirectional:
+      return 9;
+    case CameraModel::kBrownConrady:
+      break;
+  }
+  return kIntrinsicCount;
 }
 
 class Intrinsics : public testing::TestWithParam<CameraModel> {};
 
 TEST_P(Intrinsics, VectorHoldsTheWholeCamera) {
   const Camera camera = CameraOf(GetParam());
-  const Camera other{.model = GetParam()};
+  Camera other = camera;
+  other.fy_px = other.cy_px = 1.0;
+  other.distortion[0] += 1.0;
   const Camera back = WithIntrinsics(other, IntrinsicsOf(camera));
   EXPECT_EQ(back.fy_px, camera.fy_px);
   EXPECT_EQ(back.cy_px, camera.cy_px);
@@ -34,7 +61,7 @@ TEST_P(Intrinsics, VectorHoldsTheWholeCamera) {
 TEST_P(Intrinsics, DerivativeIsThatOfProject) {
   const Camera camera = CameraOf(GetParam());
   const IntrinsicVector numbers = IntrinsicsOf(camera);
-  const int used = GetParam() == CameraModel::kEquidistant ? 8 : kIntrinsicCount;
+  const int used = UsedNumbers(GetParam());
   Random random(1);
   for (int trial = 0; trial < 50; ++trial) {
     Eigen::Vector3d point;
@@ -42,7 +69,7 @@ TEST_P(Intrinsics, DerivativeIsThatOfProject) {
     point.z() += 2.5;
     const auto analytic = PixelByIntrinsics(camera, point);
     ASSERT_TRUE(analytic);
-    for (int k = 0; k < (GetParam() == CameraModel::kPinhole ? 4 : used); ++k) {
+    for (int k = 0; k < used; ++k) {
       const double step = 1e-6 * (1.0 + std::abs(numbers[k]));
       const auto at = [&](double shift) {
         return *Project(WithIntrinsics(camera, numbers + shift * IntrinsicVector::Unit(k)), point);
@@ -56,7 +83,8 @@ TEST_P(Intrinsics, DerivativeIsThatOfProject) {
 
 INSTANTIATE_TEST_SUITE_P(Every, Intrinsics,
                          testing::Values(CameraModel::kPinhole, CameraModel::kBrownConrady,
-                                         CameraModel::kEquidistant));
+                                         CameraModel::kEquidistant, CameraModel::kOmnidirectional,
+                                         CameraModel::kDoubleSphere));
 
 }  // namespace
 }  // namespace sextant

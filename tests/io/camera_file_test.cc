@@ -85,6 +85,9 @@ TEST(CameraFile, CameraInfoReadsBackToTheBit) {
     EXPECT_EQ(again->cx_px, camera.cx_px);
     EXPECT_EQ(again->cy_px, camera.cy_px);
     EXPECT_EQ(again->distortion, camera.distortion);
+    EXPECT_EQ(again->skew_px, camera.skew_px);
+    EXPECT_EQ(again->xi, camera.xi);
+    EXPECT_EQ(again->alpha, camera.alpha);
   };
   expect_round_trip();
   camera.model = CameraModel::kBrownConrady;
@@ -92,8 +95,21 @@ TEST(CameraFile, CameraInfoReadsBackToTheBit) {
   expect_round_trip();
   camera.distortion[7] = 1e-3;
   expect_round_trip();
+  camera.distortion[9] = -2e-3;
+  camera.distortion[13] = 0.01;
+  camera.skew_px = 1.25;
+  expect_round_trip();
+  camera.skew_px = 0.0;
   camera.model = CameraModel::kEquidistant;
   camera.distortion = {-0.054, 0.04, -0.01, 0.003};
+  expect_round_trip();
+  camera.model = CameraModel::kOmnidirectional;
+  camera.xi = 1.3;
+  expect_round_trip();
+  camera.model = CameraModel::kDoubleSphere;
+  camera.distortion = {};
+  camera.xi = -0.2;
+  camera.alpha = 0.55;
   expect_round_trip();
 }
 
@@ -121,16 +137,15 @@ INSTANTIATE_TEST_SUITE_P(
                 "fx_px"},
         BadText{"EightNumbers", "K: [1, 0, 1, 0, 1, 1, 0, 0]", kParse,
                 "c:1: camera matrix: expected 9 numbers, got 8"},
-        BadText{"Skew", "K: [600, 2, 320, 0, 600, 240, 0, 0, 1]", kInvalid, "without skew"},
+        BadText{"Shear", "K: [600, 0, 320, 2, 600, 240, 0, 0, 1]", kInvalid, "fx skew cx"},
         BadText{"Singular", "K: [0, 0, 320, 0, 600, 240, 0, 0, 1]", kInvalid, "c: "},
         BadText{"NegativeFocal", "K: [-600, 0, 320, 0, 600, 240, 0, 0, 1]", kInvalid, "c: "},
-        BadText{"Model", kMatrix + "distortion_model: omnidirectional", kInvalid,
-                "got 'omnidirectional'"},
+        BadText{"Model", kMatrix + "distortion_model: panoramic", kInvalid, "got 'panoramic'"},
         BadText{"FisheyeCount", kMatrix + "distortion_model: fisheye\nD: [1, 2, 3, 4, 5]", kInvalid,
                 "expected 4 distortion coefficients k1..k4 for the fisheye model, got 5"},
         BadText{"ThreeCoefficients", kMatrix + "D: [0.1, 0, 0]", kInvalid, "got 3"},
-        BadText{"ThinPrism", kMatrix + "D: [0.1, 0, 0, 0, 0, 0, 0, 0, 0.1, 0, 0, 0]", kInvalid,
-                "thin prism"},
+        BadText{"SphereCount", kMatrix + "distortion_model: double_sphere\nxi: 0.1\nD: [0.1]",
+                kInvalid, "xi and alpha alone"},
         BadText{"LongList", kMatrix + "D: [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]", kParse,
                 "expected at most 14 numbers, got 15"},
         BadText{"NotANumber", "K: [.nan, 0, 320, 0, 600, 240, 0, 0, 1]", ErrorCode::kNonFinite,
