@@ -188,6 +188,7 @@ Expected<SolveReport> Solver::Solve(const CalibrationProblem& problem) const {
   const auto start = std::chrono::steady_clock::now();
   SEXTANT_RETURN_IF_ERROR(CheckProblem(problem, spec_));
   Expected<Estimate> estimate = DoSolve(problem);
+  if (estimate) CompleteNoise(problem, spec_, *estimate);
   const auto end = std::chrono::steady_clock::now();
   if (!estimate) return tl::unexpected<Error>(std::move(estimate.error()));
   if (!estimate->cam_from_lidar.IsFinite()) {
