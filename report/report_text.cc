@@ -55,11 +55,12 @@ std::string DescribeNoise(const SolveReport& report) {
     return of_points ? fmt::format("{:.2f} mm", sigma * kMmPerM) : fmt::format("{:.3f} px", sigma);
   };
   const Evaluation& evaluation = report.evaluation;
-  std::string text = fmt::format(
-      "  noise of a pair, 1 sigma   {}{}, {} {} of {} pairs\n", text_of(of_points ? *noise.sigma_m : *noise.sigma_px),
-      of_points && noise.sigma_px ? fmt::format(" and {:.3f} px", *noise.sigma_px) : "",
-      noise.is_given ? "as given, used" : "estimated from", report.inliers.size(),
-      of_points ? evaluation.per_pair_m.size() : evaluation.per_pair_px.size());
+  std::string text =
+      fmt::format("  noise of a pair, 1 sigma   {}{}, {} {} of {} pairs\n",
+                  text_of(of_points ? *noise.sigma_m : *noise.sigma_px),
+                  of_points && noise.sigma_px ? fmt::format(" and {:.3f} px", *noise.sigma_px) : "",
+                  noise.is_given ? "as given, used" : "estimated from", report.inliers.size(),
+                  of_points ? evaluation.per_pair_m.size() : evaluation.per_pair_px.size());
   if (noise.is_given) return text;
   constexpr const char* kLabel = "                             ";
   if (noise.board_errors == BoardErrors::kAssumedIndependent) {

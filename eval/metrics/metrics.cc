@@ -60,9 +60,8 @@ void MeasureUncertainty(const SolveReport& report, const Rigid3d& truth, MetricV
   if (!report.covariance) return;
   const Matrix6d& covariance = *report.covariance;
   const Vector6d error = PoseDifference(report.cam_from_lidar, truth);
-  const bool overconfident =
-      IsOverconfident(error.head<3>(), covariance.topLeftCorner<3, 3>()) ||
-      IsOverconfident(error.tail<3>(), covariance.bottomRightCorner<3, 3>());
+  const bool overconfident = IsOverconfident(error.head<3>(), covariance.topLeftCorner<3, 3>()) ||
+                             IsOverconfident(error.tail<3>(), covariance.bottomRightCorner<3, 3>());
   values.Set(kOverconfident, overconfident ? 1.0 : 0.0);
   if (!values.Wants(kNees) && !values.Wants(kCovered)) return;
   constexpr double kChiSquare6 = 12.591587243743977;  // Quantile at 0.95, 6 degrees of freedom.

@@ -68,7 +68,8 @@ RandomScene MakeRandomScene(const RandomSceneOptions& options, Random& random) {
     points.DrawShared(i);
     if (options.planar) offset.z() = 0.0;
     const Eigen::Vector3d in_cam = tilt * offset + Eigen::Vector3d(0.0, 0.0, options.depth_m);
-    const Eigen::Vector3d noise_m = options.sigma_m * NormalVector(random) + options.sigma_m * points.in_cam();
+    const Eigen::Vector3d noise_m =
+        options.sigma_m * NormalVector(random) + options.sigma_m * points.in_cam();
     const double noise_u = options.sigma_px * random.Normal();
     const double noise_v = options.sigma_px * random.Normal();
     const PairId id{.view = 0, .board = i / kCornersPerBoard, .corner = i % kCornersPerBoard};
@@ -78,9 +79,9 @@ RandomScene MakeRandomScene(const RandomSceneOptions& options, Random& random) {
                                   .sigma_m = options.states_noise ? options.sigma_m : 0.0,
                                   .covariance_in_cam = {},
                                   .id = id});
-    const Eigen::Vector2d pixel =
-        *Project(*problem.camera, in_cam) + Eigen::Vector2d(noise_u, noise_v) +
-        options.sigma_px * points.in_image();
+    const Eigen::Vector2d pixel = *Project(*problem.camera, in_cam) +
+                                  Eigen::Vector2d(noise_u, noise_v) +
+                                  options.sigma_px * points.in_image();
     problem.pairs_2d3d.push_back({.pixel = pixel,
                                   .point_in_lidar = in_lidar,
                                   .sigma_px = options.states_noise ? options.sigma_px : 0.0,

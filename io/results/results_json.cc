@@ -51,12 +51,9 @@ Json Numbers(const std::vector<EstimatedNumber>& numbers) {
 Json NoiseJson(const SolveReport& report) {
   if (!report.noise) return nullptr;
   const NoiseEstimate& noise = *report.noise;
-  return {{"sigma_m", OrNull(noise.sigma_m)},
-          {"sigma_px", OrNull(noise.sigma_px)},
-          {"is_given", noise.is_given},
-          {"board_errors", ToString(noise.board_errors)},
-          {"boards", noise.boards},
-          {"shared_sigma", noise.shared_sigma},
+  return {{"sigma_m", OrNull(noise.sigma_m)}, {"sigma_px", OrNull(noise.sigma_px)},
+          {"is_given", noise.is_given},       {"board_errors", ToString(noise.board_errors)},
+          {"boards", noise.boards},           {"shared_sigma", noise.shared_sigma},
           {"freedom", noise.freedom}};
 }
 
@@ -92,8 +89,8 @@ Json Result(const SolverResult& result) {
   json["error_code"] = report ? Json(nullptr) : Json(ToString(result.report.error().code));
   if (report == nullptr) {
     for (const char* key :
-         {"cam_from_lidar", "covariance", "noise", "camera", "extras", "warnings", "board_views", "rmse_m",
-          "rmse_px", "per_pair_m", "per_pair_px", "inliers", "alternatives", "iterations",
+         {"cam_from_lidar", "covariance", "noise", "camera", "extras", "warnings", "board_views",
+          "rmse_m", "rmse_px", "per_pair_m", "per_pair_px", "inliers", "alternatives", "iterations",
           "termination", "wall_time_us"}) {
       json[key] = nullptr;
     }

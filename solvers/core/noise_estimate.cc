@@ -37,7 +37,9 @@ std::vector<int> ByBoard(std::span<const Pair> pairs, std::span<const int> indic
   return order;
 }
 
-bool IsSameBoard(const PairId& a, const PairId& b) { return a.view == b.view && a.board == b.board; }
+bool IsSameBoard(const PairId& a, const PairId& b) {
+  return a.view == b.view && a.board == b.board;
+}
 
 /// The sums of the header over the pairs of an answer.
 struct BoardSums {
@@ -144,8 +146,7 @@ Matrix6d Correlated(const Matrix6d& covariance, const Matrix6d& independent,
   const Eigen::LLT<Matrix6d> to(correlated);
   if (from.info() != Eigen::Success || to.info() != Eigen::Success) return covariance;
   const Matrix6d factor = to.matrixL();
-  const Matrix6d turn =
-      factor * from.matrixL().solve(Matrix6d(Matrix6d::Identity())).eval();
+  const Matrix6d turn = factor * from.matrixL().solve(Matrix6d(Matrix6d::Identity())).eval();
   const Matrix6d result = turn * covariance * turn.transpose();
   return 0.5 * (result + result.transpose());
 }
@@ -160,14 +161,13 @@ template <int kResiduals, class Pair>
 void Complete(std::span<const Pair> pairs, const Camera* camera, const SolverSpec& spec,
               std::optional<double> NoiseEstimate::*sigma, Estimate& estimate) {
   const int unknowns = spec.estimates_rotation ? 6 : 3;
-  const std::optional<BoardSums> sums = SumByBoard<kResiduals>(
-      pairs, estimate.inliers, camera, estimate, spec.estimates_rotation);
+  const std::optional<BoardSums> sums =
+      SumByBoard<kResiduals>(pairs, estimate.inliers, camera, estimate, spec.estimates_rotation);
   if (!sums || !(sums->residuals > unknowns)) return;
   const std::optional<Matrix6d> inverse = InvertSymmetric(sums->information);
   if (!inverse || !std::isfinite(sums->squares)) return;
   NoiseEstimate noise = estimate.noise.value_or(NoiseEstimate{});
-  const bool grouped =
-      sums->has_names && sums->boards < static_cast<int>(estimate.inliers.size());
+  const bool grouped = sums->has_names && sums->boards < static_cast<int>(estimate.inliers.size());
   const bool tellable = grouped && sums->boards > kMaxUntellableBoards;
   const Components parts = Separate(*sums, *inverse, kResiduals, unknowns, tellable);
   if (!(noise.*sigma)) noise.*sigma = std::sqrt(parts.independent + parts.shared);
@@ -181,8 +181,8 @@ void Complete(std::span<const Pair> pairs, const Camera* camera, const SolverSpe
   if (!estimate.covariance) return;
   if (parts.shared > 0.0) {
     const double variance = sums->squares / (sums->residuals - unknowns);
-    const Matrix6d correlated = parts.independent * *inverse +
-                                parts.shared * *inverse * sums->by_board * *inverse;
+    const Matrix6d correlated =
+        parts.independent * *inverse + parts.shared * *inverse * sums->by_board * *inverse;
     estimate.covariance = Correlated(*estimate.covariance, variance * *inverse, correlated);
   }
   *estimate.covariance *= Inflation(parts.freedom);

@@ -99,8 +99,8 @@ class Solver {
   const SolverSpec& spec() const { return spec_; }
 
   /// Checks that the problem has the data that the solver needs and that it is finite; solves,
-  /// completes the covariance where the noise is not stated, measures the time and evaluates. Errors: kMissingData, kTooFewPairs, kNonFinite,
-  /// kInvalidInput, and those of the method itself.
+  /// completes the covariance where the noise is not stated, measures the time and evaluates.
+  /// Errors: kMissingData, kTooFewPairs, kNonFinite, kInvalidInput, and those of the method itself.
   Expected<SolveReport> Solve(const CalibrationProblem& problem) const;
 
   /// Appends every pose that explains the sampled pairs (indices into the kind of pairs that the

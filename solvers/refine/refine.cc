@@ -107,8 +107,7 @@ class RefineSolver final : public Solver {
   // bad one.
   std::optional<Estimate> FromTriples(const CalibrationProblem& problem) const {
     if (options_.on != RefineOn::k2d3d || options_.Loss().kind != LossKind::kNone ||
-        options_.intrinsics != 0U || options_.sigma_px > 0.0 ||
-        !IsP3pOfPinhole(*inner_, problem)) {
+        options_.intrinsics != 0U || options_.sigma_px > 0.0 || !IsP3pOfPinhole(*inner_, problem)) {
       return std::nullopt;
     }
     const auto begin = std::chrono::steady_clock::now();
@@ -139,9 +138,9 @@ class RefineSolver final : public Solver {
       const RefinedPose refined = loss.kind == LossKind::kNone
                                       ? RefinePose(terms.View(), start, Limits())
                                       : RefinePoseWithCeres(terms.View(), start, loss, Limits());
-      const bool is_better = refined.outcome == RefineOutcome::kConverged &&
-                             (!best || best->outcome != RefineOutcome::kConverged ||
-                              refined.cost < best->cost);
+      const bool is_better =
+          refined.outcome == RefineOutcome::kConverged &&
+          (!best || best->outcome != RefineOutcome::kConverged || refined.cost < best->cost);
       if (!best || is_better) best = refined;
     }
     return EstimateOf(terms, *best);

@@ -22,8 +22,10 @@ class RefinedPairs {
   /// - nothing, for least squares on pairs of one kind, which do not depend on it;
   /// - for a loss, that of FindNoiseScale, whose pose becomes a second start (MM-estimation, Yohai
   ///   1987);
-  /// - for least squares on both kinds, the variances under which the squared residuals of each kind
-  ///   have their expected sum at the minimum, iterated from `start` (Helmert's variance components).
+  /// - for least squares on both kinds, the variances under which the squared residuals of each
+  /// kind
+  ///   have their expected sum at the minimum, iterated from `start` (Helmert's variance
+  ///   components).
   /// Errors: those of FindNoiseScale.
   Expected<void> EstimateNoise(const RefineOptions& options, const Solver& inner,
                                const SolveReport& start);

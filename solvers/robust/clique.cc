@@ -8,8 +8,8 @@
 #include "solvers/core/registry.h"
 #include "solvers/robust/clique_listing.h"
 #include "solvers/robust/consensus.h"
-#include "solvers/robust/noise_scale.h"
 #include "solvers/robust/max_clique.h"
+#include "solvers/robust/noise_scale.h"
 
 namespace sextant {
 namespace {
@@ -60,8 +60,7 @@ class CliqueSolver final : public Solver {
                                    "ransac or gnc",
                                    problem.pairs_3d3d.size(), kMaxPairs));
     }
-    const std::unique_ptr<PairScorer> scorer =
-        MakePairScorer(problem, PairKind::k3d3d);
+    const std::unique_ptr<PairScorer> scorer = MakePairScorer(problem, PairKind::k3d3d);
     const double max_squared = options_.MaxSquared(PairKind::k3d3d);
     const BitGraph graph = scorer->AgreementGraph(max_squared);
     const Clique clique = FindMaximumClique(graph, options_.max_nodes);

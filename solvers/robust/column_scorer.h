@@ -12,9 +12,7 @@ class ColumnScorer final : public PairScorer {
  public:
   /// Refers to `pairs`, none of which may state a covariance.
   explicit ColumnScorer(std::span<const Pair3d3d> pairs)
-      : PairScorer(PairKind::k3d3d, pairs.size()),
-        pairs_(pairs),
-        columns_(pairs) {}
+      : PairScorer(PairKind::k3d3d, pairs.size()), pairs_(pairs), columns_(pairs) {}
 
   const PairColumns& columns() const { return columns_; }
 

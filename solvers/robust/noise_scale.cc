@@ -142,8 +142,8 @@ double SigmaOfInliers(const CalibrationProblem& problem, PairKind kind, const So
   for (const int i : estimate.inliers) squared.push_back(all[static_cast<std::size_t>(i)]);
   const double unknowns = inner.spec().estimates_rotation ? 6.0 : 3.0;
   const double largest = *std::max_element(squared.begin(), squared.end());
-  return std::sqrt(VarianceWithin(squared, ResidualsPerPair(kind), unknowns,
-                                  std::max(largest, max_squared)));
+  return std::sqrt(
+      VarianceWithin(squared, ResidualsPerPair(kind), unknowns, std::max(largest, max_squared)));
 }
 
 void SetNoise(PairKind kind, double sigma, bool is_given, Estimate& estimate) {
@@ -163,16 +163,17 @@ Expected<NoiseScale> FindNoiseScale(const CalibrationProblem& problem, PairKind 
   ScaleSearch search(problem, kind, inner, *scorer, seed);
   search.Run();
   if (!search.found()) {
-    return MakeError(ErrorCode::kDegenerate,
-                     "no sample of pairs determines a pose; the points coincide or lie on one line");
+    return MakeError(
+        ErrorCode::kDegenerate,
+        "no sample of pairs determines a pose; the points coincide or lie on one line");
   }
   if (!search.is_consensus()) {
     return MakeError(
         ErrorCode::kNoConsensus,
         fmt::format("no pose gathers more pairs than chance explains: at best {} of {} are within "
                     "{:.3g} {} of one; check the pairing, or state their noise",
-                    search.rating().inliers, scorer->size(),
-                    std::sqrt(search.rating().max_squared), kind == PairKind::k3d3d ? "m" : "px"));
+                    search.rating().inliers, scorer->size(), std::sqrt(search.rating().max_squared),
+                    kind == PairKind::k3d3d ? "m" : "px"));
   }
   return search.Scale();
 }
@@ -209,8 +210,8 @@ Expected<Estimate> SolveWithNoise(const CalibrationProblem& problem, PairKind ki
   for (int solves = 1;; ++solves) {
     Expected<Estimate> estimate = solve(WithSigma(problem, kind, sigma));
     if (!estimate) return estimate;
-    const double found = SigmaOfInliers(problem, kind, inner,
-                                        options.MaxSquared(kind) * sigma * sigma, *estimate);
+    const double found =
+        SigmaOfInliers(problem, kind, inner, options.MaxSquared(kind) * sigma * sigma, *estimate);
     const bool settled = found < kSimilar * sigma && sigma < kSimilar * found;
     if (settled || solves == kMaxSolves || found < scale.sigma / kSimilar) {
       if (estimate->covariance) *estimate->covariance *= found * found / (sigma * sigma);

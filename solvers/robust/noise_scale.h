@@ -20,10 +20,12 @@ struct NoiseScale {
 /// Seed of FindNoiseScale for solvers without one.
 inline constexpr std::uint64_t kScaleSeed = 1;
 
-/// Finds the noise of pairs that state none, and of which many may be outliers, without a threshold.
+/// Finds the noise of pairs that state none, and of which many may be outliers, without a
+/// threshold.
 ///
-/// A contrario (Moisan and Stival 2004; Moulon, Monasse and Marlet 2012, AC-RANSAC): poses of random
-/// triples are rated by the expected number of poses that k of n random pairs would be so close to,
+/// A contrario (Moisan and Stival 2004; Moulon, Monasse and Marlet 2012, AC-RANSAC): poses of
+/// random triples are rated by the expected number of poses that k of n random pairs would be so
+/// close to,
 ///   NFA = min over k of (n - 3) C(n, k) C(k, 3) p(e_k)^(k - 3),
 /// e_k the k-th smallest residual and p the probability that a random pair has at most that
 /// (RandomAgreementProbability). Least squares on the best k follows each improvement. The sigma is
@@ -44,8 +46,8 @@ CalibrationProblem WithSigma(const CalibrationProblem& problem, PairKind kind, d
 using MethodForKnownNoise = std::function<Expected<Estimate>(const CalibrationProblem&)>;
 
 /// `solve` with the noise that the pairs state; else with that of the options; else with that of
-/// FindNoiseScale, repeated with the noise of the inliers while that differs by more than 20 percent.
-/// The covariance is then that of the noise of the inliers, which is in Estimate::noise.
+/// FindNoiseScale, repeated with the noise of the inliers while that differs by more than 20
+/// percent. The covariance is then that of the noise of the inliers, which is in Estimate::noise.
 Expected<Estimate> SolveWithNoise(const CalibrationProblem& problem, PairKind kind,
                                   const InlierOptions& options, const Solver& inner,
                                   std::uint64_t seed, const MethodForKnownNoise& solve);

@@ -82,8 +82,8 @@ class PairScorer {
   std::size_t size_;
 };
 
-/// A ColumnScorer for 3D-3D pairs with isotropic noise, else a TermScorer. Refers to `problem`. Pairs
-/// that state no noise have residuals in m or px: see noise_scale.h.
+/// A ColumnScorer for 3D-3D pairs with isotropic noise, else a TermScorer. Refers to `problem`.
+/// Pairs that state no noise have residuals in m or px: see noise_scale.h.
 std::unique_ptr<PairScorer> MakePairScorer(const CalibrationProblem& problem, PairKind kind);
 
 /// Whether no pair states a covariance.

@@ -46,8 +46,8 @@ double ExtentOf(const CalibrationProblem& problem, PairKind kind) {
 
 ScaleRater::ScaleRater(const PairScorer& scorer, double extent, int absorbed)
     : size_(scorer.size()), absorbed_(static_cast<std::size_t>(absorbed)) {
-  const double least = std::max(std::numeric_limits<double>::min(),
-                                kMinShare * kMinShare * extent * extent);
+  const double least =
+      std::max(std::numeric_limits<double>::min(), kMinShare * kMinShare * extent * extent);
   first_ = LeadingBits(least);
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     const auto next = static_cast<std::uint64_t>(first_ + static_cast<std::int64_t>(bin) + 1);
@@ -102,7 +102,8 @@ double VarianceWithin(std::span<const double> squared, int dimension, double unk
   const double most = max_squared;
   double corrected = variance;
   for (int round = 0; round < kMaxRounds && corrected > 0.0; ++round) {
-    const double next = std::min(most, variance / ShareOfVariance(dimension, max_squared / corrected));
+    const double next =
+        std::min(most, variance / ShareOfVariance(dimension, max_squared / corrected));
     if (std::abs(next - corrected) < 1e-3 * corrected) return next;
     corrected = next;
   }

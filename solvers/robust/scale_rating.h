@@ -23,8 +23,8 @@ struct ScaleRating {
 /// their squares, so a rating takes time N + 200 and no sorting.
 class ScaleRater {
  public:
-  /// Pairs of `scorer` must state no noise; `extent` is that of ExtentOf. A pose fits `absorbed` pairs
-  /// whatever they are.
+  /// Pairs of `scorer` must state no noise; `extent` is that of ExtentOf. A pose fits `absorbed`
+  /// pairs whatever they are.
   ScaleRater(const PairScorer& scorer, double extent, int absorbed);
 
   /// Residuals below this are rounding errors, and count as equal.
@@ -44,8 +44,8 @@ class ScaleRater {
   std::vector<double> log_tests_;       // log((n - m) C(n, k) C(k, m)) by k, m = absorbed.
 };
 
-/// The variance per axis of a Gaussian of `dimension` axes, cut off at the square `max_squared`, from
-/// the squares up to that; `unknowns` were fitted to these. No less than 0.
+/// The variance per axis of a Gaussian of `dimension` axes, cut off at the square `max_squared`,
+/// from the squares up to that; `unknowns` were fitted to these. No less than 0.
 double VarianceWithin(std::span<const double> squared, int dimension, double unknowns,
                       double max_squared);
 

@@ -154,8 +154,8 @@ class PointTripleSource final : public TripleSource {
     for (std::size_t k = 0; k < 3; ++k) {
       const Pair3d3d& a = pair(k);
       const Pair3d3d& b = pair((k + 1) % 3);
-      const double difference = (a.point_in_cam - b.point_in_cam).norm() -
-                                (a.point_in_lidar - b.point_in_lidar).norm();
+      const double difference =
+          (a.point_in_cam - b.point_in_cam).norm() - (a.point_in_lidar - b.point_in_lidar).norm();
       triple.disagreement = std::max(triple.disagreement, std::abs(difference));
     }
     batch_.push_back(triple);
