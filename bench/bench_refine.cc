@@ -82,7 +82,7 @@ void Refine(benchmark::State& state) {
   const std::vector<RoughScene> scenes = RoughScenes(state);
   std::vector<PairTerms> terms;
   for (const RoughScene& rough : scenes) {
-    terms.push_back(MakeTerms(rough.scene.problem, PairKind::k2d3d, {}));
+    terms.push_back(MakeTerms(rough.scene.problem, PairKind::k2d3d));
   }
   Time(state, TruthsOf(scenes), kRefined, 0, [&](std::size_t i) {
     return RefinePose(terms[i].View(), scenes[i].start, {}).cam_from_lidar;
@@ -105,7 +105,7 @@ void RefinedP3p(benchmark::State& state) {
   const std::vector<RandomScene> scenes = Scenes(state);
   std::vector<PairTerms> terms;
   for (const RandomScene& scene : scenes) {
-    terms.push_back(MakeTerms(scene.problem, PairKind::k2d3d, {}));
+    terms.push_back(MakeTerms(scene.problem, PairKind::k2d3d));
   }
   Time(state, TruthsOf(scenes), kRefined, 0, [&](std::size_t i) {
     const std::optional<Rigid3d> start = StartFromTriples(terms[i].pixels.View(), terms[i].camera);

@@ -25,7 +25,8 @@ Outcome Try(const Contestant& contestant, const RandomScene& scene, int inliers)
 }
 
 RandomScene MakeScene(const OutlierStudy& study, int pairs, double fraction, std::size_t index) {
-  const RandomSceneOptions options{.pairs = pairs, .sigma_px = 1.0};
+  const RandomSceneOptions options{
+      .pairs = pairs, .sigma_px = study.sigma_px, .states_noise = study.states_noise};
   const std::string condition = fmt::format("{} pairs, {:.3f} outliers", pairs, fraction);
   Random random(DeriveSeed(study.seed, condition, 0, index));
   RandomScene scene = MakeRandomScene(options, random);

@@ -27,7 +27,9 @@ Contestant ContestantThatKnowsInliers(const SolverPtr& solver);
 /// px, points in a cube of 2 m at 3 m distance.
 struct OutlierStudy {
   std::uint64_t seed = 1;
-  int scenes = 100;  ///< Number of scenes per cell.
+  double sigma_px = 1.0;
+  bool states_noise = true;  ///< Whether the pairs state sigma_px.
+  int scenes = 100;          ///< Number of scenes per cell.
   int threads = 2;
   std::vector<int> pairs = {20, 100, 500};
   std::vector<double> outlier_fractions = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7};

@@ -62,6 +62,31 @@ std::string DescribeUncertainty(const SolveReport& report) {
       sigma[4] * kMmPerM, sigma[5] * kMmPerM);
 }
 
+// The noise of one kind of pairs; empty where it is stated.
+std::string DescribeNoise(const SolveReport& report) {
+  if (!report.noise) return {};
+  const NoiseEstimate& noise = *report.noise;
+  const bool of_points = noise.sigma_m.has_value();
+  const auto text_of = [&](double sigma) {
+    return of_points ? fmt::format("{:.2f} mm", sigma * kMmPerM) : fmt::format("{:.3f} px", sigma);
+  };
+  const Evaluation& evaluation = report.evaluation;
+  std::string text =
+      fmt::format("  noise of a pair, 1 sigma   {}{}, {} {} of {} pairs\n",
+                  text_of(of_points ? *noise.sigma_m : *noise.sigma_px),
+                  of_points && noise.sigma_px ? fmt::format(" and {:.3f} px", *noise.sigma_px) : "",
+                  noise.is_given ? "as given, used" : "estimated from", report.inliers.size(),
+                  of_points ? evaluation.per_pair_m.size() : evaluation.per_pair_px.size());
+  if (noise.is_given) return text;
+  constexpr const char* kLabel = "                             ";
+  if (noise.board_errors == BoardErrors::kAssumedIndependent) {
+    return text + kLabel + "independent errors assumed: no board or view names several pairs\n";
+  }
+  if (noise.board_errors == BoardErrors::kTooFewBoards) return text;
+  return text + fmt::format("{}{} of it common to each of {} boards\n", kLabel,
+                            text_of(noise.shared_sigma), noise.boards);
+}
+
 std::string DescribeNumbers(const char* title, const std::vector<EstimatedNumber>& numbers) {
   std::string text = fmt::format("  {}\n", title);
   for (const EstimatedNumber& number : numbers) {
@@ -139,6 +164,7 @@ std::string DescribeAnswer(const SolveReport& report) {
                         *evaluation.rmse_px, CountProjected(evaluation));
   }
   text += DescribeUncertainty(report);
+  text += DescribeNoise(report);
   if (report.camera) text += DescribeNumbers("camera, also estimated", report.camera->estimated);
   if (!report.extras.empty()) text += DescribeNumbers("also estimated", report.extras);
   for (const std::string& warning : report.warnings) {

@@ -51,6 +51,25 @@ void MeasureEstimate(const Rigid3d& cam_from_lidar, MetricValues& values) {
   values.Set(kEstimatedRollDeg, euler.roll * kDegPerRad);
 }
 
+// Whether the norm of an error is over three times the root mean square that its covariance states.
+bool IsOverconfident(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
+  return error.norm() > 3.0 * std::sqrt(std::max(0.0, covariance.trace()));
+}
+
+void MeasureUncertainty(const SolveReport& report, const Rigid3d& truth, MetricValues& values) {
+  if (!report.covariance) return;
+  const Matrix6d& covariance = *report.covariance;
+  const Vector6d error = PoseDifference(report.cam_from_lidar, truth);
+  const bool overconfident = IsOverconfident(error.head<3>(), covariance.topLeftCorner<3, 3>()) ||
+                             IsOverconfident(error.tail<3>(), covariance.bottomRightCorner<3, 3>());
+  values.Set(kOverconfident, overconfident ? 1.0 : 0.0);
+  if (!values.Wants(kNees) && !values.Wants(kCovered)) return;
+  constexpr double kChiSquare6 = 12.591587243743977;  // Quantile at 0.95, 6 degrees of freedom.
+  const double nees = Nees(report.cam_from_lidar, covariance, truth);
+  values.Set(kNees, nees);
+  if (std::isfinite(nees)) values.Set(kCovered, nees <= kChiSquare6 ? 1.0 : 0.0);
+}
+
 void MeasureError(const Rigid3d& cam_from_lidar, const Rigid3d& truth, const PoseLimits& limits,
                   MetricValues& values) {
   const PoseDistance off = DistanceBetween(cam_from_lidar, truth);
@@ -86,6 +105,10 @@ const std::vector<Metric>& PoseMetrics() {
       {"bound_translation_mm",
        "Cramer-Rao bound of the RMS of translation_mm, from the true inliers"},
       {"nees", "squared error in units of the stated covariance; 6 on average if that is right"},
+      {"covered",
+       "1 if the truth is in the region that holds it with 95 percent by the stated covariance"},
+      {"overconfident",
+       "1 if the error of rotation or translation is over three times its stated sigma; else 0"},
       {"rmse_mm", "RMS residual of the 3D-3D pairs given to the solver"},
       {"nearest_mm", "RMS distance to the nearest point of the other sensor, ignoring the pairing"},
       {"rmse_px", "RMS reprojection error of the 2D-3D pairs given to the solver"},
@@ -118,9 +141,7 @@ void MeasurePose(const KnownProblem& known, const Expected<SolveReport>& report,
   MeasureEstimate(pose, values);
   values.Set(kTimeUs, report->wall_time_us);
   values.Set(kInliers, static_cast<double>(report->inliers.size()));
-  if (values.Wants(kNees) && report->covariance) {
-    values.Set(kNees, Nees(pose, *report->covariance, known.cam_from_lidar));
-  }
+  MeasureUncertainty(*report, known.cam_from_lidar, values);
   if (values.Wants(kNearestMm) && !known.problem.pairs_3d3d.empty()) {
     values.Set(kNearestMm, 1e3 * NearestNeighbourRmse(PointsOf(known.problem.pairs_3d3d), pose));
   }

@@ -59,6 +59,8 @@ enum PoseMetric : int {
   kBoundRotationDeg,
   kBoundTranslationMm,
   kNees,
+  kCovered,
+  kOverconfident,
   kRmseMm,
   kNearestMm,
   kRmsePx,

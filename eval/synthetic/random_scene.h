@@ -14,6 +14,13 @@ struct RandomSceneOptions {
   double depth_m = 3.0;   ///< Distance of the points' centre from the camera.
   double extent_m = 1.0;  ///< Half the side of the cube that holds the points.
   double max_rotation_rad = 3.14;
+  /// The pairs are the corners of square boards of random tilt, four of each, 0.4 extent_m from its
+  /// centre.
+  bool on_boards = false;
+  /// Standard deviation of the error that the pairs of a board have in common, in units of sigma_m
+  /// and sigma_px; the pairs do not state it.
+  double shared_error = 0.0;
+  bool states_noise = true;  ///< False: no pair states a sigma.
 };
 
 struct RandomScene {

@@ -50,6 +50,15 @@ Json Numbers(const std::vector<EstimatedNumber>& numbers) {
   return list;
 }
 
+Json NoiseJson(const SolveReport& report) {
+  if (!report.noise) return nullptr;
+  const NoiseEstimate& noise = *report.noise;
+  return {{"sigma_m", OrNull(noise.sigma_m)}, {"sigma_px", OrNull(noise.sigma_px)},
+          {"is_given", noise.is_given},       {"board_errors", ToString(noise.board_errors)},
+          {"boards", noise.boards},           {"shared_sigma", noise.shared_sigma},
+          {"freedom", noise.freedom}};
+}
+
 Json CameraEstimateJson(const CameraEstimate& estimate) {
   Json json = CameraJson(estimate.camera);
   json["estimated"] = Numbers(estimate.estimated);
@@ -82,8 +91,8 @@ Json Result(const SolverResult& result) {
   json["error_code"] = report ? Json(nullptr) : Json(ToString(result.report.error().code));
   if (report == nullptr) {
     for (const char* key :
-         {"cam_from_lidar", "covariance", "camera", "extras", "warnings", "board_views", "rmse_m",
-          "rmse_px", "per_pair_m", "per_pair_px", "inliers", "alternatives", "iterations",
+         {"cam_from_lidar", "covariance", "noise", "camera", "extras", "warnings", "board_views",
+          "rmse_m", "rmse_px", "per_pair_m", "per_pair_px", "inliers", "alternatives", "iterations",
           "termination", "wall_time_us"}) {
       json[key] = nullptr;
     }
@@ -91,6 +100,7 @@ Json Result(const SolverResult& result) {
   }
   json["cam_from_lidar"] = PoseJson(report->cam_from_lidar);
   json["covariance"] = report->covariance ? MatrixRows(*report->covariance) : Json(nullptr);
+  json["noise"] = NoiseJson(*report);
   json["camera"] = report->camera ? CameraEstimateJson(*report->camera) : Json(nullptr);
   json["extras"] = Numbers(report->extras);
   json["warnings"] = report->warnings;
@@ -202,6 +212,25 @@ CameraEstimate ParseCameraEstimate(const ParsedJson& json) {
   return estimate;
 }
 
+template <class Enum>
+Enum GetEnum(const ParsedJson& map, const char* key, Enum last) {
+  const auto name = Get<std::string>(map, key);
+  for (int i = 0; i <= static_cast<int>(last); ++i) {
+    if (ToString(static_cast<Enum>(i)) == name) return static_cast<Enum>(i);
+  }
+  Refuse(fmt::format("key '{}': unknown value {}", key, Quoted(name)));
+}
+
+NoiseEstimate ParseNoise(const ParsedJson& json) {
+  return {.sigma_m = GetOptional(json, "sigma_m"),
+          .sigma_px = GetOptional(json, "sigma_px"),
+          .is_given = Get<bool>(json, "is_given"),
+          .board_errors = GetEnum(json, "board_errors", BoardErrors::kEstimated),
+          .boards = Get<int>(json, "boards"),
+          .shared_sigma = Get<double>(json, "shared_sigma"),
+          .freedom = Get<double>(json, "freedom")};
+}
+
 ObservationCount ParseCount(const ParsedJson& map, const char* key) {
   const auto counts = Get<std::array<int, 2>>(map, key);
   return {counts[0], counts[1]};
@@ -224,21 +253,15 @@ std::vector<BoardViewFit> ParseBoardViews(const ParsedJson& list) {
   return fits;
 }
 
-template <class Enum>
-Enum GetEnum(const ParsedJson& map, const char* key, Enum last) {
-  const auto name = Get<std::string>(map, key);
-  for (int i = 0; i <= static_cast<int>(last); ++i) {
-    if (ToString(static_cast<Enum>(i)) == name) return static_cast<Enum>(i);
-  }
-  Refuse(fmt::format("key '{}': unknown value {}", key, Quoted(name)));
-}
-
 SolveReport ParseReport(const ParsedJson& json) {
   SolveReport report;
   report.solver = Get<std::string>(json, "solver");
   report.cam_from_lidar = ParsePose(json.at("cam_from_lidar"));
   report.covariance = GetCovariance(json);
   // Older files lack these keys.
+  if (json.contains("noise") && !json.at("noise").is_null()) {
+    report.noise = ParseNoise(json.at("noise"));
+  }
   if (json.contains("camera") && !json.at("camera").is_null()) {
     report.camera = ParseCameraEstimate(json.at("camera"));
   }

@@ -218,6 +218,7 @@ Expected<void> CheckProblem(const CalibrationProblem& problem, const SolverSpec&
 Expected<Estimate> Solver::SolveWithAlternatives(const CalibrationProblem& problem) const {
   Expected<Estimate> estimate = DoSolve(problem);
   if (!estimate) return estimate;
+  CompleteNoise(problem, spec_, *estimate);
   if (!estimate->cam_from_lidar.IsFinite() ||
       (estimate->covariance && !estimate->covariance->allFinite())) {
     return MakeError(ErrorCode::kNonFinite,
@@ -228,6 +229,7 @@ Expected<Estimate> Solver::SolveWithAlternatives(const CalibrationProblem& probl
   if (answer > 0 && !likely.poses.empty()) {
     if (auto lowest = DoSolveFrom(problem, *estimate, likely.poses.front())) {
       *estimate = *std::move(lowest);
+      CompleteNoise(problem, spec_, *estimate);
       answer = 0;
     }
   }

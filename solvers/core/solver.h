@@ -12,6 +12,7 @@
 #include "solvers/core/board_view_fit.h"
 #include "solvers/core/camera_estimate.h"
 #include "solvers/core/evaluation.h"
+#include "solvers/core/noise_estimate.h"
 
 namespace sextant {
 
@@ -64,6 +65,9 @@ struct Estimate {
   std::vector<int> inliers;
   /// For (dphi [rad], dt [m]); see Perturb. None where there is no redundant data to estimate it.
   std::optional<Matrix6d> covariance;
+  /// The noise that the covariance is based on; none where the pairs state theirs, and for solvers
+  /// that use no pairs.
+  std::optional<NoiseEstimate> noise;
   /// Set where the solver estimates the camera too; the covariance of the pose then accounts for
   /// it.
   std::optional<CameraEstimate> camera;
@@ -96,9 +100,10 @@ class Solver {
   const SolverSpec& spec() const { return spec_; }
 
   /// Checks that the problem has the data that the solver needs and that it is finite; solves, in
-  /// coordinates near the data (LocalFrame), measures the time, finds alternatives and evaluates.
-  /// Errors: kMissingData, kTooFewPairs, kNonFinite, kInvalidInput, kNoConsensus (CheckPlausible),
-  /// and those of the method itself.
+  /// coordinates near the data (LocalFrame), completes the covariance where the noise is not
+  /// stated, measures the time, finds alternatives and evaluates. Errors: kMissingData,
+  /// kTooFewPairs, kNonFinite, kInvalidInput, kNoConsensus (CheckPlausible), and those of the
+  /// method itself.
   Expected<SolveReport> Solve(const CalibrationProblem& problem) const;
 
   /// Appends every pose that explains the sampled pairs (indices into the kind of pairs that the

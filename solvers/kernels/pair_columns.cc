@@ -41,6 +41,14 @@ SEXTANT_MULTIVERSION void MarkInliers(const PairColumns& pairs, const ColumnPose
   }
 }
 
+// Of the 64 pairs from `begin` on, in the order of the columns.
+SEXTANT_MULTIVERSION void SquareBlock(const PairColumns& pairs, const ColumnPose& pose,
+                                      std::size_t begin, double* squared) {
+  for (std::size_t at = 0; at < kColumnBlock; at += kSimdWidth) {
+    StoreVec(SquaredSigmas(pairs, pose, begin + at), squared + at);
+  }
+}
+
 struct InlierSums {
   double cost = 0.0;
   double count = 0.0;
@@ -71,7 +79,7 @@ double CostOfPadding(const PairColumns& pairs, double max_squared) {
 
 }  // namespace
 
-PairColumns::PairColumns(std::span<const Pair3d3d> pairs, const AssumedNoise& assumed)
+PairColumns::PairColumns(std::span<const Pair3d3d> pairs)
     : size_(pairs.size()),
       padded_((pairs.size() + kColumnBlock - 1) / kColumnBlock * kColumnBlock),
       numbers_(kColumns * padded_) {
@@ -85,7 +93,7 @@ PairColumns::PairColumns(std::span<const Pair3d3d> pairs, const AssumedNoise& as
       set(kCamColumn + axis, place, pair.point_in_cam[axis]);
       set(kLidarColumn + axis, place, pair.point_in_lidar[axis]);
     }
-    const double sigma = pair.sigma_m > 0.0 ? pair.sigma_m : assumed.sigma_m;
+    const double sigma = pair.sigma_m > 0.0 ? pair.sigma_m : 1.0;
     set(kVarianceColumn, place, sigma * sigma);
     set(kInverseVarianceColumn, place, 1.0 / (sigma * sigma));
   }
@@ -113,6 +121,17 @@ InlierFit FitInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar, do
   result.fitted = pose.has_value();
   if (pose) result.cam_from_lidar = *pose;
   return result;
+}
+
+void SquaredResidualsOf(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
+                        std::span<double> squared) {
+  double block[kColumnBlock];
+  const ColumnPose pose = ColumnPoseOf(cam_from_lidar);
+  for (std::size_t begin = 0; begin < pairs.size(); begin += kColumnBlock) {
+    SquareBlock(pairs, pose, begin, block);
+    const std::size_t end = std::min(begin + kColumnBlock, pairs.size());
+    for (std::size_t i = begin; i < end; ++i) squared[i] = block[PairColumns::Place(i) - begin];
+  }
 }
 
 void InliersOf(const PairColumns& pairs, const Rigid3d& cam_from_lidar, double max_squared,

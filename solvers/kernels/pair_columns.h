@@ -7,7 +7,6 @@
 
 #include "geometry/calibration_problem.h"
 #include "solvers/kernels/kabsch.h"
-#include "solvers/kernels/pair_terms.h"
 
 namespace sextant {
 
@@ -19,8 +18,8 @@ class PairColumns {
  public:
   static constexpr std::size_t kBlock = 64;
 
-  /// Requires that no pair states a covariance; one that states no sigma gets the assumed one.
-  PairColumns(std::span<const Pair3d3d> pairs, const AssumedNoise& assumed);
+  /// Requires that no pair states a covariance; without a sigma the unit of residuals is 1 m.
+  explicit PairColumns(std::span<const Pair3d3d> pairs);
 
   std::size_t size() const { return size_; }
   std::size_t padded() const { return padded_; }
@@ -53,6 +52,10 @@ struct InlierFit {
   bool fitted = false;  ///< False where the inliers do not determine a pose.
 };
 InlierFit FitInliers(const PairColumns& pairs, const Rigid3d& cam_from_lidar, double max_squared);
+
+/// Writes r_i^2 of every pair. Shape: `squared` has as many numbers as there are pairs.
+void SquaredResidualsOf(const PairColumns& pairs, const Rigid3d& cam_from_lidar,
+                        std::span<double> squared);
 
 /// Writes the indices, ascending, of the pairs with r_i^2 <= max_squared.
 void InliersOf(const PairColumns& pairs, const Rigid3d& cam_from_lidar, double max_squared,

@@ -9,19 +9,18 @@
 namespace sextant {
 namespace {
 
-// W with W^T W the inverse of the pair's covariance.
-Eigen::Matrix3d Whitener(const Pair3d3d& pair, double assumed_sigma_m) {
+// W with W^T W the inverse of the pair's covariance; the identity where it states none.
+Eigen::Matrix3d Whitener(const Pair3d3d& pair) {
   if (pair.covariance_in_cam) {
     const Eigen::LLT<Eigen::Matrix3d> factor(*pair.covariance_in_cam);
     return factor.matrixL().solve(Eigen::Matrix3d::Identity().eval());
   }
-  return Eigen::Matrix3d::Identity() / (pair.sigma_m > 0.0 ? pair.sigma_m : assumed_sigma_m);
+  return Eigen::Matrix3d::Identity() / (pair.sigma_m > 0.0 ? pair.sigma_m : 1.0);
 }
 
 // Makes up to eight terms; returns whether all pairs state their noise.
 template <class V>
-SEXTANT_INLINE bool MakeBlockFor(std::span<const Pair2d3d> pairs, double assumed_sigma_px,
-                                 PixelBlock& block) {
+SEXTANT_INLINE bool MakeBlockFor(std::span<const Pair2d3d> pairs, PixelBlock& block) {
   const EightPixelPairs<V> eight = GatherPixelPairs<V>(pairs);
   const MaskOf<V> known = eight.sigma > 0.0;
   StoreVec(eight.x, block.x);
@@ -29,39 +28,37 @@ SEXTANT_INLINE bool MakeBlockFor(std::span<const Pair2d3d> pairs, double assumed
   StoreVec(eight.z, block.z);
   StoreVec(eight.u, block.u);
   StoreVec(eight.v, block.v);
-  StoreVec(1.0 / Select(known, eight.sigma, All<V>(assumed_sigma_px)), block.inverse_sigma);
+  StoreVec(1.0 / Select(known, eight.sigma, All<V>(1.0)), block.inverse_sigma);
   for (std::size_t k = pairs.size(); k < kSimdWidth; ++k) block.inverse_sigma[k] = 0.0;
   return !AnyTrue(~known);
 }
-SEXTANT_SIMD_DISPATCH(bool, MakeBlock,
-                      (std::span<const Pair2d3d> pairs, double assumed_sigma_px, PixelBlock& block),
-                      (pairs, assumed_sigma_px, block))
+SEXTANT_SIMD_DISPATCH(bool, MakeBlock, (std::span<const Pair2d3d> pairs, PixelBlock& block),
+                      (pairs, block))
 
 }  // namespace
 
-void PairTerms::Add(std::span<const Pair3d3d> pairs, const AssumedNoise& assumed) {
+void PairTerms::Add(std::span<const Pair3d3d> pairs) {
   points.reserve(points.size() + pairs.size());
   for (const Pair3d3d& pair : pairs) {
-    points.push_back({pair.point_in_cam, pair.point_in_lidar, Whitener(pair, assumed.sigma_m)});
+    points.push_back({pair.point_in_cam, pair.point_in_lidar, Whitener(pair)});
     noise_known = noise_known && HasKnownNoise(pair);
   }
 }
 
-void PairTerms::Add(std::span<const Pair2d3d> pairs, const Camera& of_pairs,
-                    const AssumedNoise& assumed) {
+void PairTerms::Add(std::span<const Pair2d3d> pairs, const Camera& of_pairs) {
   camera = of_pairs;
   pixels.reserve(pixels.size() + pairs.size());
   // First fill the last block, then append block by block.
   for (; !pairs.empty() && pixels.size() % kSimdWidth != 0; pairs = pairs.subspan(1)) {
     const Pair2d3d& pair = pairs.front();
-    const double sigma = pair.sigma_px > 0.0 ? pair.sigma_px : assumed.sigma_px;
+    const double sigma = pair.sigma_px > 0.0 ? pair.sigma_px : 1.0;
     pixels.push_back({pair.pixel, pair.point_in_lidar, 1.0 / sigma});
     noise_known = noise_known && HasKnownNoise(pair);
   }
   PixelBlock block;
   while (!pairs.empty()) {
     const std::size_t count = std::min(kSimdWidth, pairs.size());
-    if (!MakeBlock(pairs.first(count), assumed.sigma_px, block)) noise_known = false;
+    if (!MakeBlock(pairs.first(count), block)) noise_known = false;
     pixels.AppendBlock(block, count);
     pairs = pairs.subspan(count);
   }
@@ -82,12 +79,12 @@ void PairTerms::AssignSubset(const PairTerms& all, std::span<const int> indices)
   }
 }
 
-PairTerms MakeTerms(const CalibrationProblem& problem, PairKind kind, const AssumedNoise& assumed) {
+PairTerms MakeTerms(const CalibrationProblem& problem, PairKind kind) {
   PairTerms terms;
   if (kind == PairKind::k3d3d) {
-    terms.Add(problem.pairs_3d3d, assumed);
+    terms.Add(problem.pairs_3d3d);
   } else {
-    terms.Add(problem.pairs_2d3d, *problem.camera, assumed);
+    terms.Add(problem.pairs_2d3d, *problem.camera);
   }
   return terms;
 }

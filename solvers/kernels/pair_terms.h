@@ -16,12 +16,6 @@ enum class PairKind { k3d3d, k2d3d };
 /// Residuals of one pair: 3 coordinates or 2.
 inline constexpr int ResidualsPerPair(PairKind kind) { return kind == PairKind::k3d3d ? 3 : 2; }
 
-/// The noise that is assumed for pairs that state none.
-struct AssumedNoise {
-  double sigma_m = 0.02;
-  double sigma_px = 1.0;
-};
-
 /// A whitened 3D-3D pair: r = whitener * (in_cam - R in_lidar - t), the residual of residuals.h
 /// with unit variance on each axis.
 struct PointTerm {
@@ -37,18 +31,18 @@ struct TermsView {
   const Camera* camera = nullptr;  ///< Needed where there are pixels.
 };
 
-/// The whitened pairs of a problem.
+/// The whitened pairs of a problem; pairs that state no noise keep their unit, m or px.
 struct PairTerms {
   std::vector<PointTerm> points;
   PixelTerms pixels;
   Camera camera;
-  bool noise_known = true;  ///< False where the noise of a pair was assumed.
+  bool noise_known = true;  ///< False where a pair states no noise.
 
   TermsView View() const { return {points, pixels.View(), &camera}; }
   std::size_t size() const { return points.size() + pixels.size(); }
 
-  void Add(std::span<const Pair3d3d> pairs, const AssumedNoise& assumed);
-  void Add(std::span<const Pair2d3d> pairs, const Camera& of_pairs, const AssumedNoise& assumed);
+  void Add(std::span<const Pair3d3d> pairs);
+  void Add(std::span<const Pair2d3d> pairs, const Camera& of_pairs);
 
   /// Replaces the content by the terms of `all` (one kind) at `indices`. Allocates nothing once
   /// it has held as many terms.
@@ -56,6 +50,6 @@ struct PairTerms {
 };
 
 /// The terms of all pairs of one kind.
-PairTerms MakeTerms(const CalibrationProblem& problem, PairKind kind, const AssumedNoise& assumed);
+PairTerms MakeTerms(const CalibrationProblem& problem, PairKind kind);
 
 }  // namespace sextant

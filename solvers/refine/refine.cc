@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <span>
 #include <tuple>
 
 #include "geometry/lens_domain.h"
@@ -18,8 +19,8 @@
 #include "solvers/refine/p3p_start.h"
 #include "solvers/refine/refine_camera.h"
 #include "solvers/refine/refine_ceres.h"
+#include "solvers/refine/refine_noise.h"
 #include "solvers/refine/refine_options.h"
-#include "solvers/robust/consensus.h"
 
 namespace sextant {
 namespace {
@@ -31,14 +32,6 @@ DataNeeds WithRefined(DataNeeds needs, RefineOn on) {
   if (Uses3d3d(on)) needs.pairs_3d3d = std::max(needs.pairs_3d3d, kMinPairs);
   if (Uses2d3d(on)) needs.pairs_2d3d = std::max(needs.pairs_2d3d, kMinPairs);
   return needs;
-}
-
-template <class Pair>
-std::vector<Pair> PairsAt(const std::vector<Pair>& pairs, const std::vector<int>& indices) {
-  std::vector<Pair> selected;
-  selected.reserve(indices.size());
-  for (const int i : indices) selected.push_back(pairs[static_cast<std::size_t>(i)]);
-  return selected;
 }
 
 /// Indices of the pairs of each kind used in the refinement.
@@ -73,6 +66,7 @@ std::vector<int> NotRejected(const std::vector<Pair>& pairs, const std::vector<i
 /// argmin over SE(3) of 1/2 sum rho(|r_i|^2) from the inner solver's pose, r_i whitened by the
 /// stated noise of the pairs (full 3x3 covariances included), over the inliers of the inner solver.
 ///
+/// Pairs that state no noise have it estimated: see refine_noise.h.
 /// Plain least squares runs in RefinePose, robust losses in Ceres. With on=both, the pairs of the
 /// other kind are used too, without the ids that the inner solver rejected. Covariance: inverse of
 /// sum rho' J^T J; with free intrinsics see refine_camera.h. Termination kConverged: the last step
@@ -110,12 +104,15 @@ class RefineSolver final : public Solver {
   // Least squares from the pose of `start` over its inliers; keeps its alternatives and stages.
   Expected<Estimate> RefineFrom(const CalibrationProblem& problem, const Estimate& start) const {
     const UsedPairs used = Choose(problem, start);
-    const PairTerms terms = TermsOf(problem, used);
     SEXTANT_RETURN_IF_ERROR(CheckProjects(problem, used, start.cam_from_lidar));
+    RefinedPairs pairs(problem, Uses3d3d(options_.on) ? used.points : std::vector<int>(),
+                       Uses2d3d(options_.on) ? used.pixels : std::vector<int>());
+    SEXTANT_RETURN_IF_ERROR(pairs.EstimateNoise(options_, *inner_, start));
     Expected<Estimate> estimate = options_.intrinsics == 0U
-                                      ? PoseOf(terms, start.cam_from_lidar)
-                                      : PoseAndCameraOf(terms, start.cam_from_lidar);
+                                      ? PoseOf(pairs.Terms(), pairs.starts())
+                                      : PoseAndCameraOf(pairs.Terms(), start.cam_from_lidar);
     if (!estimate) return estimate;
+    estimate->noise = pairs.noise();
     estimate->termination = Termination::kConverged;
     estimate->inliers = spec().needs.pairs_3d3d > 0 ? used.points : used.pixels;
     estimate->alternatives = start.alternatives;
@@ -128,11 +125,11 @@ class RefineSolver final : public Solver {
   // bad one.
   std::optional<Estimate> FromTriples(const CalibrationProblem& problem) const {
     if (options_.on != RefineOn::k2d3d || options_.Loss().kind != LossKind::kNone ||
-        options_.intrinsics != 0U || !IsP3pOfPinhole(*inner_, problem)) {
+        options_.intrinsics != 0U || options_.sigma_px > 0.0 || !IsP3pOfPinhole(*inner_, problem)) {
       return std::nullopt;
     }
     const auto begin = std::chrono::steady_clock::now();
-    const PairTerms terms = MakeTerms(problem, PairKind::k2d3d, Assumed());
+    const PairTerms terms = MakeTerms(problem, PairKind::k2d3d);
     const std::optional<Rigid3d> start = StartFromTriples(terms.pixels.View(), terms.camera);
     const std::chrono::duration<double, std::micro> wall_time =
         std::chrono::steady_clock::now() - begin;
@@ -176,16 +173,24 @@ class RefineSolver final : public Solver {
   // The sum of squared residuals [px^2], to the accuracy with which the sigmas are alike.
   double SquaredPixels(const CalibrationProblem& problem, const RefinedPose& refined) const {
     const Pair2d3d& first = problem.pairs_2d3d.front();
-    const double sigma_px = HasKnownNoise(first) ? first.sigma_px : options_.sigma_px;
+    const double sigma_px = HasKnownNoise(first) ? first.sigma_px : 1.0;  // Else in pixels.
     return 2.0 * refined.cost * sigma_px * sigma_px;
   }
 
-  Expected<Estimate> PoseOf(const PairTerms& terms, const Rigid3d& start) const {
+  // The minimum of the lowest cost that is reached from the starts.
+  Expected<Estimate> PoseOf(const PairTerms& terms, std::span<const Rigid3d> starts) const {
     const RobustLoss loss = options_.Loss();
-    const RefinedPose refined = loss.kind == LossKind::kNone
-                                    ? RefinePose(terms.View(), start, Limits())
-                                    : RefinePoseWithCeres(terms.View(), start, loss, Limits());
-    return EstimateOf(terms, refined);
+    std::optional<RefinedPose> best;
+    for (const Rigid3d& start : starts) {
+      const RefinedPose refined = loss.kind == LossKind::kNone
+                                      ? RefinePose(terms.View(), start, Limits())
+                                      : RefinePoseWithCeres(terms.View(), start, loss, Limits());
+      const bool is_better =
+          refined.outcome == RefineOutcome::kConverged &&
+          (!best || best->outcome != RefineOutcome::kConverged || refined.cost < best->cost);
+      if (!best || is_better) best = refined;
+    }
+    return EstimateOf(terms, *best);
   }
 
   // Whether the stated noise explains the residuals of the pixels: their sum of squares is
@@ -226,8 +231,6 @@ class RefineSolver final : public Solver {
         });
   }
 
-  AssumedNoise Assumed() const { return {options_.sigma_m, options_.sigma_px}; }
-
   RefineLimits Limits() const { return {options_.max_iterations, options_.step_tolerance}; }
 
   // The inliers of the inner solver's kind of pairs; of the other kind, all without the id of a
@@ -246,16 +249,6 @@ class RefineSolver final : public Solver {
       used.pixels = AllOf(problem.pairs_2d3d.size());
     }
     return used;
-  }
-
-  PairTerms TermsOf(const CalibrationProblem& problem, const UsedPairs& used) const {
-    const AssumedNoise assumed = Assumed();
-    PairTerms terms;
-    if (Uses3d3d(options_.on)) terms.Add(PairsAt(problem.pairs_3d3d, used.points), assumed);
-    if (Uses2d3d(options_.on)) {
-      terms.Add(PairsAt(problem.pairs_2d3d, used.pixels), *problem.camera, assumed);
-    }
-    return terms;
   }
 
   Expected<void> CheckOutcome(const RefinedPose& refined) const {

@@ -47,10 +47,10 @@ OptionSet<RefineOptions> RefineOptionSet() {
              "limit; reaching it is the error kNoConvergence")
       .Real("step_tolerance", &RefineOptions::step_tolerance, "rad and m", 1e-15, 1.0,
             "the iteration ends with a step smaller than this")
-      .Real("sigma_m", &RefineOptions::sigma_m, "m", 1e-9, 1e6,
-            "assumed for pairs that state no sigma")
-      .Real("sigma_px", &RefineOptions::sigma_px, "px", 1e-6, 1e6,
-            "assumed for pairs that state no sigma");
+      .Real("sigma_m", &RefineOptions::sigma_m, "m", 0.0, 1e6,
+            "noise of pairs that state none; 0: estimated from the residuals")
+      .Real("sigma_px", &RefineOptions::sigma_px, "px", 0.0, 1e6,
+            "noise of pairs that state none; 0: estimated from the residuals");
   return options;
 }
 

@@ -9,6 +9,7 @@
 #include "solvers/robust/clique_listing.h"
 #include "solvers/robust/consensus.h"
 #include "solvers/robust/max_clique.h"
+#include "solvers/robust/noise_scale.h"
 
 namespace sextant {
 namespace {
@@ -47,14 +48,19 @@ class CliqueSolver final : public Solver {
 
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
+    return SolveWithNoise(problem, PairKind::k3d3d, options_, *inner_, kScaleSeed,
+                          [this](const CalibrationProblem& stated) { return SolveStated(stated); });
+  }
+
+  // Requires pairs that state their noise.
+  Expected<Estimate> SolveStated(const CalibrationProblem& problem) const {
     if (problem.pairs_3d3d.size() > kMaxPairs) {
       return MakeError(ErrorCode::kInvalidInput,
                        fmt::format("{} pairs, expected at most {}: the graph would not fit; use "
                                    "ransac or gnc",
                                    problem.pairs_3d3d.size(), kMaxPairs));
     }
-    const std::unique_ptr<PairScorer> scorer =
-        MakePairScorer(problem, PairKind::k3d3d, options_.Assumed());
+    const std::unique_ptr<PairScorer> scorer = MakePairScorer(problem, PairKind::k3d3d);
     const double max_squared = options_.MaxSquared(PairKind::k3d3d);
     const BitGraph graph = scorer->AgreementGraph(max_squared);
     const Clique clique = FindMaximumClique(graph, options_.max_nodes);

@@ -25,12 +25,16 @@ std::optional<Rigid3d> ColumnScorer::FitInliers(const Rigid3d& pose, double max_
   return fit.cam_from_lidar;
 }
 
+void ColumnScorer::SquaredResiduals(const Rigid3d& pose, std::span<double> squared) const {
+  SquaredResidualsOf(columns_, pose, squared);
+}
+
 double ColumnScorer::RandomAgreementProbability(double max_squared) const {
   Eigen::AlignedBox3d box;
   double sigmas = 0.0;
   for (const Pair3d3d& pair : pairs_) {
     box.extend(pair.point_in_cam);
-    sigmas += pair.sigma_m > 0.0 ? pair.sigma_m : assumed_.sigma_m;
+    sigmas += pair.sigma_m > 0.0 ? pair.sigma_m : 1.0;
   }
   const double radius = std::sqrt(max_squared) * sigmas / static_cast<double>(size());
   return RandomPointProbability(box, radius);
@@ -49,7 +53,7 @@ PairTerms ColumnScorer::Terms(std::span<const int> indices) const {
   chosen.reserve(indices.size());
   for (const int i : indices) chosen.push_back(pairs_[static_cast<std::size_t>(i)]);
   PairTerms terms;
-  terms.Add(chosen, assumed_);
+  terms.Add(chosen);
   return terms;
 }
 

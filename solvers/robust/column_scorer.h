@@ -11,11 +11,8 @@ namespace sextant {
 class ColumnScorer final : public PairScorer {
  public:
   /// Refers to `pairs`, none of which may state a covariance.
-  ColumnScorer(std::span<const Pair3d3d> pairs, const AssumedNoise& assumed)
-      : PairScorer(PairKind::k3d3d, pairs.size()),
-        pairs_(pairs),
-        assumed_(assumed),
-        columns_(pairs, assumed) {}
+  explicit ColumnScorer(std::span<const Pair3d3d> pairs)
+      : PairScorer(PairKind::k3d3d, pairs.size()), pairs_(pairs), columns_(pairs) {}
 
   const PairColumns& columns() const { return columns_; }
 
@@ -23,6 +20,7 @@ class ColumnScorer final : public PairScorer {
   void Inliers(const Rigid3d& pose, double max_squared, std::vector<int>& inliers) const override;
   std::optional<Rigid3d> FitInliers(const Rigid3d& pose, double max_squared,
                                     const RefineLimits& limits) override;
+  void SquaredResiduals(const Rigid3d& pose, std::span<double> squared) const override;
   double RandomAgreementProbability(double max_squared) const override;
   int CountDistinct(std::span<const int> indices) const override;
   PairTerms Terms(std::span<const int> indices) const override;
@@ -33,7 +31,6 @@ class ColumnScorer final : public PairScorer {
 
  private:
   std::span<const Pair3d3d> pairs_;
-  AssumedNoise assumed_;
   PairColumns columns_;
   std::vector<double> weights_;  // In the order of the columns; empty before the first Reweight.
 };

@@ -15,10 +15,10 @@ namespace sextant {
 /// When a pair counts as an inlier; shared by every solver that separates inliers from outliers.
 struct InlierOptions {
   double threshold = 0.0;  ///< Sigmas; 0: 99 percent of true pairs are within.
-  double sigma_m = AssumedNoise{}.sigma_m;
-  double sigma_px = AssumedNoise{}.sigma_px;
+  double sigma_m = 0.0;    ///< Of pairs that state none; 0: estimated, see noise_scale.h.
+  double sigma_px = 0.0;
 
-  AssumedNoise Assumed() const { return {sigma_m, sigma_px}; }
+  double Sigma(PairKind kind) const { return kind == PairKind::k3d3d ? sigma_m : sigma_px; }
 
   /// Largest squared whitened residual of an inlier: the 0.99 quantile of chi-square with 3 or 2
   /// degrees of freedom, or threshold^2.
@@ -31,6 +31,9 @@ struct InlierOptions {
   double FinalMaxSquared(const PairScorer& scorer) const;
 };
 
+inline constexpr const char* kSigmaHelp =
+    "noise of pairs that state none; 0: estimated from those that agree";
+
 /// Adds threshold, sigma_m and sigma_px to a solver's options.
 template <class Options>
 OptionSet<Options>& AddInlierOptions(OptionSet<Options>& options) {
@@ -38,9 +41,8 @@ OptionSet<Options>& AddInlierOptions(OptionSet<Options>& options) {
       .Real(
           "threshold", &Options::threshold, "sigma", 0.0, 1e6,
           "largest residual of an inlier; 0: 3.37 (3D-3D) or 3.03 (2D-3D), the 99 percent quantile")
-      .Real("sigma_m", &Options::sigma_m, "m", 1e-9, 1e6, "assumed for pairs that state no sigma")
-      .Real("sigma_px", &Options::sigma_px, "px", 1e-6, 1e6,
-            "assumed for pairs that state no sigma");
+      .Real("sigma_m", &Options::sigma_m, "m", 0.0, 1e6, kSigmaHelp)
+      .Real("sigma_px", &Options::sigma_px, "px", 0.0, 1e6, kSigmaHelp);
 }
 
 /// Whether the pairs `inliers`, which agree on one pose, are more than chance explains.

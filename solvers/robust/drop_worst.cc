@@ -7,6 +7,7 @@
 #include "solvers/core/inner_solver.h"
 #include "solvers/core/registry.h"
 #include "solvers/robust/consensus.h"
+#include "solvers/robust/noise_scale.h"
 #include "solvers/robust/term_scorer.h"
 
 namespace sextant {
@@ -42,8 +43,16 @@ class DropWorstSolver final : public Solver {
   }
 
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
+    // Without a threshold the noise does not matter.
+    if (options_.keep > 0) return SolveStated(problem);
+    return SolveWithNoise(problem, kind_, options_, *inner_, kScaleSeed,
+                          [this](const CalibrationProblem& stated) { return SolveStated(stated); });
+  }
+
+  // Requires pairs that state their noise, or keep.
+  Expected<Estimate> SolveStated(const CalibrationProblem& problem) const {
     const double max_squared = options_.MaxSquared(kind_);
-    const TermScorer scorer(MakeTerms(problem, kind_, options_.Assumed()));
+    const TermScorer scorer(MakeTerms(problem, kind_));
     std::vector<double> squared(scorer.size());
     std::vector<int> kept(scorer.size());
     std::iota(kept.begin(), kept.end(), 0);

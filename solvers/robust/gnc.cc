@@ -11,6 +11,7 @@
 #include "solvers/core/inner_solver.h"
 #include "solvers/core/registry.h"
 #include "solvers/robust/consensus.h"
+#include "solvers/robust/noise_scale.h"
 #include "solvers/robust/term_scorer.h"
 
 namespace sextant {
@@ -25,26 +26,26 @@ struct GncOptions : InlierOptions {
 constexpr double kMinWeight = 1e-6;
 constexpr double kEveryPair = std::numeric_limits<double>::max();
 
-Pair3d3d Weighted(Pair3d3d pair, double weight, const AssumedNoise& assumed) {
+Pair3d3d Weighted(Pair3d3d pair, double weight) {
   if (pair.covariance_in_cam) {
     *pair.covariance_in_cam /= weight;
   } else {
-    pair.sigma_m = (pair.sigma_m > 0.0 ? pair.sigma_m : assumed.sigma_m) / std::sqrt(weight);
+    pair.sigma_m /= std::sqrt(weight);
   }
   return pair;
 }
 
-Pair2d3d Weighted(Pair2d3d pair, double weight, const AssumedNoise& assumed) {
-  pair.sigma_px = (pair.sigma_px > 0.0 ? pair.sigma_px : assumed.sigma_px) / std::sqrt(weight);
+Pair2d3d Weighted(Pair2d3d pair, double weight) {
+  pair.sigma_px /= std::sqrt(weight);
   return pair;
 }
 
 template <class Pair>
-std::vector<Pair> WeightedPairs(const std::vector<Pair>& pairs, const std::vector<double>& weights,
-                                const AssumedNoise& assumed) {
+std::vector<Pair> WeightedPairs(const std::vector<Pair>& pairs,
+                                const std::vector<double>& weights) {
   std::vector<Pair> weighted;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (weights[i] >= kMinWeight) weighted.push_back(Weighted(pairs[i], weights[i], assumed));
+    if (weights[i] >= kMinWeight) weighted.push_back(Weighted(pairs[i], weights[i]));
   }
   return weighted;
 }
@@ -71,8 +72,14 @@ class GncSolver final : public Solver {
 
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
+    return SolveWithNoise(problem, kind_, options_, *inner_, kScaleSeed,
+                          [this](const CalibrationProblem& stated) { return SolveStated(stated); });
+  }
+
+  // Requires pairs that state their noise.
+  Expected<Estimate> SolveStated(const CalibrationProblem& problem) const {
     const double max_squared = options_.MaxSquared(kind_);
-    const std::unique_ptr<PairScorer> scorer = MakePairScorer(problem, kind_, options_.Assumed());
+    const std::unique_ptr<PairScorer> scorer = MakePairScorer(problem, kind_);
     int iterations = 0;
     SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, Anneal(problem, *scorer, max_squared, iterations));
     Expected<Estimate> estimate = BetterOnInliers(*inner_, problem, *scorer, pose, max_squared);
@@ -129,11 +136,11 @@ class GncSolver final : public Solver {
     weighted.initial_cam_from_lidar = problem.initial_cam_from_lidar;
     weighted.boards = problem.boards;
     if (kind_ == PairKind::k3d3d) {
-      weighted.pairs_3d3d = WeightedPairs(problem.pairs_3d3d, weights, options_.Assumed());
+      weighted.pairs_3d3d = WeightedPairs(problem.pairs_3d3d, weights);
     } else {
-      weighted.pairs_2d3d = WeightedPairs(problem.pairs_2d3d, weights, options_.Assumed());
+      weighted.pairs_2d3d = WeightedPairs(problem.pairs_2d3d, weights);
     }
-    TermScorer scorer(MakeTerms(weighted, kind_, options_.Assumed()));
+    TermScorer scorer(MakeTerms(weighted, kind_));
     const int min_pairs = MinPairs(inner_->spec().needs);
     if (scorer.size() < static_cast<std::size_t>(min_pairs)) {
       return MakeError(ErrorCode::kNoConsensus,

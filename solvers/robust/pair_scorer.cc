@@ -8,12 +8,11 @@
 
 namespace sextant {
 
-std::unique_ptr<PairScorer> MakePairScorer(const CalibrationProblem& problem, PairKind kind,
-                                           const AssumedNoise& assumed) {
+std::unique_ptr<PairScorer> MakePairScorer(const CalibrationProblem& problem, PairKind kind) {
   if (kind == PairKind::k3d3d && AreIsotropic(problem.pairs_3d3d)) {
-    return std::make_unique<ColumnScorer>(problem.pairs_3d3d, assumed);
+    return std::make_unique<ColumnScorer>(problem.pairs_3d3d);
   }
-  return std::make_unique<TermScorer>(MakeTerms(problem, kind, assumed));
+  return std::make_unique<TermScorer>(MakeTerms(problem, kind));
 }
 
 bool AreIsotropic(std::span<const Pair3d3d> pairs) {

@@ -42,6 +42,9 @@ class PairScorer {
   virtual void Inliers(const Rigid3d& pose, double max_squared,
                        std::vector<int>& inliers) const = 0;
 
+  /// Writes r_i^2 of every pair. Shape: `squared` has as many numbers as there are pairs.
+  virtual void SquaredResiduals(const Rigid3d& pose, std::span<double> squared) const = 0;
+
   /// Least squares on the inliers of `pose`; none where they do not determine a pose. `limits` are
   /// for iterative methods, which start at `pose`.
   virtual std::optional<Rigid3d> FitInliers(const Rigid3d& pose, double max_squared,
@@ -80,8 +83,8 @@ class PairScorer {
 };
 
 /// A ColumnScorer for 3D-3D pairs with isotropic noise, else a TermScorer. Refers to `problem`.
-std::unique_ptr<PairScorer> MakePairScorer(const CalibrationProblem& problem, PairKind kind,
-                                           const AssumedNoise& assumed);
+/// Pairs that state no noise have residuals in m or px: see noise_scale.h.
+std::unique_ptr<PairScorer> MakePairScorer(const CalibrationProblem& problem, PairKind kind);
 
 /// Whether no pair states a covariance.
 bool AreIsotropic(std::span<const Pair3d3d> pairs);

@@ -11,6 +11,7 @@
 #include "solvers/core/registry.h"
 #include "solvers/pnp/p3p_solver.h"
 #include "solvers/robust/consensus.h"
+#include "solvers/robust/noise_scale.h"
 #include "solvers/robust/p3p_consensus.h"
 #include "solvers/robust/term_scorer.h"
 
@@ -142,6 +143,12 @@ class RansacSolver final : public Solver {
 
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
+    return SolveWithNoise(problem, kind_, options_, *inner_, options_.seed,
+                          [this](const CalibrationProblem& stated) { return SolveStated(stated); });
+  }
+
+  // Requires pairs that state their noise.
+  Expected<Estimate> SolveStated(const CalibrationProblem& problem) const {
     const SampleOptions sampling = {.sample_size = options_.sample_size > 0
                                                        ? options_.sample_size
                                                        : MinPairs(inner_->spec().needs),
@@ -152,9 +159,9 @@ class RansacSolver final : public Solver {
     const double max_squared = options_.MaxSquared(kind_);
     if (sampling.sample_size == 3 && options_.local_optimisation > 0 &&
         IsP3pOfPinhole(*inner_, problem)) {
-      return SolveByTriples(TermScorer(MakeTerms(problem, kind_, options_.Assumed())), max_squared);
+      return SolveByTriples(TermScorer(MakeTerms(problem, kind_)), max_squared);
     }
-    const std::unique_ptr<PairScorer> scorer = MakePairScorer(problem, kind_, options_.Assumed());
+    const std::unique_ptr<PairScorer> scorer = MakePairScorer(problem, kind_);
     SampleSearch search(*inner_, sampling, problem, *scorer, max_squared);
     search.Run();
     if (!search.found()) return NoPose(search.iterations(), sampling.sample_size);

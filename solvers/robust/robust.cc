@@ -11,6 +11,7 @@
 #include "solvers/kernels/agreement_graph.h"
 #include "solvers/robust/column_scorer.h"
 #include "solvers/robust/consensus.h"
+#include "solvers/robust/noise_scale.h"
 
 namespace sextant {
 
@@ -134,8 +135,14 @@ class RobustSolver final : public Solver {
 
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
+    return SolveWithNoise(problem, PairKind::k3d3d, options_, *inner_, options_.seed,
+                          [this](const CalibrationProblem& stated) { return SolveStated(stated); });
+  }
+
+  // Requires pairs that state their noise.
+  Expected<Estimate> SolveStated(const CalibrationProblem& problem) const {
     if (spec().estimates_rotation && AreIsotropic(problem.pairs_3d3d)) {
-      ColumnScorer scorer(problem.pairs_3d3d, options_.Assumed());
+      ColumnScorer scorer(problem.pairs_3d3d);
       TripleSearch search(*inner_, problem, scorer, options_);
       if (search.Settles()) {
         Expected<Estimate> estimate = RefitOnInliers(*inner_, problem, scorer, search.best(),

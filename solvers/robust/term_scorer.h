@@ -17,6 +17,7 @@ class TermScorer final : public PairScorer {
   void Inliers(const Rigid3d& pose, double max_squared, std::vector<int>& inliers) const override;
   std::optional<Rigid3d> FitInliers(const Rigid3d& pose, double max_squared,
                                     const RefineLimits& limits) override;
+  void SquaredResiduals(const Rigid3d& pose, std::span<double> squared) const override;
   double RandomAgreementProbability(double max_squared) const override;
   int CountDistinct(std::span<const int> indices) const override;
   PairTerms Terms(std::span<const int> indices) const override;
@@ -24,9 +25,6 @@ class TermScorer final : public PairScorer {
   double LargestSquared(const Rigid3d& pose) const override;
   GncReweighting Reweight(const Rigid3d& pose, const GncWeight& weight_of) override;
   std::vector<double> Weights() const override { return weights_; }
-
-  /// Writes r_i^2 of every pair. Shape: `squared` has as many numbers as there are pairs.
-  void SquaredResiduals(const Rigid3d& pose, std::span<double> squared) const;
 
  private:
   std::optional<Rigid3d> FitIsotropicInliers();

@@ -109,8 +109,8 @@ TEST(CramerRaoBound, EqualsTheCovarianceOfCeresAndRefinePoseAtTheTruth) {
       EXPECT_TRUE(bound->isApprox(NumericBound(problem, scene.cam_from_lidar), 1e-6)) << kinds;
 
       PairTerms terms;
-      terms.Add(problem.pairs_3d3d, {});
-      terms.Add(problem.pairs_2d3d, *problem.camera, {});
+      terms.Add(problem.pairs_3d3d);
+      terms.Add(problem.pairs_2d3d, *problem.camera);
       const std::optional<Matrix6d> ceres = CeresCovariance(terms.View(), scene.cam_from_lidar);
       ASSERT_TRUE(ceres);
       EXPECT_TRUE(ceres->isApprox(*bound, 1e-8)) << kinds;

@@ -104,7 +104,7 @@ TEST(AgreementGraph, ConnectsPairsWhoseLengthsAgree) {
       for (double& x : pair.point_in_lidar) x = random.Uniform(-1.0, 1.0);
       pair.sigma_m = random.Uniform(0.01, 0.1);
     }
-    const PairColumns columns(pairs, {});
+    const PairColumns columns(pairs);
     const BitGraph graph = AgreementGraph(columns, kMaxSquared);
     std::vector<std::uint64_t> row(graph.words());
     for (int i = 0; i < count; ++i) {

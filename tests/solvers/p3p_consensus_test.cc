@@ -128,7 +128,7 @@ TEST(RansacOfP3p, IsAtTheBoundOfTheTruePairs) {
 
 TEST(P3pConsensus, IsTheSameForTheSameSeedAndDrawsNoMoreThanAllowed) {
   const PairScene scene = Mismatched(60, 0.5, 0);
-  const PairTerms terms = MakeTerms(scene.problem, PairKind::k2d3d, {});
+  const PairTerms terms = MakeTerms(scene.problem, PairKind::k2d3d);
   const auto find = [&](std::uint64_t seed, int max_samples) {
     return FindP3pConsensus(terms.pixels.View(), terms.camera,
                             {.max_samples = max_samples, .seed = seed});

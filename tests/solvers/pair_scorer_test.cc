@@ -29,8 +29,8 @@ class BothScorers : public testing::TestWithParam<int> {
     problem_ = scene.problem;
     for (Pair3d3d& pair : problem_.pairs_3d3d) pair.sigma_m = random.Uniform(0.005, 0.02);
     pose_ = Perturb(scene.cam_from_lidar, Vector6d::Constant(0.002));
-    columns_ = std::make_unique<ColumnScorer>(problem_.pairs_3d3d, AssumedNoise{});
-    terms_ = std::make_unique<TermScorer>(MakeTerms(problem_, PairKind::k3d3d, {}));
+    columns_ = std::make_unique<ColumnScorer>(problem_.pairs_3d3d);
+    terms_ = std::make_unique<TermScorer>(MakeTerms(problem_, PairKind::k3d3d));
   }
 
   CalibrationProblem problem_;
@@ -95,7 +95,7 @@ TEST_P(BothScorers, CountDifferentPairs) {
   }
   problem_.pairs_3d3d[3] = problem_.pairs_3d3d[1];
   problem_.pairs_3d3d[5] = problem_.pairs_3d3d[1];
-  const TermScorer terms(MakeTerms(problem_, PairKind::k3d3d, {}));
+  const TermScorer terms(MakeTerms(problem_, PairKind::k3d3d));
   EXPECT_EQ(columns_->CountDistinct(indices), GetParam() - 2);
   EXPECT_EQ(terms.CountDistinct(indices), GetParam() - 2);
 }

@@ -31,16 +31,16 @@ TEST(PairTerms, EqualTheirPairsAtEveryPosition) {
   for (std::size_t first = 0; first < 20; ++first) {
     for (const std::size_t second : {0U, 1U, 7U, 8U, 9U, 23U}) {
       const std::vector<Pair2d3d> stated = RandomPairs(first, 0.3, random);
-      const std::vector<Pair2d3d> assumed = RandomPairs(second, 0.0, random);
+      const std::vector<Pair2d3d> unstated = RandomPairs(second, 0.0, random);
       PairTerms terms;
-      terms.Add(stated, {}, {.sigma_px = 2.0});
+      terms.Add(stated, {});
       EXPECT_TRUE(terms.noise_known);
-      terms.Add(assumed, {}, {.sigma_px = 2.0});
+      terms.Add(unstated, {});
       EXPECT_EQ(terms.noise_known, second == 0);
       ASSERT_EQ(terms.pixels.size(), first + second);
       for (std::size_t i = 0; i < first; ++i) ExpectTermOf(stated[i], 0.3, terms.pixels[i]);
       for (std::size_t i = 0; i < second; ++i) {
-        ExpectTermOf(assumed[i], 2.0, terms.pixels[first + i]);
+        ExpectTermOf(unstated[i], 1.0, terms.pixels[first + i]);
       }
     }
   }
@@ -50,7 +50,7 @@ TEST(PairTerms, PaddingRepeatsATermAndAddsNothing) {
   Random random(2);
   const std::vector<Pair2d3d> pairs = RandomPairs(11, 1.0, random);
   PairTerms terms;
-  terms.Add(pairs, {}, {});
+  terms.Add(pairs, {});
   ASSERT_EQ(terms.pixels.blocks().size(), 2U);
   const PixelBlock& last = terms.pixels.blocks()[1];
   for (std::size_t k = 3; k < kSimdWidth; ++k) {

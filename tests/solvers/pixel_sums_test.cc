@@ -35,7 +35,7 @@ SumsCase MakeCase(int pairs, Random& random) {
     for (int axis = 0; axis < 2; ++axis) pair.pixel[axis] += 1.5 * pair.sigma_px * random.Normal();
   }
   SumsCase made;
-  made.terms.Add(scene.problem.pairs_2d3d, *scene.problem.camera, {});
+  made.terms.Add(scene.problem.pairs_2d3d, *scene.problem.camera);
   made.pose = scene.cam_from_lidar;
   return made;
 }

@@ -42,8 +42,8 @@ enum class Kinds { kPoints, kPixels, kBoth };
 
 PairTerms TermsOf(const CalibrationProblem& problem, Kinds kinds) {
   PairTerms terms;
-  if (kinds != Kinds::kPixels) terms.Add(problem.pairs_3d3d, {});
-  if (kinds != Kinds::kPoints) terms.Add(problem.pairs_2d3d, *problem.camera, {});
+  if (kinds != Kinds::kPixels) terms.Add(problem.pairs_3d3d);
+  if (kinds != Kinds::kPoints) terms.Add(problem.pairs_2d3d, *problem.camera);
   return terms;
 }
 

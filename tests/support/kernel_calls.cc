@@ -61,8 +61,8 @@ std::vector<Forms> MakeForms(int pairs, double outliers, bool planar) {
       forms.image_points.push_back(forms.rays.back().hnormalized());
     }
     forms.weights.assign(problem.pairs_3d3d.size(), 1.0);
-    forms.pixels = MakeTerms(problem, PairKind::k2d3d, {});
-    forms.points = MakeTerms(problem, PairKind::k3d3d, {});
+    forms.pixels = MakeTerms(problem, PairKind::k2d3d);
+    forms.points = MakeTerms(problem, PairKind::k3d3d);
     forms.pixel_scorer = std::make_unique<TermScorer>(forms.pixels);
     forms.point_scorer = std::make_unique<TermScorer>(forms.points);
     forms.near_truth = Perturb(forms.scene.cam_from_lidar, Vector6d::Constant(0.02));

@@ -25,6 +25,9 @@ struct RandomSceneTrialSettings : PoseLimits {
   bool known_inliers = false;
   double focal_error = 0.0;
   double scale_error = 0.0;
+  bool on_boards = false;
+  double shared_error = 0.0;
+  bool states_noise = true;
 };
 
 const OptionSet<RandomSceneTrialSettings>& RandomSceneTrialParameters() {
@@ -53,7 +56,13 @@ const OptionSet<RandomSceneTrialSettings>& RandomSceneTrialParameters() {
           .Real("focal_error", &RandomSceneTrialSettings::focal_error, "1", -0.5, 0.5,
                 "relative error of the focal lengths given to the solver")
           .Real("scale_error", &RandomSceneTrialSettings::scale_error, "1", -0.5, 0.5,
-                "relative error of the distances in the camera frame, as of a wrong board size"));
+                "relative error of the distances in the camera frame, as of a wrong board size")
+          .Choice("on_boards", &RandomSceneTrialSettings::on_boards, {"false", "true"},
+                  "the pairs are the corners of square boards, four of each")
+          .Real("shared_error", &RandomSceneTrialSettings::shared_error, "sigma", 0.0, 100.0,
+                "error common to the pairs of a board, in units of the noise of a pair")
+          .Choice("states_noise", &RandomSceneTrialSettings::states_noise, {"false", "true"},
+                  "whether the solvers get the noise; not that common to a board"));
   return set;
 }
 
@@ -107,7 +116,10 @@ KnownProblem MakeRandomSceneTrialProblem(const RandomSceneTrialSettings& setting
       .planar = settings.planar,
       .depth_m = settings.depth_m,
       .extent_m = settings.extent_m,
-      .max_rotation_rad = settings.max_rotation_deg * std::numbers::pi / 180.0};
+      .max_rotation_rad = settings.max_rotation_deg * std::numbers::pi / 180.0,
+      .on_boards = settings.on_boards,
+      .shared_error = settings.shared_error,
+      .states_noise = settings.states_noise};
   RandomScene scene = MakeRandomScene(options, random);
   const int inliers = InlierCount(settings.pairs, settings.outliers);
   KnownProblem known;
