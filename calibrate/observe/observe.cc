@@ -13,6 +13,8 @@
 namespace sextant {
 namespace {
 
+constexpr std::ptrdiff_t kMaxOthers = 4;
+
 // The reason why a board has no pose in the image.
 std::string WhyUnseen(const Board& board, const SeenBoard& seen) {
   if (seen.pose) return seen.pose->error().message;
@@ -135,7 +137,11 @@ Expected<void> Observer::ObserveScan(const PointCloud& cloud, Observation& obser
   SEXTANT_ASSIGN_OR_RETURN(const ScanRings rings, ScanRings::Build(cloud));
   observation.lidar = PatternOf(rings, options_.search.beam);
   SEXTANT_ASSIGN_OR_RETURN(const BoardSearch search, FindBoards(rings, boards(), options_.search));
-  for (const BoardPatch& patch : search.found) {
+  // Further patches compete, because the image may tell them apart by their distance.
+  std::vector<BoardPatch> patches = search.found;
+  patches.insert(patches.end(), search.others.begin(),
+                 search.others.begin() + std::min(kMaxOthers, std::ssize(search.others)));
+  for (const BoardPatch& patch : patches) {
     std::string why;
     SEXTANT_ASSIGN_OR_RETURN(std::vector<BoardPlacement> placements,
                              PlaceBoards(patch, boards(), options_.extractor, why));
