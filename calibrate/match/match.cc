@@ -149,7 +149,12 @@ Expected<Matching> MatchViews(std::span<const Observation> views, const MatchSet
         ErrorCode::kTooFewPairs,
         fmt::format("no board was seen by both sensors in any of {} views", views.size()));
   }
-  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found) {
+    return MakeError(
+        found.error().code,
+        "the boards that both sensors saw do not determine a pose: their corners lie on "
+        "one line");
+  }
   const double scale = NoiseScale(found->front());
   if (scale > 1.0) {
     options.cap *= scale;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "base/median.h"
 #include "base/units.h"
@@ -23,9 +24,7 @@ constexpr double kMinTilt_rad = 0.005;  // A smaller tilt of the axis is noise.
 constexpr double kMaxSpread = 0.25;     // Of a ring found by the order, relative to the steps.
 constexpr std::size_t kMinColumns = 16;
 constexpr std::size_t kTestedColumns = 48;
-constexpr double kFarShare = 0.5;  // Fraction of the returns that are far enough to start from.
-constexpr double kFollow = 0.05;   // Weight of a return in its ring's running elevation.
-constexpr double kNearby = 0.35;   // Of the step to the next ring.
+constexpr double kClearlyNearer = 0.3;  // Distance to a ring relative to that to the next.
 
 std::vector<double> ElevationsAbout(std::span<const UnsortedReturn> returns,
                                     const Eigen::Vector3d& axis) {
@@ -186,53 +185,60 @@ std::optional<PointOrder> FindOrder(std::span<const UnsortedReturn> returns,
   return std::nullopt;
 }
 
-// Follows the rings of the far returns, whose elevations are hardly spread by the beams' origins,
-// to nearer ones. Returns that are on no ring get the nearest.
-std::vector<int> RingsFollowedInwards(std::span<const UnsortedReturn> returns,
-                                      const std::vector<double>& elevations) {
-  std::vector<double> nearness;
-  for (const UnsortedReturn& point : returns) nearness.push_back(1.0 / point.range_m);
-  const std::vector<std::size_t> order = OrderOf(nearness);
-  const auto far = static_cast<std::size_t>(kFarShare * static_cast<double>(order.size()));
-  std::vector<double> of_far;
-  for (std::size_t i = 0; i < far; ++i) of_far.push_back(elevations[order[i]]);
-  if (of_far.empty()) return {};
-  const std::vector<int> started = RingsOfElevations(of_far, OrderOf(of_far));
-  if (started.empty()) return {};
-  const auto count = static_cast<std::size_t>(*std::ranges::max_element(started)) + 1;
-  if (count < kMinRepeating) return {};
-  std::vector<double> middles(count, 0.0);
-  std::vector<double> counts(count, 0.0);
-  std::vector<int> rings(returns.size(), 0);
-  for (std::size_t i = 0; i < far; ++i) {
-    rings[order[i]] = started[i];
-    middles[static_cast<std::size_t>(started[i])] += of_far[i];
-    counts[static_cast<std::size_t>(started[i])] += 1.0;
-  }
-  for (std::size_t k = 0; k < count; ++k) middles[k] /= counts[k];
-  std::size_t lost = 0;
-  for (std::size_t i = far; i < order.size(); ++i) {
-    const double elevation = elevations[order[i]];
-    const auto above =
-        static_cast<std::size_t>(std::ranges::lower_bound(middles, elevation) - middles.begin());
-    std::size_t ring = std::min(above, count - 1);
-    if (above > 0 &&
-        (above == count || elevation - middles[above - 1] < middles[above] - elevation)) {
-      ring = above - 1;
+// Rings whose elevation changes slowly along some order of the returns: each return continues the
+// nearest ring within the tolerance, or begins another. Empty if that is ambiguous for too many.
+std::vector<int> RingsFollowed(const std::vector<double>& elevations,
+                               const std::vector<std::size_t>& order, double tolerance_rad) {
+  const double allowed = (1.0 - kNarrowShare) * static_cast<double>(order.size());
+  std::vector<double> last;  // Elevation of each ring's last return.
+  std::vector<int> rings(elevations.size(), 0);
+  std::size_t ambiguous = 0;
+  for (const std::size_t i : order) {
+    std::size_t ring = last.size();
+    double nearest = std::numeric_limits<double>::infinity();
+    double second = nearest;
+    for (std::size_t k = 0; k < last.size(); ++k) {
+      const double off = std::abs(last[k] - elevations[i]);
+      if (off < nearest) {
+        second = std::exchange(nearest, off);
+        ring = k;
+      } else {
+        second = std::min(second, off);
+      }
     }
-    rings[order[i]] = static_cast<int>(ring);
-    const std::size_t other = elevation < middles[ring] ? (ring > 0 ? ring - 1 : ring + 1)
-                                                        : (ring + 1 < count ? ring + 1 : ring - 1);
-    const double off = elevation - middles[ring];
-    if (std::abs(off) > kNearby * std::abs(middles[other] - middles[ring])) {
-      ++lost;
+    if (nearest > tolerance_rad) {
+      ambiguous += nearest < 2.0 * tolerance_rad ? 1U : 0U;
+      ring = last.size();
+      last.push_back(0.0);
     } else {
-      middles[ring] += kFollow * off;
+      ambiguous += nearest > kClearlyNearer * second ? 1U : 0U;
+    }
+    last[ring] = elevations[i];
+    rings[i] = static_cast<int>(ring);
+    if (last.size() > kMaxRings || static_cast<double>(ambiguous) > allowed) return {};
+  }
+  const bool repeat = last.size() >= kMinRepeating && kMinPerRing * last.size() <= order.size();
+  return repeat ? rings : std::vector<int>{};
+}
+
+// By nearness, for beams that start beside the origin; then by azimuth, for mirrors that tilt the
+// fan. The widest tolerance leaves the fewest rings.
+std::vector<int> RingsByFollowing(std::span<const UnsortedReturn> returns,
+                                  const std::vector<double>& elevations) {
+  std::vector<double> nearness;
+  std::vector<double> azimuths;
+  for (const UnsortedReturn& point : returns) {
+    nearness.push_back(1.0 / point.range_m);
+    azimuths.push_back(std::atan2(point.direction.y(), point.direction.x()));
+  }
+  for (const std::vector<double>& along : {nearness, azimuths}) {
+    const std::vector<std::size_t> order = OrderOf(along);
+    for (const double tolerance_deg : {0.8, 0.4, 0.2, 0.1, 0.05}) {
+      std::vector<int> rings = RingsFollowed(elevations, order, tolerance_deg * kRadPerDeg);
+      if (!rings.empty()) return rings;
     }
   }
-  if (static_cast<double>(lost) > (1.0 - kNarrowShare) * static_cast<double>(order.size()))
-    return {};
-  return rings;
+  return {};
 }
 
 }  // namespace
@@ -264,7 +270,7 @@ RingNumbers RecoverRings(std::span<const UnsortedReturn> returns, std::size_t cl
     rings = CheckRings(returns, std::move(numbers));
     if (!rings.of_return.empty()) return rings;
   }
-  rings.of_return = RingsFollowedInwards(returns, elevations);
+  rings.of_return = RingsByFollowing(returns, elevations);
   return rings;
 }
 
