@@ -24,7 +24,7 @@ void Declare(ListExtractorsOptions& options, Arguments& arguments) {
   arguments.Add("--lidars", options.models, "Only these LiDARs of sextant list lidars",
                 {.separator = ','});
   arguments.Add("--holding", options.holding,
-                "How the boards are held: hanging from a corner, on a stand, or in the hands",
+                "How the boards are held: by nothing the LiDAR sees, on a stand, or in the hands",
                 {.shows_default = true, .choices = {"hung", "stand", "hands"}});
   arguments.Add("--seed", options.seed, "The same seed gives the same figures",
                 {.shows_default = true});

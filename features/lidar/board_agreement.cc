@@ -11,12 +11,13 @@ namespace sextant {
 namespace {
 
 constexpr double kBand_m = 0.08;  // Width of the band around the board in which its plane must end.
-constexpr std::size_t kParts = 6;  // Of each side, judged separately.
-constexpr double kMinFilled = 0.85;
+constexpr std::size_t kParts = 4;  // Of each side, judged separately.
+constexpr double kMinFilled = 0.9;
 constexpr double kMaxContinued =
     0.2;                            // Furniture of the board's width continues along a side: 0.25.
 constexpr double kMaxClosed = 0.7;  // Of one side.
-constexpr double kMinOpen = 0.4;    // Of a side that counts as seen.
+constexpr double kMostOfSide = 0.5;
+constexpr double kThreeSides = 1.5;  // Sum of the visible fractions of three or four sides.
 constexpr double kMinVisible = 0.5;
 constexpr double kMinShare = 0.6;
 constexpr double kMaxRms = 2.8;  // In sigmas; a board of another size has more.
@@ -60,7 +61,7 @@ class Outline {
                                   board_.hole->height_m) >= margin_;
   }
 
-  // A sixth of a side, and whether a point lies in the band beyond it.
+  // A quarter of a side, and whether a point lies in the band beyond it.
   struct Part {
     std::size_t side = 0;
     std::size_t part = 0;
@@ -135,6 +136,16 @@ double DensityOf(const ScanRings& scan, const BoardPatch& patch, const Board& bo
   const double solid_angle =
       solid * std::abs(patch.plane.normal.dot(toward)) / center.squaredNorm();
   return hit * level * scan.azimuth_step_rad() * scan.elevation_step_rad() / solid_angle;
+}
+
+// Whether free space beyond its sides delimits the board: most of two opposite sides, or three
+// sides.
+bool IsBounded(const BoardAgreement& agreement) {
+  const std::array<double, kCornersPerBoard>& open = agreement.open;
+  const auto mostly = [&](std::size_t side) { return open[side] >= kMostOfSide; };
+  if ((mostly(0) && mostly(2)) || (mostly(1) && mostly(3))) return true;
+  const double sum = open[0] + open[1] + open[2] + open[3];
+  return std::ranges::count(open, 0.0) <= 1 && sum >= kThreeSides;
 }
 
 }  // namespace
@@ -223,12 +234,12 @@ std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board&
     return fmt::format("only {:.0f} % of the returns expected from a board there",
                        100.0 * agreement.density);
   }
-  const auto is_open = [&](std::size_t side) { return agreement.open[side] >= kMinOpen; };
-  const auto open_sides = is_open(0) + is_open(1) + is_open(2) + is_open(3);
-  const bool opposite = (is_open(0) && is_open(2)) || (is_open(1) && is_open(3));
-  if (open_sides < 3 && !opposite) {
-    return fmt::format("{} of its sides are visible, two opposite ones or three are needed",
-                       open_sides);
+  if (!IsBounded(agreement)) {
+    const auto open = std::ranges::count_if(agreement.open, [](double part) { return part > 0.0; });
+    return fmt::format(
+        "its ends are visible at {} of its sides only, not far enough along two opposite ones or "
+        "three",
+        open);
   }
   if (patch.fit.share < kMinShare || patch.fit.rms > kMaxRms) {
     return fmt::format(
