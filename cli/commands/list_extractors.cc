@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "eval/extractors/extractor_study.h"
+#include "eval/extractors/roll_study.h"
 #include "eval/statistics/text_table.h"
 #include "features/lidar/corner_extractor.h"
 
 namespace sextant::cli {
 namespace {
+
+constexpr int kTrialsPerRoll = 4;  // Scans at each of the rolls, as a part of --trials.
 
 struct ListExtractorsOptions {
   std::vector<std::string> models{};  ///< Empty: all.
@@ -55,6 +60,16 @@ int Run(const ListExtractorsOptions& options) {
       "48 cm boards 1.2 to 4.2 m away in a room (due: with {} rings or, without rings, {} returns "
       "on it), of rooms without a board, and of the two boards 1.8 m away for the corners:\n\n{}",
       options.trials, kRingsDue, kReturnsDue, FormatExtractorStudy(*rows, options.markdown));
+  const Expected<std::vector<RollStudyRow>> rolls =
+      StudyRolls({.models = options.models,
+                  .trials = std::max(1, options.trials / kTrialsPerRoll),
+                  .holding = study.holding,
+                  .seed = options.seed});
+  if (!rolls) return Refuse("list extractors", rolls.error());
+  fmt::print(
+      "\nBoards with sides of 0.45 to 1.4 m, 1.5 to 4 m away, found by their roll (due: with {} "
+      "rings or, without rings, {} returns on it):\n\n{}",
+      kRollRingsDue, kRollReturnsDue, FormatRollStudy(*rolls, options.markdown));
   return kAnswered;
 }
 
