@@ -30,6 +30,7 @@ constexpr double kSameAngle_rad = 0.02;
 constexpr double kSamePlace_m = 0.01;
 constexpr double kMaxSigma = 0.5;  // Of the position, relative to half the diagonal.
 constexpr int kMinEdges = 4;
+constexpr int kMinCrossing = 3;  // Ends of rings on the sides of an axis that determine it.
 constexpr double kMinVariance_m2 = 1e-6;  // Of a position within an interval.
 constexpr std::size_t kMaxSides = 8;      // For a hollow board.
 constexpr double kSameSides = 1e-6;       // Relative; the sides of a square.
@@ -185,7 +186,8 @@ class Fitter {
     for (Eigen::Index axis = 0; axis < 2; ++axis) {
       const AxisInterval interval = IntervalAlong(axis, pose, turn);
       if (!std::isfinite(interval.Variance())) continue;
-      if (InformationAlong(axis, pose, turn) * interval.Variance() > 1.0) continue;
+      const CrossedSides crossed = CrossedAlong(axis, pose, turn);
+      if (crossed.ends >= kMinCrossing || crossed.information * interval.Variance() > 1.0) continue;
       bracketed[static_cast<std::size_t>(axis)] = true;
       pose.head<2>() += turn.col(axis) * interval.Middle();
       const Eigen::Vector3d along(turn(0, axis), turn(1, axis), 0.0);
@@ -244,17 +246,23 @@ class Fitter {
     return sides;
   }
 
-  // Information [1/m^2] on the position along an axis from rings that cross its sides.
-  double InformationAlong(Eigen::Index axis, const Eigen::Vector3d& pose,
-                          const Eigen::Matrix2d& turn) const {
-    double information = 0.0;
+  // The rings that cross the sides of an axis, and the information on the position along it.
+  struct CrossedSides {
+    int ends = 0;
+    double information = 0.0;  // [1/m^2]
+  };
+
+  CrossedSides CrossedAlong(Eigen::Index axis, const Eigen::Vector3d& pose,
+                            const Eigen::Matrix2d& turn) const {
+    CrossedSides crossed;
     for (const EdgePoint& edge : edges_) {
       const SidePlace place = Place(edge, pose, turn);
       if (edge.across || AxisOf(place.side) != static_cast<std::size_t>(axis)) continue;
       if (std::abs(place.distance) > kOutlier * place.sigma) continue;
-      information += 1.0 / (place.sigma * place.sigma);
+      ++crossed.ends;
+      crossed.information += 1.0 / (place.sigma * place.sigma);
     }
-    return information;
+    return crossed;
   }
 
   AxisInterval IntervalAlong(Eigen::Index axis, const Eigen::Vector3d& pose,
