@@ -23,13 +23,33 @@ std::vector<std::string> OtherSizes(const ObservedSession& observed,
   int scans = 0;
   for (const SessionView& view : observed.views) {
     if (!view.seen || !view.seen->in_scan.empty() || view.cloud_path.empty()) continue;
+    std::vector<PhotoRange> in_image;
+    for (const CameraSighting& sighting : view.seen->in_image) {
+      in_image.push_back({sighting.board, sighting.pose.cam_from_board.translation.norm()});
+    }
+    if (in_image.empty()) continue;
     if (++scans > kMaxScans) break;
     const Expected<PointCloud> cloud = ReadCloud(view.cloud_path);
     if (!cloud) continue;
-    std::vector<std::string> lines = ProbeSizes(*cloud, observed.boards, search);
+    std::vector<std::string> lines = ProbeSizes(*cloud, observed.boards, in_image, search);
     if (!lines.empty()) return lines;
   }
   return {};
+}
+
+// Why there is no pose, in terms of views and boards: the solver's own words are for those who
+// chose it.
+Error NoPose(const Calibration& calibration, const CalibrateOptions& options, const Error& error) {
+  const Matching& matching = calibration.assembly.matching;
+  std::string text = fmt::format(
+      "no pose: the {} boards seen by both sensors do not fit together under one pose of the "
+      "camera "
+      "and the LiDAR. Check that each photo and its scan are of one moment, that no board moved "
+      "meanwhile, that the camera file belongs to these photos, and the sizes in the board file; "
+      "then add views with the board in other places",
+      matching.kept.size());
+  if (!options.solvers.empty()) text += ". The solver reports: " + error.message;
+  return {error.code, std::move(text)};
 }
 
 std::vector<std::string> WarningsFor(const Calibration& calibration, const MatchSettings& match) {
@@ -105,7 +125,7 @@ Calibration CalibrateObserved(ObservedSession observed, const CalibrateOptions& 
   calibration.warnings = WarningsFor(calibration, match);
   const Expected<SolveReport>& report = calibration.comparison.front().report;
   if (!report) {
-    calibration.result = tl::unexpected<Error>(report.error());
+    calibration.result = tl::unexpected<Error>(NoPose(calibration, options, report.error()));
     return calibration;
   }
   calibration.result = CheckedResult(*solvers.front(), *report, options, calibration);

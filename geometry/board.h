@@ -33,12 +33,12 @@ struct BoardHole {
   Eigen::Vector2d center_in_board_m = Eigen::Vector2d::Zero();
 };
 
-/// A rectangular board, usually held with one corner up.
+/// A rectangular board, in any orientation.
 ///
 /// Board frame: origin at the centre of the front, x right and y down along its edges as seen from
 /// the front, z into the board, so that the axes of a board that directly faces the camera are
 /// those of the camera. Corners are numbered clockwise as seen, from (-x, -y): 0 top, 1 right, 2
-/// bottom, 3 left for a board with corner 0 up.
+/// bottom, 3 left where corner 0 is up. The names of the edges are of that orientation, too.
 struct Board {
   int id = 0;
   double top_right_m = 0.0;     ///< Along x: edge from the top to the right corner, and opposite.

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <set>
 #include <utility>
+
+#include "calibrate/match/sensor_agreement.h"
 
 namespace sextant {
 namespace {
@@ -22,8 +25,8 @@ std::string WhyMissing(const Observation& seen, int board, bool image) {
 class Rows {
  public:
   Rows(std::span<const SessionView> views, std::span<const Board> boards, const Matching& matching,
-       std::span<const std::optional<std::size_t>> copies)
-      : views_(views), boards_(boards), copies_(copies) {
+       std::span<const std::optional<std::size_t>> copies, const MatchSettings& settings)
+      : views_(views), boards_(boards), copies_(copies), max_apart_m_(MaxApart(settings)) {
     for (const MatchedBoard& kept : matching.kept) {
       fates_[{Index(kept.view), BoardOf(kept)}] = {.fate = BoardStatus::kKept};
     }
@@ -77,6 +80,14 @@ class Rows {
       row.why = sighting->left_out;
       return row;
     }
+    if (in_image) {
+      const auto index = static_cast<int>(sighting - seen.in_image.begin());
+      if (const auto why = WhyNoneIsSameBoard(seen, index, max_apart_m_)) {
+        row.fate = BoardStatus::kDisagrees;
+        row.why = *why;
+        return row;
+      }
+    }
     row.fate = in_image ? BoardStatus::kNotInScan : BoardStatus::kNotInImage;
     row.why = WhyMissing(seen, board, !in_image);
     return row;
@@ -85,17 +96,17 @@ class Rows {
   std::span<const SessionView> views_;
   std::span<const Board> boards_;
   std::span<const std::optional<std::size_t>> copies_;
+  double max_apart_m_;
   std::map<std::pair<std::size_t, int>, BoardRow> fates_;
 };
 
-Error DescribeMissing(std::span<const SessionView> views, std::span<const Board> boards) {
-  Error error(ErrorCode::kMissingData,
-              fmt::format("no board was seen by both sensors in any of {} views, so there is "
-                          "nothing to calibrate from",
-                          views.size()));
+// Appends the first boards that are not used, with their reasons.
+void ListRows(std::span<const SessionView> views, std::span<const Board> boards,
+              const std::vector<BoardRow>& rows, Error& error) {
   constexpr std::size_t kShown = 3;
   std::size_t shown = 0;
-  for (const BoardRow& row : Rows(views, boards, {}, {}).All()) {
+  for (const BoardRow& row : rows) {
+    if (row.fate == BoardStatus::kKept || row.fate == BoardStatus::kLeftOut) continue;
     if (++shown > kShown) break;
     const std::string board =
         row.board < 0 ? std::string()
@@ -103,7 +114,46 @@ Error DescribeMissing(std::span<const SessionView> views, std::span<const Board>
     error.AddLine(
         fmt::format("view {}{}: {}: {}", views[row.view].name, board, ToString(row.fate), row.why));
   }
-  return error;
+}
+
+// The views whose image shows a board, by what the scans say of it.
+struct Support {
+  std::size_t kept = 0;
+  std::size_t missing = 0;
+  std::size_t disagreeing = 0;
+
+  std::size_t All() const { return kept + missing + disagreeing; }
+};
+
+Support SupportOf(const std::vector<BoardRow>& rows) {
+  std::map<std::size_t, std::set<BoardStatus>> views;
+  for (const BoardRow& row : rows) views[row.view].insert(row.fate);
+  Support support;
+  for (const auto& [view, fates] : views) {
+    if (fates.contains(BoardStatus::kKept)) {
+      ++support.kept;
+    } else if (fates.contains(BoardStatus::kDisagrees)) {
+      ++support.disagreeing;
+    } else if (fates.contains(BoardStatus::kNotInScan)) {
+      ++support.missing;
+    }
+  }
+  return support;
+}
+
+// A pose that most views do not support may be that of another object.
+Expected<void> CheckSupport(std::span<const SessionView> views, std::span<const Board> boards,
+                            const std::vector<BoardRow>& rows) {
+  const Support support = SupportOf(rows);
+  const bool contradicted = support.disagreeing > 0 && support.disagreeing >= support.kept;
+  if (2 * support.kept >= support.All() && !contradicted) return {};
+  Error error(ErrorCode::kMissingData,
+              fmt::format("no pose: of {} views whose photo shows a board, the scan agrees in {}, "
+                          "disagrees in {} and shows no board in {}. What a minority of the views "
+                          "agrees on may be another object",
+                          support.All(), support.kept, support.disagreeing, support.missing));
+  ListRows(views, boards, rows, error);
+  return tl::unexpected<Error>(std::move(error));
 }
 
 }  // namespace
@@ -142,7 +192,12 @@ Expected<Assembly> Assemble(std::span<const SessionView> views, std::span<const 
   }
   Expected<Matching> matching = MatchViews(observations, settings);
   if (!matching && matching.error().code == ErrorCode::kTooFewPairs) {
-    return tl::unexpected<Error>(DescribeMissing(views, boards));
+    Error error(ErrorCode::kMissingData,
+                fmt::format("no board was seen by both sensors in any of {} views, so there is "
+                            "nothing to calibrate from",
+                            views.size()));
+    ListRows(views, boards, Rows(views, boards, {}, copies, settings).All(), error);
+    return tl::unexpected<Error>(std::move(error));
   }
   if (!matching) return tl::unexpected<Error>(matching.error());
   Assembly assembly;
@@ -158,7 +213,8 @@ Expected<Assembly> Assemble(std::span<const SessionView> views, std::span<const 
   assembly.repeated = FindRepeatedPlacements(observations, matching->kept, settings.floor_m);
   CountPlacementsOnce(assembly.repeated, boards, problem);
   problem.point_sets = WithholdPairing(problem.pairs_3d3d);
-  assembly.rows = Rows(views, boards, *matching, copies).All();
+  assembly.rows = Rows(views, boards, *matching, copies, settings).All();
+  SEXTANT_RETURN_IF_ERROR(CheckSupport(views, boards, assembly.rows));
   assembly.matching = std::move(*matching);
   return assembly;
 }

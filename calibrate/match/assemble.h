@@ -31,7 +31,7 @@ enum class BoardStatus {
   kLeftOut,     ///< Excluded before matching; see CameraSighting::left_out.
   kNotInImage,
   kNotInScan,
-  kDisagrees,  ///< Its pose contradicts the other views.
+  kDisagrees,  ///< The scan's candidate contradicts the image, or its pose the other views.
   kCopy,       ///< Its image and scan are those of an earlier view.
 };
 std::string_view ToString(BoardStatus fate);
@@ -57,8 +57,9 @@ struct Assembly {
 
 /// Matches the boards of all views and collects both sensors' measurements of them. Copies of a
 /// view are left out, and views that show a board in one place count as one. Errors: kMissingData
-/// where no view has a board that both sensors saw, with the reasons; kDegenerate where the matched
-/// boards do not determine a pose.
+/// where no view has a board that both sensors saw, and where most views whose image shows a board
+/// lack it in the scan or disagree, with the reasons; kDegenerate where the matched boards do not
+/// determine a pose.
 Expected<Assembly> Assemble(std::span<const SessionView> views, std::span<const Board> boards,
                             const Camera& camera, const MatchSettings& settings = {});
 

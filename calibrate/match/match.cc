@@ -10,6 +10,7 @@
 
 #include "base/median.h"
 #include "base/units.h"
+#include "calibrate/match/sensor_agreement.h"
 #include "geometry/scan_marks.h"
 #include "solvers/matching/object_match.h"
 
@@ -71,7 +72,7 @@ std::vector<std::size_t> CandidatePatches(const Observation& observation, int bo
   return patches;
 }
 
-ViewPairings PairingsOf(const Observation& observation, int view, double floor_m) {
+ViewPairings PairingsOf(const Observation& observation, int view, const MatchSettings& settings) {
   ViewPairings pairings;
   for (std::size_t s = 0; s < observation.in_image.size(); ++s) {
     const CameraSighting& sighting = observation.in_image[s];
@@ -82,13 +83,13 @@ ViewPairings PairingsOf(const Observation& observation, int view, double floor_m
       for (std::size_t k = 0; k < placements.size(); ++k) {
         if (placements[k].board != sighting.board) continue;
         for (int pose = 0; pose < poses; ++pose) {
-          AddPairing(observation,
-                     {.view = view,
-                      .sighting = static_cast<int>(s),
-                      .patch = static_cast<int>(p),
-                      .placement = static_cast<int>(k),
-                      .other_pose = pose == 1},
-                     floor_m, pairings);
+          const MatchedBoard match{.view = view,
+                                   .sighting = static_cast<int>(s),
+                                   .patch = static_cast<int>(p),
+                                   .placement = static_cast<int>(k),
+                                   .other_pose = pose == 1};
+          if (!MayBeSameBoard(observation, match, MaxApart(settings))) continue;
+          AddPairing(observation, match, settings.floor_m, pairings);
         }
       }
     }
@@ -148,11 +149,15 @@ std::size_t CountEquallyLikely(std::vector<MatchExplanation>& explanations, doub
 
 }  // namespace
 
+double MaxApart(const MatchSettings& settings) {
+  return settings.max_apart_m + (settings.initial ? settings.initial->translation.norm() : 0.0);
+}
+
 Expected<Matching> MatchViews(std::span<const Observation> views, const MatchSettings& settings) {
   std::vector<ViewPairings> pairings;
   std::vector<MatchView> match_views;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    pairings.push_back(PairingsOf(views[i], static_cast<int>(i), settings.floor_m));
+    pairings.push_back(PairingsOf(views[i], static_cast<int>(i), settings));
     match_views.push_back(pairings.back().view);
   }
   MatchOptions options{.cap = kMaxSigmas * kMaxSigmas * kNumbersPerBoard};
@@ -162,7 +167,12 @@ Expected<Matching> MatchViews(std::span<const Observation> views, const MatchSet
         ErrorCode::kTooFewPairs,
         fmt::format("no board was seen by both sensors in any of {} views", views.size()));
   }
-  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found) {
+    return MakeError(
+        found.error().code,
+        "the boards that both sensors saw do not determine a pose: their corners lie on "
+        "one line");
+  }
   const double scale = NoiseScale(found->front());
   if (scale > 1.0) {
     options.cap *= scale;

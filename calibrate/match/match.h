@@ -14,13 +14,19 @@
 namespace sextant {
 
 struct MatchSettings {
-  /// A rough cam_from_lidar. Only its rotation is used, and only to choose where the views allow
-  /// several poses. None: AxesCamFromLidar().
+  /// A rough cam_from_lidar. Its rotation is used only to choose where the views allow several
+  /// poses, its translation only where the sensors are far apart. None: AxesCamFromLidar().
   std::optional<Rigid3d> initial{};
   /// Error of a board's corners besides their stated noise, 1 sigma per axis [m]: edges widened by
   /// the beam's spot, bent boards, errors of the lens model.
   double floor_m = 0.01;
+  /// The sensors are at most this much further apart than in `initial` [m]: a patch of a scan that
+  /// would place them further apart is not the board of the image.
+  double max_apart_m = 2.0;
 };
+
+/// The largest distance between the sensors that the settings allow [m].
+double MaxApart(const MatchSettings& settings);
 
 /// A board that is dropped because its pose contradicts the other views.
 struct DroppedBoard {
@@ -50,13 +56,14 @@ inline constexpr std::size_t kMaxPatchesPerBoard = 16;
 /// Associates the patches of each scan with the boards of its image, and their corners.
 ///
 /// No identity is assumed in scans, neither by order nor by position: every placement that an
-/// outline allows and every pose that an image leaves ambiguous is tested against one
-/// cam_from_lidar for all views (solvers/matching/object_match.h). A board that is more than four
-/// sigmas off that pose, in root mean square over its corners, is dropped. MatchedBoard::view is
-/// the index into `views`. In a view with more than kMaxPatchesPerBoard patches, each board is only
-/// matched with that many whose outlines fit it best, so that time and memory grow with the number
-/// of boards and not with its product with that of patches. Errors: kTooFewPairs where no view has
-/// a board that both sensors saw; kDegenerate.
+/// outline allows and every pose that an image leaves ambiguous, as far as both sensors' ranges and
+/// directions agree (sensor_agreement.h), is tested against one cam_from_lidar for all views
+/// (solvers/matching/object_match.h). A board that is more than four sigmas off that pose, in root
+/// mean square over its corners, is dropped. MatchedBoard::view is the index into `views`. In a
+/// view with more than kMaxPatchesPerBoard patches, each board is only matched with that many whose
+/// outlines fit it best, so that time and memory grow with the number of boards and not with its
+/// product with that of patches. Errors: kTooFewPairs where no view has a board that both sensors
+/// saw; kDegenerate.
 Expected<Matching> MatchViews(std::span<const Observation> views,
                               const MatchSettings& settings = {});
 

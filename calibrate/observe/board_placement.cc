@@ -94,9 +94,14 @@ Expected<std::vector<BoardPlacement>> PlaceBoards(const BoardPatch& patch,
                                                   const std::string& extractor, std::string& why) {
   std::vector<BoardPlacement> placements;
   for (std::size_t b = 0; b < boards.size(); ++b) {
-    for (int turns = 0; turns < kCornersPerBoard; ++turns) {
+    std::optional<RectangleFit> upright = patch.fit;
+    if (static_cast<int>(b) != patch.board) upright = FitRectangle(patch.edges, boards[b]);
+    // The same after half a turn; after a quarter turn, the sides are exchanged.
+    for (int turns = 0; upright && turns < 2; ++turns) {
       const Board turned = Turned(boards[b], turns);
-      const std::optional<RectangleFit> fit = FitRectangle(patch.edges, turned);
+      const std::optional<RectangleFit> fit =
+          turns == 0 ? upright
+                     : RefineRectangle(patch.edges, turned, upright->center, upright->angle_rad);
       if (!fit) continue;
       BoardPatch fitted = patch;
       fitted.board = static_cast<int>(b);
@@ -109,9 +114,11 @@ Expected<std::vector<BoardPlacement>> PlaceBoards(const BoardPatch& patch,
         why = corners.error().message;
         continue;
       }
-      placements.push_back(Place(patch.plane, *fit, fitted.board, turns));
-      placements.back().corners = InBoardOrder(*corners, turns);
-      placements.back().misfit = ChiSquare(*fit);
+      for (const int turn : {turns, turns + 2}) {
+        placements.push_back(Place(patch.plane, *fit, fitted.board, turn));
+        placements.back().corners = InBoardOrder(*corners, turn);
+        placements.back().misfit = ChiSquare(*fit);
+      }
     }
   }
   if (placements.empty()) return placements;

@@ -18,7 +18,7 @@ namespace sextant {
 /// prints, so a square board has four hypotheses and a rectangular one two.
 struct BoardPlacement {
   int board = 0;  ///< Index into the boards.
-  int turn = 0;   ///< Quarter turns clockwise, as seen by the sensor, from corner 0 at the top.
+  int turn = 0;   ///< Quarter turns clockwise, as seen by the sensor, from the outline of the fit.
   Rigid3d lidar_from_board{};
   RectangleFit fit{};      ///< Sides in the board's own numbering.
   LidarCorners corners{};  ///< In the board's own numbering.

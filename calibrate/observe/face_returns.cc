@@ -15,7 +15,7 @@ std::vector<Eigen::Vector3d> FaceReturns(const ScanRings& scan, const BoardPatch
   for (const std::size_t place : patch.on_plane) {
     const Eigen::Vector3d& point = scan.points()[place].point;
     const std::optional<Eigen::Vector2d> in_plane = patch.plane.Meet(point);
-    if (in_plane && BeyondBoard(patch, board, *in_plane) < 0.0) face.push_back(point);
+    if (in_plane && BeyondBoard(patch.fit, board, *in_plane) < 0.0) face.push_back(point);
   }
   return face;
 }

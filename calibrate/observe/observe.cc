@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/median.h"
@@ -14,6 +15,9 @@
 
 namespace sextant {
 namespace {
+
+constexpr std::ptrdiff_t kMaxOthers = 4;
+constexpr double kSameRange_m = 0.5;
 
 // The reason why a board has no pose in the image.
 std::string WhyUnseen(const Board& board, const SeenBoard& seen) {
@@ -96,15 +100,45 @@ std::vector<double> MeasuredSides(const BoardPatch& patch, const BoardPlacement&
   return {lengths.begin(), lengths.begin() + kCornersPerBoard};
 }
 
-// The rejected patches that are most like a board: those with the most points.
-std::string WhyNotInScan(const BoardSearch& search) {
+// The rejected patches nearest to where the image shows a board; without one, those with the most
+// points.
+std::vector<RejectedPatch> MostLikely(const BoardSearch& search,
+                                      const std::vector<CameraSighting>& in_image) {
   constexpr std::size_t kMaxNamed = 2;
+  std::vector<RejectedPatch> patches = search.rejected;
+  if (!in_image.empty()) {
+    const auto off = [&](const RejectedPatch& patch) {
+      double least = std::numeric_limits<double>::infinity();
+      for (const CameraSighting& sighting : in_image) {
+        least = std::min(least, std::abs(patch.center_in_lidar.norm() -
+                                         sighting.pose.cam_from_board.translation.norm()));
+      }
+      return std::round(least / kSameRange_m);
+    };
+    std::ranges::stable_sort(patches, {}, off);
+  }
+  patches.resize(std::min(kMaxNamed, patches.size()));
+  return patches;
+}
+
+std::string WhyNotInScan(const BoardSearch& search, std::span<const Board> boards,
+                         const std::vector<CameraSighting>& in_image) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(kMaxNamed, search.rejected.size()); ++i) {
-    const RejectedPatch& patch = search.rejected[i];
-    text += fmt::format("; flat patch at ({:.2f}, {:.2f}, {:.2f}) m with {} points on {} rings: {}",
-                        patch.center_in_lidar.x(), patch.center_in_lidar.y(),
-                        patch.center_in_lidar.z(), patch.points, patch.rings, patch.why);
+  if (search.found.empty()) {
+    text = fmt::format("the scan shows no board of {:.3f} x {:.3f} m", boards[0].top_right_m,
+                       boards[0].right_bottom_m);
+  } else {
+    text = fmt::format("the scan shows {} of {} boards", search.found.size(), boards.size());
+  }
+  for (const CameraSighting& sighting : in_image) {
+    text += fmt::format("; the photo shows board {} {:.1f} m away",
+                        boards[static_cast<std::size_t>(sighting.board)].id,
+                        sighting.pose.cam_from_board.translation.norm());
+  }
+  for (const RejectedPatch& patch : MostLikely(search, in_image)) {
+    text += fmt::format("; not the flat object {:.1f} m away at ({:.2f}, {:.2f}, {:.2f}) m: {}",
+                        patch.center_in_lidar.norm(), patch.center_in_lidar.x(),
+                        patch.center_in_lidar.y(), patch.center_in_lidar.z(), patch.why);
   }
   return text;
 }
@@ -165,7 +199,11 @@ Expected<void> Observer::ObserveScan(const PointCloud& cloud, Observation& obser
   SEXTANT_ASSIGN_OR_RETURN(const ScanRings rings, ScanRings::Build(cloud));
   observation.lidar = PatternOf(rings, options_.search.beam);
   SEXTANT_ASSIGN_OR_RETURN(const BoardSearch search, FindBoards(rings, boards(), options_.search));
-  for (const BoardPatch& patch : search.found) {
+  // Further patches compete, because the image may tell them apart by their distance.
+  std::vector<BoardPatch> patches = search.found;
+  patches.insert(patches.end(), search.others.begin(),
+                 search.others.begin() + std::min(kMaxOthers, std::ssize(search.others)));
+  for (const BoardPatch& patch : patches) {
     std::string why;
     SEXTANT_ASSIGN_OR_RETURN(std::vector<BoardPlacement> placements,
                              PlaceBoards(patch, boards(), options_.extractor, why));
@@ -184,9 +222,7 @@ Expected<void> Observer::ObserveScan(const PointCloud& cloud, Observation& obser
     observation.in_scan.push_back(std::move(sighting));
   }
   if (search.found.size() < boards().size()) {
-    observation.missing.push_back(
-        {.why = fmt::format("{} of {} boards found{}", search.found.size(), boards().size(),
-                            WhyNotInScan(search))});
+    observation.missing.push_back({.why = WhyNotInScan(search, boards(), observation.in_image)});
   }
   return {};
 }

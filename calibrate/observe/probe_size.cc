@@ -11,8 +11,9 @@
 namespace sextant {
 namespace {
 
-constexpr double kStep = 1.07;  // The search tolerates a size that is a few percent off.
-constexpr int kStepsEachWay = 10;
+constexpr double kSameRange = 0.3;  // Relative; the sensors are not in one place.
+constexpr double kStep = 1.07;      // The search tolerates a size that is a few percent off.
+constexpr int kStepsEachWay = 6;    // From two thirds of the size to one and a half.
 
 Board Scaled(const Board& board, double factor) {
   Board scaled{.id = board.id,
@@ -41,11 +42,13 @@ std::string SizeOf(const BoardPatch& patch, const Board& board) {
 }  // namespace
 
 std::vector<std::string> ProbeSizes(const PointCloud& cloud, std::span<const Board> boards,
+                                    std::span<const PhotoRange> in_image,
                                     const BoardSearchOptions& options) {
   std::vector<std::string> lines;
   const Expected<ScanRings> rings = ScanRings::Build(cloud);
   if (!rings) return lines;
-  for (const Board& board : boards) {
+  for (const PhotoRange& seen : in_image) {
+    const Board& board = boards[static_cast<std::size_t>(seen.board)];
     std::optional<BoardPatch> best;
     Board best_board;
     for (int i = -kStepsEachWay; i <= kStepsEachWay; ++i) {
@@ -53,6 +56,8 @@ std::vector<std::string> ProbeSizes(const PointCloud& cloud, std::span<const Boa
       const Expected<BoardSearch> search = FindBoards(*rings, scaled, options);
       if (!search || search->found.empty()) continue;
       const BoardPatch& patch = search->found.front();
+      const double range_m = patch.plane.At(patch.fit.center).norm();
+      if (std::abs(range_m - seen.range_m) > kSameRange * seen.range_m) continue;
       if (best && best->fit.rms <= patch.fit.rms) continue;
       best = patch;
       best_board = scaled.front();
@@ -61,9 +66,10 @@ std::vector<std::string> ProbeSizes(const PointCloud& cloud, std::span<const Boa
     const Eigen::Vector3d center = best->plane.At(best->fit.center);
     lines.push_back(fmt::format(
         "board file: the scan shows no board {} of {:.3f} x {:.3f} m, but one of about {} at "
-        "({:.2f}, {:.2f}, {:.2f}) m: measure the board",
+        "({:.2f}, {:.2f}, {:.2f}) m, {:.1f} m away, and the photo shows it {:.1f} m away: measure "
+        "the board",
         board.id, board.top_right_m, board.right_bottom_m, SizeOf(*best, best_board), center.x(),
-        center.y(), center.z()));
+        center.y(), center.z(), center.norm(), seen.range_m));
   }
   return lines;
 }

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "eval/extractors/extractor_study.h"
+#include "eval/extractors/roll_study.h"
 #include "eval/statistics/text_table.h"
 #include "features/lidar/corner_extractor.h"
 #include "io/output/standard_output.h"
 
 namespace sextant::cli {
 namespace {
+
+constexpr int kTrialsPerRoll = 4;  // Scans at each of the rolls, as a part of --trials.
 
 struct ListExtractorsOptions {
   std::vector<std::string> models{};  ///< Empty: all.
@@ -23,7 +30,7 @@ void Declare(ListExtractorsOptions& options, Arguments& arguments) {
   arguments.Add("--lidars", options.models, "Only these LiDARs of sextant list lidars",
                 {.separator = ','});
   arguments.Add("--holding", options.holding,
-                "How the boards are held: hanging from a corner, on a stand, or in the hands",
+                "How the boards are held: by nothing the LiDAR sees, on a stand, or in the hands",
                 {.shows_default = true, .choices = {"hung", "stand", "hands"}});
   arguments.Add("--seed", options.seed, "The same seed gives the same figures",
                 {.shows_default = true});
@@ -54,6 +61,16 @@ int Run(const ListExtractorsOptions& options) {
       "48 cm boards 1.2 to 4.2 m away in a room (due: with {} rings or, without rings, {} returns "
       "on it), of rooms without a board, and of the two boards 1.8 m away for the corners:\n\n{}",
       options.trials, kRingsDue, kReturnsDue, FormatExtractorStudy(*rows, options.markdown));
+  const Expected<std::vector<RollStudyRow>> rolls =
+      StudyRolls({.models = options.models,
+                  .trials = std::max(1, options.trials / kTrialsPerRoll),
+                  .holding = study.holding,
+                  .seed = options.seed});
+  if (!rolls) return Refuse("list extractors", rolls.error());
+  Print(
+      "\nBoards with sides of 0.45 to 1.4 m, 1.5 to 4 m away, found by their roll (due: with {} "
+      "rings or, without rings, {} returns on it):\n\n{}",
+      kRollRingsDue, kRollReturnsDue, FormatRollStudy(*rolls, options.markdown));
   return kAnswered;
 }
 

@@ -11,89 +11,207 @@ namespace sextant {
 namespace {
 
 constexpr double kBand_m = 0.08;  // Width of the band around the board in which its plane must end.
+constexpr std::size_t kParts = 4;  // Of each side, judged separately.
 constexpr double kMinFilled = 0.9;
-constexpr double kMaxContinued = 0.12;  // Hands and stands: up to 0.08; furniture: at least 0.16.
-constexpr double kMinContained = 0.8;
+constexpr double kMaxContinued =
+    0.2;                            // Furniture of the board's width continues along a side: 0.25.
+constexpr double kMaxClosed = 0.7;  // Of one side.
+constexpr double kMostOfSide = 0.5;
+constexpr double kThreeSides = 1.5;  // Sum of the visible fractions of three or four sides.
 constexpr double kMinVisible = 0.5;
 constexpr double kMinShare = 0.6;
 constexpr double kMaxRms = 2.8;  // In sigmas; a board of another size has more.
 constexpr double kMinDensity = 0.3;
-constexpr int kMinSides = 3;
 constexpr int kMinEdgePoints = 8;
 constexpr int kMinEdgePointsOnMinRings = 12;  // With kMinRings, furniture has up to 11 by chance.
 constexpr int kMinPointsOfBoard = 16;
+constexpr double kThroughCost = 4.0;
+constexpr double kBeyondCost = 2.0;
 
 // Distance of a point beyond the rectangle's nearest side; negative inside.
 double Beyond(const Eigen::Vector2d& point, double width, double height) {
   return std::max(std::abs(point.x()) - 0.5 * width, std::abs(point.y()) - 0.5 * height);
 }
 
+// Where a ray meets the plane, relative to the outline of a placed board.
+class Outline {
+ public:
+  Outline(const PlaneRays& rays, const RectangleFit& fit, const Board& board)
+      : board_(board),
+        center_(fit.center),
+        to_board_(Eigen::Rotation2Dd(-fit.angle_rad)),
+        margin_(0.015 + rays.azimuth_step_m) {
+    // A side along the rings may end anywhere before the next ring.
+    for (int side = 0; side < kCornersPerBoard; ++side) {
+      const Eigen::Vector2d normal = to_board_.inverse() * Normal(side);
+      const double along_ring = std::abs(normal.dot(rays.ring_direction));
+      const double gap = std::abs(normal.dot(rays.to_next_ring));
+      band_[static_cast<std::size_t>(side)] =
+          kBand_m + gap * std::max(0.0, 1.0 - along_ring / kCrossing);
+    }
+  }
+
+  Eigen::Vector2d ToBoard(const Eigen::Vector2d& in_plane) const {
+    return to_board_ * (in_plane - center_);
+  }
+
+  bool IsInside(const Eigen::Vector2d& q) const {
+    if (Beyond(q, board_.top_right_m, board_.right_bottom_m) >= -margin_) return false;
+    return !board_.hole || Beyond(q - board_.hole->center_in_board_m, board_.hole->width_m,
+                                  board_.hole->height_m) >= margin_;
+  }
+
+  // A quarter of a side, and whether a point lies in the band beyond it.
+  struct Part {
+    std::size_t side = 0;
+    std::size_t part = 0;
+  };
+  std::optional<Part> BeyondSide(const Eigen::Vector2d& q) const {
+    const Part part = PartAt(q);
+    const double beyond = Beyond(q, board_.top_right_m, board_.right_bottom_m);
+    if (beyond <= margin_ || beyond >= margin_ + band_[part.side]) return std::nullopt;
+    return part;
+  }
+
+  // The nearest part of the outline.
+  Part PartAt(const Eigen::Vector2d& q) const {
+    const Eigen::Vector2d half(0.5 * board_.top_right_m, 0.5 * board_.right_bottom_m);
+    const bool is_x = std::abs(q.x()) - half.x() > std::abs(q.y()) - half.y();
+    Part part;
+    part.side = is_x ? (q.x() > 0.0 ? 1U : 3U) : (q.y() > 0.0 ? 2U : 0U);
+    const double along = is_x ? q.y() / half.y() : q.x() / half.x();
+    const double place = 0.5 * (along + 1.0) * static_cast<double>(kParts);
+    part.part = static_cast<std::size_t>(std::clamp(place, 0.0, kParts - 1.0));
+    return part;
+  }
+
+  double margin() const { return margin_; }
+
+ private:
+  static constexpr double kCrossing = 0.3;  // Sine at which rings cross a side well.
+
+  static Eigen::Vector2d Normal(int side) {
+    return side % 2 == 0 ? Eigen::Vector2d::UnitY() : Eigen::Vector2d::UnitX();
+  }
+
+  const Board& board_;
+  Eigen::Vector2d center_;
+  Eigen::Rotation2Dd to_board_;
+  double margin_;
+  std::array<double, kCornersPerBoard> band_{};
+};
+
+// What rays show beyond each part of the outline.
+struct OutlineCounts {
+  std::array<std::array<int, kParts>, kCornersPerBoard> passing{};
+  std::array<std::array<int, kParts>, kCornersPerBoard> ending{};
+
+  void State(const Board& board, BoardAgreement& agreement) const {
+    double known = 0.0;
+    double closed = 0.0;
+    for (std::size_t side = 0; side < passing.size(); ++side) {
+      int open_parts = 0;
+      int closed_parts = 0;
+      for (std::size_t part = 0; part < kParts; ++part) {
+        if (passing[side][part] + ending[side][part] == 0) continue;
+        ++(ending[side][part] > passing[side][part] ? closed_parts : open_parts);
+      }
+      agreement.open[side] = static_cast<double>(open_parts) / kParts;
+      agreement.closed[side] = static_cast<double>(closed_parts) / kParts;
+      known += board.EdgeLengths()[side] * (open_parts + closed_parts);
+      closed += board.EdgeLengths()[side] * closed_parts;
+    }
+    agreement.continued = known > 0.0 ? closed / known : 0.0;
+  }
+};
+
+// Returns on the board relative to those that the sensor's steps lead to expect on its visible,
+// crossed part.
+double DensityOf(const ScanRings& scan, const BoardPatch& patch, const Board& board, int hit) {
+  const Eigen::Vector3d center = patch.plane.At(patch.fit.center);
+  double solid = board.top_right_m * board.right_bottom_m;
+  if (board.hole) solid -= board.hole->width_m * board.hole->height_m;
+  const Eigen::Vector3d toward = center.normalized();
+  const double level = std::sqrt(std::max(1e-6, 1.0 - std::pow(scan.axis().dot(toward), 2)));
+  const double solid_angle =
+      solid * std::abs(patch.plane.normal.dot(toward)) / center.squaredNorm();
+  return hit * level * scan.azimuth_step_rad() * scan.elevation_step_rad() / solid_angle;
+}
+
+// Whether free space beyond its sides delimits the board: most of two opposite sides, or three
+// sides.
+bool IsBounded(const BoardAgreement& agreement) {
+  const std::array<double, kCornersPerBoard>& open = agreement.open;
+  const auto mostly = [&](std::size_t side) { return open[side] >= kMostOfSide; };
+  if ((mostly(0) && mostly(2)) || (mostly(1) && mostly(3))) return true;
+  const double sum = open[0] + open[1] + open[2] + open[3];
+  return std::ranges::count(open, 0.0) <= 1 && sum >= kThreeSides;
+}
+
 }  // namespace
 
-double BeyondBoard(const BoardPatch& patch, const Board& board, const Eigen::Vector2d& in_plane) {
-  const Eigen::Vector2d in_board =
-      Eigen::Rotation2Dd(-patch.fit.angle_rad) * (in_plane - patch.fit.center);
+double BeyondBoard(const RectangleFit& fit, const Board& board, const Eigen::Vector2d& in_plane) {
+  const Eigen::Vector2d in_board = Eigen::Rotation2Dd(-fit.angle_rad) * (in_plane - fit.center);
   return Beyond(in_board, board.top_right_m, board.right_bottom_m);
 }
 
-BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const Board& board) {
+BoardAgreement AgreementOf(const ScanRings& scan, const PlaneRays& rays, const BoardPatch& patch,
+                           const Board& board) {
   BoardAgreement agreement;
-  const LidarPlane& plane = patch.plane;
-  const Eigen::Vector3d center = plane.At(patch.fit.center);
-  const double reach = 0.5 * std::hypot(board.top_right_m, board.right_bottom_m) + 2.0 * kBand_m;
-  const double cosine = std::cos(std::min(1.5, std::atan2(reach, center.norm()) * 1.1));
-  const Eigen::Vector3d toward = center.normalized();
-  const Eigen::Rotation2Dd turn(-patch.fit.angle_rad);
-  const double near = 0.02 + 4.0 * plane.sigma_m;
-  const double margin = 0.015 + scan.azimuth_step_rad() * center.norm();
+  const Outline outline(rays, patch.fit, board);
+  OutlineCounts counts;
   int hit = 0;
   int through = 0;
   int hidden = 0;
-  int around = 0;
-  int around_on_plane = 0;
-  for (int ring = 0; ring < scan.rings(); ++ring) {
-    bool any = false;
-    for (const RingPoint& point : scan.ring(ring)) {
-      if (point.point.dot(toward) < cosine * point.range_m) continue;
-      const std::optional<Eigen::Vector2d> there = plane.Meet(point.point);
-      if (!there) continue;
-      const Eigen::Vector2d q = turn * (*there - patch.fit.center);
-      const double beyond = Beyond(q, board.top_right_m, board.right_bottom_m);
-      const double off = plane.normal.dot(point.point - plane.origin);
-      const bool in_opening =
-          board.hole && Beyond(q - board.hole->center_in_board_m, board.hole->width_m,
-                               board.hole->height_m) < margin;
-      if (beyond < -margin && !in_opening) {
-        if (std::abs(off) <= near) {
-          ++hit;
-          any = true;
-        } else {
-          ++(off > 0.0 ? through : hidden);
-        }
-      } else if (beyond > margin && beyond < margin + kBand_m) {
-        ++around;
-        around_on_plane += std::abs(off) <= near ? 1 : 0;
+  int last_ring = -1;
+  for (const PlaneRay& ray : rays.rays) {
+    const Eigen::Vector2d q = outline.ToBoard(ray.at);
+    if (outline.IsInside(q)) {
+      if (ray.end == RayEnd::kOnPlane) {
+        ++hit;
+        agreement.rings += ray.ring != last_ring ? 1 : 0;
+        last_ring = ray.ring;
+      } else {
+        ++(ray.end == RayEnd::kBehind ? through : hidden);
       }
+    } else if (const auto part = outline.BeyondSide(q); part && ray.end != RayEnd::kInFront) {
+      auto& sides = ray.end == RayEnd::kBehind ? counts.passing : counts.ending;
+      ++sides[part->side][part->part];
     }
-    agreement.rings += any ? 1 : 0;
   }
-  std::size_t inside = 0;
-  for (const std::size_t place : patch.on_plane) {
-    const std::optional<Eigen::Vector2d> there = plane.Meet(scan.points()[place].point);
-    inside += there && BeyondBoard(patch, board, *there) < margin ? 1U : 0U;
+  // A ring that ends at a side shows free space beyond it, even without a return from there.
+  for (std::size_t i = 0; i < patch.edges.size(); ++i) {
+    if (patch.fit.sides[i] < 0 || patch.fit.sides[i] >= kCornersPerBoard) continue;
+    const auto part = outline.PartAt(outline.ToBoard(patch.edges[i].in_plane));
+    ++counts.passing[part.side][part.part];
   }
-  agreement.contained = static_cast<double>(inside) /
-                        static_cast<double>(std::max<std::size_t>(1, patch.on_plane.size()));
-  double solid = board.top_right_m * board.right_bottom_m;
-  if (board.hole) solid -= board.hole->width_m * board.hole->height_m;
-  const double solid_angle = solid * std::abs(plane.normal.dot(toward)) / center.squaredNorm();
-  agreement.density = static_cast<double>(inside) * scan.azimuth_step_rad() *
-                      scan.elevation_step_rad() / solid_angle;
+  counts.State(board, agreement);
   agreement.points = hit;
   agreement.filled = hit > 0 ? static_cast<double>(hit) / (hit + through) : 0.0;
   agreement.visible = 1.0 - static_cast<double>(hidden) / std::max(1, hit + through + hidden);
-  agreement.continued = around > 0 ? static_cast<double>(around_on_plane) / around : 0.0;
+  agreement.density = DensityOf(scan, patch, board, hit);
   return agreement;
+}
+
+BoardAgreement AgreementOf(const ScanRings& scan, const BoardPatch& patch, const Board& board) {
+  const double reach = std::hypot(board.top_right_m, board.right_bottom_m);
+  return AgreementOf(scan, RaysAround(scan, patch.plane, patch.fit.center, reach), patch, board);
+}
+
+double RayCost(const PlaneRays& rays, const RectangleFit& fit, const Board& board) {
+  const Outline outline(rays, fit, board);
+  double cost = 0.0;
+  for (const PlaneRay& ray : rays.rays) {
+    if (ray.end == RayEnd::kInFront) continue;
+    const Eigen::Vector2d q = outline.ToBoard(ray.at);
+    const bool on_plane = ray.end == RayEnd::kOnPlane;
+    if (outline.IsInside(q)) {
+      cost += on_plane ? -1.0 : kThroughCost;
+    } else if (on_plane && outline.BeyondSide(q)) {
+      cost += kBeyondCost;
+    }
+  }
+  return cost;
 }
 
 std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board& board) {
@@ -116,19 +234,17 @@ std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board&
     return fmt::format("only {:.0f} % of the returns expected from a board there",
                        100.0 * agreement.density);
   }
-  if (patch.fit.sides_seen < kMinSides) {
-    return fmt::format("edges were found on {} of its sides, {} are needed", patch.fit.sides_seen,
-                       kMinSides);
+  if (!IsBounded(agreement)) {
+    const auto open = std::ranges::count_if(agreement.open, [](double part) { return part > 0.0; });
+    return fmt::format(
+        "its ends are visible at {} of its sides only, not far enough along two opposite ones or "
+        "three",
+        open);
   }
   if (patch.fit.share < kMinShare || patch.fit.rms > kMaxRms) {
     return fmt::format(
         "its outline is not {:.3f} x {:.3f} m: {:.0f} % of the edge points fit, {:.1f} sigma rms",
         board.top_right_m, board.right_bottom_m, 100.0 * patch.fit.share, patch.fit.rms);
-  }
-  if (agreement.contained < kMinContained) {
-    return fmt::format("{:.0f} % of its flat surface lies beyond a board of {:.3f} x {:.3f} m",
-                       100.0 * (1.0 - agreement.contained), board.top_right_m,
-                       board.right_bottom_m);
   }
   if (agreement.filled < kMinFilled) {
     return fmt::format("{:.0f} % of the rays pass through it", 100.0 * (1.0 - agreement.filled));
@@ -136,9 +252,10 @@ std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board&
   if (agreement.visible < kMinVisible) {
     return fmt::format("a nearer object hides {:.0f} % of it", 100.0 * (1.0 - agreement.visible));
   }
-  if (agreement.continued > kMaxContinued) {
+  const double most_closed = *std::ranges::max_element(agreement.closed);
+  if (agreement.continued > kMaxContinued || most_closed > kMaxClosed) {
     return fmt::format(
-        "its plane continues beyond it ({:.0f} % of the rays around it), as a wall's "
+        "its plane continues beyond {:.0f} % of its outline, as that of a wall or of furniture "
         "does",
         100.0 * agreement.continued);
   }

@@ -7,8 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "features/lidar/board_agreement.h"
+#include "features/lidar/board_assignment.h"
+#include "features/lidar/plane_rays.h"
 #include "features/lidar/ring_clusters.h"
 #include "features/lidar/scan_limits.h"
 
@@ -19,26 +22,38 @@ constexpr double kMaxRunRatio = 1.6;  // A hand or a stand may extend a run beyo
 constexpr int kPlanesPerCluster = 3;  // Parts of a person who holds the board may be flat, too.
 constexpr int kMinInCluster = 10;
 constexpr double kAround_m = 0.05;
-constexpr double kNearlyAll = 0.97;  // Fraction of a patch; the rest may be hands or a stand.
+constexpr double kRays_m =
+    0.3;  // Around the points of a patch: wider than the bands of an outline.
 constexpr double kMinJump_m = 0.06;
-constexpr double kJumpSigmas = 4.5;  // Three sigma of the difference of two returns.
+constexpr double kJumpSigmas = 4.5;     // Three sigma of the difference of two returns.
+constexpr std::size_t kPlacements = 4;  // On a patch, compared by the rays that they explain.
 // Limits of the diagonal of the box around a patch's points, relative to the board's diagonal. The
 // ratio is half if the outermost rings miss the corners, sqrt 2 for a square held with one corner
 // up, and more with a hand or a stand.
 constexpr double kMinDiagonalRatio = 0.4;
 constexpr double kMaxDiagonalRatio = 2.5;
-constexpr std::size_t kNoProposal = std::numeric_limits<std::size_t>::max();
-constexpr double kSameSize_m = 0.03;  // Boards closer in size are distinguished by their order.
 
 double Diagonal(const Board& board) { return std::hypot(board.top_right_m, board.right_bottom_m); }
 
-// Small if the outline agrees on all four sides and has many edge points. Compares boards on one
-// patch and patches for one board.
-double Disagreement(const BoardPatch& patch) {
-  const auto edges = static_cast<double>(patch.edges.size());
-  return (patch.fit.rms + 4.0 * (1.0 - patch.fit.share) + 2.0 * (1.0 - patch.agreement.filled) +
-          2.0 * patch.agreement.continued + 2.0 * (kCornersPerBoard - patch.fit.sides_seen)) /
-         std::sqrt(edges);
+// The box around points of a plane, in its axes.
+struct PlaneBox {
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::max());
+  Eigen::Vector2d high = Eigen::Vector2d::Constant(std::numeric_limits<double>::lowest());
+
+  Eigen::Vector2d Middle() const { return 0.5 * (low + high); }
+  double Diagonal() const { return (high - low).norm(); }
+};
+
+PlaneBox BoxOf(const ScanRings& scan, const LidarPlane& plane,
+               const std::vector<std::size_t>& on_plane) {
+  PlaneBox box;
+  for (const std::size_t place : on_plane) {
+    const Eigen::Vector3d d = scan.points()[place].point - plane.origin;
+    const Eigen::Vector2d p(plane.x_axis.dot(d), plane.y_axis.dot(d));
+    box.low = box.low.cwiseMin(p);
+    box.high = box.high.cwiseMax(p);
+  }
+  return box;
 }
 
 class Finder {
@@ -56,7 +71,7 @@ class Finder {
       if (cluster.front().ring < cluster.back().ring) SearchCluster(cluster);
     }
     std::ranges::stable_sort(search_.rejected, std::greater<>{}, &RejectedPatch::points);
-    Assign();
+    AssignBoards(scan_, boards_, std::move(proposals_), search_);
     return std::move(search_);
   }
 
@@ -97,103 +112,108 @@ class Finder {
       (on ? on_plane : rest).push_back(places[i]);
     }
     places = std::move(rest);
-    if (!OfBoardSize(found->plane, on_plane)) return true;
-    if (Propose(found->plane, on_plane)) Erase(proposals_.back(), places);
+    const PlaneBox box = BoxOf(scan_, found->plane, on_plane);
+    if (!OfBoardSize(box)) return true;
+    if (Propose(found->plane, on_plane, box)) Erase(proposals_.back(), places);
     return true;
   }
 
   // Whether the patch is neither far smaller nor far larger than every board: a cheap test before
   // the expensive ones.
-  bool OfBoardSize(const LidarPlane& plane, const std::vector<std::size_t>& on_plane) const {
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::max());
-    Eigen::Vector2d high = -low;
-    for (const std::size_t place : on_plane) {
-      const Eigen::Vector3d d = scan_.points()[place].point - plane.origin;
-      const Eigen::Vector2d p(plane.x_axis.dot(d), plane.y_axis.dot(d));
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-    const double diagonal = (high - low).norm();
+  bool OfBoardSize(const PlaneBox& box) const {
     return std::ranges::any_of(boards_, [&](const Board& board) {
-      return diagonal > kMinDiagonalRatio * Diagonal(board) &&
-             diagonal < kMaxDiagonalRatio * Diagonal(board);
+      return box.Diagonal() > kMinDiagonalRatio * Diagonal(board) &&
+             box.Diagonal() < kMaxDiagonalRatio * Diagonal(board);
     });
   }
 
   // Removes the remaining points on or close in front of a board that was found: its noisiest
   // returns would make a second one.
-  void Erase(const std::vector<BoardPatch>& proposal, std::vector<std::size_t>& places) const {
+  void Erase(const BoardProposal& proposal, std::vector<std::size_t>& places) const {
     const BoardPatch& patch = proposal.front();
     const Board& board = boards_[static_cast<std::size_t>(patch.board)];
     std::erase_if(places, [&](std::size_t place) {
       const std::optional<Eigen::Vector2d> there = patch.plane.Meet(scan_.points()[place].point);
-      return there && BeyondBoard(patch, board, *there) < kAround_m;
+      return there && BeyondBoard(patch.fit, board, *there) < kAround_m;
     });
   }
 
   // Adds the boards that could be this patch to the proposals; false if none could.
-  bool Propose(const LidarPlane& plane, const std::vector<std::size_t>& on_plane) {
+  bool Propose(const LidarPlane& plane, const std::vector<std::size_t>& on_plane,
+               const PlaneBox& box) {
+    const PlaneRays rays = RaysAround(scan_, plane, box.Middle(), 0.5 * box.Diagonal() + kRays_m);
     std::string why;
-    std::vector<BoardPatch> accepted;
+    BoardProposal accepted;
     for (std::size_t b = 0; b < boards_.size(); ++b) {
-      std::optional<BoardPatch> patch = Place(b, plane, on_plane);
+      const std::optional<BoardPatch> patch = Place(b, plane, on_plane, rays);
       if (!patch) {
         why = fmt::format("its edges do not fit a board of {:.3f} x {:.3f} m",
                           boards_[b].top_right_m, boards_[b].right_bottom_m);
         continue;
       }
-      std::optional<std::string> reason = RejectionReason(*patch, boards_[b]);
-      if (reason && patch->agreement.contained < kNearlyAll) {
-        if (std::optional<BoardPatch> bare = WithoutHands(*patch); bare) {
-          patch = std::move(bare);
-          reason = RejectionReason(*patch, boards_[b]);
-        }
-      }
-      if (reason) {
-        why = *reason;
+      if (std::optional<std::string> reason = RejectionReason(*patch, boards_[b])) {
+        why = std::move(*reason);
       } else {
-        accepted.push_back(std::move(*patch));
+        accepted.push_back(*patch);
       }
     }
-    const bool any = !accepted.empty();
-    if (!any) {
+    if (accepted.empty()) {
       search_.rejected.push_back(
           {plane.origin, RingsOf(on_plane), static_cast<int>(on_plane.size()), std::move(why)});
-    } else {
-      proposals_.push_back(std::move(accepted));
+      return false;
     }
-    return any;
+    proposals_.push_back(std::move(accepted));
+    return true;
   }
 
+  // Places the board where it explains the rays best.
   std::optional<BoardPatch> Place(std::size_t board, const LidarPlane& plane,
-                                  const std::vector<std::size_t>& on_plane) const {
+                                  const std::vector<std::size_t>& on_plane, const PlaneRays& rays) {
     BoardPatch patch{.board = static_cast<int>(board), .plane = plane, .on_plane = on_plane};
     patch.edges = FindEdgePoints(scan_, plane, on_plane, EdgeOptionsOf(boards_[board]));
-    const std::optional<RectangleFit> fit = FitRectangle(patch.edges, boards_[board]);
-    if (!fit) return std::nullopt;
-    patch.fit = *fit;
-    patch.agreement = AgreementOf(scan_, patch, boards_[board]);
-    return patch;
+    std::vector<RectangleFit> fits = FitRectangles(patch.edges, boards_[board], kPlacements);
+    if (fits.empty()) return std::nullopt;
+    for (RectangleFit& fit : fits) fit.cost += RayCost(rays, fit, boards_[board]);
+    patch.fit = fits[MostUpright(fits, boards_[board])];
+    return WithoutOthers(patch);
   }
 
-  // Hands, arms or a stand near the board's plane are mistaken for parts of it. Places the board
+  // Hands, a stand or a person in the board's plane were mistaken for parts of it. Places the board
   // again, using only the points on or close around it as first placed.
-  std::optional<BoardPatch> WithoutHands(const BoardPatch& patch) {
-    const auto board = static_cast<std::size_t>(patch.board);
+  std::optional<BoardPatch> WithoutOthers(const BoardPatch& first) {
+    const Board& board = boards_[static_cast<std::size_t>(first.board)];
     std::vector<std::size_t> near;
     std::vector<Eigen::Vector3d> points;
-    for (const std::size_t place : patch.on_plane) {
+    for (const std::size_t place : first.on_plane) {
       const Eigen::Vector3d& point = scan_.points()[place].point;
-      const std::optional<Eigen::Vector2d> there = patch.plane.Meet(point);
-      if (!there || BeyondBoard(patch, boards_[board], *there) > kAround_m) continue;
+      const std::optional<Eigen::Vector2d> there = first.plane.Meet(point);
+      if (!there || BeyondBoard(first.fit, board, *there) > kAround_m) continue;
       near.push_back(place);
       points.push_back(point);
     }
-    const std::optional<FoundPlane> found = FindPlane(points, PlaneSearchOf(), random_);
-    if (!found) return std::nullopt;
-    std::vector<std::size_t> on_plane;
-    for (const int i : found->inliers) on_plane.push_back(near[static_cast<std::size_t>(i)]);
-    return Place(board, found->plane, on_plane);
+    BoardPatch patch{.board = first.board, .plane = first.plane};
+    if (points.size() == first.on_plane.size()) {
+      patch = first;
+    } else {
+      const std::optional<FoundPlane> found = FindPlane(points, PlaneSearchOf(), random_);
+      if (!found) return std::nullopt;
+      patch.plane = found->plane;
+      for (const int i : found->inliers) {
+        patch.on_plane.push_back(near[static_cast<std::size_t>(i)]);
+      }
+      patch.edges = FindEdgePoints(scan_, patch.plane, patch.on_plane, EdgeOptionsOf(board));
+      const auto center = patch.plane.Meet(first.plane.At(first.fit.center));
+      const Eigen::Vector2d x_axis(std::cos(first.fit.angle_rad), std::sin(first.fit.angle_rad));
+      const Eigen::Vector3d along =
+          first.plane.x_axis * x_axis.x() + first.plane.y_axis * x_axis.y();
+      const double angle = std::atan2(patch.plane.y_axis.dot(along), patch.plane.x_axis.dot(along));
+      if (!center) return std::nullopt;
+      const std::optional<RectangleFit> fit = RefineRectangle(patch.edges, board, *center, angle);
+      if (!fit) return std::nullopt;
+      patch.fit = *fit;
+    }
+    patch.agreement = AgreementOf(scan_, patch, board);
+    return patch;
   }
 
   PlaneSearch PlaneSearchOf() const {
@@ -219,105 +239,12 @@ class Finder {
     return rings;
   }
 
-  // Assigns a different board to as many patches as possible (augmenting paths), the best-fitting
-  // first; then orders boards of nearly the same size from left to right.
-  void Assign() {
-    for (std::vector<BoardPatch>& proposal : proposals_) {
-      std::ranges::sort(proposal, {}, Disagreement);
-    }
-    std::ranges::stable_sort(proposals_, {}, [](const std::vector<BoardPatch>& proposal) {
-      return Disagreement(proposal.front());
-    });
-    DropDuplicates();
-    owner_.assign(boards_.size(), kNoProposal);
-    for (std::size_t p = 0; p < proposals_.size(); ++p) {
-      std::vector<bool> visited(boards_.size(), false);
-      if (AssignBoard(p, visited)) continue;
-      const BoardPatch& patch = proposals_[p].front();
-      search_.rejected.push_back({patch.plane.At(patch.fit.center), patch.agreement.rings,
-                                  patch.agreement.points,
-                                  "better matches were found for every board of its size"});
-    }
-    for (std::size_t b = 0; b < boards_.size(); ++b) {
-      if (owner_[b] == kNoProposal) continue;
-      for (const BoardPatch& patch : proposals_[owner_[b]]) {
-        if (patch.board == static_cast<int>(b)) search_.found.push_back(patch);
-      }
-    }
-    OrderFromLeft();
-    std::ranges::sort(search_.found, {}, &BoardPatch::board);
-  }
-
-  // If the clustering split one board, only the best-fitting part is kept.
-  void DropDuplicates() {
-    std::vector<std::vector<BoardPatch>> kept;
-    for (std::vector<BoardPatch>& proposal : proposals_) {
-      const BoardPatch& patch = proposal.front();
-      const Eigen::Vector3d center = patch.plane.At(patch.fit.center);
-      const double reach = 0.5 * Diagonal(boards_[static_cast<std::size_t>(patch.board)]);
-      const bool is_known = std::ranges::any_of(kept, [&](const std::vector<BoardPatch>& other) {
-        return (other.front().plane.At(other.front().fit.center) - center).norm() < reach;
-      });
-      if (!is_known) kept.push_back(std::move(proposal));
-    }
-    proposals_ = std::move(kept);
-  }
-
-  // Assigns a board to the proposal, reassigning others if necessary.
-  bool AssignBoard(std::size_t proposal, std::vector<bool>& visited) {
-    for (const BoardPatch& patch : proposals_[proposal]) {
-      const auto board = static_cast<std::size_t>(patch.board);
-      if (visited[board]) continue;
-      visited[board] = true;
-      if (owner_[board] == kNoProposal || AssignBoard(owner_[board], visited)) {
-        owner_[board] = proposal;
-        return true;
-      }
-    }
-    return false;
-  }
-
-  bool SameSize(int a, int b) const {
-    const Board& first = boards_[static_cast<std::size_t>(a)];
-    const Board& second = boards_[static_cast<std::size_t>(b)];
-    return std::abs(first.top_right_m - second.top_right_m) < kSameSize_m &&
-           std::abs(first.right_bottom_m - second.right_bottom_m) < kSameSize_m &&
-           first.hole.has_value() == second.hole.has_value();
-  }
-
-  // Orders boards of nearly the same size from left to right; refits patches whose board changes.
-  void OrderFromLeft() {
-    std::vector<BoardPatch>& found = search_.found;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      for (std::size_t j = i + 1; j < found.size(); ++j) {
-        BoardPatch& a = found[i];
-        BoardPatch& b = found[j];
-        if (!SameSize(a.board, b.board)) continue;
-        // The left one has the larger azimuth.
-        const bool a_is_left = a.plane.origin.cross(b.plane.origin).z() < 0.0;
-        if (a_is_left == (a.board < b.board)) continue;
-        std::swap(a.board, b.board);
-        Refit(a);
-        Refit(b);
-      }
-    }
-  }
-
-  void Refit(BoardPatch& patch) const {
-    const Board& board = boards_[static_cast<std::size_t>(patch.board)];
-    const std::optional<RectangleFit> fit = FitRectangle(patch.edges, board);
-    if (!fit) return;
-    patch.fit = *fit;
-    patch.agreement = AgreementOf(scan_, patch, board);
-  }
-
   const ScanRings& scan_;
   std::span<const Board> boards_;
   const BoardSearchOptions& options_;
   Random random_;
   BoardSearch search_;
-  std::vector<std::size_t> owner_;                  // For each board, its proposal.
-  std::vector<std::vector<BoardPatch>> proposals_;  // For each patch, every board that it may be.
+  std::vector<BoardProposal> proposals_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -30,15 +31,19 @@ struct BoardSearchOptions {
   std::uint64_t seed = 1;
 };
 
-/// Agreement of a patch of a scan with a board placed on it.
+/// Agreement of a scan with a board placed in it.
 struct BoardAgreement {
   int rings = 0;
-  int points = 0;          ///< Returns on the board.
-  double density = 0.0;    ///< Returns on it relative to those expected from the sensor's steps.
-  double filled = 0.0;     ///< Fraction of the rays onto the board that end on it, not behind it.
-  double visible = 0.0;    ///< Fraction of them not blocked by a nearer object.
-  double contained = 0.0;  ///< Fraction of the patch's points that lie within the board.
-  double continued = 0.0;  ///< Fraction of the rays just around the board that end in its plane.
+  int points = 0;        ///< Returns on the board.
+  double density = 0.0;  ///< Returns on it relative to those expected from the sensor's steps.
+  double filled = 0.0;   ///< Fraction of the rays onto the board that end on it, not behind it.
+  double visible = 0.0;  ///< Fraction of them not blocked by a nearer object.
+  double continued =
+      0.0;  ///< Fraction of the outline, where rays show it, beyond which its plane goes on.
+  /// For each side, the fractions of its length beyond which rays pass the board's plane, and
+  /// beyond which they end in it; no rays show the rest.
+  std::array<double, kCornersPerBoard> open{};
+  std::array<double, kCornersPerBoard> closed{};
 };
 
 /// One board in a scan.
@@ -60,16 +65,21 @@ struct RejectedPatch {
 };
 
 struct BoardSearch {
-  std::vector<BoardPatch> found{};        ///< At most one per board, in the order of the boards.
+  std::vector<BoardPatch> found{};  ///< At most one per board, in the order of the boards.
+  /// Further patches that may be boards, the likeliest first: more than there are boards of their
+  /// size.
+  std::vector<BoardPatch> others{};
   std::vector<RejectedPatch> rejected{};  ///< Those with the most points first.
 };
 
 inline constexpr int kMinRings = 4;  ///< A board crossed by fewer rings has too few edge points.
 
-/// Finds boards of known size in a scan: clusters no wider than a board, the dominant plane of
-/// each, and the rectangle that fits its edges. Boards of nearly the same size are assigned from
-/// left to right in the order of `boards`, as in the paper. Errors: kInvalidInput for boards
-/// without a size.
+/// Finds boards of known size in a scan: clusters no wider than a board, the dominant planes of
+/// each, and the placement of the board in such a plane that explains the scan: returns inside its
+/// outline, rings that end at its sides, rays that pass its plane beyond them. Other objects may be
+/// in its plane, and parts of it may be hidden or outside the field of view. Boards of nearly the
+/// same size are assigned from left to right in the order of `boards`, as in the paper. Errors:
+/// kInvalidInput for boards without a size.
 Expected<BoardSearch> FindBoards(const ScanRings& scan, std::span<const Board> boards,
                                  const BoardSearchOptions& options);
 

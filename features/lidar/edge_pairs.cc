@@ -139,7 +139,7 @@ std::vector<EdgePoint> FindEdgePairs(const ScanRings& scan, const LidarPlane& pl
                    .ring = scan.RingOf(on.place),
                    .last_return = last.point};
     if (options.correct) edge.in_plane += edge.outward * (0.5 * step);
-    SetSpot(plane, last.point, options, edge);
+    SetSpot(scan, plane, last.point, options, edge);
     edges.push_back(edge);
   }
   return edges;

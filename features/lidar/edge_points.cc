@@ -16,20 +16,18 @@ namespace {
 class EdgeFinder {
  public:
   EdgeFinder(const ScanRings& scan, const LidarPlane& plane, const EdgeOptions& options)
-      : scan_(scan),
-        plane_(plane),
-        options_(options),
-        middle_(std::atan2(plane.origin.y(), plane.origin.x())) {}
+      : scan_(scan), plane_(plane), options_(options), middle_(scan.AzimuthOf(plane.origin)) {}
 
   // Adds the edges of one ring; `places`: its points on the plane.
   void AddRing(int ring, std::vector<std::size_t> places, std::vector<EdgePoint>& edges) const {
     std::ranges::sort(places, {}, [&](std::size_t i) { return Azimuth(i); });
     AddEdge(ring, places.front(), -1, false, edges);
-    for (std::size_t i = 1; options_.hollow && i < places.size(); ++i) {
+    for (std::size_t i = 1; i < places.size(); ++i) {
       const double gap = Azimuth(places[i]) - Azimuth(places[i - 1]);
       if (gap <= kMaxGapSteps * scan_.azimuth_step_rad()) continue;
-      AddEdge(ring, places[i - 1], +1, true, edges);
-      AddEdge(ring, places[i], -1, true, edges);
+      if (!options_.hollow && !PassesBetween(ring, places[i - 1], places[i])) continue;
+      AddEdge(ring, places[i - 1], +1, options_.hollow, edges);
+      AddEdge(ring, places[i], -1, options_.hollow, edges);
     }
     AddEdge(ring, places.back(), +1, false, edges);
   }
@@ -59,7 +57,7 @@ class EdgeFinder {
                    .ring = ring,
                    .last_return = last.point};
     if (options_.correct) edge.in_plane += edge.outward * (0.5 * edge.step_m);
-    SetSpot(plane_, last.point, options_, edge);
+    SetSpot(scan_, plane_, last.point, options_, edge);
     edges.push_back(edge);
   }
 
@@ -79,6 +77,22 @@ class EdgeFinder {
     return WrapAngle(scan_.points()[place].azimuth_rad - middle_);
   }
 
+  bool IsOn(const RingPoint& point) const {
+    return std::abs(plane_.normal.dot(point.point - plane_.origin)) < 3.0 * plane_.sigma_m;
+  }
+
+  // Whether a return between two of the ring lies behind the plane: the ring leaves one object of
+  // the plane and meets another.
+  bool PassesBetween(int ring, std::size_t from, std::size_t to) const {
+    const std::size_t first = scan_.first(ring);
+    const std::size_t count = scan_.first(ring + 1) - first;
+    const double clear = 0.05 + 5.0 * plane_.sigma_m;
+    for (std::size_t i = from; i != to; i = first + (i - first + 1) % count) {
+      if (plane_.normal.dot(scan_.points()[i].point - plane_.origin) > clear) return true;
+    }
+    return false;
+  }
+
   // The next return of the ring beyond the edge; none after a gap.
   std::optional<RingPoint> Beyond(int ring, std::size_t place, int sign) const {
     const std::size_t first = scan_.first(ring);
@@ -92,7 +106,7 @@ class EdgeFinder {
   }
 
   std::optional<Eigen::Vector2d> MeetTurned(const RingPoint& point, double angle_rad) const {
-    return plane_.Meet(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()) * point.point);
+    return plane_.Meet(Eigen::AngleAxisd(angle_rad, scan_.axis()) * point.point);
   }
 
   bool Hides(const RingPoint& beyond) const {
@@ -106,7 +120,7 @@ class EdgeFinder {
     const RingPoint& last = scan_.points()[place];
     double step = scan_.azimuth_step_rad();
     if (const std::optional<RingPoint> beyond = Beyond(ring, place, sign)) {
-      if (Hides(*beyond)) return;
+      if (Hides(*beyond) || IsOn(*beyond)) return;
       step =
           std::clamp(std::abs(WrapAngle(beyond->azimuth_rad - last.azimuth_rad)), 0.5 * step, step);
     }
@@ -122,7 +136,7 @@ class EdgeFinder {
                     .inner = inner,
                     .ring = ring,
                     .last_return = last.point};
-    SetSpot(plane_, last.point, options_, found);
+    SetSpot(scan_, plane_, last.point, options_, found);
     edges.push_back(found);
   }
 
@@ -134,12 +148,12 @@ class EdgeFinder {
 
 }  // namespace
 
-void SetSpot(const LidarPlane& plane, const Eigen::Vector3d& ray, const EdgeOptions& options,
-             EdgePoint& edge) {
+void SetSpot(const ScanRings& scan, const LidarPlane& plane, const Eigen::Vector3d& ray,
+             const EdgeOptions& options, EdgePoint& edge) {
   edge.beam = options.beam;
   if (!options.correct) edge.beam.growth = 0.0;
   const double range = ray.norm();
-  const Eigen::Vector3d left = Eigen::Vector3d(-ray.y(), ray.x(), 0.0).normalized();
+  const Eigen::Vector3d left = scan.axis().cross(ray).normalized();
   const Eigen::Vector3d up = ray.cross(left) / range;
   const auto center = plane.Meet(ray);
   const auto beside = plane.Meet(ray + options.beam.WidthAt(range) * left);

@@ -74,13 +74,13 @@ class SharedStep {
 };
 
 /// Sets the beam and the spot of an edge point whose last return is `ray`.
-void SetSpot(const LidarPlane& plane, const Eigen::Vector3d& ray, const EdgeOptions& options,
-             EdgePoint& edge);
+void SetSpot(const ScanRings& scan, const LidarPlane& plane, const Eigen::Vector3d& ray,
+             const EdgeOptions& options, EdgePoint& edge);
 
-/// Edge points at the first and last return of each ring among the plane's points, and at the
-/// middles of the highest and lowest ring, beyond which the edge lies before the next ring. Edges
-/// hidden by nearer objects are omitted. Without rings: FindEdgePairs. `on_plane`: indices into
-/// scan.points(), ascending.
+/// Edge points where a ring enters and leaves the plane's points, and at the middles of the highest
+/// and lowest ring, beyond which the edge lies before the next ring. There are none where a nearer
+/// object hides the edge, or where the ring's next return is on the plane, too. Without rings:
+/// FindEdgePairs. `on_plane`: indices into scan.points(), ascending.
 std::vector<EdgePoint> FindEdgePoints(const ScanRings& scan, const LidarPlane& plane,
                                       std::span<const std::size_t> on_plane,
                                       const EdgeOptions& options);

@@ -11,7 +11,6 @@
 #include <optional>
 #include <string>
 
-#include "features/lidar/azimuth.h"
 #include "features/lidar/board_agreement.h"
 #include "features/lidar/scan_limits.h"
 
@@ -164,33 +163,9 @@ class MarkedPatch {
     std::vector<EdgePoint> ends =
         FindEdgePoints(scan_, patch.plane, in_area, EdgeOptionsFor(false));
     std::erase_if(ends, [&](const EdgePoint& end) {
-      return end.across || end.outward.dot(outward) < kMinOutward * outward.norm() ||
-             GoesOn(end, patch.plane);
+      return end.across || end.outward.dot(outward) < kMinOutward * outward.norm();
     });
     return ends;
-  }
-
-  // Whether the ring's next return outward is on the plane too, so that the area ends there and not
-  // the board.
-  bool GoesOn(const EdgePoint& end, const LidarPlane& plane) const {
-    if (!scan_.has_rings()) return false;  // Then each edge point has a ray past the plane.
-    const std::span<const RingPoint> ring = scan_.ring(end.ring);
-    const auto last = std::ranges::find(ring, end.last_return, &RingPoint::point);
-    const auto at = static_cast<std::size_t>(last - ring.begin());
-    const std::optional<Eigen::Vector2d> here = plane.Meet(last->point);
-    for (const std::size_t next : {at + 1, at + ring.size() - 1}) {
-      const RingPoint& other = ring[next % ring.size()];
-      // Uses intersections with the plane: ranges are too noisy to decide which of two neighbours
-      // is outside.
-      const std::optional<Eigen::Vector2d> there = plane.Meet(other.point);
-      const bool outside = here && there && (*there - *here).dot(end.outward) > 0.0;
-      const double angle = std::abs(WrapAngle(other.azimuth_rad - last->azimuth_rad));
-      if (outside && angle < kMaxGapSteps * scan_.azimuth_step_rad() &&
-          std::abs(plane.normal.dot(other.point - plane.origin)) < 3.0 * plane.sigma_m) {
-        return true;
-      }
-    }
-    return false;
   }
 
   // Adds edge points for which no area is drawn: ends between rings, and the opening.

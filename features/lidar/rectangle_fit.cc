@@ -8,7 +8,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
+#include "features/lidar/rectangle_starts.h"
 #include "geometry/symmetric.h"
 
 namespace sextant {
@@ -17,17 +19,21 @@ namespace {
 constexpr double kHuber = 2.0;    // In sigmas; a uniform error stays within 1.73.
 constexpr double kOutlier = 4.0;  // In sigmas.
 constexpr int kIterations = 12;
-constexpr int kStarts = 10;
-constexpr int kFirstIterations = 3;
-constexpr int kFinalists = 3;
-// Sigmas beyond which an edge point is ignored: at first no point, finally those of hands or
-// stands.
-constexpr double kFirstReach = 1e9;
+constexpr std::size_t kStarts = 12;
+constexpr int kFirstIterations = 4;
+// Sigmas beyond which an edge point is ignored, as one of hands or of a stand: wide at first,
+// because the starts are a few centimetres off.
+constexpr double kFirstReach = 25.0;
 constexpr double kReach = 8.0;
-constexpr double kOversize = 1.15;  // Extent of the edge points relative to the board's.
-constexpr double kAngleSlack_rad = 0.02;
+constexpr double kEquallyLikely = 9.2;  // -2 ln(0.01): likelihood ratio of 1 %.
+constexpr double kSameAngle_rad = 0.02;
+constexpr double kSamePlace_m = 0.01;
+constexpr double kMaxSigma = 0.5;  // Of the position, relative to half the diagonal.
 constexpr int kMinEdges = 4;
-constexpr std::size_t kMaxSides = 8;  // For a hollow board.
+constexpr int kMinCrossing = 3;  // Ends of rings on the sides of an axis that determine it.
+constexpr double kMinVariance_m2 = 1e-6;  // Of a position within an interval.
+constexpr std::size_t kMaxSides = 8;      // For a hollow board.
+constexpr double kSameSides = 1e-6;       // Relative; the sides of a square.
 
 // Outward normals of the sides 0 to 3 in the board's frame: y = -h/2 is the first.
 const std::array<Eigen::Vector2d, 4> kNormals = {Eigen::Vector2d(0, -1), Eigen::Vector2d(1, 0),
@@ -65,26 +71,32 @@ struct Sums {
     by_growth += j * place.growth_sigma / place.sigma;
     shared[side].Add(place.distance, place.half_step);
     by_side[side] += j / place.sigma;
-    ++of_side[side];
     if (place.side < kCornersPerBoard) {
       const double arm = (place.side % 2 == 0 ? half.y() : half.x()) / place.sigma;
       by_size += arm * place.distance / place.sigma;
       size_weight += arm * arm;
     }
     chi2 += place.distance * place.distance / (place.sigma * place.sigma);
+  }
+
+  // Counts an edge point, whether or not it determines the position.
+  void Count(const SidePlace& place) {
+    ++of_side[static_cast<std::size_t>(place.side)];
     squares += place.distance * place.distance;
     ++used;
   }
 
-  // A prior of four residuals of one sigma keeps the scale from vanishing for few residuals.
-  Eigen::Matrix3d Covariance() const {
+  // A prior of four residuals of one sigma keeps the scale from vanishing for few residuals. A
+  // single point of a side states its whole step in its own sigma.
+  Eigen::Matrix3d Covariance(const Eigen::Matrix3d& of_intervals) const {
     constexpr double kPrior = 4.0;
-    const Eigen::Matrix3d inverse = information.inverse();
-    const Eigen::Vector3d by_all = inverse * by_growth;  // Zero if opposite sides cancel.
-    Eigen::Matrix3d covariance =
-        (chi2 + kPrior) / (used - 3 + kPrior) * inverse + by_all * by_all.transpose();
+    const double scale = (chi2 + kPrior) / (std::max(used, 3) - 3 + kPrior);
+    const Eigen::Matrix3d inverse = (information / scale + of_intervals).inverse();
+    const Eigen::Vector3d by_all = inverse * by_growth / scale;  // Zero if opposite sides cancel.
+    Eigen::Matrix3d covariance = inverse + by_all * by_all.transpose();
     for (std::size_t side = 0; side < kMaxSides; ++side) {
-      const Eigen::Vector3d by_offset = inverse * by_side[side];
+      if (of_side[side] < 2) continue;
+      const Eigen::Vector3d by_offset = inverse * by_side[side] / scale;
       covariance += shared[side].Variance() * by_offset * by_offset.transpose();
     }
     return covariance;
@@ -96,36 +108,23 @@ struct Sums {
   }
 };
 
+// The displacements along one axis of the board at which all returns lie on it and the rings beyond
+// do not.
+struct AxisInterval {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+
+  double Middle() const { return 0.5 * (low + high); }
+  double Variance() const {
+    const double length = std::max(high - low, 0.0);
+    return length * length / 12.0;
+  }
+};
+
 class Fitter {
  public:
   Fitter(std::span<const EdgePoint> edges, const Board& board)
       : edges_(edges), board_(board), half_(0.5 * board.top_right_m, 0.5 * board.right_bottom_m) {}
-
-  // Initial poses: the middle of the edge points and, if they extend further than the board, the
-  // poses flush with either end.
-  void AddStarts(double angle, std::vector<Eigen::Vector3d>& starts) const {
-    const Eigen::Matrix2d turn = Eigen::Rotation2Dd(angle).toRotationMatrix();
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::max());
-    Eigen::Vector2d high = -low;
-    for (const EdgePoint& edge : edges_) {
-      const Eigen::Vector2d q = turn.transpose() * edge.in_plane;
-      low = low.cwiseMin(q);
-      high = high.cwiseMax(q);
-    }
-    const auto places = [&](Eigen::Index axis) {
-      std::vector<double> middles = {0.5 * (low(axis) + high(axis))};
-      if (high(axis) - low(axis) > kOversize * 2.0 * half_(axis)) {
-        middles.insert(middles.end(), {low(axis) + half_(axis), high(axis) - half_(axis)});
-      }
-      return middles;
-    };
-    for (const double x : places(0)) {
-      for (const double y : places(1)) {
-        const Eigen::Vector2d center = turn * Eigen::Vector2d(x, y);
-        starts.emplace_back(center.x(), center.y(), angle);
-      }
-    }
-  }
 
   // `turn` is the rotation by the pose's angle.
   SidePlace Place(const EdgePoint& edge, const Eigen::Vector3d& pose,
@@ -178,35 +177,44 @@ class Fitter {
     return cost;
   }
 
-  std::optional<RectangleFit> Finish(const Eigen::Vector3d& pose) const {
-    RectangleFit fit{.center = pose.head<2>(),
-                     .angle_rad = pose.z(),
-                     .covariance = Eigen::Matrix3d::Zero(),
-                     .sides = {},
-                     .sigmas_m = {},
-                     .on_edge = {},
-                     .rms = 0.0,
-                     .rms_m = 0.0,
-                     .share = 0.0,
-                     .sides_seen = 0,
-                     .size_ratio = 1.0};
-    Sums sums;
+  std::optional<RectangleFit> Finish(Eigen::Vector3d pose) const {
+    RectangleFit fit;
     const Eigen::Matrix2d turn = Eigen::Rotation2Dd(pose.z()).toRotationMatrix();
+    // Along an axis whose sides no ring crosses.
+    std::array<bool, 2> bracketed{};
+    Eigen::Matrix3d of_intervals = Eigen::Matrix3d::Zero();
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
+      const AxisInterval interval = IntervalAlong(axis, pose, turn);
+      if (!std::isfinite(interval.Variance())) continue;
+      const CrossedSides crossed = CrossedAlong(axis, pose, turn);
+      if (crossed.ends >= kMinCrossing || crossed.information * interval.Variance() > 1.0) continue;
+      bracketed[static_cast<std::size_t>(axis)] = true;
+      pose.head<2>() += turn.col(axis) * interval.Middle();
+      const Eigen::Vector3d along(turn(0, axis), turn(1, axis), 0.0);
+      of_intervals += along * along.transpose() / (interval.Variance() + kMinVariance_m2);
+    }
+    Sums sums;
     for (const EdgePoint& edge : edges_) {
       const SidePlace place = Place(edge, pose, turn);
       const bool belongs = std::abs(place.distance) <= kOutlier * place.sigma;
       fit.sides.push_back(belongs ? place.side : -1);
       fit.sigmas_m.push_back(place.sigma);
       fit.on_edge.push_back(edge.in_plane - place.grown);
-      if (belongs) sums.Add(place, half_);
+      if (!belongs) continue;
+      sums.Count(place);
+      if (!edge.across || !bracketed[AxisOf(place.side)]) sums.Add(place, half_);
     }
     if (sums.used < kMinEdges) return std::nullopt;
     // Angles are scaled by the board's half diagonal, to make both kinds of unknowns comparable.
-    Eigen::Vector3d scale(1.0, 1.0, 1.0 / half_.norm());
-    const Eigen::Matrix3d scaled = scale.asDiagonal() * sums.information * scale.asDiagonal();
-    const SymmetricEigen<3> eigen = EigenOf(scaled);
-    if (eigen.values(0) < 1e-4 * eigen.values(2)) return std::nullopt;
-    fit.covariance = sums.Covariance();
+    const Eigen::Vector3d scale(1.0, 1.0, 1.0 / half_.norm());
+    const Eigen::Matrix3d scaled =
+        scale.asDiagonal() * (sums.information + of_intervals) * scale.asDiagonal();
+    const double least = EigenOf(scaled).values(0);
+    if (least * std::pow(kMaxSigma * half_.norm(), 2) < 1.0) return std::nullopt;
+    fit.center = pose.head<2>();
+    fit.angle_rad = UprightAngle(pose.z());
+    fit.sides = InNumberingOf(fit.angle_rad - pose.z(), std::move(fit.sides));
+    fit.covariance = sums.Covariance(of_intervals);
     fit.rms = std::sqrt(sums.chi2 / sums.used);
     fit.rms_m = std::sqrt(sums.squares / sums.used);
     fit.share = static_cast<double>(sums.used) / static_cast<double>(edges_.size());
@@ -215,7 +223,69 @@ class Fitter {
     return fit;
   }
 
+  // Of the angles at which the outline looks the same, the one with corner 0 highest.
+  double UprightAngle(double angle) const {
+    const bool square = std::abs(half_.x() - half_.y()) < kSameSides * half_.x() && !board_.hole;
+    const double period = square ? 0.5 * std::numbers::pi : std::numbers::pi;
+    const double corner_up = CornerUp();
+    return corner_up + std::remainder(angle - corner_up, period);
+  }
+
+  // The angle of the board's x axis with corner 0 straight up.
+  double CornerUp() const { return std::numbers::pi / 2.0 - std::atan2(half_.y(), half_.x()); }
+
  private:
+  static std::size_t AxisOf(int side) { return side % 2 == 0 ? 1 : 0; }
+
+  // Side numbers of the board turned by `turn_rad`, a multiple of a quarter turn.
+  static std::vector<int> InNumberingOf(double turn_rad, std::vector<int> sides) {
+    const auto turns = static_cast<int>(std::lround(turn_rad / (0.5 * std::numbers::pi)));
+    for (int& side : sides) {
+      if (side >= 0) side = side / 4 * 4 + (((side - turns) % 4) + 4) % 4;
+    }
+    return sides;
+  }
+
+  // The rings that cross the sides of an axis, and the information on the position along it.
+  struct CrossedSides {
+    int ends = 0;
+    double information = 0.0;  // [1/m^2]
+  };
+
+  CrossedSides CrossedAlong(Eigen::Index axis, const Eigen::Vector3d& pose,
+                            const Eigen::Matrix2d& turn) const {
+    CrossedSides crossed;
+    for (const EdgePoint& edge : edges_) {
+      const SidePlace place = Place(edge, pose, turn);
+      if (edge.across || AxisOf(place.side) != static_cast<std::size_t>(axis)) continue;
+      if (std::abs(place.distance) > kOutlier * place.sigma) continue;
+      ++crossed.ends;
+      crossed.information += 1.0 / (place.sigma * place.sigma);
+    }
+    return crossed;
+  }
+
+  AxisInterval IntervalAlong(Eigen::Index axis, const Eigen::Vector3d& pose,
+                             const Eigen::Matrix2d& turn) const {
+    AxisInterval interval;
+    for (const EdgePoint& edge : edges_) {
+      const SidePlace place = Place(edge, pose, turn);
+      if (edge.inner || std::abs(place.distance) > kOutlier * place.sigma) continue;
+      const Eigen::Vector2d normal = turn.col(axis);
+      const double growth = edge.Growth(normal);
+      const double step = normal.dot(edge.outward) * edge.step_m;
+      const double middle = normal.dot(edge.in_plane - pose.head<2>());
+      const double on = middle - 0.5 * step;
+      interval.low = std::max(interval.low, on - half_(axis) - growth);
+      interval.high = std::min(interval.high, on + half_(axis) + growth);
+      if (!edge.across || AxisOf(place.side) != static_cast<std::size_t>(axis)) continue;
+      const double off = middle + 0.5 * step;
+      if (step > 0.0) interval.high = std::min(interval.high, off - half_(axis) - growth);
+      if (step < 0.0) interval.low = std::max(interval.low, off + half_(axis) + growth);
+    }
+    return interval;
+  }
+
   // The side through which a line from q along `out` leaves the rectangle.
   static int LeftSide(const Eigen::Vector2d& q, const Eigen::Vector2d& out,
                       const Eigen::Vector2d& half) {
@@ -272,38 +342,71 @@ void Improve(const Fitter& fitter, int iterations, double reach, Candidate& cand
   candidate.cost = fitter.Step(candidate.pose, kReach, step);
 }
 
+std::optional<RectangleFit> FinishCandidate(const Fitter& fitter, const Candidate& candidate) {
+  std::optional<RectangleFit> fit = fitter.Finish(candidate.pose);
+  if (fit) fit->cost = candidate.cost;
+  return fit;
+}
+
+bool IsSamePlacement(const RectangleFit& a, const RectangleFit& b) {
+  return std::abs(a.angle_rad - b.angle_rad) < kSameAngle_rad &&
+         (a.center - b.center).norm() < kSamePlace_m;
+}
+
 }  // namespace
 
-std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const Board& board) {
-  if (static_cast<int>(edges.size()) < kMinEdges) return std::nullopt;
+std::vector<RectangleFit> FitRectangles(std::span<const EdgePoint> edges, const Board& board,
+                                        std::size_t max_count) {
+  std::vector<RectangleFit> fits;
+  if (static_cast<int>(edges.size()) < kMinEdges) return fits;
   const Fitter fitter(edges, board);
+  const Eigen::Vector2d half(0.5 * board.top_right_m, 0.5 * board.right_bottom_m);
+  std::vector<Candidate> candidates;
+  for (const Eigen::Vector3d& start : RectangleStarts(edges, half, kStarts)) {
+    candidates.push_back({start, 0.0});
+    Improve(fitter, kFirstIterations, kFirstReach, candidates.back());
+  }
+  std::ranges::sort(candidates, {}, &Candidate::cost);
+  for (Candidate& candidate : candidates) {
+    if (fits.size() >= max_count) break;
+    Improve(fitter, kIterations, kReach, candidate);
+    const std::optional<RectangleFit> fit = FinishCandidate(fitter, candidate);
+    if (!fit) continue;
+    const bool is_new = std::ranges::none_of(
+        fits, [&](const RectangleFit& other) { return IsSamePlacement(other, *fit); });
+    if (is_new) fits.push_back(*fit);
+  }
+  std::ranges::stable_sort(fits, {}, &RectangleFit::cost);
+  return fits;
+}
+
+std::size_t MostUpright(std::span<const RectangleFit> fits, const Board& board) {
   const double corner_up =
       std::numbers::pi / 2.0 - std::atan2(board.right_bottom_m, board.top_right_m);
-  std::vector<Eigen::Vector3d> starts;
-  for (int i = 0; i < kStarts; ++i) {
-    const double share = (i + 0.5) / kStarts - 0.5;
-    fitter.AddStarts(corner_up + share * std::numbers::pi / 2.0, starts);
+  const auto best = std::ranges::min_element(fits, {}, &RectangleFit::cost);
+  const double unit = std::max(1.0, best->cost / static_cast<double>(best->sides.size()));
+  auto chosen = best;
+  for (auto it = fits.begin(); it != fits.end(); ++it) {
+    if (it->cost - best->cost > kEquallyLikely * unit) continue;
+    if (std::abs(it->angle_rad - corner_up) < std::abs(chosen->angle_rad - corner_up)) chosen = it;
   }
-  std::vector<Candidate> candidates;
-  for (const Eigen::Vector3d& start : starts) {
-    candidates.push_back({start, 0.0});
-    Improve(fitter, 0, kReach, candidates.back());
-  }
-  std::ranges::sort(candidates, {}, &Candidate::cost);
-  candidates.resize(kStarts);
-  for (Candidate& candidate : candidates) {
-    Improve(fitter, kFirstIterations, kFirstReach, candidate);
-  }
-  std::ranges::sort(candidates, {}, &Candidate::cost);
-  const Candidate* best = nullptr;
-  for (Candidate& candidate : std::span(candidates).first(kFinalists)) {
-    Improve(fitter, kIterations, kReach, candidate);
-    const double off = std::abs(candidate.pose.z() - corner_up);
-    if (off > std::numbers::pi / 4.0 + kAngleSlack_rad) continue;
-    if (best == nullptr || candidate.cost < best->cost) best = &candidate;
-  }
-  if (best == nullptr) return std::nullopt;
-  return fitter.Finish(best->pose);
+  return static_cast<std::size_t>(chosen - fits.begin());
+}
+
+std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const Board& board) {
+  constexpr std::size_t kCompared = 4;
+  std::vector<RectangleFit> fits = FitRectangles(edges, board, kCompared);
+  if (fits.empty()) return std::nullopt;
+  return fits[MostUpright(fits, board)];
+}
+
+std::optional<RectangleFit> RefineRectangle(std::span<const EdgePoint> edges, const Board& board,
+                                            const Eigen::Vector2d& center, double angle_rad) {
+  if (static_cast<int>(edges.size()) < kMinEdges) return std::nullopt;
+  const Fitter fitter(edges, board);
+  Candidate candidate{{center.x(), center.y(), angle_rad}, 0.0};
+  Improve(fitter, kIterations, kReach, candidate);
+  return FinishCandidate(fitter, candidate);
 }
 
 }  // namespace sextant

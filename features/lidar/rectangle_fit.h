@@ -21,6 +21,7 @@ struct RectangleFit {
   std::vector<int> sides;
   std::vector<double> sigmas_m;          ///< For each edge point, across its nearest side.
   std::vector<Eigen::Vector2d> on_edge;  ///< Each edge point without the growth by the beam [m].
+  double cost = 0.0;                     ///< Sum of the truncated Huber losses of all edge points.
   double rms = 0.0;    ///< RMS of the residuals of edge points on a side, in sigmas.
   double rms_m = 0.0;  ///< The same in metres, across the edge.
   double share = 0.0;  ///< Fraction of the edge points that lie on a side.
@@ -31,13 +32,30 @@ struct RectangleFit {
 };
 
 /// Fits the position and the angle of the board by robust least squares of the edge points'
-/// distances to their sides. The sigma of a residual comes from one step along the ring, projected
-/// across the side, and from the beam's width. The growth by the beam is subtracted; its
-/// uncertainty is common to all edges.
+/// distances to their sides, from the starts of RectangleStarts. The sigma of a residual comes from
+/// one step along the ring, projected across the side, and from the beam's width. The growth by the
+/// beam is subtracted; its uncertainty is common to all edges.
 ///
-/// Orientation: only angles within 45 degrees of the one with corner 0 up are tried, so that the
-/// result for a square board is unique. None for fewer than four edge points and for edge points
-/// that leave a direction undetermined (all edges parallel).
+/// Where no ring crosses the two sides of an axis, the position along it is the middle of the
+/// interval in which the board contains all of its edge points' returns and ends before the rings
+/// beyond it, with the variance of a uniform error over that interval.
+///
+/// Returns distinct fits by ascending cost, at most `max_count`. A rectangle looks the same after
+/// half a turn and a square after a quarter; of these angles, the one is stated at which corner 0
+/// is highest. Empty for fewer than four edge points and where they leave a direction undetermined
+/// by more than half the board's size.
+std::vector<RectangleFit> FitRectangles(std::span<const EdgePoint> edges, const Board& board,
+                                        std::size_t max_count);
+
+/// Index of the placement to state: of those that fit as well as the best (likelihood ratio over
+/// 1 %), as the two of a board that is nearly square, the one with corner 0 highest. Requires one.
+std::size_t MostUpright(std::span<const RectangleFit> fits, const Board& board);
+
+/// That placement of FitRectangles.
 std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const Board& board);
+
+/// The fit nearest to a known placement.
+std::optional<RectangleFit> RefineRectangle(std::span<const EdgePoint> edges, const Board& board,
+                                            const Eigen::Vector2d& center, double angle_rad);
 
 }  // namespace sextant

@@ -46,7 +46,7 @@ std::vector<RingRun> RunsOf(const ScanRings& scan, int ring, const ClusterOption
   return runs;
 }
 
-double ElevationOf(const RingPoint& point) { return std::asin(point.point.z() / point.range_m); }
+double ElevationOf(const RingPoint& point) { return std::asin(point.sine); }
 
 // The return of a run that is nearest in azimuth.
 const RingPoint& NearestInAzimuth(const ScanRings& scan, const RingRun& run, double azimuth) {

@@ -3,51 +3,20 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
+#include <utility>
 
 #include "base/median.h"
+#include "features/lidar/ring_numbers.h"
 
 namespace sextant {
 namespace {
 
 constexpr double kNearest_m = 0.01;  // Sensors write zeros for rays without a return.
-constexpr int kMaxRings = 256;
-constexpr int kMinRepeating = 4;  // Fewer rings are recognised by being narrow.
-constexpr double kNarrow_rad = 0.0035;
+constexpr int kMaxBands = 256;
 constexpr double kNeighbour_cos = 0.99985;  // 1 degree.
-
-// Rings from elevations that repeat: sorted elevations form steps separated by gaps. Beams that do
-// not start at the origin spread the elevations of a ring, so a small gap may split one ring; the
-// smallest gap is used for which no two rings are much closer than the median. Empty if elevations
-// do not repeat, as in a rosette.
-std::vector<int> RingsOfElevations(const std::vector<double>& elevations) {
-  std::vector<std::size_t> order(elevations.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, {}, [&](std::size_t i) { return elevations[i]; });
-  for (const double gap_deg : {0.02, 0.05, 0.1, 0.2, 0.4, 0.8}) {
-    const double gap = gap_deg * std::numbers::pi / 180.0;
-    std::vector<int> rings(elevations.size(), 0);
-    std::vector<double> lows = {elevations[order[0]]};
-    double widest = 0.0;
-    for (std::size_t i = 1; i < order.size(); ++i) {
-      const double elevation = elevations[order[i]];
-      if (elevation - elevations[order[i - 1]] > gap) lows.push_back(elevation);
-      widest = std::max(widest, elevation - lows.back());
-      rings[order[i]] = static_cast<int>(lows.size()) - 1;
-    }
-    if (lows.size() < kMinRepeating && widest < kNarrow_rad) return rings;
-    if (lows.size() < kMinRepeating || lows.size() > kMaxRings) continue;
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < lows.size(); ++i) steps.push_back(lows[i] - lows[i - 1]);
-    const double min_step = *std::ranges::min_element(steps);
-    const double median_step = UpperMedian(steps);
-    if (min_step > 0.25 * median_step && widest < 0.5 * median_step) return rings;
-  }
-  return {};
-}
 
 // Bands of elevation, three times as high as the mean spacing of the points, because the loops of a
 // rosette leave gaps.
@@ -57,45 +26,22 @@ struct Bands {
   double step_rad = 0.0;  // Solid angle per point divided by the height.
 };
 
-Bands BandsOf(const std::vector<RingPoint>& points, const std::vector<double>& elevations) {
+Bands BandsOf(const std::vector<RingPoint>& points) {
+  std::vector<double> elevations;
+  elevations.reserve(points.size());
+  for (const RingPoint& point : points) elevations.push_back(std::asin(point.sine));
   const auto [low, high] = std::ranges::minmax(elevations);
   const auto [left, right] = std::ranges::minmax(points, {}, &RingPoint::azimuth_rad);
   const double area = std::max((high - low) * (right.azimuth_rad - left.azimuth_rad), 1e-12);
   const double area_per_point = area / static_cast<double>(points.size());
   Bands bands;
-  bands.height_rad = std::max(3.0 * std::sqrt(area_per_point), (high - low) / kMaxRings + 1e-9);
+  bands.height_rad = std::max(3.0 * std::sqrt(area_per_point), (high - low) / kMaxBands + 1e-9);
   bands.step_rad = area_per_point / bands.height_rad;
   bands.of_point.reserve(points.size());
   for (const double elevation : elevations) {
     bands.of_point.push_back(static_cast<int>((elevation - low) / bands.height_rad));
   }
   return bands;
-}
-
-// Whether each ring number corresponds to one elevation: half of a ring's returns lie within the
-// step to the next ring (in the sine of the elevation, which suffices). The line numbers of a
-// rosette do not, nor do the rings of a rotated cloud.
-bool AreRings(const std::vector<int>& ring_of, const std::vector<double>& sines) {
-  const int highest = *std::ranges::max_element(ring_of);
-  std::vector<std::vector<double>> of_ring(static_cast<std::size_t>(highest) + 1);
-  for (std::size_t i = 0; i < ring_of.size(); ++i) {
-    of_ring[static_cast<std::size_t>(ring_of[i])].push_back(sines[i]);
-  }
-  std::vector<double> middles;
-  std::vector<double> spreads;
-  for (std::vector<double>& ring : of_ring) {
-    if (ring.empty()) continue;
-    middles.push_back(UpperMedian(ring));
-    const auto middle = static_cast<std::ptrdiff_t>(ring.size() / 2);
-    const auto quarter = static_cast<std::ptrdiff_t>(ring.size() / 4);
-    std::nth_element(ring.begin(), ring.begin() + quarter, ring.begin() + middle);
-    std::nth_element(ring.begin() + middle, ring.end() - 1 - quarter, ring.end());
-    spreads.push_back(*(ring.end() - 1 - quarter) - ring[static_cast<std::size_t>(quarter)]);
-  }
-  std::ranges::sort(middles);
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < middles.size(); ++i) steps.push_back(middles[i] - middles[i - 1]);
-  return UpperMedian(spreads) < std::max(kNarrow_rad, UpperMedian(steps));
 }
 
 double SecondDifference(const RingPoint& a, const RingPoint& b, const RingPoint& c) {
@@ -133,6 +79,32 @@ double RangeSigma(const ScanRings& scan, std::span<const RingPoint> swept) {
   return kSigmaOfMedian * UpperMedian(differences) / std::sqrt(6.0);
 }
 
+// The finite returns, as far as the sensor does not report zeros.
+std::vector<UnsortedReturn> ReturnsOf(const PointCloud& cloud) {
+  std::vector<UnsortedReturn> returns;
+  returns.reserve(cloud.points.size());
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const double range = cloud.points[i].norm();
+    if (!std::isfinite(range) || range < kNearest_m) continue;
+    returns.push_back({cloud.points[i] / range, range, i});
+  }
+  return returns;
+}
+
+RingNumbers RingsOf(const PointCloud& cloud, const std::vector<UnsortedReturn>& returns) {
+  if (cloud.ring.empty()) return RecoverRings(returns, cloud.points.size());
+  std::vector<int> numbers;
+  numbers.reserve(returns.size());
+  for (const UnsortedReturn& point : returns) numbers.push_back(cloud.ring[point.index]);
+  return CheckRings(returns, std::move(numbers));
+}
+
+// The rotation that takes the axis to z; x stays as it is as far as possible.
+Eigen::Matrix3d LevelFrom(const Eigen::Vector3d& axis) {
+  if (axis == Eigen::Vector3d::UnitZ()) return Eigen::Matrix3d::Identity();
+  return Eigen::Quaterniond::FromTwoVectors(axis, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
 }  // namespace
 
 Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
@@ -142,82 +114,87 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
         ErrorCode::kInvalidInput,
         fmt::format("the scan has {} points but {} ring numbers", count, cloud.ring.size()));
   }
-  std::vector<RingPoint> kept;
-  std::vector<int> ring_of;
-  kept.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Vector3d& point = cloud.points[i];
-    const double range = point.norm();
-    if (!std::isfinite(range) || range < kNearest_m) continue;
-    kept.push_back({point, range, std::atan2(point.y(), point.x()), static_cast<int>(i)});
-    if (!cloud.ring.empty()) ring_of.push_back(cloud.ring[i]);
-  }
-  if (kept.empty()) {
+  const std::vector<UnsortedReturn> returns = ReturnsOf(cloud);
+  if (returns.empty()) {
     return MakeError(ErrorCode::kMissingData,
                      fmt::format("none of the scan's {} points is a finite return", count));
   }
-  std::vector<double> sines;
-  sines.reserve(kept.size());
-  for (const RingPoint& point : kept) sines.push_back(point.point.z() / point.range_m);
+  RingNumbers numbers = RingsOf(cloud, returns);
   ScanRings scan;
-  Bands bands;
-  scan.has_rings_ = !ring_of.empty() && AreRings(ring_of, sines);
-  if (!scan.has_rings_) {
-    std::vector<double> elevations = sines;
-    for (double& elevation : elevations) elevation = std::asin(elevation);
-    std::vector<int> repeating;
-    if (ring_of.empty()) repeating = RingsOfElevations(elevations);
-    scan.has_rings_ = !repeating.empty();
-    if (!scan.has_rings_) bands = BandsOf(kept, elevations);
-    ring_of = scan.has_rings_ ? std::move(repeating) : std::move(bands.of_point);
+  scan.level_from_lidar_ = LevelFrom(numbers.axis);
+  std::vector<RingPoint> points;
+  points.reserve(returns.size());
+  for (const UnsortedReturn& of : returns) {
+    const Eigen::Vector3d& point = cloud.points[of.index];
+    points.push_back({point, of.range_m, scan.AzimuthOf(point), numbers.axis.dot(of.direction),
+                      static_cast<int>(of.index)});
   }
+  scan.has_rings_ = !numbers.of_return.empty();
+  Bands bands;
+  if (!scan.has_rings_) {
+    bands = BandsOf(points);
+    numbers.of_return = bands.of_point;
+  }
+  scan.SortByRing(points, numbers.of_return);
+  scan.MeasureSteps();
+  if (!scan.has_rings_) {
+    scan.azimuth_step_rad_ = bands.step_rad;
+    scan.elevation_step_rad_ = bands.height_rad;
+  }
+  scan.range_sigma_m_ = RangeSigma(scan, points);
+  return scan;
+}
 
-  // Ring numbers may be sparse or descend with elevation, so rings are sorted by median elevation.
-  // The median is taken of the sines, which have the same order.
+// Ring numbers may be sparse or descend with elevation, so rings are sorted by median elevation.
+// The median is taken of the sines, which have the same order.
+void ScanRings::SortByRing(const std::vector<RingPoint>& points, const std::vector<int>& ring_of) {
   const int highest = *std::ranges::max_element(ring_of);
   std::vector<std::vector<double>> of_ring(static_cast<std::size_t>(highest) + 1);
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    of_ring[static_cast<std::size_t>(ring_of[i])].push_back(sines[i]);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    of_ring[static_cast<std::size_t>(ring_of[i])].push_back(points[i].sine);
   }
-  std::vector<std::pair<double, int>> by_elevation;
+  std::vector<std::pair<double, std::size_t>> by_elevation;
   for (std::size_t ring = 0; ring < of_ring.size(); ++ring) {
-    if (!of_ring[ring].empty()) {
-      by_elevation.emplace_back(std::asin(UpperMedian(of_ring[ring])), static_cast<int>(ring));
-    }
+    if (!of_ring[ring].empty()) by_elevation.emplace_back(UpperMedian(of_ring[ring]), ring);
   }
   std::ranges::sort(by_elevation);
-
   std::vector<std::size_t> place(of_ring.size(), 0);
-  scan.starts_.assign(1, 0);
-  for (const auto& [elevation, ring] : by_elevation) {
-    const auto k = static_cast<std::size_t>(ring);
-    place[k] = scan.starts_.back();
-    scan.starts_.push_back(place[k] + of_ring[k].size());
+  starts_.assign(1, 0);
+  for (const auto& [sine, ring] : by_elevation) {
+    place[ring] = starts_.back();
+    starts_.push_back(place[ring] + of_ring[ring].size());
   }
-  scan.points_.resize(kept.size());
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    scan.points_[place[static_cast<std::size_t>(ring_of[i])]++] = kept[i];
+  points_.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points_[place[static_cast<std::size_t>(ring_of[i])]++] = points[i];
   }
-  std::vector<double> steps;
-  steps.reserve(kept.size());
-  for (int i = 0; i < scan.rings(); ++i) {
-    const auto from = scan.points_.begin() + static_cast<std::ptrdiff_t>(scan.first(i));
-    const auto to = scan.points_.begin() + static_cast<std::ptrdiff_t>(scan.first(i + 1));
+  for (int i = 0; i < rings(); ++i) {
+    const auto from = points_.begin() + static_cast<std::ptrdiff_t>(first(i));
+    const auto to = points_.begin() + static_cast<std::ptrdiff_t>(first(i + 1));
     std::sort(from, to, [](const RingPoint& a, const RingPoint& b) {
       return a.azimuth_rad < b.azimuth_rad || (a.azimuth_rad == b.azimuth_rad && a.index < b.index);
     });
-    for (auto it = from; it != to && it + 1 != to; ++it) {
-      steps.push_back((it + 1)->azimuth_rad - it->azimuth_rad);
+  }
+}
+
+void ScanRings::MeasureSteps() {
+  std::vector<double> steps;
+  std::vector<double> elevations;
+  steps.reserve(points_.size());
+  for (int i = 0; i < rings(); ++i) {
+    std::vector<double> sines;
+    for (std::size_t k = first(i); k < first(i + 1); ++k) {
+      if (k > first(i)) steps.push_back(points_[k].azimuth_rad - points_[k - 1].azimuth_rad);
+      sines.push_back(points_[k].sine);
     }
+    elevations.push_back(std::asin(UpperMedian(sines)));
   }
-  scan.azimuth_step_rad_ = scan.has_rings_ ? UpperMedian(steps) : bands.step_rad;
-  scan.range_sigma_m_ = RangeSigma(scan, kept);
+  azimuth_step_rad_ = UpperMedian(steps);
   steps.clear();
-  for (std::size_t i = 1; i < by_elevation.size(); ++i) {
-    steps.push_back(by_elevation[i].first - by_elevation[i - 1].first);
+  for (std::size_t i = 1; i < elevations.size(); ++i) {
+    steps.push_back(elevations[i] - elevations[i - 1]);
   }
-  scan.elevation_step_rad_ = scan.has_rings_ ? UpperMedian(steps) : bands.height_rad;
-  return scan;
+  elevation_step_rad_ = UpperMedian(steps);
 }
 
 int ScanRings::RingOf(std::size_t place) const {

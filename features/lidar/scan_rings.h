@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace sextant {
 struct RingPoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< In the LiDAR frame [m].
   double range_m = 0.0;
-  double azimuth_rad = 0.0;  ///< About z from x, in (-pi, pi].
+  double azimuth_rad = 0.0;  ///< About the scan's axis, in (-pi, pi].
+  double sine = 0.0;         ///< Of the elevation above the plane normal to the axis.
   int index = 0;             ///< Index into the cloud.
 };
 
@@ -22,10 +24,10 @@ struct RingPoint {
 class ScanRings {
  public:
   /// Returns that are not finite or nearer than 1 cm are omitted. Rings come from the cloud's ring
-  /// field or, without one, from elevations that repeat. If neither gives rings (a rosette,
-  /// whatever its ring field contains), bands of elevation take their place, a few times as high as
-  /// the spacing of the points. Errors: kMissingData if no return remains; kInvalidInput if the
-  /// numbers of points and rings differ.
+  /// field or, without one, from the points themselves (features/lidar/ring_numbers.h). If neither
+  /// gives rings (a rosette, whatever its ring field contains), bands of elevation take their
+  /// place, a few times as high as the spacing of the points. Errors: kMissingData if no return
+  /// remains; kInvalidInput if the numbers of points and rings differ.
   static Expected<ScanRings> Build(const PointCloud& cloud);
 
   int rings() const { return static_cast<int>(starts_.size()) - 1; }
@@ -44,6 +46,14 @@ class ScanRings {
   /// elevation.
   bool has_rings() const { return has_rings_; }
 
+  /// The axis about which the sensor turns: z, unless the cloud was rotated. Rows of the rotation
+  /// from the LiDAR frame to one with that axis as z, in which azimuths and elevations are stated.
+  const Eigen::Matrix3d& level_from_lidar() const { return level_from_lidar_; }
+  Eigen::Vector3d axis() const { return level_from_lidar_.row(2); }
+  double AzimuthOf(const Eigen::Vector3d& point) const {
+    return std::atan2(level_from_lidar_.row(1).dot(point), level_from_lidar_.row(0).dot(point));
+  }
+
   /// Median angle between neighbours of a ring, and between neighbouring rings. For bands, the
   /// elevation step is their height, and the product of both steps is the solid angle per return.
   double azimuth_step_rad() const { return azimuth_step_rad_; }
@@ -53,8 +63,12 @@ class ScanRings {
   double range_sigma_m() const { return range_sigma_m_; }
 
  private:
+  void SortByRing(const std::vector<RingPoint>& points, const std::vector<int>& ring_of);
+  void MeasureSteps();
+
   std::vector<RingPoint> points_;
   std::vector<std::size_t> starts_;
+  Eigen::Matrix3d level_from_lidar_ = Eigen::Matrix3d::Identity();
   bool has_rings_ = true;
   double azimuth_step_rad_ = 0.0;
   double elevation_step_rad_ = 0.0;

@@ -4,7 +4,12 @@
 #include <gmock/gmock.h>
 
 #include <numbers>
+#include <string>
+#include <vector>
 
+#include "calibrate/match/assemble.h"
+#include "calibrate/match/sensor_agreement.h"
+#include "geometry/scan_marks.h"
 #include "geometry/so3.h"
 #include "support/fake_observation.h"
 
@@ -17,7 +22,7 @@ std::vector<Board> Squares(int count) {
   return boards;
 }
 
-// Boards that hang apart: 1.2 m from the middle of one to that of the next.
+// Boards apart: 1.2 m from the middle of one to that of the next.
 std::vector<Rigid3d> Apart(std::size_t count, Random& random) {
   std::vector<Rigid3d> poses;
   for (std::size_t i = 0; i < count; ++i) {
@@ -27,6 +32,8 @@ std::vector<Rigid3d> Apart(std::size_t count, Random& random) {
   }
   return poses;
 }
+
+Camera FakeCamera() { return AssumedCamera(1280, 960); }
 
 struct Faked {
   std::vector<Observation> views;
@@ -174,6 +181,93 @@ TEST(Match, TwoViewsThatContradictEachOtherLeaveOneOut) {
   EXPECT_EQ(matching->kept.size(), 1U);
   EXPECT_EQ(matching->dropped.size(), 1U);
   EXPECT_FALSE(matching->alternatives.empty());
+}
+
+// The patch is as far from the LiDAR as the image shows the board from the camera, give or take the
+// distance of the sensors, or it is another object.
+TEST(Match, APatchFarFromWhereTheImageShowsTheBoardIsNotUsed) {
+  Faked faked = Fake(1, 1, 29);
+  Random random(31);
+  Rigid3d beyond = faked.views[0].in_image[0].pose.cam_from_board;
+  beyond.translation *= 2.5;
+  faked.views[0].in_scan =
+      FakeObservation(faked.boards, std::vector<Rigid3d>{beyond}, kFakeCamFromLidar, random)
+          .in_scan;
+  const Expected<Matching> matching = MatchViews(faked.views);
+  ASSERT_FALSE(matching);
+  EXPECT_EQ(matching.error().code, ErrorCode::kTooFewPairs);
+  const auto why = WhyNoneIsSameBoard(faked.views[0], 0, 2.0);
+  ASSERT_TRUE(why);
+  EXPECT_THAT(*why, testing::ContainsRegex("the photo shows the board .* m away, the scan's "
+                                           "candidate is .* m away"));
+  // Sensors that are stated to be that far apart may see it so.
+  const MatchSettings settings{.initial = Rigid3d{AxesCamFromLidar().rotation, {0.0, 0.0, 4.0}}};
+  EXPECT_TRUE(MatchViews(faked.views, settings));
+}
+
+TEST(Match, APatchThatFacesElsewhereIsNotUsed) {
+  Faked faked = Fake(1, 1, 33);
+  Random random(35);
+  Rigid3d turned = faked.views[0].in_image[0].pose.cam_from_board;
+  turned.rotation = ExpSo3({0.0, 1.2, 0.0}) * turned.rotation;
+  faked.views[0].in_scan =
+      FakeObservation(faked.boards, std::vector<Rigid3d>{turned}, kFakeCamFromLidar, random)
+          .in_scan;
+  EXPECT_FALSE(MatchViews(faked.views));
+  EXPECT_THAT(*WhyNoneIsSameBoard(faked.views[0], 0, 2.0),
+              testing::HasSubstr("the sensors would be"));
+}
+
+// With several patches in a scan, the one where the image shows the board is used.
+TEST(Match, OfTwoPatchesTheOneWhereTheImageShowsTheBoardIsUsed) {
+  Faked faked = Fake(4, 1, 37);
+  Random random(39);
+  for (Observation& view : faked.views) {
+    Rigid3d other = view.in_image[0].pose.cam_from_board;
+    other.translation += Eigen::Vector3d(1.5, 0.0, 0.8);
+    const Observation ghost =
+        FakeObservation(faked.boards, std::vector<Rigid3d>{other}, kFakeCamFromLidar, random);
+    view.in_scan.insert(view.in_scan.begin(), ghost.in_scan[0]);
+  }
+  const Expected<Matching> matching = MatchViews(faked.views);
+  ASSERT_TRUE(matching) << matching.error().message;
+  ASSERT_EQ(matching->kept.size(), 4U);
+  for (const MatchedBoard& kept : matching->kept) EXPECT_EQ(kept.patch, 1);
+}
+
+// Sessions: a pose needs most of the views.
+std::vector<SessionView> SessionOf(const Faked& faked) {
+  std::vector<SessionView> views;
+  for (const Observation& seen : faked.views) {
+    views.push_back({.name = std::to_string(views.size()), .seen = seen});
+  }
+  return views;
+}
+
+TEST(Assemble, GivesNoPoseWhereMostScansLackTheBoard) {
+  Faked faked = Fake(5, 1, 41);
+  EXPECT_TRUE(Assemble(SessionOf(faked), faked.boards, FakeCamera()));
+  for (std::size_t i = 0; i < 3; ++i) {
+    faked.views[i].in_scan.clear();
+    faked.views[i].missing.push_back({.why = "no board"});
+  }
+  const Expected<Assembly> assembly = Assemble(SessionOf(faked), faked.boards, FakeCamera());
+  ASSERT_FALSE(assembly);
+  EXPECT_EQ(assembly.error().code, ErrorCode::kMissingData);
+  EXPECT_THAT(assembly.error().message, testing::HasSubstr("of 5 views whose photo shows a board, "
+                                                           "the scan agrees in 2, disagrees in 0 "
+                                                           "and shows no board in 3"));
+}
+
+TEST(Assemble, GivesNoPoseWhereTwoViewsContradictEachOther) {
+  Faked faked = Fake(2, 1, 19);
+  Random random(21);
+  Rigid3d after = faked.views[1].in_image[0].pose.cam_from_board;
+  after.translation.x() += 0.4;
+  faked.views[1].in_image =
+      FakeObservation(faked.boards, std::vector<Rigid3d>{after}, kFakeCamFromLidar, random)
+          .in_image;
+  EXPECT_FALSE(Assemble(SessionOf(faked), faked.boards, FakeCamera()));
 }
 
 TEST(Match, NothingInCommonIsAnError) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "features/lidar/corner_extractor.h"
@@ -28,6 +29,8 @@ void AddDistances(const LidarCorners& corners, const AcfrBoardView& stored,
   }
 }
 
+Eigen::Vector3d CenterOf(const BoardPatch& patch) { return patch.plane.At(patch.fit.center); }
+
 TEST(RealScans, AcfrBoardIsFoundInEveryFullScan) {
   SEXTANT_REAL_DATA(folder, "acfr_vlp16");
   const Expected<std::vector<AcfrPose>> poses = ReadAcfrPoses(folder / "poses.csv");
@@ -36,18 +39,23 @@ TEST(RealScans, AcfrBoardIsFoundInEveryFullScan) {
   board.top_right_m = 0.61;
   board.right_bottom_m = 0.85;
   const std::vector<Board> boards = {board};
+  const std::vector<Board> exchanged = {{.top_right_m = 0.85, .right_bottom_m = 0.61}};
   std::vector<double> rectangle;
   std::vector<double> plane_lines;
   std::vector<double> lines3d;
-  for (const int id : {2, 5, 9, 16, 20, 26, 30}) {
+  for (const int id : {2, 4, 5, 8, 9, 11, 13, 15, 16, 19, 20, 22, 24, 26, 27, 29, 30, 33, 36, 38}) {
     const Expected<PointCloud> cloud = ReadPcd(folder / fmt::format("full/pose{}.pcd", id));
     ASSERT_TRUE(cloud) << cloud.error().message;
     const Expected<BoardSearch> search = FindBoards(*ScanRings::Build(*cloud), boards, {});
     ASSERT_TRUE(search);
     ASSERT_EQ(search->found.size(), 1U) << "pose " << id;
+    const Expected<BoardSearch> other = FindBoards(*ScanRings::Build(*cloud), exchanged, {});
+    ASSERT_TRUE(other);
+    ASSERT_EQ(other->found.size(), 1U) << "pose " << id;
+    const BoardPatch& patch = search->found[0];
+    EXPECT_LT((CenterOf(patch) - CenterOf(other->found[0])).norm(), 0.001) << "pose " << id;
     const auto pose = std::ranges::find(*poses, id, &AcfrPose::id);
     ASSERT_NE(pose, poses->end());
-    const BoardPatch& patch = search->found[0];
     AddDistances(*ExtractCorners("rectangle", patch, board), pose->in_lidar, rectangle);
     AddDistances(*ExtractCorners("plane_lines", patch, board), pose->in_lidar, plane_lines);
     AddDistances(*ExtractCorners("lines3d", patch, board), pose->in_lidar, lines3d);
@@ -85,6 +93,49 @@ TEST(RealScans, OusterBoardIsFoundWithAndWithoutRings) {
       double mean = 0.0;
       for (const double side : corners->checks.edge_lengths_m) mean += side / 4.0;
       EXPECT_NEAR(mean, 1.016, 0.03) << what;
+    }
+  }
+}
+
+// Scans with the place of the one board in each, measured independently or seen in its photo. What
+// is elsewhere is no board.
+struct RealScan {
+  const char* file;
+  const char* beam;
+  double width_m;
+  double height_m;
+  Eigen::Vector3d center;
+  double tolerance_m;
+};
+
+const std::vector<RealScan>& RealBoards() {
+  static const std::vector<RealScan> scans = {
+      {"field/ouster64_garage/pointcloud0.pcd", "os1_64", 1.016, 1.016, {2.47, -.01, -.12}, 0.2},
+      {"field/ouster64_garage/pointcloud4.pcd", "os1_64", 1.016, 1.016, {2.92, -.49, -.11}, 0.2},
+      {"field/ouster64_garage/pointcloud9.pcd", "os1_64", 1.016, 1.016, {3.18, -.31, -.03}, 0.2},
+      {"field/ouster64_garage/pointcloud20.pcd", "os1_64", 1.016, 1.016, {3.13, .25, -.25}, 0.2},
+      {"field/ouster64_garage/pointcloud31.pcd", "os1_64", 1.016, 1.016, {3.24, .45, -.11}, 0.2},
+  };
+  return scans;
+}
+
+TEST(RealScans, EachHasItsBoardAndNoOther) {
+  for (const RealScan& scan : RealBoards()) {
+    SEXTANT_REAL_DATA(path, "");
+    const Expected<PointCloud> cloud = ReadPcd(path / scan.file);
+    ASSERT_TRUE(cloud) << cloud.error().message;
+    BoardSearchOptions options;
+    options.beam = *FindLidarBeam(scan.beam);
+    for (const bool exchanged : {false, true}) {
+      Board board{.top_right_m = scan.width_m, .right_bottom_m = scan.height_m};
+      if (exchanged) std::swap(board.top_right_m, board.right_bottom_m);
+      const Expected<BoardSearch> search =
+          FindBoards(*ScanRings::Build(*cloud), std::vector<Board>{board}, options);
+      ASSERT_TRUE(search);
+      EXPECT_EQ(search->found.size(), 1U) << scan.file;
+      if (search->found.empty()) continue;
+      EXPECT_LT((CenterOf(search->found[0]) - scan.center).norm(), scan.tolerance_m) << scan.file;
+      EXPECT_TRUE(search->others.empty()) << scan.file;
     }
   }
 }
