@@ -170,8 +170,9 @@ TEST(Outputs, AClosedStandardErrorChangesNothing) {
 TEST(Outputs, AClosedPipeEndsQuietly) {
   for (const char* ignoring : {"", "trap '' PIPE; "}) {
     const std::string code = TestPath("code");
-    const ProgramRun run = Shell(fmt::format(
-        "{{ {}$SEXTANT list solvers --markdown; echo $? >{}; }} | true", ignoring, code));
+    const ProgramRun run = Shell(
+        fmt::format("{{ {}sleep 0.2; $SEXTANT list solvers --markdown; echo $? >{}; }} | true",
+                    ignoring, code));
     EXPECT_THAT(run.err, IsEmpty());
     EXPECT_EQ(ReadText(code), "0\n");
   }
@@ -183,10 +184,6 @@ TEST(Outputs, NamesThatAreNoUtf8DoNotAbortIt) {
   fs::copy_file(problem, name);
   const ProgramRun solve = RunSextant("solve '" + name + "' --json -");
   EXPECT_EQ(solve.exit_code, 0) << solve.err;
-  const ProgramRun boards = RunSextant("boards '" + name + "' --board '" + name + "' --json -");
-  EXPECT_EQ(boards.exit_code, 2) << boards.err;
-  const ProgramRun detect = RunSextant("detect '" + name + "' --json -");
-  EXPECT_EQ(detect.exit_code, 2) << detect.err;
 }
 
 TEST(Outputs, ALoopOfLinksIsAnError) {
