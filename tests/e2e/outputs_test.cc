@@ -54,7 +54,7 @@ TEST(Outputs, AnOutputIsNoInput) {
   const std::string soft = TestPath("soft.yaml");
   fs::create_hard_link(problem, hard);
   fs::create_symlink("problem.yaml", soft);
-  for (const std::string& option : {"", " --overwrite"}) {
+  for (const std::string option : {"", " --overwrite"}) {
     const std::string solve = "solve " + problem + option + " --json ";
     ExpectRefused(RunSextant(solve + problem), "an output of the same command");
     ExpectRefused(RunSextant(solve + hard), "an output of the same command");
