@@ -38,6 +38,7 @@ void PrepareStandardStreams() {
   FillIfClosed(STDOUT_FILENO, O_RDONLY);
   FillIfClosed(STDERR_FILENO, O_RDONLY);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 void PrintText(std::string_view foreign) {

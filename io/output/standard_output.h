@@ -13,7 +13,8 @@
 namespace sextant {
 
 /// To be called first in main: a stream that is closed does not become the next file that is
-/// opened, and a closed pipe is an error of writing instead of the end of the process.
+/// opened. A closed pipe and a limit of the size of files are errors of writing instead of the end
+/// of the process.
 void PrepareStandardStreams();
 
 /// Both print PrintableLines of the text: names in it may come from anywhere.

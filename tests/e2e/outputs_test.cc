@@ -54,7 +54,7 @@ TEST(Outputs, AnOutputIsNoInput) {
   const std::string soft = TestPath("soft.yaml");
   fs::create_hard_link(problem, hard);
   fs::create_symlink("problem.yaml", soft);
-  for (const std::string& option : {"", " --overwrite"}) {
+  for (const std::string option : {"", " --overwrite"}) {
     const std::string solve = "solve " + problem + option + " --json ";
     ExpectRefused(RunSextant(solve + problem), "an output of the same command");
     ExpectRefused(RunSextant(solve + hard), "an output of the same command");
@@ -170,8 +170,9 @@ TEST(Outputs, AClosedStandardErrorChangesNothing) {
 TEST(Outputs, AClosedPipeEndsQuietly) {
   for (const char* ignoring : {"", "trap '' PIPE; "}) {
     const std::string code = TestPath("code");
-    const ProgramRun run = Shell(fmt::format(
-        "{{ {}$SEXTANT list solvers --markdown; echo $? >{}; }} | true", ignoring, code));
+    const ProgramRun run = Shell(
+        fmt::format("{{ {}sleep 0.2; $SEXTANT list solvers --markdown; echo $? >{}; }} | true",
+                    ignoring, code));
     EXPECT_THAT(run.err, IsEmpty());
     EXPECT_EQ(ReadText(code), "0\n");
   }
@@ -183,10 +184,6 @@ TEST(Outputs, NamesThatAreNoUtf8DoNotAbortIt) {
   fs::copy_file(problem, name);
   const ProgramRun solve = RunSextant("solve '" + name + "' --json -");
   EXPECT_EQ(solve.exit_code, 0) << solve.err;
-  const ProgramRun boards = RunSextant("boards '" + name + "' --board '" + name + "' --json -");
-  EXPECT_EQ(boards.exit_code, 2) << boards.err;
-  const ProgramRun detect = RunSextant("detect '" + name + "' --json -");
-  EXPECT_EQ(detect.exit_code, 2) << detect.err;
 }
 
 TEST(Outputs, ALoopOfLinksIsAnError) {
