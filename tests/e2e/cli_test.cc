@@ -21,6 +21,7 @@ using test::ProgramRun;
 using test::ReadText;
 using test::RunSextant;
 using test::TestFolder;
+using test::TestPath;
 using test::WriteText;
 using testing::AllOf;
 using testing::HasSubstr;
