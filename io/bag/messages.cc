@@ -89,9 +89,9 @@ PointCloud BuildCloud(const CloudLayout& layout, MessageReader& in) {
   const Expected<CloudColumns> columns = FindCloudColumns(names);
   if (!columns) in.Fail(columns.error().code, "fields", columns.error().message);
   if (!in.ok()) return {};
-  CloudBuilder builder(*columns);
   const std::size_t width = layout.height == 0 ? 0 : layout.width;
   const std::size_t height = layout.width == 0 ? 0 : layout.height;
+  CloudBuilder builder(*columns, width * height);
   for (std::size_t row = 0; row < height; ++row) {
     for (std::size_t i = 0; i < width; ++i) {
       const char* point = layout.data.data() + row * layout.row_step + i * layout.point_step;
