@@ -16,7 +16,7 @@ constexpr double kMinFilled = 0.9;
 constexpr double kMaxContinued =
     0.2;                            // Furniture of the board's width continues along a side: 0.25.
 constexpr double kMaxClosed = 0.7;  // Of one side.
-constexpr double kMostOfSide = 0.5;
+constexpr double kMainPart = 0.5;
 constexpr double kThreeSides = 1.5;  // Sum of the visible fractions of three or four sides.
 constexpr double kMinVisible = 0.5;
 constexpr double kMinShare = 0.6;
@@ -142,7 +142,7 @@ double DensityOf(const ScanRings& scan, const BoardPatch& patch, const Board& bo
 // sides.
 bool IsBounded(const BoardAgreement& agreement) {
   const std::array<double, kCornersPerBoard>& open = agreement.open;
-  const auto mostly = [&](std::size_t side) { return open[side] >= kMostOfSide; };
+  const auto mostly = [&](std::size_t side) { return open[side] >= kMainPart; };
   if ((mostly(0) && mostly(2)) || (mostly(1) && mostly(3))) return true;
   const double sum = open[0] + open[1] + open[2] + open[3];
   return std::ranges::count(open, 0.0) <= 1 && sum >= kThreeSides;
