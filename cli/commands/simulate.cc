@@ -115,19 +115,6 @@ Error WithScene(const Error& error, const std::string& scene_path) {
   return {error.code, is_of_output ? error.message : scene_path + ": " + error.message};
 }
 
-std::string Describe(const SimulateOptions& options, const Scene& scene,
-                     const SessionReport& report) {
-  std::string text =
-      fmt::format("{}: scene {}, scans: {}, files written: {}, kept: {}", options.out, scene.name,
-                  options.scans, report.written, report.kept);
-  if (report.removed > 0) {
-    text +=
-        fmt::format(", removed: {} of an earlier run with another number of scans", report.removed);
-  }
-  text += "; the truth is in truth.yaml";
-  return text + (options.bag ? ", scans and images also in session.bag\n" : "\n");
-}
-
 int Run(const SimulateOptions& options) {
   if (options.scene_path.empty()) {
     return Refuse("simulate", {ErrorCode::kInvalidOption,

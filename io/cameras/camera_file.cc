@@ -24,17 +24,19 @@ Expected<Camera> ReadCamera(const std::filesystem::path& path) {
   const std::size_t colon = text.rfind(':');
   std::error_code ignored;
   if (colon == std::string::npos || std::filesystem::exists(path, ignored)) {
-    return ReadWith(path, [](std::string_view content, const std::string& file) {
-      return ParseCamera(content, file);
-    });
+    return ReadWith(path, ParseCamera);
   }
   return ReadWith(text.substr(0, colon), [&](std::string_view content, const std::string& file) {
-    return ParseCamera(content, file, std::string_view(text).substr(colon + 1));
+    return ParseNamedCamera(content, file, std::string_view(text).substr(colon + 1));
   });
 }
 
-Expected<Camera> ParseCamera(std::string_view text, const std::string& file,
-                             std::string_view name) {
+Expected<Camera> ParseCamera(std::string_view text, const std::string& file) {
+  return ParseNamedCamera(text, file, {});
+}
+
+Expected<Camera> ParseNamedCamera(std::string_view text, const std::string& file,
+                                  std::string_view name) {
   if (text.starts_with("<?xml")) {
     SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseCameraXml(text, file));
     return CameraOfTree(root, file, name);

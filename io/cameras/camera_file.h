@@ -33,8 +33,9 @@ namespace sextant {
 /// Errors: kIo; kParse, also for a file of several cameras without a name; kNonFinite;
 /// kInvalidInput (also for models that Camera does not have).
 Expected<Camera> ReadCamera(const std::filesystem::path& path);
-Expected<Camera> ParseCamera(std::string_view text, const std::string& file,
-                             std::string_view name = {});
+Expected<Camera> ParseCamera(std::string_view text, const std::string& file);
+Expected<Camera> ParseNamedCamera(std::string_view text, const std::string& file,
+                                  std::string_view name);
 
 /// Formats the ROS calibration YAML of a camera; ParseCamera reads it back to the same bits. The
 /// model is plumb_bob, rational_polynomial (with up to 14 coefficients), equidistant,
@@ -42,7 +43,7 @@ Expected<Camera> ParseCamera(std::string_view text, const std::string& file,
 std::string FormatCameraInfo(const Camera& camera, const std::string& name);
 
 Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file,
-                                 std::string_view name = {});
+                                 std::string_view name);
 Expected<Camera> ParseCameraIni(std::string_view text, const std::string& file);
 
 }  // namespace sextant

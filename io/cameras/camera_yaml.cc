@@ -138,21 +138,21 @@ std::vector<double> ReadDistortion(YamlFields& in, const YamlNode& camera, std::
     return CameraNumbers(in, *list, "distortion coefficients", kMaxCoefficients);
   }
   if (model == "double_sphere") return {};
-  using Names = std::initializer_list<std::string_view>;
+  using Keys = std::initializer_list<std::string_view>;
   const bool is_camodocal_fisheye = FindCameraKey(camera, {"mu"}) != nullptr;
-  static const std::vector<Names> kRadialTangential = {{"k1", "k_1", "Camera.k1", "cam_d0"},
-                                                       {"k2", "k_2", "Camera.k2", "cam_d1"},
-                                                       {"p1", "p_1", "Camera.p1", "cam_d2"},
-                                                       {"p2", "p_2", "Camera.p2", "cam_d3"},
-                                                       {"k3", "k_3", "Camera.k3", "cam_d4"}};
-  static const std::vector<Names> kFisheye = {
+  static const std::vector<Keys> kRadialTangential = {{"k1", "k_1", "Camera.k1", "cam_d0"},
+                                                      {"k2", "k_2", "Camera.k2", "cam_d1"},
+                                                      {"p1", "p_1", "Camera.p1", "cam_d2"},
+                                                      {"p2", "p_2", "Camera.p2", "cam_d3"},
+                                                      {"k3", "k_3", "Camera.k3", "cam_d4"}};
+  static const std::vector<Keys> kFisheye = {
       {"k1", "Camera.k1"}, {"k2", "Camera.k2"}, {"k3", "Camera.k3"}, {"k4", "Camera.k4"}};
-  static const std::vector<Names> kCamodocal = {{"k2"}, {"k3"}, {"k4"}, {"k5"}};
-  const std::vector<Names>& names = model != "equidistant" ? kRadialTangential
-                                    : is_camodocal_fisheye ? kCamodocal
-                                                           : kFisheye;
+  static const std::vector<Keys> kCamodocal = {{"k2"}, {"k3"}, {"k4"}, {"k5"}};
+  const std::vector<Keys>& names = model != "equidistant" ? kRadialTangential
+                                   : is_camodocal_fisheye ? kCamodocal
+                                                          : kFisheye;
   std::vector<double> distortion;
-  for (const Names& keys : names) {
+  for (const Keys& keys : names) {
     const YamlNode* node = FindCameraKey(camera, keys);
     distortion.push_back(node == nullptr ? 0.0 : in.Real(*node, *keys.begin()));
   }
@@ -193,7 +193,7 @@ Expected<Camera> ReadCameraNode(const CameraNode& node, const std::string& file)
 }
 
 // "the file holds 2 cameras: cam0, cam1".
-std::string Names(const std::vector<CameraNode>& cameras) {
+std::string NamesOf(const std::vector<CameraNode>& cameras) {
   std::string names;
   for (const CameraNode& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
   return names;
@@ -223,13 +223,13 @@ Expected<Camera> CameraOfTree(const YamlNode& root, const std::string& file,
     return MakeError(
         ErrorCode::kParse,
         fmt::format("{}: the file holds {} cameras: {}; name one of them, as in {}:{}", place,
-                    cameras.size(), Names(cameras), file, cameras.front().name));
+                    cameras.size(), NamesOf(cameras), file, cameras.front().name));
   }
   for (const CameraNode& camera : cameras) {
     if (camera.name == name) return ReadCameraNode(camera, file);
   }
   return MakeError(ErrorCode::kParse, fmt::format("{}: the file has no camera {}; it has {}", place,
-                                                  Quoted(std::string(name)), Names(cameras)));
+                                                  Quoted(std::string(name)), NamesOf(cameras)));
 }
 
 Expected<Camera> ParseCameraYaml(std::string_view text, const std::string& file,

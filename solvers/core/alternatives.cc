@@ -177,7 +177,7 @@ LikelyPoses FindLikelyPoses(const CalibrationProblem& problem, const SolverSpec&
   if (is_thin) candidates.push_back(MirrorImage(shape, answer.cam_from_lidar));
   if (are_few) AddPosesOfTriples(camera, pairs, candidates);
   PairTerms terms;
-  terms.Add(pairs, camera, {});
+  terms.Add(pairs, camera);
   Minima minima(terms);
   minima.SearchFrom(answer.cam_from_lidar, true);
   for (const Rigid3d& candidate : candidates) minima.SearchFrom(candidate, false);

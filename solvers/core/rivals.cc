@@ -61,7 +61,7 @@ double ChanceOf(PairKind kind, std::size_t agreeing, std::size_t count, double p
 class Pairs {
  public:
   Pairs(const CalibrationProblem& problem, PairKind kind, const Camera* camera) : kind_(kind) {
-    terms_ = MakeTerms(problem, kind, {});
+    terms_ = MakeTerms(problem, kind);
     if (camera != nullptr) terms_.camera = *camera;
   }
 

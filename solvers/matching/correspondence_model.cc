@@ -99,7 +99,7 @@ class PixelModel final : public CorrespondenceModel {
                        .id = {}});
     }
     PairTerms terms;
-    terms.Add(pairs, camera_, {});
+    terms.Add(pairs, camera_);
     const RefinedPose refined =
         RefinePose(terms.View(), start,
                    {.max_iterations = 30, .step_tolerance = 1e-8, .wants_information = false});

@@ -56,8 +56,9 @@ TEST(Calibrate, FramesGiveThePoseAndEveryProductOfThePipeline) {
   SimulatedFrames simulated = SimulateFrames(3);
   std::vector<std::size_t> reported;
   std::mutex mutex;
-  simulated.options.progress = [&](std::size_t done, std::size_t total) {
+  simulated.options.progress = [&](std::string_view stage, std::size_t done, std::size_t total) {
     const std::lock_guard lock(mutex);
+    if (stage != "views") return;
     EXPECT_EQ(total, 3U);
     reported.push_back(done);
   };

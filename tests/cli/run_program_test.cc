@@ -36,7 +36,7 @@ struct Unexpected : std::runtime_error {
   Unexpected() : std::runtime_error("unexpected") {}
 };
 
-Program TestedProgram() {
+Program ProgramOfFaults() {
   Command all{.name = "group", .summary = "A group", .footer = {}};
   all.subcommands = {
       MakeCommand<NoOptions>("memory", "", "", DeclareNothing, Throw<std::bad_alloc>),
@@ -49,7 +49,7 @@ Program TestedProgram() {
 
 int RunWith(std::vector<const char*> arguments) {
   arguments.insert(arguments.begin(), {"tested", "group"});
-  return RunProgram(TestedProgram(), static_cast<int>(arguments.size()), arguments.data());
+  return RunProgram(ProgramOfFaults(), static_cast<int>(arguments.size()), arguments.data());
 }
 
 TEST(RunProgram, NoExceptionLeavesIt) {

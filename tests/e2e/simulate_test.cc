@@ -129,7 +129,7 @@ TEST(Simulate, ASignalLeavesNoTemporary) {
 }
 
 TEST(Simulate, FewerScansLeaveAConsistentFolder) {
-  if (!KeepsMarks(TestFolder())) GTEST_SKIP() << "the file system keeps no attributes";
+  if (!test::KeepsMarks(TestFolder())) GTEST_SKIP() << "the file system keeps no attributes";
   const std::string scene = " " + SceneFile() + " --out ";
   ASSERT_EQ(RunSextant("simulate" + scene + TestPath("two") + " --scans 2").exit_code, 0);
   ASSERT_EQ(RunSextant("simulate" + scene + TestPath("used") + " --scans 4").exit_code, 0);

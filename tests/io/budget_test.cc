@@ -12,7 +12,7 @@
 #include "io/results/calibration_result.h"
 #include "io/text/yaml_node.h"
 #include "support/calibration_result.h"
-#include "support/child_cost.h"
+#include "support/cost/child_cost.h"
 
 namespace sextant {
 namespace {

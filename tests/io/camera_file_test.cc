@@ -164,13 +164,13 @@ TEST(CameraFile, OneOfSeveralIsChosenByName) {
       "cam0: {camera_model: pinhole, intrinsics: [600, 601, 320, 240]}\n"
       "cam1: {camera_model: pinhole, intrinsics: [700, 701, 320, 240], resolution: [640, 480],\n"
       "  distortion_model: equidistant, distortion_coeffs: [0.1, 0.02, 0, 0]}\n";
-  const Expected<Camera> camera = ParseCamera(text, "chain.yaml", "cam1");
+  const Expected<Camera> camera = ParseNamedCamera(text, "chain.yaml", "cam1");
   ASSERT_TRUE(camera) << camera.error().message;
   EXPECT_EQ(camera->fx_px, 700.0);
   EXPECT_EQ(camera->fy_px, 701.0);
   EXPECT_EQ(camera->height_px, 480);
   EXPECT_EQ(camera->model, CameraModel::kEquidistant);
-  const Expected<Camera> absent = ParseCamera(text, "chain.yaml", "cam2");
+  const Expected<Camera> absent = ParseNamedCamera(text, "chain.yaml", "cam2");
   ASSERT_FALSE(absent);
   EXPECT_THAT(absent.error().message, testing::HasSubstr("no camera 'cam2'; it has cam0, cam1"));
 }

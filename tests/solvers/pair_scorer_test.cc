@@ -106,7 +106,7 @@ TEST(MakePairScorer, ChoosesColumnsForIsotropicPairsOnly) {
   Random random(1);
   CalibrationProblem problem = test::MakeScene({.pairs = 8, .sigma_m = 0.01}, random).problem;
   const auto is_in_columns = [&problem](PairKind kind) {
-    return dynamic_cast<ColumnScorer*>(MakePairScorer(problem, kind, {}).get()) != nullptr;
+    return dynamic_cast<ColumnScorer*>(MakePairScorer(problem, kind).get()) != nullptr;
   };
   EXPECT_TRUE(is_in_columns(PairKind::k3d3d));
   EXPECT_FALSE(is_in_columns(PairKind::k2d3d));

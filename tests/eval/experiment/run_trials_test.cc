@@ -116,7 +116,8 @@ TEST(RunTrials, MergeNamesTheDamage) {
   std::string damaged = RunTo("whole", Small(), 2);
   damaged[MarksIn(damaged)[1] + 30] ^= 1;
   WriteText(TestFolder() / "damaged", damaged);
-  const Expected<void> merged = MergeRowFiles({TestFolder() / "damaged"}, TestFolder() / "merged");
+  const Expected<void> merged =
+      MergeRowFiles({TestFolder() / "damaged"}, TestFolder() / "merged", ConfigurationOf(Small()));
   ASSERT_FALSE(merged);
   EXPECT_THAT(merged.error().message, testing::HasSubstr("are damaged; 1 of 6 blocks"));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/child_cost.h"
+#include "support/cost/child_cost.h"
 
 #include <malloc.h>
 #include <sys/resource.h>
