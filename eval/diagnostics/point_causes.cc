@@ -134,7 +134,7 @@ std::optional<std::string> FindExchangedSensors(const CalibrationProblem& proble
   for (std::size_t i = 0; i < problem.pairs_3d3d.size(); ++i) {
     const Pair3d3d& pair = problem.pairs_3d3d[i];
     if (pair.point_in_cam.z() <= 0.0) behind.push_back(i + 1);
-    lidar_behind += pair.point_in_lidar.z() <= 0.0 ? 1 : 0;
+    lidar_behind += pair.point_in_lidar.z() <= 0.0 ? 1U : 0U;
   }
   const bool exchanged = behind.size() > lidar_behind;
   if (!exchanged && 2 * behind.size() <= problem.pairs_3d3d.size()) return std::nullopt;
