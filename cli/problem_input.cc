@@ -7,6 +7,7 @@
 
 #include "base/version.h"
 #include "cli/output.h"
+#include "eval/diagnostics/outlying_pairs.h"
 #include "io/boards/board_file.h"
 #include "io/boards/marker_files.h"
 #include "io/cameras/camera_file.h"
@@ -35,13 +36,31 @@ Expected<void> AddNamedFiles(const ProblemInputOptions& options, CalibrationProb
   return {};
 }
 
-std::string DiagnosticsText(const LoadedProblem& input, bool reordered) {
+// Too few pairs may be left of many.
+std::string RepeatedText(const LoadedProblem& input) {
+  std::size_t merged = 0;
+  for (const RepeatedPairs& repeated : input.repeated) merged += repeated.merged.size();
+  if (merged == 0) return {};
+  const auto left = static_cast<std::size_t>(input.summary.pairs_3d3d + input.summary.pairs_2d3d);
+  return fmt::format("; only {} of {} points differ", left, left + merged);
+}
+
+std::string DiagnosticsText(const LoadedProblem& input, const std::vector<ComparisonRow>& rows,
+                            bool reordered) {
   std::string text;
   for (const std::string& line : input.notes) text += "  " + line + "\n";
   for (const RepeatedPairs& repeated : input.repeated) {
     for (const std::string& line : Describe(repeated)) text += "  " + line + "\n";
   }
   for (const std::string& line : Describe(input.diagnostics)) text += "  " + line + "\n";
+  const bool has_cause = !input.diagnostics.causes.empty();
+  const bool is_misordered = input.diagnostics.order.better && !reordered;
+  if (rows.size() == 1 && rows.front().report && !has_cause && !is_misordered) {
+    for (const std::string& line :
+         DescribeOutliers(rows.front().report->evaluation, input.repeated)) {
+      text += "  " + line + "\n";
+    }
+  }
   if (reordered) text += "  " + DescribeReordering(input.diagnostics.order) + "\n";
   if (text.empty()) return text;
   return "\nData diagnostics:\n" + text;
@@ -101,16 +120,18 @@ Expected<std::vector<SolverPtr>> MakeSolvers(const SolverRegistry& registry,
 }
 
 void PrintNoAnswer(const char* command, const ProblemInputOptions& options,
-                   const ComparisonRow& row) {
+                   const LoadedProblem& input, const ComparisonRow& row) {
   const Error& error = row.report.error();
-  Refuse(command, {error.code, fmt::format("{}: no answer of {}: {}", options.problem_path,
-                                           row.solver, error.message)});
+  const std::string repeated =
+      error.code == ErrorCode::kTooFewPairs ? RepeatedText(input) : std::string();
+  Refuse(command, {error.code, fmt::format("{}: no answer of {}: {}{}", options.problem_path,
+                                           row.solver, error.message, repeated)});
 }
 
 int DeliverAnswers(const char* command, const ProblemInputOptions& options,
                    const LoadedProblem& input, const std::vector<ComparisonRow>& rows,
                    const std::string& text, bool answered) {
-  const std::string diagnostics = DiagnosticsText(input, options.reorder);
+  const std::string diagnostics = DiagnosticsText(input, rows, options.reorder);
   if (options.json_path == "-") PrintError("{}", diagnostics);
   return Deliver(command, options.json_path, text + diagnostics, ResultsJson(input, rows),
                  answered ? kAnswered : kNoAnswer);

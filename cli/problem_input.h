@@ -47,11 +47,13 @@ Expected<LoadedProblem> LoadProblem(const ProblemInputOptions& options);
 Expected<std::vector<SolverPtr>> MakeSolvers(const SolverRegistry& registry,
                                              const std::vector<SpecNode>& specs);
 
-/// Prints why the row's solver has no answer, with the file's name, which the solver does not know.
+/// Prints why the row's solver has no answer, with the file's name and its repeated pairs, which
+/// the solver does not know.
 void PrintNoAnswer(const char* command, const ProblemInputOptions& options,
-                   const ComparisonRow& row);
+                   const LoadedProblem& input, const ComparisonRow& row);
 
-/// Delivers the text followed by the diagnostics of the data. Returns the exit code.
+/// Delivers the text followed by the diagnostics of the data, and of the outliers of a single row.
+/// Returns the exit code.
 int DeliverAnswers(const char* command, const ProblemInputOptions& options,
                    const LoadedProblem& input, const std::vector<ComparisonRow>& rows,
                    const std::string& text, bool answered);

@@ -54,8 +54,9 @@ std::optional<LensImage> ProjectFisheye(const Camera& camera, const Eigen::Vecto
   const double radius = point_in_cam.head<2>().norm();
   const double z = point_in_cam.z();
   if (z > 0.0 && radius < kOnAxis * z) return OnAxis(point_in_cam);
-  if (!(radius > 0.0)) return std::nullopt;
   const double theta = std::atan2(radius, z);
+  // Straight back, up to rounding, and no direction at all.
+  if (!(radius > 0.0 && theta < std::numbers::pi)) return std::nullopt;
   const std::optional<DistortedAngle> angle = DistortAngle(camera, theta);
   if (!angle) return std::nullopt;
   const Eigen::Vector2d outward = point_in_cam.head<2>() / radius;

@@ -73,7 +73,7 @@ int Run(const CompareOptions& options) {
   if (!answered) {
     const auto failed = std::find_if(rows.begin(), rows.end(),
                                      [](const ComparisonRow& row) { return !row.report; });
-    PrintNoAnswer("compare", options.input, *failed);
+    PrintNoAnswer("compare", options.input, *input, *failed);
   }
   const std::string text = answered ? DescribeComparison(rows) : std::string();
   return DeliverAnswers("compare", options.input, *input, rows, text, answered);

@@ -5,6 +5,7 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/problem_input.h"
+#include "eval/diagnostics/outlying_pairs.h"
 #include "eval/metrics/compare.h"
 #include "report/overlay.h"
 #include "report/report_text.h"
@@ -15,14 +16,17 @@ namespace {
 
 struct SolveOptions {
   ProblemInputOptions input{};
-  std::string solver = "kabsch";
+  std::string solver{};                ///< Empty: chosen by the data.
   std::vector<std::string> overlay{};  ///< Image to draw on and file to write; empty: none.
 };
 
 void Declare(SolveOptions& options, Arguments& arguments) {
   DeclareProblemInput(options.input, arguments);
-  arguments.Add("--solver", options.solver, "A solver, possibly composed; see sextant list solvers",
-                {.shows_default = true});
+  arguments.Add(
+      "--solver", options.solver,
+      "A solver, possibly composed; see sextant list solvers. Default: kabsch for 3D-3D\n"
+      "pairs; for 2D-3D pairs refine(sqpnp), or refine(ransac(p3p)) where it finds no pose\n"
+      "or outliers, or p3p for three pairs");
   arguments.Add("--overlay", options.overlay,
                 "IMAGE OUT: draw measured and reprojected points on the image, residuals x10",
                 {.min_values = 2, .writes = Writes::kFile});
@@ -39,17 +43,37 @@ std::string TextOf(const CalibrationProblem& problem, const Solver& solver,
   return text;
 }
 
+// The choice that the help describes.
+std::string SolverFor(const CalibrationProblem& problem, const SolverRegistry& registry) {
+  const std::size_t pixels = problem.pairs_2d3d.size();
+  if (!problem.pairs_3d3d.empty() || pixels == 0) return "kabsch";
+  if (pixels == 3) return "p3p";
+  const std::string least_squares = "refine(sqpnp)";
+  const std::string robust = "refine(ransac(p3p))";
+  const auto answer_of = [&](const std::string& spec) {
+    return registry.Make(spec).and_then([&](const SolverPtr& s) { return s->Solve(problem); });
+  };
+  const Expected<SolveReport> report = answer_of(least_squares);
+  if (report && OutlyingResiduals(report->evaluation.per_pair_px, 2).empty()) return least_squares;
+  return answer_of(robust) ? robust : least_squares;
+}
+
 int Run(const SolveOptions& options) {
-  const Expected<SolverPtr> solver = AllSolvers().Make(options.solver);
+  const SolverRegistry registry = AllSolvers();
+  Expected<SolverPtr> solver = registry.Make(options.solver.empty() ? "kabsch" : options.solver);
   if (!solver) return Refuse("solve", solver.error());
   const Expected<LoadedProblem> input = LoadProblem(options.input);
   if (!input) return Refuse("solve", input.error());
   const CalibrationProblem& problem = input->file.problem;
+  if (options.solver.empty()) {
+    solver = registry.Make(SolverFor(problem, registry));
+    if (!solver) return Refuse("solve", solver.error());
+  }
   const std::vector<ComparisonRow> rows =
       Compare(problem, {&*solver, 1}, input->file.true_cam_from_lidar);
   const ComparisonRow& row = rows.front();
   if (!row.report) {
-    PrintNoAnswer("solve", options.input, row);
+    PrintNoAnswer("solve", options.input, *input, row);
     return DeliverAnswers("solve", options.input, *input, rows, "", false);
   }
   if (!options.overlay.empty()) {

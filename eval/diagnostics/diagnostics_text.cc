@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/units.h"
 #include "eval/diagnostics/pair_diagnostics.h"
@@ -53,7 +54,8 @@ std::string Describe(const WeakDirection& weak) {
 }  // namespace
 
 std::vector<std::string> Describe(const PairDiagnostics& diagnostics) {
-  std::vector<std::string> lines = Describe(diagnostics.order);
+  std::vector<std::string> lines = diagnostics.causes;
+  for (std::string& line : Describe(diagnostics.order)) lines.push_back(std::move(line));
   if (diagnostics.contradiction) lines.push_back(Describe(*diagnostics.contradiction));
   if (diagnostics.mirrored_rmse_m) {
     lines.push_back(fmt::format(

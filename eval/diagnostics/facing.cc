@@ -24,19 +24,25 @@ class GroupPlane {
     normal_ = eigen.vectors.col(0);
     constexpr double kMaxThickness = 0.15;
     is_plane_ = extent[1] > 0.0 && extent[0] < kMaxThickness * extent[1];
+    width_ = extent[2];
     margin_ = std::max(0.1 * extent[2], 3.0 * extent[0]);
   }
 
   int SideOf(const Eigen::Vector3d& point) const {
     const double distance = normal_.dot(point - middle_);
     if (!is_plane_ || std::abs(distance) < margin_) return 0;
+    if ((point - middle_).norm() > kMaxDistance * width_) return 0;
     return distance > 0.0 ? 1 : -1;
   }
 
  private:
+  // In widths of the group; a sensor that sees it is nearer, and a far origin is no sensor.
+  static constexpr double kMaxDistance = 1e4;
+
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_;
   bool is_plane_ = false;
+  double width_ = 0.0;
   double margin_ = 0.0;
 };
 

@@ -156,7 +156,10 @@ class OrderJudge {
     const double most = kMaxMisfit * spacing_;
     std::vector<PointOrder> candidates = FindPointOrders(*model_, grouping.views);
     std::erase_if(candidates, [&](const PointOrder& order) {
-      return order.rmse > most || SensorsFaceEachOther(groups_in_lidar_, order.cam_from_lidar);
+      // Where the sensors face each other, not every other order is an improvement.
+      const bool is_worse = diagnosis.faces_as_given && order.rmse > as_given / kFarBetter;
+      return order.rmse > most || is_worse ||
+             SensorsFaceEachOther(groups_in_lidar_, order.cam_from_lidar);
     });
     if (candidates.empty() || IsGiven(candidates.front())) return;
     const PointOrder& best = candidates.front();

@@ -21,11 +21,19 @@ std::string Facing(const OrderDiagnosis& order) {
          "clockwise and the other counter-clockwise";
 }
 
-// The order itself where it is short enough to be read.
+// The order itself where it is short enough to be read: that of the LiDAR's points, and that of the
+// camera's for those who correct the other list, where the two differ.
 std::string IndicesOf(const OrderFinding& order) {
   constexpr std::size_t kMaxShown = 24;
-  if (order.lidar_index.size() > kMaxShown) return "";
-  return fmt::format(", LiDAR order [{}] (counted from 0)", fmt::join(order.lidar_index, ","));
+  const std::vector<int>& lidar = order.lidar_index;
+  if (lidar.size() > kMaxShown) return "";
+  std::vector<int> cam(lidar.size());
+  for (std::size_t i = 0; i < lidar.size(); ++i) {
+    cam[static_cast<std::size_t>(lidar[i])] = static_cast<int>(i);
+  }
+  const std::string of_cam =
+      cam == lidar ? "" : fmt::format(", or camera order [{}]", fmt::join(cam, ","));
+  return fmt::format(", LiDAR order [{}]{} (counted from 0)", fmt::join(lidar, ","), of_cam);
 }
 
 std::string DescribeBetter(const OrderDiagnosis& order) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <span>
 
+#include "eval/diagnostics/causes.h"
 #include "eval/diagnostics/complete_boards.h"
 #include "geometry/pair_noise.h"
 #include "geometry/symmetric.h"
@@ -153,10 +154,19 @@ std::optional<WeakDirection> Weakest(const Eigen::Matrix3d& covariance, bool is_
   return WeakDirection{is_rotation, eigen.vectors.col(2), sigma(2), sigma(0)};
 }
 
+void Append(const std::vector<std::string>& lines, std::vector<std::string>& all) {
+  all.insert(all.end(), lines.begin(), lines.end());
+}
+
 }  // namespace
 
 PairDiagnostics DiagnosePairs(const CalibrationProblem& problem) {
   PairDiagnostics diagnostics;
+  diagnostics.causes = CausesInCamera(problem);
+  Append(CausesInPixels(problem), diagnostics.causes);
+  const std::vector<std::string> in_points = CausesInPoints(problem);
+  Append(in_points, diagnostics.causes);
+  if (!in_points.empty()) return diagnostics;
   diagnostics.order = DiagnoseOrder(problem);
   if (problem.pairs_3d3d.size() < 3) return diagnostics;
   const CalibrationProblem ordered =

@@ -40,6 +40,7 @@ struct BoardContradiction {
 
 /// Data diagnostics: properties of the pairs that make a pose from them unreliable.
 struct PairDiagnostics {
+  std::vector<std::string> causes;  ///< See causes.h; one sentence each.
   OrderDiagnosis order;
   std::optional<BoardContradiction> contradiction;
   std::vector<EdgeFinding> edges;
@@ -49,10 +50,11 @@ struct PairDiagnostics {
   std::optional<double> mirrored_rmse_m;
 };
 
-/// Checks the pairs for a wrong order (DiagnoseOrder), and the 3D-3D pairs, in the better order,
-/// for boards that contradict each other, wrong edges, mirrored data and weak directions; empty for
-/// a problem with too few pairs. O(n log n) time and O(n) memory in the number of pairs: 10^4 pairs
-/// take less than 0.3 s.
+/// Looks for one cause that explains the data (causes.h); where the points have one, nothing else
+/// is said of them. Checks the pairs for a wrong order (DiagnoseOrder), and the 3D-3D pairs, in the
+/// better order, for boards that contradict each other, wrong edges, mirrored data and weak
+/// directions; empty for a problem with too few pairs. O(n log n) time and O(n) memory in the
+/// number of pairs: 10^4 pairs take less than 0.3 s.
 ///
 /// Contradiction: the RMSE of all complete boards is more than three times their RMSE under poses
 /// of their own, and more than a tenth of the mean edge. Edges: reported if they differ by more

@@ -198,6 +198,7 @@ TEST(Pixels, OnlyOutliersAreNoConsensus) {
   }
 }
 
+// Copies count once, so that they are no consensus: too few pairs are left.
 TEST(Pixels, AMinimalSampleGivenManyTimesIsNoConsensus) {
   std::vector<Point> points;
   for (std::size_t i = 0; i < 20; ++i) points.push_back(kPoints[i % 4]);
@@ -206,7 +207,8 @@ TEST(Pixels, AMinimalSampleGivenManyTimesIsNoConsensus) {
                  InFolder("camera.yaml", kCamera) + " --solver 'ransac(epnp)' --json -");
   EXPECT_EQ(run.exit_code, 1);
   const json document = json::parse(run.out);
-  EXPECT_EQ(document.at("results").at(0).at("error_code"), "no_consensus");
+  EXPECT_EQ(document.at("results").at(0).at("error_code"), "too_few_pairs");
+  EXPECT_THAT(run.err, HasSubstr("only 4 of 20 points differ"));
 }
 
 TEST(Pixels, BadCamerasAreNamed) {

@@ -193,9 +193,9 @@ TEST(CameraDomain, DoesNotReturnBehindTheFold) {
 TEST(CameraDomain, EndsAtAPoleOfTheRationalModel) {
   Camera camera = PlainCamera(CameraModel::kBrownConrady);
   camera.distortion[5] = -1.0;  // r / (1 - r^2)
-  // Its slope (1 + r^2) / (1 - r^2)^2 is 10 at r = 0.7618: from there on it runs away.
-  EXPECT_TRUE(Project(camera, {0.761, 0.0, 1.0}));
-  EXPECT_FALSE(Project(camera, {0.763, 0.0, 1.0}));
+  // Its slope (1 + s) / (1 - s)^2 is 10 at s = r^2 = 0.6: from there on it runs away.
+  EXPECT_TRUE(Project(camera, {std::sqrt(0.6) - 1e-6, 0.0, 1.0}));
+  EXPECT_FALSE(Project(camera, {std::sqrt(0.6) + 1e-6, 0.0, 1.0}));
   EXPECT_FALSE(Project(camera, {1.0, 0.0, 1.0}));
   EXPECT_FALSE(Project(camera, {1.5, 0.0, 1.0}));
   EXPECT_NEAR(Unproject(camera, {639.5 + 700.0 * 0.6 / 0.64, 359.5})->x(), 0.6 / std::hypot(0.6, 1),

@@ -123,7 +123,7 @@ void ExpectTranslation(const Rigid3d& pose, const Eigen::Vector3d& expected, dou
   EXPECT_LT((pose.translation - expected).norm(), tolerance) << pose.translation.transpose();
 }
 
-// Two minima of 0.274 and 0.362 px, 60 deg apart.
+// Two minima of 0.274 and 0.362 px, 62.84 deg apart. Closed forms are near the first, not in it.
 TEST(TwoPoses, OfASmallFlatMarkerAreBothReportedByEverySolver) {
   const CalibrationProblem problem = FlatMarker();
   for (const char* spec :
@@ -133,7 +133,7 @@ TEST(TwoPoses, OfASmallFlatMarkerAreBothReportedByEverySolver) {
     ASSERT_EQ(report.alternatives.size(), 1U) << spec;
     EXPECT_NEAR(Rmse(problem, report.alternatives[0]), 0.362, 1e-3) << spec;
     EXPECT_NEAR(RotationDistance(report.cam_from_lidar.rotation, report.alternatives[0].rotation),
-                60.0 * 3.14159 / 180.0, 0.1)
+                62.84 * 3.14159 / 180.0, 0.1)
         << spec;
   }
   for (const char* spec : {"refine(sqpnp)", "refine(p3p)", "refine(epnp)"}) {

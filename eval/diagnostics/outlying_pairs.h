@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eval/diagnostics/repeated_pairs.h"
+#include "solvers/core/evaluation.h"
+
+namespace sextant {
+
+/// Indices of the residuals [m or px] that noise does not explain, largest first: beyond the limit
+/// that one of all pairs exceeds with a probability of 1 %, where the noise is that of the
+/// others (at first the median's), and at least a tenth of the largest, because an outlier moves
+/// the answer and with it the residuals of the others. Residuals that are not finite do not count.
+/// Empty below eight pairs. `dimension`: 3 for points, 2 for pixels. O(n log n).
+std::vector<int> OutlyingResiduals(std::span<const double> residuals, int dimension);
+
+/// One sentence for each kind of pairs with outliers, by their place in the file,
+/// from which `repeated` pairs have been removed.
+std::vector<std::string> DescribeOutliers(const Evaluation& evaluation,
+                                          std::span<const RepeatedPairs> repeated);
+
+}  // namespace sextant
