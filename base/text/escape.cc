@@ -94,11 +94,12 @@ std::string CodeSpan(std::string_view text, std::size_t& bytes) {
 }  // namespace
 
 std::string GnuplotText(std::string text) {
-  std::string quoted = "'";
+  std::string quoted = "\"";
   for (const char c : PrintableLine(std::move(text))) {
-    quoted += c == '\'' ? std::string("''") : std::string(1, c);
+    const bool is_literal = IsLetterOrDigit(c) || c == ' ' || (c & 0x80) != 0;
+    quoted += is_literal ? std::string(1, c) : fmt::format("\\{:03o}", c);
   }
-  return quoted + "'";
+  return quoted + "\"";
 }
 
 std::string LatexText(std::string text) {

@@ -187,7 +187,9 @@ TEST(Simulate, TheFastLevelsWriteProblemFiles) {
     const ProgramRun no_boards =
         RunSextant("compare " + out + "/" + level + "_cam.yaml --boards " + out + "/cam_info.yaml");
     EXPECT_EQ(no_boards.exit_code, 2);
-    EXPECT_THAT(no_boards.err, HasSubstr("cam_info.yaml:1: boards: unknown key"));
+    EXPECT_THAT(no_boards.err,
+                HasSubstr("cam_info.yaml:1: expected boards, with the key 'boards', but "
+                          "this is a file of a camera's intrinsics"));
   }
 }
 
