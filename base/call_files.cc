@@ -30,8 +30,10 @@ std::string CallFiles::AddInput(const FileId& file) {
     inputs_.insert(file);
     return {};
   }
-  const bool may_read = output->second.use.may_be_read || output->second.is_finished;
-  return may_read ? "" : "it is also an output of the same command; name another output";
+  if (output->second.use.may_be_read || output->second.is_finished) return {};
+  // A command may go on without this input, and must not replace it then.
+  if (!output->second.is_begun) inputs_.insert(file);
+  return "it is also an output of the same command; name another output";
 }
 
 std::string CallFiles::ClaimOutput(const FileId& file, OutputUse use) {

@@ -27,6 +27,7 @@ TEST(CallFiles, AnInputIsNoClaimedOutput) {
   CallFiles files(false);
   EXPECT_THAT(files.ClaimOutput(kFile, {}), IsEmpty());
   EXPECT_THAT(files.AddInput(kFile), HasSubstr("also an output"));
+  EXPECT_THAT(files.BeginOutput(kFile, {}), HasSubstr("is an input")) << "it went on without it";
 }
 
 TEST(CallFiles, EachOutputIsWrittenOnce) {
