@@ -51,6 +51,12 @@ std::string CallFiles::BeginOutput(const FileId& file, OutputUse use) {
   return {};
 }
 
+bool CallFiles::IsRecognised(const FileId& file) {
+  const std::scoped_lock lock(mutex_);
+  const auto output = outputs_.find(file);
+  return output != outputs_.end() && output->second.use.is_recognised;
+}
+
 void CallFiles::FinishOutput(const FileId& before, const FileId& now) {
   const std::scoped_lock lock(mutex_);
   Output output = outputs_[before];

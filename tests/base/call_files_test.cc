@@ -30,6 +30,15 @@ TEST(CallFiles, AnInputIsNoClaimedOutput) {
   EXPECT_THAT(files.BeginOutput(kFile, {}), HasSubstr("is an input")) << "it went on without it";
 }
 
+TEST(CallFiles, AClaimMayRecogniseTheFile) {
+  CallFiles files(false);
+  EXPECT_FALSE(files.IsRecognised(kFile));
+  EXPECT_THAT(files.ClaimOutput(kFile, {.is_recognised = true}), IsEmpty());
+  EXPECT_THAT(files.ClaimOutput(kOther, {}), IsEmpty());
+  EXPECT_TRUE(files.IsRecognised(kFile));
+  EXPECT_FALSE(files.IsRecognised(kOther));
+}
+
 TEST(CallFiles, EachOutputIsWrittenOnce) {
   CallFiles files(false);
   EXPECT_THAT(files.ClaimOutput(kNew, {}), IsEmpty());
