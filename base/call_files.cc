@@ -30,8 +30,10 @@ std::string CallFiles::AddInput(const FileId& file) {
     inputs_.insert(file);
     return {};
   }
-  const bool may_read = output->second.use.may_be_read || output->second.is_finished;
-  return may_read ? "" : "it is also an output of the same command; name another output";
+  if (output->second.use.may_be_read || output->second.is_finished) return {};
+  // A command may go on without this input, and must not replace it then.
+  if (!output->second.is_begun) inputs_.insert(file);
+  return "it is also an output of the same command; name another output";
 }
 
 std::string CallFiles::ClaimOutput(const FileId& file, OutputUse use) {
@@ -47,6 +49,12 @@ std::string CallFiles::BeginOutput(const FileId& file, OutputUse use) {
   if (output.is_begun && !output.use.is_repeated) return kIsOutput;
   output.is_begun = true;
   return {};
+}
+
+bool CallFiles::IsRecognised(const FileId& file) {
+  const std::scoped_lock lock(mutex_);
+  const auto output = outputs_.find(file);
+  return output != outputs_.end() && output->second.use.is_recognised;
 }
 
 void CallFiles::FinishOutput(const FileId& before, const FileId& now) {

@@ -27,6 +27,8 @@ inline FileId IdOf(const struct stat& status) { return {status.st_dev, status.st
 struct OutputUse {
   bool may_be_read = false;  ///< It may be read before it is written, to continue it.
   bool is_repeated = false;  ///< It may be written more than once.
+  /// The caller knows the existing file for one of sextant's, even if the system does not.
+  bool is_recognised = false;
 };
 
 /// The files that one call of the program reads and writes. While an object exists, readers and
@@ -53,6 +55,8 @@ class CallFiles {
   std::string ClaimOutput(const FileId& file, OutputUse use);
   /// Before the file is written, claimed or not.
   std::string BeginOutput(const FileId& file, OutputUse use);
+  /// Whether it was claimed so.
+  bool IsRecognised(const FileId& file);
   /// The content of `before` was replaced by the file `now`.
   void FinishOutput(const FileId& before, const FileId& now);
 

@@ -7,6 +7,7 @@
 #include "calibrate/session/observe_files.h"
 #include "io/boards/board_file.h"
 #include "io/cameras/camera_file.h"
+#include "io/text/text_file.h"
 #ifdef SEXTANT_WITH_BAG
 #include "calibrate/bag/observe_recording.h"
 #endif
@@ -82,6 +83,10 @@ Expected<ObservedSession> ObserveSession(const Session& session, const Calibrate
                      fmt::format("no image has a scan: {} files have no partner; files are paired "
                                  "by the distinguishing part of their names",
                                  session.files.without_partner.size()));
+  }
+  for (const FilePair& pair : pairs) {
+    SEXTANT_RETURN_IF_ERROR(CheckInput(pair.image));
+    SEXTANT_RETURN_IF_ERROR(CheckInput(pair.cloud));
   }
   ProgressCounter counter(options.progress, "views", pairs.size());
   observed.views = ObserveFiles(observer, pairs, [&counter] { counter.Step(); });

@@ -78,14 +78,9 @@ std::filesystem::path FolderOf(const ExperimentOptions& options, const Experimen
 
 Expected<void> ClaimReport(const ExperimentOptions& options, const Experiment& experiment,
                            const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files =
-      ReportFiles(experiment, folder, ReportSettingsOf(options));
-  if (experiment.timed_trials > 0) {
-    files.push_back(folder / kTimingJson);
-    files.push_back(folder / kTimingPage);
-  }
-  for (const std::filesystem::path& file : files) SEXTANT_RETURN_IF_ERROR(ClaimOutput(file));
-  return {};
+  std::vector<std::string> timing;
+  if (experiment.timed_trials > 0) timing = {kTimingJson, kTimingPage};
+  return ClaimReportFiles(experiment, folder, ReportSettingsOf(options), timing);
 }
 
 Expected<RunOutcome> RunWithProgress(const Experiment& experiment, RunSettings settings) {

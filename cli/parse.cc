@@ -9,7 +9,9 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <sstream>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -74,8 +76,11 @@ void CheckValues(const ArgumentRules& rules, CLI::Option& option) {
     };
     option.check(CLI::Validator(fault, DescribeRange<One>(rules.range)));
   } else {
-    const auto fault = [](std::string& text) {
-      return text.empty() ? "expected a text, got an empty one" : std::string();
+    const std::string fault_if_empty = rules.writes == Writes::kNothing
+                                           ? "expected a text, got an empty one"
+                                           : "expected a path, got an empty text";
+    const auto fault = [fault_if_empty](std::string& text) {
+      return text.empty() ? fault_if_empty : std::string();
     };
     option.check(CLI::Validator(fault, ""));
   }
@@ -174,7 +179,6 @@ std::string UnknownCommand(const Program& program, int argc, const char* const* 
 // The command, or the subcommand, that the parsed line names.
 struct Chosen {
   const Command* command = nullptr;
-  const CLI::App* app = nullptr;
   std::string name;
 };
 
@@ -185,7 +189,7 @@ Chosen FindChosen(const CLI::App& app, const std::vector<const Command*>& comman
       std::vector<const Command*> subcommands;
       for (const Command& one : command->subcommands) subcommands.push_back(&one);
       Chosen chosen = FindChosen(*sub, subcommands);
-      if (chosen.command == nullptr) return {command, sub, command->name};
+      if (chosen.command == nullptr) return {command, command->name};
       chosen.name = command->name + " " + chosen.name;
       return chosen;
     }
@@ -201,18 +205,13 @@ std::string PathOf(const ArgumentTarget& target) {
 }
 
 // Appends the output that the argument names, if any; returns what is wrong with it.
-std::string AddOutput(const Argument& argument, const CLI::App& app,
-                      std::vector<OutputArgument>& outputs) {
+std::string AddOutput(const Argument& argument, std::vector<OutputArgument>& outputs) {
   const Writes writes = argument.rules.writes;
   if (writes == Writes::kNothing) return {};
   OutputArgument output{.option = argument.name, .path = PathOf(argument.target), .writes = writes};
   if (output.path == "-" && writes != Writes::kFileOrStandardOutput) {
     return fmt::format("{}: expected a path, got '-'; it does not write to standard output\n",
                        argument.name);
-  }
-  const bool is_given = app.get_option(argument.name)->count() > 0;
-  if (output.path.empty() && is_given) {
-    return fmt::format("{}: expected a path, got an empty text\n", argument.name);
   }
   if (!output.path.empty()) outputs.push_back(std::move(output));
   return {};
@@ -224,7 +223,7 @@ ParsedLine LineOf(const Chosen& chosen, bool overwrites) {
   Arguments arguments;
   if (chosen.command->declare) chosen.command->declare(arguments);
   for (const Argument& argument : arguments.all()) {
-    const std::string error = AddOutput(argument, *chosen.app, line.outputs);
+    const std::string error = AddOutput(argument, line.outputs);
     if (!error.empty()) return {.exit_code = kWrongUse, .err = error};
   }
   return line;
@@ -253,6 +252,19 @@ std::vector<std::string> OptionsOf(const CLI::App& app) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
   return names;
+}
+
+// The error for a number that CLI11 took for options of one letter each; empty if there is none.
+std::string NotFinite(int argc, const char* const* argv) {
+  std::string option;
+  for (const std::string_view text : std::span(argv, static_cast<std::size_t>(argc))) {
+    if (text.starts_with("--")) option = text;
+    const std::string lower = CLI::detail::to_lower(std::string(text));
+    if (lower == "-nan" || lower == "-inf") {
+      return fmt::format("{}: expected a finite number, got {}\n", option, Quoted(text));
+    }
+  }
+  return {};
 }
 
 // The error for an argument that the command does not take; empty if there is none. CLI11 would
@@ -296,7 +308,8 @@ ParsedLine ParseLine(const Program& program, int argc, const char* const* argv) 
     std::ostringstream out;
     std::ostringstream err;
     const int code = app.exit(error, out, err);
-    std::string unknown = code == 0 ? "" : UnknownArgument(app);
+    std::string unknown = code == 0 ? "" : NotFinite(argc, argv);
+    if (code != 0 && unknown.empty()) unknown = UnknownArgument(app);
     if (!unknown.empty()) return {.exit_code = kWrongUse, .err = std::move(unknown)};
     return {.exit_code = code == 0 ? kAnswered : kWrongUse, .out = out.str(), .err = err.str()};
   }

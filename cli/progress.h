@@ -37,7 +37,7 @@ class Progress {
   bool visible_;
   std::mutex mutex_;
   std::string stage_;
-  Clock::time_point start_;  ///< Of the stage.
+  Clock::time_point start_;  ///< The stage's.
   Clock::time_point drawn_;
   bool is_drawn_ = false;
 };

@@ -94,11 +94,14 @@ std::string CodeSpan(std::string_view text, std::size_t& bytes) {
 }  // namespace
 
 std::string GnuplotText(std::string text) {
-  std::string quoted = "'";
+  std::string quoted = "\"";
   for (const char c : PrintableLine(std::move(text))) {
-    quoted += c == '\'' ? std::string("''") : std::string(1, c);
+    // gnuplot reads up to four digits as one number, so that none may follow as it is.
+    const bool is_digit = c >= '0' && c <= '9';
+    const bool is_literal = (IsLetterOrDigit(c) && !is_digit) || c == ' ' || (c & 0x80) != 0;
+    quoted += is_literal ? std::string(1, c) : fmt::format("\\{:03o}", c);
   }
-  return quoted + "'";
+  return quoted + "\"";
 }
 
 std::string LatexText(std::string text) {

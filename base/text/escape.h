@@ -11,7 +11,8 @@ namespace sextant {
 // hold a control character; a reader of the format sees what PrintableLine gives. For terminals see
 // base/text/printable.h.
 
-/// A string of gnuplot in single quotes, in which only the quote is special. Enhanced text is a
+/// A string of gnuplot in double quotes, with all but letters and blanks as octal numbers: gnuplot
+/// 5.4 ends a string in single quotes at two doubled quotes in a row. Enhanced text is a
 /// matter of the command: it must say noenhanced.
 std::string GnuplotText(std::string text);
 

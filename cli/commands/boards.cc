@@ -13,6 +13,7 @@
 #include "io/boards/board_file.h"
 #include "io/boards/polygon_file.h"
 #include "io/clouds/cloud_file.h"
+#include "io/text/text_file.h"
 #include "report/boards_report.h"
 #include "report/scan_picture.h"
 
@@ -91,6 +92,16 @@ bool HasAllBoards(const ScanReport& report, std::size_t boards) {
   return true;
 }
 
+Expected<void> CheckScans(const BoardsOptions& options) {
+  if (!options.overlay_path.empty() && options.scans.size() > 1) {
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        fmt::format("--overlay draws one scan, and {} were given", options.scans.size()));
+  }
+  for (const std::string& scan : options.scans) SEXTANT_RETURN_IF_ERROR(CheckInput(scan));
+  return {};
+}
+
 int Run(const BoardsOptions& options) {
   const Expected<std::vector<Board>> boards = ReadBoards(options.boards_path);
   if (!boards) return Refuse("boards", boards.error());
@@ -107,11 +118,7 @@ int Run(const BoardsOptions& options) {
       !known && known.error().code == ErrorCode::kUnknownName) {
     return Refuse("boards", known.error());
   }
-  if (!options.overlay_path.empty() && options.scans.size() > 1) {
-    return Refuse("boards", {ErrorCode::kInvalidOption,
-                             fmt::format("--overlay draws one scan, and {} were given",
-                                         options.scans.size())});
-  }
+  if (const Expected<void> ok = CheckScans(options); !ok) return Refuse("boards", ok.error());
   std::vector<ScanReport> reports(options.scans.size());
   {
     Progress progress;

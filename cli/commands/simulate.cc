@@ -144,9 +144,12 @@ int Run(const SimulateOptions& options) {
   }
   Print("{}",
         WroteLine(options.out,
-                  fmt::format("scene {}, scans: {}, files written: {}, kept: {}; the truth is "
+                  fmt::format("scene {}, scans: {}, files written: {}, kept: {}{}; the truth is "
                               "in truth.yaml{}",
                               scene->name, options.scans, report->written, report->kept,
+                              report->removed > 0
+                                  ? fmt::format(", removed: {} of more scans", report->removed)
+                                  : "",
                               options.bag ? ", scans and images also in session.bag" : "")));
   return kAnswered;
 }

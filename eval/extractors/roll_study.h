@@ -29,7 +29,7 @@ struct RollStudyOptions {
 struct RollStudyRow {
   std::string model{};
   std::array<int, kRolls> due{};
-  std::array<int, kRolls> found{};  ///< Of those due, with each corner within a sixth of a side.
+  std::array<int, kRolls> found{};  ///< Due and with each corner within a sixth of a side.
   int misplaced = 0;                ///< Found elsewhere.
   /// Mean of e^T C^-1 e / 3 over the corners by `rectangle`: at level boards (roll 0 and 90
   /// degrees), and at all others.

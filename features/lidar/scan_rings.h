@@ -16,7 +16,7 @@ struct RingPoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< In the LiDAR frame [m].
   double range_m = 0.0;
   double azimuth_rad = 0.0;  ///< About the scan's axis, in (-pi, pi].
-  double sine = 0.0;         ///< Of the elevation above the plane normal to the axis.
+  double sine = 0.0;         ///< The sine of the elevation above the plane normal to the axis.
   int index = 0;             ///< Index into the cloud.
 };
 

@@ -18,8 +18,8 @@ struct CameraParts {
   std::array<double, 9> matrix{};  ///< K, row by row.
   std::span<const double> distortion;
   std::string_view model;  ///< The distortion model in ROS's terms; empty if the file has none.
-  double xi = 0.0;         ///< Of the omnidirectional and double-sphere models.
-  double alpha = 0.0;      ///< Of the double-sphere model.
+  double xi = 0.0;         ///< For the omnidirectional and double-sphere models.
+  double alpha = 0.0;      ///< For the double-sphere model.
 };
 
 /// The name of a camera's distortion model in ROS's files, ours where ROS has none, and the number

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace sextant {
 
@@ -9,9 +10,19 @@ namespace sextant {
 /// size and the time of its last change. A file system without attributes stays without the mark.
 void MarkAsWritten(int fd);
 
-/// Whether sextant wrote the file and nobody has changed it since. Copies lose the mark, unless
-/// made with `cp -a`. A file of no bytes holds nothing to lose and counts as written.
+/// What the mark of a file tells of it.
+enum class FileOrigin {
+  kSextant,   ///< sextant wrote it and nobody has changed it since; or it has no bytes to lose.
+  kChanged,   ///< It was changed since sextant wrote it.
+  kUnmarked,  ///< Copies lose the mark, unless made with `cp -a`.
+  kUnknown,   ///< Its file system keeps no marks.
+};
+
 /// `folder`: an open folder; `name`: a file in it.
-bool IsWrittenBySextant(int folder, const std::string& name);
+FileOrigin OriginOf(int folder, const std::string& name);
+
+/// Whether the text is among the first 4096 bytes of the file, which is not kChanged: for pages
+/// that state what wrote them.
+bool StatesOrigin(int folder, const std::string& name, std::string_view text);
 
 }  // namespace sextant

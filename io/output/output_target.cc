@@ -59,6 +59,18 @@ Expected<void> Examine(OutputTarget& target) {
   return CheckWritable(target);
 }
 
+std::string_view WhyForeign(FileOrigin origin) {
+  switch (origin) {
+    case FileOrigin::kChanged:
+      return "it was changed since sextant wrote it";
+    case FileOrigin::kUnknown:
+      return "it exists, and its file system keeps no attributes, by which sextant knows the files "
+             "that it wrote";
+    default:
+      return "it exists, and sextant did not write it, or it is a copy";
+  }
+}
+
 }  // namespace
 
 Expected<OutputTarget> FindTarget(const fs::path& path) {
@@ -76,12 +88,18 @@ Expected<OutputTarget> FindTarget(const fs::path& path) {
 }
 
 Expected<void> CheckReplaceable(const OutputTarget& target, Replace replace) {
-  const CallFiles* const call = CallFiles::Current();
+  CallFiles* const call = CallFiles::Current();
   if (call == nullptr || call->may_overwrite() || replace == Replace::kAnyFile) return {};
-  if (!target.existing || IsWrittenBySextant(target.folder.get(), target.name)) return {};
-  return Refused(target.path,
-                 "it exists, and sextant did not write it or it was changed since; --overwrite "
-                 "replaces it");
+  if (!target.existing) return {};
+  const FileOrigin origin = OriginOf(target.folder.get(), target.name);
+  const bool is_lost = origin == FileOrigin::kUnmarked || origin == FileOrigin::kUnknown;
+  if (origin == FileOrigin::kSextant || (is_lost && call->IsRecognised(target.id))) return {};
+  return Refused(target.path, fmt::format("{}; --overwrite replaces it", WhyForeign(origin)));
+}
+
+bool IsPageOf(const fs::path& path, std::string_view text) {
+  const Expected<OutputTarget> target = FindTarget(path);
+  return target && target->existing && StatesOrigin(target->folder.get(), target->name, text);
 }
 
 Expected<void> ClaimOutput(const fs::path& path, OutputUse use) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "base/call_files.h"
 #include "base/descriptor.h"
@@ -13,7 +14,7 @@
 
 namespace sextant {
 
-/// Whether an output may replace a file that sextant did not write; see IsWrittenBySextant.
+/// Whether an output may replace a file that sextant did not write; see FileOrigin.
 enum class Replace {
   kOwnFiles,  ///< Only if the call has --overwrite.
   kAnyFile,   ///< The caller has recognised the file.
@@ -35,6 +36,10 @@ Expected<OutputTarget> FindTarget(const std::filesystem::path& path);
 
 /// Refuses a file that sextant did not write, if the call demands it. Error: kInvalidOption.
 Expected<void> CheckReplaceable(const OutputTarget& target, Replace replace);
+
+/// Whether the file exists, was not changed since sextant wrote it, and has the text among its
+/// first 4096 bytes: for generated pages, which state what wrote them, also in copies.
+bool IsPageOf(const std::filesystem::path& path, std::string_view text);
 
 /// To be called before long work for an output that is written after it: checks that it is a
 /// possible target, no input and no other output of the call, and that it may be replaced.

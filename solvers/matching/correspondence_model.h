@@ -21,7 +21,8 @@ struct Correspondence {
 
 struct CorrespondenceFit {
   Rigid3d cam_from_lidar;
-  double sum_squares = 0.0;  ///< Of the distances in the camera's data [m^2 or px^2].
+  double sum_squares =
+      0.0;  ///< The sum of the squared distances in the camera's data [m^2 or px^2].
 };
 
 /// What a search of correspondences needs to know of pairs, alike for 3D-3D and for 2D-3D pairs.

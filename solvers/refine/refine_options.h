@@ -21,7 +21,7 @@ struct RefineOptions {
   unsigned intrinsics = 0;  ///< IntrinsicKind bits.
   int max_iterations = RefineLimits{}.max_iterations;
   double step_tolerance = RefineLimits{}.step_tolerance;
-  double sigma_m = 0.0;  ///< Of pairs that state none; 0: estimated, see refine_noise.h.
+  double sigma_m = 0.0;  ///< For pairs that state none; 0: estimated, see refine_noise.h.
   double sigma_px = 0.0;
 
   RobustLoss Loss() const;

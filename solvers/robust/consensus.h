@@ -15,7 +15,7 @@ namespace sextant {
 /// When a pair counts as an inlier; shared by every solver that separates inliers from outliers.
 struct InlierOptions {
   double threshold = 0.0;  ///< Sigmas; 0: 99 percent of true pairs are within.
-  double sigma_m = 0.0;    ///< Of pairs that state none; 0: estimated, see noise_scale.h.
+  double sigma_m = 0.0;    ///< For pairs that state none; 0: estimated, see noise_scale.h.
   double sigma_px = 0.0;
 
   double Sigma(PairKind kind) const { return kind == PairKind::k3d3d ? sigma_m : sigma_px; }

@@ -27,6 +27,16 @@ TEST(CallFiles, AnInputIsNoClaimedOutput) {
   CallFiles files(false);
   EXPECT_THAT(files.ClaimOutput(kFile, {}), IsEmpty());
   EXPECT_THAT(files.AddInput(kFile), HasSubstr("also an output"));
+  EXPECT_THAT(files.BeginOutput(kFile, {}), HasSubstr("is an input")) << "it went on without it";
+}
+
+TEST(CallFiles, AClaimMayRecogniseTheFile) {
+  CallFiles files(false);
+  EXPECT_FALSE(files.IsRecognised(kFile));
+  EXPECT_THAT(files.ClaimOutput(kFile, {.is_recognised = true}), IsEmpty());
+  EXPECT_THAT(files.ClaimOutput(kOther, {}), IsEmpty());
+  EXPECT_TRUE(files.IsRecognised(kFile));
+  EXPECT_FALSE(files.IsRecognised(kOther));
 }
 
 TEST(CallFiles, EachOutputIsWrittenOnce) {

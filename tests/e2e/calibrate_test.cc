@@ -146,6 +146,25 @@ TEST(Calibrate, NoCommonBoardEndsInOne) {
   EXPECT_THAT(run.err, HasSubstr("was not found"));
 }
 
+// An unreadable view is left out; a scan that is also the output must not be, and be replaced.
+TEST(Calibrate, AnOutputThatIsAScanIsRefused) {
+  const fs::path session = test::CopyOfSession(Simulated("--scans 4"));
+  const fs::path scan = session / "scan_001.pcd";
+  const std::string before = ReadText(scan);
+  for (const char* option : {" --out ", " --json ", " --problem "}) {
+    const ProgramRun run =
+        RunSextant("calibrate " + session.string() + " --overwrite" + option + scan.string());
+    EXPECT_EQ(run.exit_code, 2) << option << run.out;
+    EXPECT_THAT(run.err, HasSubstr("it is also an output of the same command")) << option;
+    EXPECT_TRUE(ReadText(scan) == before) << option;
+  }
+  const ProgramRun boards = RunSextant(
+      "boards " + (session / "scan_000.pcd").string() + " " + scan.string() + " --board " +
+      (session / "boards.yaml").string() + " --overwrite --json " + scan.string());
+  EXPECT_EQ(boards.exit_code, 2);
+  EXPECT_TRUE(ReadText(scan) == before);
+}
+
 TEST(Calibrate, WrongUseIsReported) {
   const ProgramRun nothing = RunSextant("calibrate");
   EXPECT_EQ(nothing.exit_code, 2);

@@ -61,9 +61,7 @@ TEST(Refused, CountsOutOfRange) {
         "boards a.pcd --board b.yaml"}) {
     ExpectRefused(std::string(command) + " --seed -1", "--seed");
   }
-  for (const char* command : {"solve a.txt --json ''", "bag a.bag --extract ''", "solve ''"}) {
-    ExpectRefused(command, "expected a text, got an empty one");
-  }
+  ExpectRefused("solve ''", "expected a text, got an empty one");
 }
 
 std::string ScaledPoints(const std::string& exponent) {
@@ -116,13 +114,13 @@ TEST(Refused, ARecordingThatIsCutIsReadAndSaid) {
   SKIP_WHERE_NOT_BUILT();
   const std::string bytes = test::ReadText(test::SourceFolder() / "tests/fuzz/corpus/rosbag1/none");
   const std::string path = TestPath("cut.bag");
-  // The chunk with the messages begins after the header of 4109 bytes; the index follows.
+  // The index follows the chunk with the messages.
   WriteText(path, bytes.substr(0, bytes.size() - 300));
   const ProgramRun run = RunSextant("bag " + path);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, AllOf(HasSubstr("3 topics, 3 messages"), HasSubstr("warning: the file ends"),
                              HasSubstr("the 3 messages before it are read")));
-  WriteText(path, bytes.substr(0, 4100));
+  WriteText(path, bytes.substr(0, bytes.find("compression=")));
   EXPECT_THAT(RunSextant("bag " + path).err, HasSubstr("nothing can be recovered"));
 }
 

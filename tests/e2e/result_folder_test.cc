@@ -8,6 +8,7 @@
 #include <string>
 
 #include "e2e/run_sextant.h"
+#include "support/file_marks.h"
 
 namespace sextant::test {
 namespace {
@@ -31,6 +32,27 @@ std::string RowsIn(const std::string& folder) {
 
 ProgramRun RunShard(const std::string& study, const std::string& options) {
   return RunSextant("run " + study + " " + options + " --out " + TestPath("parts"));
+}
+
+TEST(ResultFolder, TheReportOfACopyIsReplacedUnlessItWasChanged) {
+  if (!KeepsMarks(TestFolder())) GTEST_SKIP() << "the file system keeps no attributes";
+  const std::string experiment = WriteStudy("experiment.yaml", "", 20);
+  const std::string out = TestPath("out");
+  ASSERT_EQ(RunSextant("run " + experiment + " --out " + out).exit_code, 0);
+  // As in a clone of a repository: without marks and without rows.
+  const std::string copy = TestPath("copy");
+  fs::create_directories(copy);
+  for (const char* name : {"report.md", "summary.json", "tables.tex"}) {
+    WriteText(copy + "/" + name, ReadText(out + "/" + name));
+  }
+  const ProgramRun again = RunSextant("run " + experiment + " --out " + copy);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  const std::string other = WriteStudy("other.yaml", "", 20);
+  EXPECT_EQ(RunSextant("run " + other + " --fresh --out " + copy).exit_code, 0) << "marked now";
+  WriteText(copy + "/tables.tex", "mine");
+  const ProgramRun changed = RunSextant("run " + other + " --out " + copy);
+  EXPECT_EQ(changed.exit_code, 2);
+  EXPECT_THAT(changed.err, HasSubstr("it was changed since sextant wrote it; --overwrite"));
 }
 
 TEST(ResultFolder, ASecondProcessIsRefusedWithTheNumberOfTheFirst) {

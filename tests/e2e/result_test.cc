@@ -180,7 +180,7 @@ TEST_F(ResultCommands, AdviseReportsWhatItNeeds) {
   test::WriteText(board, "id: 0\ntop_right_m: 1\nright_bottom_m: 1\n");
   EXPECT_THAT(RunSextant("advise " + board).err, HasSubstr("this is a board file"));
   const ProgramRun picture = RunSextant("advise " + Result() + " --picture /nowhere/a.png");
-  EXPECT_EQ(picture.exit_code, 2);
+  EXPECT_EQ(picture.exit_code, 4);
   EXPECT_EQ(picture.out, "") << "before the work";
   EXPECT_THAT(picture.err, HasSubstr("cannot write '/nowhere/a.png'"));
   EXPECT_THAT(RunSextant("advise " + Result() + " --picture a.xyz").err,

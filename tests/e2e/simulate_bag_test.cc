@@ -165,7 +165,7 @@ TEST(SimulateBag, WhatCannotBeRecordedIsRefusedBeforeAnythingIsWritten) {
     return;
   }
   EXPECT_THAT(refusal("--level corners"), HasSubstr("--bag: only the level full"));
-  EXPECT_THAT(refusal("--scans 5 --interval 1e9"), HasSubstr("--bag: ROS counts time up to"));
+  EXPECT_THAT(refusal("--scans 5000 --interval 1e6"), HasSubstr("--bag: ROS counts time up to"));
 }
 
 }  // namespace

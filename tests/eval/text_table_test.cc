@@ -59,10 +59,10 @@ TEST(TextTable, WrapsTheWidestColumns) {
   TextTable table({"name", "choices", "meaning"}, TextTable::Columns::kWords);
   table.AddRow({"family", "tag16h5|tag25h9|tag36h10|tag36h11", "which tags are searched for"});
   EXPECT_EQ(table.Plain(50),
-            "name    choices             meaning\n"
+            "name    choices               meaning\n"
             "--------------------------------------------------\n"
-            "family  tag16h5|tag25h9|    which tags are\n"
-            "        tag36h10|tag36h11   searched for\n");
+            "family  tag16h5|tag25h9|      which tags are\n"
+            "        tag36h10|tag36h11     searched for\n");
   table.AddRow({"x", std::string(1000, 'y'), std::string(1000, 'z')});
   std::istringstream lines(table.Plain(50));
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 50U) << line;

@@ -201,17 +201,12 @@ TEST_F(Mpi, AMistakeOfTheUserIsToldOnce) {
 
 TEST_F(Mpi, TheSlurmJobStartsIt) {
   const std::filesystem::path experiment = WriteExperiment(150);
-  const std::filesystem::path bin = TestFolder() / "bin";
-  std::filesystem::create_directories(bin);
-  // What Slurm's own does with these arguments on two nodes.
-  WriteText(bin / "srun",
-            "#!/bin/sh\n[ \"$1 $2\" = '--mpi=pmix --cpus-per-task=1' ] || exit 9\nshift 2\nexec " +
-                Mpirun() + " -n 2 \"$@\"\n");
-  std::filesystem::permissions(bin / "srun", std::filesystem::perms::owner_all);
-  const ProgramRun run = RunProgram(
-      std::string(kAsRootOnOneCore) + "SLURM_CPUS_PER_TASK=1 SEXTANT_MPI=" + Program() +
-          " PATH=" + bin.string() + ":$PATH " + (SourceRoot() / "scripts/slurm/mpi").string(),
-      Quoted(experiment) + " --no-csv --out " + Quoted(TestFolder() / "out"));
+  const std::filesystem::path bin = SourceRoot() / "tests/mpi/bin";
+  const ProgramRun run =
+      RunProgram(std::string(kAsRootOnOneCore) + "SLURM_CPUS_PER_TASK=1 SEXTANT_MPI=" + Program() +
+                     " MPIRUN=" + Mpirun() + " PATH=" + bin.string() + ":$PATH " +
+                     (SourceRoot() / "scripts/slurm/mpi").string(),
+                 Quoted(experiment) + " --no-csv --out " + Quoted(TestFolder() / "out"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Rows("out") == WholeRows(experiment));
 }

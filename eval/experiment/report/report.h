@@ -38,6 +38,9 @@ struct ReportTable {
 };
 std::vector<ReportTable> MakeTables(const Experiment& experiment, const ReportData& data);
 
+/// The words by which the Markdown states what wrote it.
+std::string ReportOrigin(const Experiment& experiment);
+
 /// The report as Markdown, as plain text for a terminal, and its tables in LaTeX (booktabs).
 std::string FormatMarkdown(const Experiment& experiment, const ReportData& data);
 std::string FormatPlain(const Experiment& experiment, const ReportData& data);

@@ -137,13 +137,15 @@ std::string MarkdownLines(const std::string& text) {
 
 }  // namespace
 
+std::string ReportOrigin(const Experiment& experiment) {
+  return fmt::format("Written by `sextant run` from the experiment `{}`:", experiment.name);
+}
+
 std::string FormatMarkdown(const Experiment& experiment, const ReportData& data) {
   std::string text = fmt::format("# {}\n\n", MarkdownText(experiment.title));
   if (!experiment.text.empty()) text += MarkdownLines(experiment.text) + "\n";
-  text += fmt::format(
-      "Written by `sextant run` from the experiment `{}`: {} trials per condition, seed {}. In "
-      "brackets: 95 percent intervals.\n",
-      experiment.name, experiment.trials, experiment.seed);
+  text += fmt::format("{} {} trials per condition, seed {}. In brackets: 95 percent intervals.\n",
+                      ReportOrigin(experiment), experiment.trials, experiment.seed);
   for (const ReportTable& table : MakeTables(experiment, data)) {
     if (!table.title.empty()) text += fmt::format("\n## {}\n", MarkdownText(table.title));
     text += "\n" + table.table.Markdown();

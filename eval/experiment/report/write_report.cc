@@ -22,18 +22,20 @@ Expected<void> DrawPlots(const Experiment& experiment, const ReportData& data,
 
 }  // namespace
 
-std::vector<std::filesystem::path> ReportFiles(const Experiment& experiment,
-                                               const std::filesystem::path& folder,
-                                               const ReportSettings& settings) {
-  std::vector<std::filesystem::path> files = {folder / "summary.json", folder / "report.md",
-                                              folder / "tables.tex"};
-  if (settings.csv) files.push_back(folder / "rows.csv");
+Expected<void> ClaimReportFiles(const Experiment& experiment, const std::filesystem::path& folder,
+                                const ReportSettings& settings,
+                                const std::vector<std::string>& more) {
+  std::vector<std::string> names = {"summary.json", "report.md", "tables.tex"};
+  if (settings.csv) names.emplace_back("rows.csv");
   for (const PlotSpec& plot : experiment.plots) {
     for (const char* extension : {".svg", ".png"}) {
-      if (settings.plots) files.push_back(folder / (plot.name + extension));
+      if (settings.plots) names.push_back(plot.name + extension);
     }
   }
-  return files;
+  names.insert(names.end(), more.begin(), more.end());
+  const OutputUse use{.is_recognised = IsPageOf(folder / "report.md", ReportOrigin(experiment))};
+  for (const std::string& name : names) SEXTANT_RETURN_IF_ERROR(ClaimOutput(folder / name, use));
+  return {};
 }
 
 Expected<std::string> WriteReport(const Experiment& experiment,

@@ -14,10 +14,12 @@ struct ReportSettings {
   bool plots = true;
 };
 
-/// The files that WriteReport may write into the folder, to be checked before the trials.
-std::vector<std::filesystem::path> ReportFiles(const Experiment& experiment,
-                                               const std::filesystem::path& folder,
-                                               const ReportSettings& settings);
+/// Claims the files that WriteReport may write into the folder, and those named `more` there,
+/// before the trials. If the folder's report.md is of this experiment, all are replaced that nobody
+/// has changed, in a copy or a fresh clone too. Errors: those of ClaimOutput.
+Expected<void> ClaimReportFiles(const Experiment& experiment, const std::filesystem::path& folder,
+                                const ReportSettings& settings,
+                                const std::vector<std::string>& more = {});
 
 /// Reads the finished rows of the experiment and writes into the folder: rows.csv, summary.json,
 /// report.md, tables.tex, and NAME.svg and NAME.png for every plot. Returns the tables as plain

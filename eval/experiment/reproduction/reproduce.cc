@@ -32,9 +32,7 @@ Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const 
   const fs::path folder = settings.out / name;
   SEXTANT_ASSIGN_OR_RETURN(const OutputFolder locked, OutputFolder::Open(folder));
   const ReportSettings report{.csv = false, .plots = true};
-  for (const fs::path& file : ReportFiles(experiment, folder, report)) {
-    SEXTANT_RETURN_IF_ERROR(ClaimOutput(file));
-  }
+  SEXTANT_RETURN_IF_ERROR(ClaimReportFiles(experiment, folder, report));
   const fs::path rows = folder / "rows.sxtrows";
   SEXTANT_RETURN_IF_ERROR(
       RunTrials(experiment, {.rows_path = rows,
@@ -55,7 +53,8 @@ Expected<Reproduction> Reproduce(const ReproduceSettings& settings,
   SEXTANT_ASSIGN_OR_RETURN(const ClaimsFile file, ReadClaims(settings.claims));
   SEXTANT_ASSIGN_OR_RETURN(const OutputFolder locked, OutputFolder::Open(settings.out));
   const fs::path page = settings.out / "REPRODUCTION.md";
-  SEXTANT_RETURN_IF_ERROR(ClaimOutput(page));
+  SEXTANT_RETURN_IF_ERROR(
+      ClaimOutput(page, {.is_recognised = IsPageOf(page, "Written by `sextant reproduce")}));
   Reproduction reproduction;
   std::map<std::string, std::unique_ptr<Done>> done;
   std::map<std::string, RowsOf> rows;

@@ -29,14 +29,15 @@ TEST(Gnuplot, TheStringEndsWhereItShould) {
   for (const std::string& text : Texts()) {
     const std::string quoted = GnuplotText(text);
     ASSERT_TRUE(IsPlainLine(quoted));
-    ASSERT_TRUE(quoted.size() >= 2 && quoted.front() == '\'' && quoted.back() == '\'');
+    ASSERT_TRUE(quoted.size() >= 2 && quoted.front() == '"' && quoted.back() == '"');
     std::string read;
     for (std::size_t i = 1; i + 1 < quoted.size(); ++i) {
-      read += quoted[i];
-      if (quoted[i] != '\'') continue;
-      ASSERT_EQ(quoted[i + 1], '\'') << "a quote alone ends the string: " << quoted;
-      ASSERT_LT(i + 2, quoted.size());
-      ++i;
+      ASSERT_TRUE(std::string_view("\"'`@$%{}0123456789").find(quoted[i]) == std::string_view::npos)
+          << quoted;
+      const bool is_number = quoted[i] == '\\';
+      read +=
+          is_number ? static_cast<char>(std::stoi(quoted.substr(i + 1, 3), nullptr, 8)) : quoted[i];
+      if (is_number) i += 3;
     }
     EXPECT_EQ(read, PrintableLine(text));
   }
