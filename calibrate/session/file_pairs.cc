@@ -98,12 +98,13 @@ Expected<std::vector<fs::path>> ExpandPattern(const fs::path& pattern) {
     }
   }
   if (error) {
-    return MakeError(ErrorCode::kIo, fmt::format("cannot read the folder '{}': {}", folder.string(),
-                                                 error.message()));
+    return MakeError(ErrorCode::kIo,
+                     fmt::format("cannot read the folder '{}': {}",
+                                 Printable(folder.string(), 300), error.message()));
   }
   if (files.empty()) {
     return MakeError(ErrorCode::kMissingData,
-                     fmt::format("no file is named '{}'", pattern.string()));
+                     fmt::format("no file is named '{}'", Printable(pattern.string(), 300)));
   }
   std::vector<std::pair<std::string, fs::path>> by_key;
   for (fs::path& file : files) by_key.emplace_back(NaturalKey(file.string()), std::move(file));

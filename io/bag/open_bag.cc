@@ -5,6 +5,7 @@
 #include "io/bag/open_bytes.h"
 #include "io/bag/rosbag1_records.h"
 #include "io/bag/topic_table.h"
+#include "io/text/git_lfs.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
@@ -53,6 +54,7 @@ Expected<std::unique_ptr<Bag>> OpenBag(const std::filesystem::path& path) {
   }
   SEXTANT_ASSIGN_OR_RETURN(const std::shared_ptr<const MappedFile> file, MappedFile::Open(path));
   const std::string_view bytes = file->bytes();
+  SEXTANT_RETURN_IF_ERROR(AtPlace(RefuseGitLfsPointer(bytes), {.file = path.string()}));
   if (bytes.starts_with("#ROSBAG"sv)) return OpenRosbag1(bytes, path.string(), file);
   if (bytes.starts_with("\x89MCAP"sv)) return OpenMcap(bytes, path.string(), file);
   if (bytes.starts_with("SQLite format 3\0"sv)) return OpenRosbag2Sqlite(path);

@@ -56,6 +56,8 @@ class Rosbag1 final : public Bag {
   std::string file_;
   std::shared_ptr<const void> owner_;
   std::uint64_t index_position_ = 0;  // 0: the recorder did not close the bag.
+  // Connections and summaries of chunks from there on: those that are to come.
+  std::uint64_t index_records_ = 0;
   std::vector<Chunk> chunks_;
   TopicTable table_;
   Connections connections_;
@@ -97,8 +99,8 @@ Expected<void> Rosbag1::Open() {
   }
   if (!cut_ && index_position_ == 0) {
     cut_ = {.byte = bytes_.size(), .reason = "its recorder did not close it"};
-  } else if (!cut_ && index_position_ > bytes_.size()) {
-    cut_ = {.byte = bytes_.size(), .reason = "the file ends before its index"};
+  } else if (!cut_ && (index_position_ > bytes_.size() || index_records_ > 0)) {
+    cut_ = {.byte = bytes_.size(), .reason = "the file ends before the end of its index"};
   }
   if (!cut_) return CountIndex(records);
   SEXTANT_RETURN_IF_ERROR(CountContents());
@@ -150,12 +152,16 @@ Expected<void> Rosbag1::CheckBagHeader(BagRecords& records) {
   }
   // The recorder sets index_pos when it closes the bag.
   index_position_ = Uint64Field(fields, "index_pos").value_or(0);
+  index_records_ = std::uint64_t{Uint32Field(fields, "conn_count").value_or(0)} +
+                   Uint32Field(fields, "chunk_count").value_or(0);
   return {};
 }
 
 Expected<void> Rosbag1::TakeRecord(const BagRecords& records, const BagRecord& record) {
   const std::optional<BagOp> op = OpOf(record.fields);
   if (!op) return records.Fail("a record has no operation");
+  const bool is_of_index = *op == BagOp::kConnection || *op == BagOp::kChunkInfo;
+  if (is_of_index && index_records_ > 0) --index_records_;
   if (*op == BagOp::kChunk) return TakeChunk(records, record);
   if (*op == BagOp::kIndexData) return TakeIndex(records, record);
   if (*op == BagOp::kConnection) return AddConnection(records, record);

@@ -42,6 +42,13 @@ std::vector<Ring> RingsWithReturns(const PointCloud& cloud) {
   return rings;
 }
 
+// The unit of times since 1970, by their size: Livox's driver has nanoseconds as floating point.
+double UnitOf(double time_since_1970) {
+  if (time_since_1970 > 1e17) return 1e-9;
+  if (time_since_1970 > 1e14) return 1e-6;
+  return time_since_1970 > 1e11 ? 1e-3 : 1.0;
+}
+
 // Rays without a return may lack a time, too: their times are NaN before and 0 after.
 void MakeTimesRelative(std::vector<double>& times) {
   double first = std::numeric_limits<double>::infinity();
@@ -52,7 +59,8 @@ void MakeTimesRelative(std::vector<double>& times) {
     last = std::max(last, time);
   }
   const double start = first < 0.0 || last > kMaxScan_s ? first : 0.0;
-  for (double& time : times) time = std::isfinite(time) ? time - start : 0.0;
+  const double unit_s = UnitOf(last);
+  for (double& time : times) time = std::isfinite(time) ? (time - start) * unit_s : 0.0;
 }
 
 }  // namespace
@@ -75,7 +83,7 @@ Expected<void> CloudBuilder::Add(const Value& value) {
   double time = 0.0;
   if (columns_.ring != CloudColumns::kNone) {
     ring = value(columns_.ring);
-    const bool fits = ring >= 0.0 && ring <= 65535.0 && ring == std::floor(ring);
+    const bool fits = IsRingNumber(ring);
     if (!fits && is_return) {
       return MakeError(ErrorCode::kParse,
                        fmt::format("ring: expected a whole number from 0 to 65535, got {}", ring));

@@ -34,7 +34,8 @@ class CloudBuilder {
   std::size_t size() const { return cloud_.points.size(); }
 
   /// The cloud. If any time is negative or exceeds 1000 s, the longest possible scan (times since
-  /// 1970, for example), all times are counted from the earliest. Rings keep their numbers.
+  /// 1970, for example), all times are counted from the earliest; beyond 1e11, 1e14 and 1e17 they
+  /// are milliseconds, microseconds and nanoseconds. Rings keep their numbers.
   PointCloud Take() &&;
   /// As Take, with the rings ordered by OrderRings.
   PointCloud Finish() &&;

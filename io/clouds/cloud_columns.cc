@@ -3,7 +3,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -59,6 +61,7 @@ std::string Normalised(std::string_view name) {
   }
   constexpr std::string_view kCloudCompare = "scalar_";
   if (lower.starts_with(kCloudCompare)) lower.erase(0, kCloudCompare.size());
+  if (lower.starts_with("//")) lower.erase(0, 2);  // CloudCompare's first line begins so.
   return lower;
 }
 
@@ -88,8 +91,11 @@ Expected<CloudColumns> FindCloudColumns(std::span<const NamedColumn> columns) {
       place[k] = i;
     }
   }
+  const bool is_livox = std::ranges::any_of(
+      columns, [](const NamedColumn& column) { return Normalised(column.name) == "tag"; });
   for (std::size_t k = 0; k < kKnownNames.size(); ++k) {
     const KnownName& known = kKnownNames[k];
+    if (is_livox && known.name == "line") continue;
     if (place[k] == CloudColumns::kNone || found.*known.column != CloudColumns::kNone) continue;
     found.*known.column = place[k];
     if (known.column != &CloudColumns::time) continue;
@@ -104,6 +110,17 @@ Expected<CloudColumns> FindCloudColumns(std::span<const NamedColumn> columns) {
                                                     name, Listed(columns)));
   }
   return found;
+}
+
+CloudColumns UnnamedColumns(std::size_t columns, bool fifth_is_ring) {
+  CloudColumns found{.x = 0, .y = 1, .z = 2};
+  if (columns == 4 || columns == 5) found.intensity = 3;
+  if (columns == 5 && fifth_is_ring) found.ring = 4;
+  return found;
+}
+
+bool IsRingNumber(double value) {
+  return value >= 0.0 && value <= 65535.0 && value == std::floor(value);
 }
 
 }  // namespace sextant

@@ -33,8 +33,15 @@ struct CloudColumns {
 /// (reflectivity, remission, i), ring (laser_id, channel, line), time (t, time_us, time_ns,
 /// offset_time [ns], adjustedtime [us], timestamp, time_stamp). If several columns qualify, the
 /// first name in this list is used. Other columns (azimuth, distance, normals, colours) are
-/// ignored. Error: kParse if x, y or z is missing or a name appears twice; it does not name the
-/// file.
+/// ignored, and so is the line of a sensor without rings (Livox), which comes with a tag. Error:
+/// kParse if x, y or z is missing or a name appears twice; it does not name the file.
 Expected<CloudColumns> FindCloudColumns(std::span<const NamedColumn> columns);
+
+/// The columns of a table without names, by their number: x, y and z; the fourth of 4 or 5 is the
+/// intensity, the fifth of 5 the ring if every number in it is one. Others are ignored. Requires 3.
+CloudColumns UnnamedColumns(std::size_t columns, bool fifth_is_ring);
+
+/// Whether it is a whole number from 0 to 65535.
+bool IsRingNumber(double value);
 
 }  // namespace sextant

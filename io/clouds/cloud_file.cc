@@ -4,13 +4,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <vector>
 
 #include "io/clouds/cloud_builder.h"
 #include "io/clouds/csv_cloud.h"
-#include "io/clouds/kitti_cloud.h"
+#include "io/clouds/float_cloud.h"
+#include "io/clouds/npy_cloud.h"
 #include "io/clouds/pcd_file.h"
 #include "io/clouds/ply_file.h"
+#include "io/text/line_reader.h"
 #include "io/text/number_text.h"
 #include "io/text/text_file.h"
 
@@ -24,14 +28,28 @@ std::string LowerExtension(const std::string& file) {
   return extension;
 }
 
-}  // namespace
-
-Expected<PointCloud> ReadCloud(const std::filesystem::path& path) {
-  return ReadWith(path, ParseCloud);
+bool IsTableExtension(const std::string& extension) {
+  constexpr std::array kExtensions = {".csv", ".txt", ".xyz", ".pts", ".asc", ".tsv"};
+  return std::ranges::find(kExtensions, extension) != kExtensions.end();
 }
 
-Expected<PointCloud> ParseCloud(std::string_view bytes, const std::string& file) {
+// Whether the bytes are lines of text whose first has three values at least.
+bool LooksLikeTable(std::string_view bytes) {
+  const std::string_view head = bytes.substr(0, 4096);
+  const bool is_text = std::ranges::none_of(
+      head, [](unsigned char c) { return c < 0x20 && c != '\n' && c != '\r' && c != '\t'; });
+  if (!is_text) return false;
+  for (const auto separator : {LineReader::Separator::kSemicolons, LineReader::Separator::kCommas,
+                               LineReader::Separator::kBlanks}) {
+    LineReader in("", head, separator);
+    if (in.Next() && in.field_count() >= 3) return true;
+  }
+  return false;
+}
+
+Expected<PointCloud> ParseByContent(std::string_view bytes, const std::string& file) {
   const std::string extension = LowerExtension(file);
+  if (bytes.starts_with(kNpyMagic)) return ParseNpyCloud(bytes, file);
   if (bytes.starts_with("# .PCD") || bytes.starts_with("VERSION") || extension == ".pcd") {
     Expected<PointCloud> cloud = ParsePcd(bytes, file);
     if (cloud && !cloud->ring.empty()) OrderRings(*cloud);
@@ -40,11 +58,45 @@ Expected<PointCloud> ParseCloud(std::string_view bytes, const std::string& file)
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r") || extension == ".ply") {
     return ParsePly(bytes, file);
   }
-  if (extension == ".bin") return ParseKittiCloud(bytes, file);
-  if (extension == ".csv" || extension == ".txt") return ParseCsvCloud(bytes, file);
+  if (extension == ".bin") return ParseFloatCloud(bytes, file);
+  if (IsTableExtension(extension) || LooksLikeTable(bytes)) return ParseCsvCloud(bytes, file);
   return MakeError(
       ErrorCode::kParse,
-      fmt::format("{}: expected a scan: .pcd, .ply, .bin (KITTI) or .csv", Printable(file, 200)));
+      fmt::format("{}: expected a scan: .pcd, .ply, .npy, .bin (KITTI, nuScenes), or a table of "
+                  "numbers (.csv, .txt, .xyz, .pts){}",
+                  Printable(file, 200),
+                  bytes.starts_with("LASF") ? "; convert LAS to one of them" : ""));
+}
+
+// No sensor measures as far as half of the points of a scan in millimetres.
+Expected<void> CheckMetres(const PointCloud& cloud, const std::string& file) {
+  constexpr double kFarthest_m = 600.0;
+  std::vector<double> ranges_m;
+  for (const Eigen::Vector3d& point : cloud.points) {
+    if (point.allFinite() && !point.isZero()) ranges_m.push_back(point.norm());
+  }
+  if (ranges_m.empty()) return {};
+  const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
+  std::ranges::nth_element(ranges_m, middle);
+  if (*middle <= kFarthest_m) return {};
+  return MakeError(
+      ErrorCode::kInvalidInput,
+      fmt::format("{}: half of the points are {:.0f} m away and more; coordinates are "
+                  "in metres and begin at the sensor. If these are millimetres, divide "
+                  "by 1000",
+                  Printable(file, 200), *middle));
+}
+
+}  // namespace
+
+Expected<PointCloud> ReadCloud(const std::filesystem::path& path) {
+  return ReadWith(path, ParseCloud);
+}
+
+Expected<PointCloud> ParseCloud(std::string_view bytes, const std::string& file) {
+  SEXTANT_ASSIGN_OR_RETURN(PointCloud cloud, ParseByContent(bytes, file));
+  SEXTANT_RETURN_IF_ERROR(CheckMetres(cloud, file));
+  return cloud;
 }
 
 }  // namespace sextant

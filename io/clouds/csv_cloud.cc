@@ -3,7 +3,9 @@
 
 #include <fmt/core.h>
 
+#include <charconv>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "io/clouds/cloud_builder.h"
@@ -13,13 +15,82 @@
 namespace sextant {
 namespace {
 
-std::vector<NamedColumn> ReadHeader(LineReader& in) {
-  std::vector<NamedColumn> columns;
-  if (!in.Require("a header line with the names of the columns")) return columns;
+// The columns of a table and the number of its values in a line.
+struct TableForm {
+  std::vector<NamedColumn> names{};
+  bool has_header = false;
+  int lines_before = 0;  // Number of the last line before the points.
+};
+
+std::optional<double> NumberIn(std::string_view field) {
+  double value = 0.0;
+  const char* const end = field.data() + field.size();
+  const auto [stop, error] = std::from_chars(field.data(), end, value);
+  if (field.empty() || stop != end || error != std::errc()) return std::nullopt;
+  return value;
+}
+
+bool IsAllNumbers(const LineReader& in) {
   for (std::size_t i = 0; i < in.field_count(); ++i) {
-    columns.push_back({.name = std::string(in.Field(i))});
+    if (!NumberIn(in.Field(i))) return false;
   }
-  return columns;
+  return true;
+}
+
+// A line of one number, the count of the points (.pts), precedes the first point.
+LineReader::Separator SeparatorOf(std::string_view text) {
+  LineReader in("", text);
+  if (in.Next() && in.field_count() == 1 && IsAllNumbers(in)) in.Next();
+  if (in.field_count() == 0) return LineReader::Separator::kCommas;
+  // The whole line: a header may have blanks in its names.
+  const char* const begin = in.Field(0).data();
+  const std::string_view rest(begin, static_cast<std::size_t>(text.data() + text.size() - begin));
+  const std::string_view line = rest.substr(0, rest.find('\n'));
+  if (line.find(';') != std::string_view::npos) return LineReader::Separator::kSemicolons;
+  return line.find(',') != std::string_view::npos ? LineReader::Separator::kCommas
+                                                  : LineReader::Separator::kBlanks;
+}
+
+TableForm ReadForm(LineReader& in) {
+  TableForm form;
+  if (!in.Require("a header line with the names of the columns")) return form;
+  if (in.field_count() == 1 && IsAllNumbers(in)) {
+    form.lines_before = in.line();
+    if (!in.Require("points")) return form;
+  }
+  form.has_header = !IsAllNumbers(in);
+  if (form.has_header) form.lines_before = in.line();
+  for (std::size_t i = 0; i < in.field_count(); ++i) {
+    form.names.push_back({.name = form.has_header ? std::string(in.Field(i)) : std::string()});
+  }
+  return form;
+}
+
+// Goes to the next line with a point.
+bool NextPoint(LineReader& in, const TableForm& form) {
+  while (in.Next()) {
+    if (in.line() > form.lines_before) return true;
+  }
+  return false;
+}
+
+// Whether every fifth value of a table without names is a ring.
+bool HasRingColumn(LineReader in, const TableForm& form) {
+  if (form.names.size() != 5) return false;
+  while (NextPoint(in, form)) {
+    if (in.field_count() == 5 && !IsRingNumber(NumberIn(in.Field(4)).value_or(-1.0))) return false;
+  }
+  return true;
+}
+
+Expected<CloudColumns> ColumnsOf(const TableForm& form, const LineReader& start) {
+  if (form.has_header) return FindCloudColumns(form.names);
+  if (form.names.size() >= 3) {
+    return UnnamedColumns(form.names.size(), HasRingColumn(start, form));
+  }
+  return MakeError(ErrorCode::kParse,
+                   fmt::format("expected x, y and z in each line, got {} value{}",
+                               form.names.size(), form.names.size() == 1 ? "" : "s"));
 }
 
 }  // namespace
@@ -29,19 +100,22 @@ Expected<PointCloud> ReadCsvCloud(const std::filesystem::path& path) {
 }
 
 Expected<PointCloud> ParseCsvCloud(std::string_view text, const std::string& file) {
-  LineReader in(file, text, LineReader::Separator::kCommas);
-  const std::vector<NamedColumn> names = ReadHeader(in);
+  const LineReader start(file, text, SeparatorOf(text));
+  LineReader in = start;
+  const TableForm form = ReadForm(in);
   if (!in.ok()) return in.TakeError();
-  const Expected<CloudColumns> columns = FindCloudColumns(names);
+  const Expected<CloudColumns> columns = ColumnsOf(form, start);
   if (!columns) {
     in.Fail(columns.error().code, columns.error().message);
     return in.TakeError();
   }
-  const std::string form = fmt::format("{} values as in the header", names.size());
+  in = start;
+  const std::string row = fmt::format("{} values as in the {}", form.names.size(),
+                                      form.has_header ? "header" : "first line");
   CloudBuilder builder(*columns);
-  while (in.Next() && in.HasFields(names.size(), form)) {
+  while (NextPoint(in, form) && in.HasFields(form.names.size(), row)) {
     const Expected<void> added = builder.Add([&](std::size_t column) {
-      const std::string& name = names[column].name;
+      const std::string& name = form.names[column].name;
       const Place place{.file = file, .line = in.line(), .field = column + 1, .name = name};
       Expected<double> value = ParseFinite(in.Field(column), place);
       if (value) return *value;

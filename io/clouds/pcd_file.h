@@ -12,13 +12,10 @@
 namespace sextant {
 
 /// Reads a scan from a PCD file (Point Cloud Library, versions 0.6 and 0.7): ascii, binary or
-/// binary_compressed, with these fields of any type:
-/// - x, y, z: required; a point with a coordinate that is not finite becomes NaN throughout.
-/// - intensity.
-/// - ring: whole numbers up to 65535, kept as they are in the file.
-/// - time, t, timestamp or time_stamp: seconds if floating point, nanoseconds if integer. Times
-///   that are negative or beyond 1000 s are counted from the earliest.
-/// Other fields are skipped; VIEWPOINT is not applied.
+/// binary_compressed. Fields of any type are found by the names of io/clouds/cloud_columns.h; those
+/// of several values a point, padding and others are skipped. Rings are kept as they are in the
+/// file; a point with a coordinate that is not finite becomes NaN throughout. VIEWPOINT is not
+/// applied.
 ///
 /// Errors: kIo; kParse and kNonFinite with file and line. Counts in the header are checked against
 /// the data before memory is allocated: memory is at most 40 times the file's size, that of

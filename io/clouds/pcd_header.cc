@@ -104,7 +104,10 @@ void ReadTypes(LineReader& in, Lines& lines) {
 void ReadCounts(LineReader& in, Lines& lines) {
   if (!HasOnePerField(in, lines)) return;
   for (std::size_t i = 0; i < lines.fields.size(); ++i) {
-    lines.fields[i].count = static_cast<std::size_t>(in.Integer(i + 1, 1, kMaxCount, "COUNT"));
+    PcdField& field = lines.fields[i];
+    field.count = static_cast<std::size_t>(in.Integer(i + 1, 0, kMaxCount, "COUNT"));
+    // PCL writes 0 for the one value of messages whose fields state no count.
+    if (field.count == 0 && field.name != "_") field.count = 1;
   }
 }
 
@@ -198,13 +201,6 @@ ScalarType PcdField::scalar_type() const {
   if (size == 2) return is_signed ? ScalarType::kInt16 : ScalarType::kUint16;
   if (size == 4) return is_signed ? ScalarType::kInt32 : ScalarType::kUint32;
   return is_signed ? ScalarType::kInt64 : ScalarType::kUint64;
-}
-
-const PcdField* PcdHeader::Find(std::string_view name) const {
-  const auto found = std::find_if(fields.begin(), fields.end(), [&](const PcdField& field) {
-    return field.name == name && field.count == 1;
-  });
-  return found == fields.end() ? nullptr : &*found;
 }
 
 Expected<PcdHeader> ParsePcdHeader(std::string_view text, const std::string& file) {

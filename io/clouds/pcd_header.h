@@ -37,9 +37,6 @@ struct PcdHeader {
   PcdEncoding encoding = PcdEncoding::kAscii;
   std::size_t body = 0;  ///< Byte in the file at which the data begins.
   int body_line = 1;     ///< Line on which the data begins.
-
-  /// The field of that name with one value per point, or null.
-  const PcdField* Find(std::string_view name) const;
 };
 
 /// Errors: kParse with file and line: no header, lists of different lengths, types and sizes that

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "io/clouds/cloud_builder.h"
 #include "io/clouds/pcd_file.h"
@@ -22,33 +23,14 @@ tl::unexpected<Error> Refuse(const std::string& file, int line, const std::strin
                    fmt::format("{}: {}", ToString(Place{.file = file, .line = line}), message));
 }
 
-// The fields that a PointCloud has, as indices into header.fields.
+// The fields that a PointCloud has, as indices into header.fields; those of several values a point
+// and padding have no name.
 Expected<CloudColumns> FindFields(const PcdHeader& header, const std::string& file) {
-  const auto index_of = [&header](const char* name) {
-    const PcdField* field = header.Find(name);
-    return field == nullptr ? CloudColumns::kNone
-                            : static_cast<std::size_t>(field - header.fields.data());
-  };
-  CloudColumns columns{.x = index_of("x"),
-                       .y = index_of("y"),
-                       .z = index_of("z"),
-                       .intensity = index_of("intensity"),
-                       .ring = index_of("ring")};
-  for (const auto& [column, name] :
-       {std::pair{columns.x, "x"}, {columns.y, "y"}, {columns.z, "z"}}) {
-    if (column != CloudColumns::kNone) continue;
-    return Refuse(file, 0,
-                  fmt::format("expected the fields x, y and z with one value each; {} is not among "
-                              "FIELDS",
-                              name));
+  std::vector<NamedColumn> columns;
+  for (const PcdField& field : header.fields) {
+    columns.push_back({field.count == 1 ? field.name : "_", field.type != 'F'});
   }
-  for (const char* name : {"time", "t", "timestamp", "time_stamp"}) {
-    if (columns.time == CloudColumns::kNone) columns.time = index_of(name);
-  }
-  if (columns.time != CloudColumns::kNone && header.fields[columns.time].type != 'F') {
-    columns.time_unit_s = 1e-9;
-  }
-  return columns;
+  return AtPlace(FindCloudColumns(columns), {.file = file, .name = "FIELDS"});
 }
 
 // A number of an ascii file; "nan" and "inf" are NaN, a ray without a return. A value of a 4-byte

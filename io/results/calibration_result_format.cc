@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text/escape.h"
+#include "base/text/printable.h"
 #include "io/blocks/json_blocks.h"
 #include "io/results/calibration_result.h"
 #include "io/text/degrees.h"
@@ -116,12 +117,19 @@ Json TrustJson(const TrustFigures& trust) {
   };
 }
 
+// Every text as one line without control characters, as the reader of both forms expects it.
+void MakeTextsPlain(Json& value) {
+  if (value.is_string()) value = PrintableLine(value.get<std::string>());
+  if (!value.is_structured()) return;
+  for (Json& item : value) MakeTextsPlain(item);
+}
+
 Json ResultJson(const CalibrationResult& result) {
   Json boards = Json::array();
   for (const Board& board : result.boards) boards.push_back(BoardJson(board));
   Json views = Json::array();
   for (const ResultView& view : result.views) views.push_back(ViewJson(view));
-  return {{"sextant_result", 1},
+  Json json = {{"sextant_result", 1},
           {"sextant", result.version},
           {"solver", result.solver},
           {"seed", result.seed},
@@ -138,6 +146,8 @@ Json ResultJson(const CalibrationResult& result) {
           {"lidar", result.lidar ? LidarJson(*result.lidar) : Json(nullptr)},
           {"boards", std::move(boards)},
           {"views", std::move(views)}};
+  MakeTextsPlain(json);
+  return json;
 }
 
 }  // namespace
@@ -163,7 +173,6 @@ std::string FormatCalibrationResult(const CalibrationResult& result) {
 }
 
 std::string FormatCalibrationResultJson(const CalibrationResult& result) {
-  // A path may hold bytes that are not UTF-8.
   return JsonText(ResultJson(result));
 }
 

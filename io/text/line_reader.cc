@@ -51,9 +51,10 @@ bool LineReader::AtEnd() const {
 
 void LineReader::Split(std::string_view line) {
   fields_.clear();
-  const bool commas = separator_ == Separator::kCommas;
+  const bool blanks = separator_ == Separator::kBlanks;
+  const char mark = separator_ == Separator::kSemicolons ? ';' : ',';
   while (true) {
-    const std::size_t end = commas ? line.find(',') : line.find_first_of(kBlank);
+    const std::size_t end = blanks ? line.find_first_of(kBlank) : line.find(mark);
     fields_.push_back(Trim(line.substr(0, end)));
     if (end == std::string_view::npos) return;
     if (fields_.size() == kMaxFields) {
@@ -61,7 +62,7 @@ void LineReader::Split(std::string_view line) {
                   fmt::format("expected at most {} fields in a line", kMaxFields));
     }
     line.remove_prefix(end + 1);
-    if (!commas) line = Trim(line);
+    if (blanks) line = Trim(line);
   }
 }
 

@@ -19,7 +19,7 @@ namespace sextant {
 /// Time is linear in the text, memory 16 bytes for each field of a line, which has at most 1000.
 class LineReader {
  public:
-  enum class Separator { kBlanks, kCommas };
+  enum class Separator { kBlanks, kCommas, kSemicolons };
 
   /// The text must outlive the reader.
   LineReader(std::string file, std::string_view text, Separator separator = Separator::kBlanks);

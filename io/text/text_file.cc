@@ -11,6 +11,7 @@
 
 #include "base/call_files.h"
 #include "base/descriptor.h"
+#include "io/text/git_lfs.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
@@ -60,6 +61,9 @@ Expected<std::string> ReadTextFile(const std::filesystem::path& path) {
     size += static_cast<std::size_t>(got);
   }
   text.resize(size);
+  if (const Expected<void> whole = RefuseGitLfsPointer(text); !whole) {
+    return ReadError(path, whole.error().message, whole.error().code);
+  }
   return text;
 }
 

@@ -17,7 +17,7 @@ inline constexpr std::size_t kMaxTextBytes = std::size_t{256} << 20;
 
 /// The bytes of a regular file; time and memory are its size. Errors: kIo, with the path and the
 /// system's reason; kInvalidOption for a file that is also an output of the call
-/// (base/call_files.h).
+/// (base/call_files.h); kParse for a Git LFS pointer (io/text/git_lfs.h).
 Expected<std::string> ReadTextFile(const std::filesystem::path& path);
 
 /// Refuses an input that is also an output of the call, without reading it. Whether it can be read

@@ -124,8 +124,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"KittiEmpty", "", kParse, "s.bin: byte 0: the file ends within a point"},
         BadText{"KittiCut", std::string(31, 'a'), kParse, "s.bin: byte 31: the file ends within"},
         BadText{"Empty", "", kParse, "s.csv:1: the file ends here, expected a header line"},
-        BadText{"NoHeader", "1,2,3\n4,5,6\n", kParse,
-                "s.csv:1: expected columns x, y and z; x is missing, the columns are: 1, 2, 3"},
+        BadText{"OtherNames", "a,b,c\n4,5,6\n", kParse,
+                "s.csv:1: expected columns x, y and z; x is missing, the columns are: a, b, c"},
+        BadText{"TwoNumbers", "1,2\n4,5\n", kParse, "s.csv:1: expected x, y and z in each line"},
+        BadText{"Millimetres", "1000,200,300\n2000,300,0\n", ErrorCode::kInvalidInput,
+                "are in metres"},
         BadText{"NoZ", "x,y\n1,2\n", kParse, "z is missing"},
         BadText{"TwiceX", "x,y,z,X\n", kParse, "s.csv:1: the column 'X' appears twice"},
         BadText{"NoPoints", "x,y,z\n", kParse, "expected points after the header"},
@@ -167,7 +170,7 @@ TEST(CloudFile, ReadsRealPcdWithRingsFromTheLowest) {
 }
 
 TEST(CloudFile, AnUnknownExtensionGivesTheKnownOnes) {
-  const Expected<PointCloud> cloud = ParseCloud("anything", "scan.xyz");
+  const Expected<PointCloud> cloud = ParseCloud("anything", "scan.obj");
   ASSERT_FALSE(cloud);
   EXPECT_THAT(cloud.error().message, testing::HasSubstr(".ply"));
 }

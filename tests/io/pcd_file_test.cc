@@ -179,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"FieldTwice", Changed(Xyz(0, "ascii"), "x y z", "x y x"), kParse,
                 "f:2: the field 'x' is named twice"},
         BadText{"NoZ", Changed(Xyz(0, "ascii"), "x y z", "x y w"), kParse,
-                "expected the fields x, y and z with one value each; z is not among FIELDS"},
+                "FIELDS: expected columns x, y and z; z is missing, the columns are: "},
         BadText{"Encoding", Xyz(0, "asci"), kParse, "f:10: unknown encoding 'asci'; did you mean"},
         BadText{"Contradiction", Changed(Xyz(2, "ascii"), "POINTS 2", "POINTS 3"), kParse,
                 "the header is inconsistent: POINTS is 3, but WIDTH x HEIGHT is 2"},

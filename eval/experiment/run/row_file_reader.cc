@@ -113,7 +113,7 @@ void RowFileReader::FindBlocks() {
       // Marks that a hostile file repeats could each claim the rest of the file.
       in_vain += bytes.size();
       if (in_vain > kMaxReads * file_bytes_) break;
-      const std::optional<std::uint64_t> mark = NextMark(offset + 8, bytes);
+      const std::optional<std::uint64_t> mark = NextMark(offset + 1, bytes);
       if (!mark) break;
       offset = *mark;
       continue;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/clouds/kitti_cloud.h"
+#include "io/clouds/float_cloud.h"
 #include "tests/fuzz/cloud.h"
 #include "tests/fuzz/entry_point.h"
 
 namespace sextant::test {
 
-SEXTANT_FUZZ_TARGET(kitti, bytes) { CheckCloud(ParseKittiCloud(bytes, "f")); }
+SEXTANT_FUZZ_TARGET(kitti, bytes) { CheckCloud(ParseFloatCloud(bytes, "f")); }
 
 }  // namespace sextant::test

@@ -115,7 +115,8 @@ TEST(Ros2, McapIsReadUpToEveryCut) {
     EXPECT_FALSE((*OpenMcap(bytes, "f", nullptr))->cut()) << name;
     std::size_t most = 0;
     for (std::size_t size = 8; size < bytes.size(); ++size) {
-      const Expected<std::unique_ptr<Bag>> bag = OpenMcap(bytes.substr(0, size), "f", nullptr);
+      const std::string_view begun = std::string_view(bytes).substr(0, size);
+      const Expected<std::unique_ptr<Bag>> bag = OpenMcap(begun, "f", nullptr);
       if (!bag) {
         EXPECT_EQ(most, 0U) << name << " " << size;
         EXPECT_THAT(bag.error().message, HasSubstr("before its first message")) << size;
