@@ -7,7 +7,9 @@
 #include "calibrate/configuration.h"
 #include "calibrate/observe/probe_size.h"
 #include "calibrate/trust/diagnose.h"
+#include "calibrate/trust/evidence.h"
 #include "calibrate/trust/information.h"
+#include "calibrate/trust/left_out.h"
 #include "calibrate/trust/make_result.h"
 #include "eval/diagnostics/pair_diagnostics.h"
 #include "io/clouds/cloud_file.h"
@@ -58,7 +60,11 @@ std::vector<std::string> WarningsFor(const Calibration& calibration, const Match
   const auto add = [&warnings](const std::vector<std::string>& lines) {
     warnings.insert(warnings.end(), lines.begin(), lines.end());
   };
-  add(DescribeAmbiguity(assembly.matching, match));
+  const auto named = [&](std::vector<std::string> lines) {
+    for (std::string& line : lines) line = WithViewNames(line, calibration.observed.views);
+    return lines;
+  };
+  add(named(DescribeAmbiguity(assembly.matching, match)));
   for (const std::filesystem::path& file : calibration.observed.session.files.without_partner) {
     warnings.push_back(fmt::format("without a partner: {}", Printable(file.string(), 300)));
   }
@@ -66,31 +72,65 @@ std::vector<std::string> WarningsFor(const Calibration& calibration, const Match
   const Rigid3d& pose =
       report != nullptr ? report->cam_from_lidar : assembly.matching.cam_from_lidar;
   add(Diagnose(calibration.observed.views, assembly, pose));
-  add(Describe(DiagnosePairs(assembly.problem)));
+  add(named(Describe(DiagnosePairs(assembly.problem))));
   return warnings;
 }
 
-// The answer with what each view contributes to it, and with how far the views contradict it.
-CalibrationResult CheckedResult(const Solver& solver, const SolveReport& report,
-                                const CalibrateOptions& options, Calibration& calibration) {
-  const Assembly& assembly = calibration.assembly;
-  const std::uint64_t seed = options.observe.search.seed;
-  CalibrationResult result = MakeResult(
-      calibration.observed.views, assembly, report,
-      {.seed = seed,
-       .configuration = ConfigurationLines(calibration.observed, options, solver.spec().name),
-       .warnings = calibration.warnings});
-  AddInformation(assembly.problem, result);
-  if (options.bootstrap_samples == 0) return result;
+// How far the views contradict the answer; its covariance is enlarged to that.
+std::optional<Trust> CheckAnswer(const Solver& solver, const CalibrateOptions& options,
+                                 const Assembly& assembly, SolveReport& report) {
+  if (options.bootstrap_samples == 0) return std::nullopt;
   const Expected<Trust> trust = AssessTrust(assembly.problem, solver, report,
                                             {.bootstrap_samples = options.bootstrap_samples,
-                                             .seed = seed,
+                                             .seed = options.observe.search.seed,
                                              .together = ViewsThatShare(assembly.repeated),
                                              .progress = options.progress});
-  if (!trust) return result;
-  AddTrust(*trust, result);
-  calibration.trust = *trust;
+  if (!trust) return std::nullopt;
+  report.covariance = trust->covariance;
+  return *trust;
+}
+
+// The answer with its verdict, and with what each view contributes to it.
+CalibrationResult CheckedResult(const Solver& solver, const CalibrateOptions& options,
+                                SolveReport& report, Calibration& calibration) {
+  const Assembly& assembly = calibration.assembly;
+  calibration.trust = CheckAnswer(solver, options, assembly, report);
+  CalibrationResult result = MakeResult(
+      calibration.observed.views, assembly, report,
+      {.seed = options.observe.search.seed,
+       .configuration = ConfigurationLines(calibration.observed, options, solver.spec().name),
+       .warnings = calibration.warnings});
+  if (calibration.trust) AddTrust(*calibration.trust, result);
+  AddInformation(assembly.problem, result);
+  const MatchSettings match = MatchSettingsFor(calibration.observed.session, options);
+  result.verdict =
+      JudgeResult(FiguresOf({.views = calibration.observed.views,
+                             .assembly = assembly,
+                             .report = report,
+                             .trust = calibration.trust ? &*calibration.trust : nullptr,
+                             .has_rough_pose = match.initial.has_value()}),
+                  options.need);
   return result;
+}
+
+// Solves, and again without the boards that the first solver leaves out, so that all figures rest
+// on the same data.
+void Solve(const std::vector<SolverPtr>& solvers, const CalibrateOptions& options,
+           Calibration& calibration) {
+  constexpr int kMaxRounds = 5;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    calibration.comparison =
+        Compare(calibration.assembly.problem, solvers,
+                calibration.observed.session.true_cam_from_lidar, options.progress);
+    const SolveReport* report = calibration.report();
+    if (report == nullptr || !LeaveOut(report->board_views, calibration.assembly)) break;
+  }
+  for (ComparisonRow& row : calibration.comparison) {
+    if (!row.report) continue;
+    for (std::string& line : row.report->warnings) {
+      line = WithViewNames(line, calibration.observed.views);
+    }
+  }
 }
 
 }  // namespace
@@ -119,16 +159,14 @@ Calibration CalibrateObserved(ObservedSession observed, const CalibrateOptions& 
   calibration.assembly = std::move(*assembly);
   const std::vector<SolverPtr> solvers =
       options.solvers.empty() ? std::vector<SolverPtr>{DefaultSolver()} : options.solvers;
-  calibration.comparison =
-      Compare(calibration.assembly.problem, solvers,
-              calibration.observed.session.true_cam_from_lidar, options.progress);
+  Solve(solvers, options, calibration);
   calibration.warnings = WarningsFor(calibration, match);
-  const Expected<SolveReport>& report = calibration.comparison.front().report;
+  Expected<SolveReport>& report = calibration.comparison.front().report;
   if (!report) {
     calibration.result = tl::unexpected<Error>(NoPose(calibration, options, report.error()));
     return calibration;
   }
-  calibration.result = CheckedResult(*solvers.front(), *report, options, calibration);
+  calibration.result = CheckedResult(*solvers.front(), options, *report, calibration);
   calibration.warnings = calibration.result->warnings;
   return calibration;
 }

@@ -106,14 +106,21 @@ Json TrustJson(const TrustFigures& trust) {
       {"held_out_rmse_m", OrNull(trust.held_out_rmse_m)},
       {"held_out_rmse_px", OrNull(trust.held_out_rmse_px)},
       {"bootstrap", trust.bootstrap ? BootstrapJson(*trust.bootstrap) : Json(nullptr)},
-      {"covariance_sigma", OrNull(trust.covariance_sigma)},
+      {"solver_sigma", OrNull(trust.solver_sigma)},
       {"bootstrap_sigma", OrNull(trust.bootstrap_sigma)},
       {"jackknife_sigma", OrNull(trust.jackknife_sigma)},
-      {"bootstrap_over_covariance", OrNull(trust.bootstrap_over_covariance)},
-      {"jackknife_over_covariance", OrNull(trust.jackknife_over_covariance)},
+      {"bootstrap_over_solver", OrNull(trust.bootstrap_over_solver)},
+      {"jackknife_over_solver", OrNull(trust.jackknife_over_solver)},
+      {"stated_over_solver", OrNull(trust.stated_over_solver)},
       {"outlier_views", trust.outlier_views},
-      {"verdict", OrNull(trust.verdict)},
+      {"comparison", OrNull(trust.comparison)},
   };
+}
+
+Json VerdictJson(const ResultVerdict& verdict) {
+  return {{"word", ToString(verdict.usability)},
+          {"reason", OrNull(verdict.reason)},
+          {"next", OrNull(verdict.next)}};
 }
 
 Json ResultJson(const CalibrationResult& result) {
@@ -122,6 +129,7 @@ Json ResultJson(const CalibrationResult& result) {
   Json views = Json::array();
   for (const ResultView& view : result.views) views.push_back(ViewJson(view));
   return {{"sextant_result", 1},
+          {"verdict", result.verdict ? VerdictJson(*result.verdict) : Json(nullptr)},
           {"sextant", result.version},
           {"solver", result.solver},
           {"seed", result.seed},
@@ -141,6 +149,18 @@ Json ResultJson(const CalibrationResult& result) {
 }
 
 }  // namespace
+
+std::string_view ToString(Usability usability) {
+  switch (usability) {
+    case Usability::kGood:
+      return "GOOD";
+    case Usability::kUsableWithCare:
+      return "USABLE WITH CARE";
+    case Usability::kNotUsable:
+      return "NOT USABLE";
+  }
+  return "unknown";
+}
 
 std::string ConfigurationHash(const std::vector<std::string>& configuration) {
   std::uint64_t hash = 0xcbf29ce484222325U;

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/trust/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "calibrate/trust/diagnose.h"
+#include "calibrate/trust/information.h"
+#include "calibrate/trust/measured_boards.h"
+#include "calibrate/trust/select_views.h"
+
+namespace sextant {
+namespace {
+
+// A view counts by its best board: used, else contradicting, else without a board in the scan.
+void CountViews(const Evidence& evidence, VerdictFigures& figures) {
+  std::map<std::size_t, std::set<BoardStatus>> views;
+  for (const BoardRow& row : evidence.assembly.rows) views[row.view].insert(row.fate);
+  for (const auto& [view, fates] : views) {
+    const bool used = fates.contains(BoardStatus::kKept);
+    const bool contradicts =
+        fates.contains(BoardStatus::kDisagrees) || fates.contains(BoardStatus::kContradicts);
+    const bool missing = fates.contains(BoardStatus::kNotInScan);
+    figures.views_used += used ? 1 : 0;
+    figures.views_contradicting += !used && contradicts ? 1 : 0;
+    figures.views_with_board += used || contradicts || missing ? 1 : 0;
+  }
+  const auto seen = static_cast<int>(ViewsOf(evidence.assembly.problem).size());
+  int shared = 0;
+  for (const std::vector<int>& group : ViewsThatShare(evidence.assembly.repeated)) {
+    shared += static_cast<int>(group.size()) - 1;
+  }
+  figures.independent_views = seen - shared;
+}
+
+void AddAgreement(const Evidence& evidence, VerdictFigures& figures) {
+  const Assembly& assembly = evidence.assembly;
+  const Rigid3d& pose = evidence.report.cam_from_lidar;
+  if (const auto fits = FitScales(assembly.problem, pose)) {
+    const bool is_print = fits->print.sum_squares <= fits->focal.sum_squares;
+    const ScaleFit& fit = is_print ? fits->print : fits->focal;
+    figures.range_excess = fit.excess;
+    figures.range_excess_sigma = fit.sigma;
+  }
+  for (const MeasuredEdge& edge : MeasureEdges(evidence.views, assembly)) {
+    if (!ContradictsFile(edge)) continue;
+    if (std::abs(edge.Excess()) < std::abs(figures.size_excess.value_or(0.0))) continue;
+    figures.size_excess = edge.Excess();
+  }
+  figures.normals_off_rad = NormalsOff(assembly.problem, pose);
+  if (const auto prints = MeasurePrints(evidence.views, assembly)) {
+    figures.print_rms_px = prints->rms_px;
+    figures.print_over_noise = prints->over_noise;
+  }
+  figures.corner_rms_m = evidence.report.evaluation.rmse_m;
+}
+
+void AddChecks(const Trust& trust, VerdictFigures& figures) {
+  const TrustFigures& checks = trust.figures;
+  figures.is_checked = true;
+  figures.independent_views = trust.independent_views;
+  figures.outlier_views = static_cast<int>(checks.outlier_views.size());
+  // The larger of the two: either may miss a direction.
+  for (const auto& ratio : {checks.bootstrap_over_solver, checks.jackknife_over_solver}) {
+    if (ratio)
+      figures.spread_over_solver = std::max(figures.spread_over_solver.value_or(0), *ratio);
+  }
+  const bool has_points = checks.held_out_rmse_m && checks.fit_rmse_m;
+  const auto& held_out = has_points ? checks.held_out_rmse_m : checks.held_out_rmse_px;
+  const auto& fit = has_points ? checks.fit_rmse_m : checks.fit_rmse_px;
+  if (held_out && fit && *fit > 0.0) figures.held_out_over_fit = *held_out / *fit;
+}
+
+}  // namespace
+
+VerdictFigures FiguresOf(const Evidence& evidence) {
+  VerdictFigures figures{.has_rough_pose = evidence.has_rough_pose};
+  CountViews(evidence, figures);
+  const std::size_t rivals =
+      std::max(evidence.assembly.matching.alternatives.size(), evidence.report.alternatives.size());
+  figures.rival_poses = static_cast<int>(rivals);
+  if (evidence.report.covariance) {
+    const WeakestDirections weakest = WeakestOf(*evidence.report.covariance);
+    figures.worst_translation_m = weakest.translation_sigma_m;
+    figures.worst_rotation_rad = weakest.rotation_sigma_rad;
+  }
+  AddAgreement(evidence, figures);
+  if (evidence.trust != nullptr) AddChecks(*evidence.trust, figures);
+  return figures;
+}
+
+}  // namespace sextant
