@@ -95,12 +95,17 @@ CalibrationResult CheckedResult(const Solver& solver, const CalibrateOptions& op
                                 SolveReport& report, Calibration& calibration) {
   const Assembly& assembly = calibration.assembly;
   calibration.trust = CheckAnswer(solver, options, assembly, report);
+  if (report.covariance) {
+    report.covariance =
+        WithRangeDisagreement(*report.covariance, assembly.problem, report.cam_from_lidar);
+  }
   CalibrationResult result = MakeResult(
       calibration.observed.views, assembly, report,
       {.seed = options.observe.search.seed,
        .configuration = ConfigurationLines(calibration.observed, options, solver.spec().name),
        .warnings = calibration.warnings});
   if (calibration.trust) AddTrust(*calibration.trust, result);
+  calibration.warnings = result.warnings;
   AddInformation(assembly.problem, result);
   const MatchSettings match = MatchSettingsFor(calibration.observed.session, options);
   result.verdict =

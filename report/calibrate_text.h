@@ -5,7 +5,6 @@
 #include <string>
 
 #include "calibrate/calibrate.h"
-#include "io/results/calibration_result.h"
 
 namespace sextant {
 

@@ -23,6 +23,8 @@ using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
 constexpr double kMinExcess = 0.01;  // Relative to a distance.
 constexpr double kSigmas = 4.0;
+constexpr double kNoticeableExcess = 0.006;
+constexpr double kSignificantSigmas = 3.0;
 constexpr double kPoorPrint_px = 1.0;  // RMS; a good lens model leaves a third of it.
 constexpr double kPoorPrint = 3.0;     // RMS over the stated noise.
 constexpr double kSamePlace_m = 0.05;
@@ -67,6 +69,8 @@ std::optional<ScaleFit> FitScale(const CalibrationProblem& problem, const Rigid3
   // independent.
   const double variance = 2.0 * fit.sum_squares / (12.0 * boards - 7.0);
   fit.sigma = std::sqrt(variance * (*inverse)(6, 6));
+  fit.shift =
+      fit.excess * SolveSymmetric<6>(normal.topLeftCorner<6, 6>(), normal.topRightCorner<6, 1>());
   return fit;
 }
 
@@ -74,8 +78,8 @@ void DiagnoseScale(const CalibrationProblem& problem, const Rigid3d& pose,
                    std::vector<std::string>& lines) {
   const std::optional<ScaleFits> fits = FitScales(problem, pose);
   if (!fits) return;
-  const bool is_print = fits->print.sum_squares <= fits->focal.sum_squares;
-  const ScaleFit& fit = is_print ? fits->print : fits->focal;
+  const bool is_print = fits->IsPrint();
+  const ScaleFit& fit = fits->Better();
   if (std::abs(fit.excess) < std::max(kMinExcess, kSigmas * fit.sigma)) return;
   const double percent = 100.0 * std::abs(fit.excess);
   const char* sign = fit.excess > 0.0 ? "longer" : "shorter";
@@ -175,6 +179,18 @@ std::optional<ScaleFits> FitScales(const CalibrationProblem& problem,
   });
   if (!print || !focal) return std::nullopt;
   return ScaleFits{.print = *print, .focal = *focal};
+}
+
+bool ScaleFit::IsSignificant() const {
+  return std::abs(excess) >= std::max(kNoticeableExcess, kSignificantSigmas * sigma);
+}
+
+Matrix6d WithRangeDisagreement(const Matrix6d& covariance, const CalibrationProblem& problem,
+                               const Rigid3d& cam_from_lidar) {
+  const std::optional<ScaleFits> fits = FitScales(problem, cam_from_lidar);
+  if (!fits || !fits->Better().IsSignificant()) return covariance;
+  const Vector6d& shift = fits->Better().shift;
+  return covariance + shift * shift.transpose();
 }
 
 std::vector<std::string> Diagnose(std::span<const SessionView> views, const Assembly& assembly,

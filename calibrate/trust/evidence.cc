@@ -39,10 +39,8 @@ void AddAgreement(const Evidence& evidence, VerdictFigures& figures) {
   const Assembly& assembly = evidence.assembly;
   const Rigid3d& pose = evidence.report.cam_from_lidar;
   if (const auto fits = FitScales(assembly.problem, pose)) {
-    const bool is_print = fits->print.sum_squares <= fits->focal.sum_squares;
-    const ScaleFit& fit = is_print ? fits->print : fits->focal;
-    figures.range_excess = fit.excess;
-    figures.range_excess_sigma = fit.sigma;
+    figures.range_excess = fits->Better().excess;
+    figures.range_excess_sigma = fits->Better().sigma;
   }
   for (const MeasuredEdge& edge : MeasureEdges(evidence.views, assembly)) {
     if (!ContradictsFile(edge)) continue;

@@ -307,7 +307,6 @@ Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& sol
 
 void AddTrust(const Trust& trust, CalibrationResult& result) {
   result.trust = trust.figures;
-  result.covariance = trust.covariance;
   for (ResultView& view : result.views) {
     const auto judged = std::find_if(trust.views.begin(), trust.views.end(),
                                      [&](const ViewTrust& v) { return v.view == view.view; });

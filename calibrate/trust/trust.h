@@ -60,7 +60,7 @@ struct Trust {
 Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& solver,
                             const SolveReport& answer, const TrustOptions& options = {});
 
-/// Copies the figures and the covariance into the result and its views, and adds a warning for each
+/// Copies the figures into the result and its views, and adds a warning for each
 /// outlier.
 void AddTrust(const Trust& trust, CalibrationResult& result);
 
