@@ -113,7 +113,7 @@ CalibrationResult CheckedResult(const Solver& solver, const CalibrateOptions& op
                              .assembly = assembly,
                              .report = report,
                              .trust = calibration.trust ? &*calibration.trust : nullptr,
-                             .has_rough_pose = match.initial.has_value()}),
+                             .rough_pose = match.initial}),
                   options.need);
   return result;
 }

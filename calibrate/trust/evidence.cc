@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
+#include <vector>
 
 #include "calibrate/trust/diagnose.h"
 #include "calibrate/trust/information.h"
 #include "calibrate/trust/measured_boards.h"
 #include "calibrate/trust/select_views.h"
+#include "geometry/scan_marks.h"
 
 namespace sextant {
 namespace {
@@ -33,6 +36,23 @@ void CountViews(const Evidence& evidence, VerdictFigures& figures) {
     shared += static_cast<int>(group.size()) - 1;
   }
   figures.independent_views = seen - shared;
+}
+
+// Those of the matching, and those that the solver found.
+void AddRivals(const Evidence& evidence, VerdictFigures& figures) {
+  const auto& of_matching = evidence.assembly.matching.alternatives;
+  const auto& of_solver = evidence.report.alternatives;
+  const std::vector<Rigid3d>& rivals =
+      of_solver.size() > of_matching.size() ? of_solver : of_matching;
+  figures.rival_poses = static_cast<int>(rivals.size());
+  figures.has_rough_pose = evidence.rough_pose.has_value();
+  const Eigen::Quaterniond expected = evidence.rough_pose.value_or(AxesCamFromLidar()).rotation;
+  double nearest = std::numbers::pi;
+  for (const Rigid3d& rival : rivals) {
+    nearest = std::min(nearest, RotationDistance(rival.rotation, expected));
+  }
+  figures.rival_margin_rad =
+      nearest - RotationDistance(evidence.report.cam_from_lidar.rotation, expected);
 }
 
 void AddAgreement(const Evidence& evidence, VerdictFigures& figures) {
@@ -74,11 +94,9 @@ void AddChecks(const Trust& trust, VerdictFigures& figures) {
 }  // namespace
 
 VerdictFigures FiguresOf(const Evidence& evidence) {
-  VerdictFigures figures{.has_rough_pose = evidence.has_rough_pose};
+  VerdictFigures figures;
   CountViews(evidence, figures);
-  const std::size_t rivals =
-      std::max(evidence.assembly.matching.alternatives.size(), evidence.report.alternatives.size());
-  figures.rival_poses = static_cast<int>(rivals);
+  AddRivals(evidence, figures);
   if (evidence.report.covariance) {
     const WeakestDirections weakest = WeakestOf(*evidence.report.covariance);
     figures.worst_translation_m = weakest.translation_sigma_m;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "calibrate/match/assemble.h"
@@ -15,8 +16,8 @@ struct Evidence {
   std::span<const SessionView> views;
   const Assembly& assembly;
   const SolveReport& report;
-  const Trust* trust = nullptr;  ///< Null: the views were not compared.
-  bool has_rough_pose = false;   ///< Given by the user.
+  const Trust* trust = nullptr;         ///< Null: the views were not compared.
+  std::optional<Rigid3d> rough_pose{};  ///< Given by the user: MatchSettings::initial.
 };
 
 /// The figures of the verdict. The accuracy is that of report.covariance.

@@ -37,6 +37,8 @@ constexpr Limit kSizeExcess = {0.012, 0.05};
 constexpr Limit kNormalsOff_rad = {2.5 * kRadPerDeg, 6.0 * kRadPerDeg};
 constexpr Limit kPrintRms_px = {1.0, 4.0};
 constexpr double kMinPrintOverNoise = 3.0;
+constexpr double kRoughMargin_rad = 45.0 * kRadPerDeg;
+constexpr double kAssumedMargin_rad = 120.0 * kRadPerDeg;
 constexpr double kSignificant = 3.0;  // Sigmas.
 
 class Judge {
@@ -45,14 +47,14 @@ class Judge {
 
   ResultVerdict Verdict() {
     Rivals();
-    Views();
     Ranges();
     Sizes();
-    Normals();
     Prints();
+    Views();
+    Normals();
     Corners();
-    Consistency();
     Number();
+    Consistency();
     Accuracy();
     if (verdict_.usability == Usability::kGood) {
       verdict_.reason = GoodReason();
@@ -70,12 +72,14 @@ class Judge {
 
   void Rivals() {
     if (f_.rival_poses == 0) return;
-    Add(f_.has_rough_pose ? Usability::kUsableWithCare : Usability::kNotUsable,
+    const double needed_rad = f_.has_rough_pose ? kRoughMargin_rad : kAssumedMargin_rad;
+    const bool one = f_.rival_poses == 1;
+    Add(f_.rival_margin_rad < needed_rad ? Usability::kNotUsable : Usability::kUsableWithCare,
         fmt::format("{} other pose{} explain{} the views as well, and only {} chose this one",
-                    f_.rival_poses, f_.rival_poses == 1 ? "" : "s", f_.rival_poses == 1 ? "s" : "",
-                    f_.has_rough_pose ? "--initial"
-                                      : "the assumption of a camera that looks along "
-                                        "the LiDAR's x axis"),
+                    f_.rival_poses, one ? "" : "s", one ? "s" : "",
+                    f_.has_rough_pose
+                        ? "the rough pose of --initial"
+                        : "the assumption of an upright camera along the LiDAR's x axis"),
         f_.has_rough_pose ? "Add views with the board in other places and tilts"
                           : "Add views with the board in other places and tilts, or give a rough "
                             "pose with --initial");

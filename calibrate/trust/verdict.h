@@ -17,14 +17,15 @@ struct AccuracyNeed {
 /// What the verdict rests on. A figure that could not be measured is none, and its rule is skipped
 /// unless JudgeResult states otherwise.
 struct VerdictFigures {
-  int views_with_board = 0;     ///< Views whose photo shows a board; copies do not count.
-  int views_used = 0;           ///< Those of them that the answer rests on.
-  int independent_views = 0;    ///< Of the used ones: views of a board in one place count once.
-  int views_contradicting = 0;  ///< Their scan contradicts the photo, or the other views.
-  int rival_poses = 0;          ///< Other poses that explain the views as well.
-  bool has_rough_pose = false;  ///< Given by the user; it chose among the rivals.
-  bool is_checked = false;      ///< The views were compared with each other.
-  int outlier_views = 0;        ///< Used views that disagree with the answer of the others.
+  int views_with_board = 0;       ///< Views whose photo shows a board; copies do not count.
+  int views_used = 0;             ///< Those of them that the answer rests on.
+  int independent_views = 0;      ///< Of the used ones: views of a board in one place count once.
+  int views_contradicting = 0;    ///< Their scan contradicts the photo, or the other views.
+  int rival_poses = 0;            ///< Other poses that explain the views as well.
+  bool has_rough_pose = false;    ///< Given by the user; it chose among the rivals. Else the axes.
+  double rival_margin_rad = 0.0;  ///< How much farther from it the nearest rival's rotation is.
+  bool is_checked = false;        ///< The views were compared with each other.
+  int outlier_views = 0;          ///< Used views that disagree with the answer of the others.
   /// 1 sigma of the least certain direction, by the covariance of the result. None: unknown.
   std::optional<double> worst_translation_m{};
   std::optional<double> worst_rotation_rad{};

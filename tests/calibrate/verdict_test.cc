@@ -64,10 +64,17 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         VerdictCase{"Healthy", [](F&) {}, kGood, "10 of 10 views agree"},
         VerdictCase{"Rivals", [](F& f) { f.rival_poses = 1; }, kNo, "1 other pose explains"},
+        VerdictCase{"RivalsThatAreUpsideDown",
+                    [](F& f) {
+                      f.rival_poses = 1;
+                      f.rival_margin_rad = 3.0;
+                    },
+                    kCare, "upright camera"},
         VerdictCase{"RivalsWithARoughPose",
                     [](F& f) {
                       f.rival_poses = 3;
                       f.has_rough_pose = true;
+                      f.rival_margin_rad = 1.5;
                     },
                     kCare, "3 other poses explain"},
         VerdictCase{"FewUnused", [](F& f) { f.views_used = 8; }, kGood, "8 of 10"},
