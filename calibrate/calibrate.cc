@@ -78,13 +78,14 @@ std::vector<std::string> WarningsFor(const Calibration& calibration, const Match
 
 // How far the views contradict the answer; its covariance is enlarged to that.
 std::optional<Trust> CheckAnswer(const Solver& solver, const CalibrateOptions& options,
-                                 const Assembly& assembly, SolveReport& report) {
+                                 const Calibration& calibration, SolveReport& report) {
   if (options.bootstrap_samples == 0) return std::nullopt;
-  const Expected<Trust> trust = AssessTrust(assembly.problem, solver, report,
-                                            {.bootstrap_samples = options.bootstrap_samples,
-                                             .seed = options.observe.search.seed,
-                                             .together = ViewsThatShare(assembly.repeated),
-                                             .progress = options.progress});
+  const Expected<Trust> trust =
+      AssessTrust(calibration.problem, solver, report,
+                  {.bootstrap_samples = options.bootstrap_samples,
+                   .seed = options.observe.search.seed,
+                   .together = ViewsThatShare(calibration.assembly.repeated),
+                   .progress = options.progress});
   if (!trust) return std::nullopt;
   report.covariance = trust->covariance;
   return *trust;
@@ -94,7 +95,7 @@ std::optional<Trust> CheckAnswer(const Solver& solver, const CalibrateOptions& o
 CalibrationResult CheckedResult(const Solver& solver, const CalibrateOptions& options,
                                 SolveReport& report, Calibration& calibration) {
   const Assembly& assembly = calibration.assembly;
-  calibration.trust = CheckAnswer(solver, options, assembly, report);
+  calibration.trust = CheckAnswer(solver, options, calibration, report);
   if (report.covariance) {
     report.covariance =
         WithRangeDisagreement(*report.covariance, assembly.problem, report.cam_from_lidar);
@@ -118,24 +119,21 @@ CalibrationResult CheckedResult(const Solver& solver, const CalibrateOptions& op
   return result;
 }
 
-// Solves, and again without the boards that the first solver leaves out, so that all figures rest
-// on the same data.
+// What the first solver leaves out of its answer is left out of all that follows.
 void Solve(const std::vector<SolverPtr>& solvers, const CalibrateOptions& options,
            Calibration& calibration) {
-  constexpr int kMaxRounds = 5;
-  for (int round = 0; round < kMaxRounds; ++round) {
-    calibration.comparison =
-        Compare(calibration.assembly.problem, solvers,
-                calibration.observed.session.true_cam_from_lidar, options.progress);
-    const SolveReport* report = calibration.report();
-    if (report == nullptr || !LeaveOut(report->board_views, calibration.assembly)) break;
-  }
+  calibration.problem = calibration.assembly.problem;
+  calibration.comparison =
+      Compare(calibration.problem, solvers, calibration.observed.session.true_cam_from_lidar,
+              options.progress);
   for (ComparisonRow& row : calibration.comparison) {
     if (!row.report) continue;
     for (std::string& line : row.report->warnings) {
       line = WithViewNames(line, calibration.observed.views);
     }
   }
+  Expected<SolveReport>& report = calibration.comparison.front().report;
+  if (report) LeaveOut(*report, calibration.assembly);
 }
 
 }  // namespace
@@ -187,7 +185,7 @@ Expected<Calibration> Calibrate(std::span<const Frame> frames, const CalibrateOp
 }
 
 ProblemFile ProblemFileOf(const Calibration& calibration) {
-  const CalibrationProblem& problem = calibration.assembly.problem;
+  const CalibrationProblem& problem = calibration.problem;
   return {.problem = problem,
           .true_cam_from_lidar = calibration.observed.session.true_cam_from_lidar,
           .comment =

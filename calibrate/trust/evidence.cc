@@ -35,7 +35,7 @@ void CountViews(const Evidence& evidence, VerdictFigures& figures) {
   for (const std::vector<int>& group : ViewsThatShare(evidence.assembly.repeated)) {
     shared += static_cast<int>(group.size()) - 1;
   }
-  figures.independent_views = seen - shared;
+  figures.independent_views = std::max(seen - shared, std::min(seen, 1));
 }
 
 // Those of the matching, and those that the solver found.
@@ -75,11 +75,12 @@ void AddAgreement(const Evidence& evidence, VerdictFigures& figures) {
   figures.corner_rms_m = evidence.report.evaluation.rmse_m;
 }
 
-void AddChecks(const Trust& trust, VerdictFigures& figures) {
+void AddChecks(const Trust& trust, const CalibrationProblem& problem, VerdictFigures& figures) {
   const TrustFigures& checks = trust.figures;
   figures.is_checked = true;
-  figures.independent_views = trust.independent_views;
-  figures.outlier_views = static_cast<int>(checks.outlier_views.size());
+  const std::vector<int> used = ViewsOf(problem);
+  figures.outlier_views = static_cast<int>(std::ranges::count_if(
+      checks.outlier_views, [&](int view) { return std::ranges::binary_search(used, view); }));
   // The larger of the two: either may miss a direction.
   for (const auto& ratio : {checks.bootstrap_over_solver, checks.jackknife_over_solver}) {
     if (ratio)
@@ -103,7 +104,7 @@ VerdictFigures FiguresOf(const Evidence& evidence) {
     figures.worst_rotation_rad = weakest.rotation_sigma_rad;
   }
   AddAgreement(evidence, figures);
-  if (evidence.trust != nullptr) AddChecks(*evidence.trust, figures);
+  if (evidence.trust != nullptr) AddChecks(*evidence.trust, evidence.assembly.problem, figures);
   return figures;
 }
 

@@ -2,6 +2,7 @@
 #include "calibrate/trust/left_out.h"
 
 #include <charconv>
+#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -28,24 +29,10 @@ void MarkRow(const BoardViewFit& fit, Assembly& assembly) {
   }
 }
 
-}  // namespace
-
-bool LeaveOut(std::span<const BoardViewFit> fits, Assembly& assembly) {
-  std::set<ViewAndBoard> unused;
-  for (const BoardViewFit& fit : fits) {
-    if (!fit.used) unused.emplace(fit.view, fit.board);
-  }
-  if (unused.empty() || unused.size() == fits.size()) return false;
-  for (const BoardViewFit& fit : fits) {
-    if (!fit.used) MarkRow(fit, assembly);
-  }
+// Board views, matches and fits have one order.
+void RemoveBoards(std::span<const BoardViewFit> fits, const std::set<ViewAndBoard>& unused,
+                  Assembly& assembly) {
   CalibrationProblem& problem = assembly.problem;
-  const auto of_pair = [&](const auto& pair) {
-    return unused.contains({pair.id.view, pair.id.board});
-  };
-  std::erase_if(problem.pairs_3d3d, of_pair);
-  std::erase_if(problem.pairs_2d3d, of_pair);
-  // Board views, matches and fits have one order.
   std::vector<MatchedBoard> kept;
   std::vector<BoardView> board_views;
   for (std::size_t i = 0; i < fits.size(); ++i) {
@@ -55,8 +42,36 @@ bool LeaveOut(std::span<const BoardViewFit> fits, Assembly& assembly) {
   }
   assembly.matching.kept = std::move(kept);
   problem.board_views = std::move(board_views);
+  const auto is_unused = [&](const auto& pair) {
+    return unused.contains({pair.id.view, pair.id.board});
+  };
+  std::erase_if(problem.pairs_3d3d, is_unused);
+  std::erase_if(problem.pairs_2d3d, is_unused);
   problem.point_sets = WithholdPairing(problem.pairs_3d3d);
-  return true;
+}
+
+// The solver's inliers are the pairs of the boards that it uses.
+void EvaluateAgain(const CalibrationProblem& problem, SolveReport& report) {
+  CalibrationProblem seen = problem;
+  if (report.camera) seen.camera = report.camera->camera;
+  report.evaluation = Evaluate(seen, report.cam_from_lidar);
+  std::erase_if(report.board_views, [](const BoardViewFit& fit) { return !fit.used; });
+  std::iota(report.inliers.begin(), report.inliers.end(), 0);
+}
+
+}  // namespace
+
+void LeaveOut(SolveReport& report, Assembly& assembly) {
+  std::set<ViewAndBoard> unused;
+  for (const BoardViewFit& fit : report.board_views) {
+    if (!fit.used) unused.emplace(fit.view, fit.board);
+  }
+  if (unused.empty() || unused.size() == report.board_views.size()) return;
+  for (const BoardViewFit& fit : report.board_views) {
+    if (!fit.used) MarkRow(fit, assembly);
+  }
+  RemoveBoards(report.board_views, unused, assembly);
+  EvaluateAgain(assembly.problem, report);
 }
 
 std::string WithViewNames(std::string_view text, std::span<const SessionView> views) {

@@ -6,14 +6,14 @@
 #include <string_view>
 
 #include "calibrate/match/assemble.h"
-#include "solvers/core/board_view_fit.h"
+#include "solvers/core/solver.h"
 
 namespace sextant {
 
-/// Removes the boards that a solver left out from the assembly: their pairs, raw observations and
-/// matches. Their rows state it. Returns whether there was one; false, with nothing removed, if
-/// none would remain.
-bool LeaveOut(std::span<const BoardViewFit> fits, Assembly& assembly);
+/// Removes the boards that the solver left out from the assembly: their pairs, raw observations and
+/// matches; their rows state it. The report's evaluation and inliers are then those of the
+/// remaining data. Nothing changes where all boards, or none, are used.
+void LeaveOut(SolveReport& report, Assembly& assembly);
 
 /// The text with each "view 7" (PairId::view) replaced by that view's name: solvers know numbers
 /// only. A number without a view stays.

@@ -315,7 +315,7 @@ void AddTrust(const Trust& trust, CalibrationResult& result) {
     view.rmse_px = judged->rmse_px;
     view.held_out_m = judged->held_out_m;
     view.held_out_px = judged->held_out_px;
-    if (!judged->outlier) continue;
+    if (!judged->outlier || !view.kept) continue;
     const std::string name = "view " + (view.name.empty() ? std::to_string(view.view) : view.name);
     result.warnings.push_back(OutlierText(name, *judged, trust.figures));
   }

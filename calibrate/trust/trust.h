@@ -61,7 +61,7 @@ Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& sol
                             const SolveReport& answer, const TrustOptions& options = {});
 
 /// Copies the figures into the result and its views, and adds a warning for each
-/// outlier.
+/// outlier that is kept.
 void AddTrust(const Trust& trust, CalibrationResult& result);
 
 }  // namespace sextant

@@ -31,12 +31,16 @@ Assembly AssemblyOf(int views) {
 
 TEST(LeaveOut, RemovesTheBoardEverywhereAndItsRowStatesIt) {
   Assembly assembly = AssemblyOf(3);
-  std::vector<BoardViewFit> fits(3);
+  SolveReport report;
+  report.inliers = {0, 2};
   for (int i = 0; i < 3; ++i) {
-    fits[static_cast<std::size_t>(i)] = {
-        .view = i, .board = 7, .used = i != 1, .printed = {4, 4}, .face = {9, 9}};
+    report.board_views.push_back(
+        {.view = i, .board = 7, .used = i != 1, .printed = {4, 4}, .face = {9, 9}});
   }
-  EXPECT_TRUE(LeaveOut(fits, assembly));
+  LeaveOut(report, assembly);
+  EXPECT_EQ(report.board_views.size(), 2U);
+  EXPECT_EQ(report.evaluation.per_pair_m.size(), 2U);
+  EXPECT_THAT(report.inliers, testing::ElementsAre(0, 1));
   ASSERT_EQ(assembly.problem.board_views.size(), 2U);
   EXPECT_EQ(assembly.problem.board_views[1].view, 2);
   EXPECT_EQ(assembly.problem.pairs_3d3d.size(), 2U);
@@ -48,12 +52,14 @@ TEST(LeaveOut, RemovesTheBoardEverywhereAndItsRowStatesIt) {
 
 TEST(LeaveOut, ChangesNothingWhereAllOrNoneAreUsed) {
   Assembly assembly = AssemblyOf(2);
-  std::vector<BoardViewFit> fits = {{.view = 0, .board = 7, .used = true},
-                                    {.view = 1, .board = 7, .used = true}};
-  EXPECT_FALSE(LeaveOut(fits, assembly));
-  EXPECT_FALSE(LeaveOut({}, assembly));
-  fits[0].used = fits[1].used = false;
-  EXPECT_FALSE(LeaveOut(fits, assembly));
+  SolveReport report;
+  LeaveOut(report, assembly);
+  report.board_views = {{.view = 0, .board = 7, .used = true},
+                        {.view = 1, .board = 7, .used = true}};
+  LeaveOut(report, assembly);
+  for (BoardViewFit& fit : report.board_views) fit.used = false;
+  LeaveOut(report, assembly);
+  EXPECT_EQ(report.board_views.size(), 2U);
   EXPECT_EQ(assembly.problem.board_views.size(), 2U);
 }
 
