@@ -11,6 +11,7 @@
 #include "calibrate/trust/information.h"
 #include "calibrate/trust/left_out.h"
 #include "calibrate/trust/make_result.h"
+#include "calibrate/trust/scale_fit.h"
 #include "eval/diagnostics/pair_diagnostics.h"
 #include "io/clouds/cloud_file.h"
 #include "solvers/builtin_solvers.h"

@@ -11,68 +11,17 @@
 #include <utility>
 
 #include "calibrate/trust/measured_boards.h"
-#include "geometry/pair_noise.h"
-#include "geometry/so3.h"
-#include "geometry/symmetric.h"
+#include "calibrate/trust/scale_fit.h"
 
 namespace sextant {
 namespace {
 
-using Vector7d = Eigen::Matrix<double, 7, 1>;
-using Matrix7d = Eigen::Matrix<double, 7, 7>;
-
 constexpr double kMinExcess = 0.01;  // Relative to a distance.
 constexpr double kSigmas = 4.0;
-constexpr double kNoticeableExcess = 0.006;
-constexpr double kSignificantSigmas = 3.0;
 constexpr double kPoorPrint_px = 1.0;  // RMS; a good lens model leaves a third of it.
 constexpr double kPoorPrint = 3.0;     // RMS over the stated noise.
 constexpr double kSamePlace_m = 0.05;
 constexpr double kSameTurn_rad = 5.0 * std::numbers::pi / 180.0;
-
-// The centre of each board in the camera frame, by (view, board).
-std::map<std::pair<int, int>, Eigen::Vector3d> CentersInCam(const CalibrationProblem& problem) {
-  std::map<std::pair<int, int>, Eigen::Vector3d> centers;
-  for (const BoardView& view : problem.board_views) {
-    centers[{view.view, view.board}] = view.cam_from_board.translation;
-  }
-  return centers;
-}
-
-// `share` maps the centre of a board to its displacement per unit of the estimated share.
-template <class Share>
-std::optional<ScaleFit> FitScale(const CalibrationProblem& problem, const Rigid3d& pose,
-                                 const std::map<std::pair<int, int>, Eigen::Vector3d>& centers,
-                                 Share share) {
-  Matrix7d normal = Matrix7d::Zero();
-  Vector7d gradient = Vector7d::Zero();
-  double squares = 0.0;
-  int boards = 0;
-  for (const Pair3d3d& pair : problem.pairs_3d3d) {
-    const auto center = centers.find({pair.id.view, pair.id.board});
-    if (center == centers.end()) continue;
-    const Eigen::Vector3d turned = pose.rotation * pair.point_in_lidar;
-    Eigen::Matrix<double, 3, 7> jacobian;
-    jacobian << -Hat(turned), Eigen::Matrix3d::Identity(), share(center->second);
-    const Eigen::Vector3d residual = pair.point_in_cam - turned - pose.translation;
-    const double weight = IsotropicWeight(pair);
-    normal += weight * jacobian.transpose() * jacobian;
-    gradient += weight * jacobian.transpose() * residual;
-    squares += weight * residual.squaredNorm();
-    boards += pair.id.corner == 0 ? 1 : 0;
-  }
-  const std::optional<Eigen::MatrixXd> inverse = InvertSymmetric<Eigen::Dynamic>(normal);
-  if (boards < 2 || !inverse) return std::nullopt;
-  const Vector7d step = *inverse * gradient;
-  ScaleFit fit{.excess = step(6), .sum_squares = squares - step.dot(gradient)};
-  // The four corners of a board share its pose, so only six of their twelve numbers are
-  // independent.
-  const double variance = 2.0 * fit.sum_squares / (12.0 * boards - 7.0);
-  fit.sigma = std::sqrt(variance * (*inverse)(6, 6));
-  fit.shift =
-      fit.excess * SolveSymmetric<6>(normal.topLeftCorner<6, 6>(), normal.topRightCorner<6, 1>());
-  return fit;
-}
 
 void DiagnoseScale(const CalibrationProblem& problem, const Rigid3d& pose,
                    std::vector<std::string>& lines) {
@@ -168,30 +117,6 @@ void DiagnoseRepeats(std::span<const SessionView> views, const Assembly& assembl
 }
 
 }  // namespace
-
-std::optional<ScaleFits> FitScales(const CalibrationProblem& problem,
-                                   const Rigid3d& cam_from_lidar) {
-  const auto centers = CentersInCam(problem);
-  const auto print = FitScale(problem, cam_from_lidar, centers,
-                              [](const Eigen::Vector3d& center) { return center; });
-  const auto focal = FitScale(problem, cam_from_lidar, centers, [](const Eigen::Vector3d& center) {
-    return Eigen::Vector3d(0.0, 0.0, center.z());
-  });
-  if (!print || !focal) return std::nullopt;
-  return ScaleFits{.print = *print, .focal = *focal};
-}
-
-bool ScaleFit::IsSignificant() const {
-  return std::abs(excess) >= std::max(kNoticeableExcess, kSignificantSigmas * sigma);
-}
-
-Matrix6d WithRangeDisagreement(const Matrix6d& covariance, const CalibrationProblem& problem,
-                               const Rigid3d& cam_from_lidar) {
-  const std::optional<ScaleFits> fits = FitScales(problem, cam_from_lidar);
-  if (!fits || !fits->Better().IsSignificant()) return covariance;
-  const Vector6d& shift = fits->Better().shift;
-  return covariance + shift * shift.transpose();
-}
 
 std::vector<std::string> Diagnose(std::span<const SessionView> views, const Assembly& assembly,
                                   const Rigid3d& cam_from_lidar) {

@@ -8,9 +8,9 @@
 #include <set>
 #include <vector>
 
-#include "calibrate/trust/diagnose.h"
 #include "calibrate/trust/information.h"
 #include "calibrate/trust/measured_boards.h"
+#include "calibrate/trust/scale_fit.h"
 #include "calibrate/trust/select_views.h"
 #include "geometry/scan_marks.h"
 

@@ -13,7 +13,7 @@
 namespace sextant {
 namespace {
 
-constexpr double kNoticeable = 0.012;  // Of an edge.
+constexpr double kNoticeable = 0.015;  // Of an edge.
 constexpr double kEdgeSigmas = 3.0;
 constexpr double kEdgeNoise_m = 0.002;  // Of one view, besides the scatter between views.
 

@@ -28,7 +28,7 @@ std::vector<MeasuredEdge> MeasureEdges(std::span<const SessionView> views,
 /// The beam's spot widens an outline by at most this share of the edge; nothing narrows one.
 inline constexpr double kMaxBeamSpread = 0.035;
 
-/// Whether the edge differs from the board file significantly (three sigmas and 1.2 percent), and
+/// Whether the edge differs from the board file significantly (three sigmas and 1.5 percent), and
 /// not as the beam widens it.
 bool ContradictsFile(const MeasuredEdge& edge);
 

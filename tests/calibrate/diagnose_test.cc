@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "calibrate/trust/scale_fit.h"
 #include "geometry/scan_marks.h"
 #include "support/fake_observation.h"
 
