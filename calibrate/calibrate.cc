@@ -7,8 +7,11 @@
 #include "calibrate/configuration.h"
 #include "calibrate/observe/probe_size.h"
 #include "calibrate/trust/diagnose.h"
+#include "calibrate/trust/evidence.h"
 #include "calibrate/trust/information.h"
+#include "calibrate/trust/left_out.h"
 #include "calibrate/trust/make_result.h"
+#include "calibrate/trust/scale_fit.h"
 #include "eval/diagnostics/pair_diagnostics.h"
 #include "io/clouds/cloud_file.h"
 #include "solvers/builtin_solvers.h"
@@ -58,7 +61,11 @@ std::vector<std::string> WarningsFor(const Calibration& calibration, const Match
   const auto add = [&warnings](const std::vector<std::string>& lines) {
     warnings.insert(warnings.end(), lines.begin(), lines.end());
   };
-  add(DescribeAmbiguity(assembly.matching, match));
+  const auto named = [&](std::vector<std::string> lines) {
+    for (std::string& line : lines) line = WithViewNames(line, calibration.observed.views);
+    return lines;
+  };
+  add(named(DescribeAmbiguity(assembly.matching, match)));
   for (const std::filesystem::path& file : calibration.observed.session.files.without_partner) {
     warnings.push_back(fmt::format("without a partner: {}", Printable(file.string(), 300)));
   }
@@ -66,31 +73,68 @@ std::vector<std::string> WarningsFor(const Calibration& calibration, const Match
   const Rigid3d& pose =
       report != nullptr ? report->cam_from_lidar : assembly.matching.cam_from_lidar;
   add(Diagnose(calibration.observed.views, assembly, pose));
-  add(Describe(DiagnosePairs(assembly.problem)));
+  add(named(Describe(DiagnosePairs(assembly.problem))));
   return warnings;
 }
 
-// The answer with what each view contributes to it, and with how far the views contradict it.
-CalibrationResult CheckedResult(const Solver& solver, const SolveReport& report,
-                                const CalibrateOptions& options, Calibration& calibration) {
+// How far the views contradict the answer; its covariance is enlarged to that.
+std::optional<Trust> CheckAnswer(const Solver& solver, const CalibrateOptions& options,
+                                 const Calibration& calibration, SolveReport& report) {
+  if (options.bootstrap_samples == 0) return std::nullopt;
+  const Expected<Trust> trust =
+      AssessTrust(calibration.problem, solver, report,
+                  {.bootstrap_samples = options.bootstrap_samples,
+                   .seed = options.observe.search.seed,
+                   .together = ViewsThatShare(calibration.assembly.repeated),
+                   .progress = options.progress});
+  if (!trust) return std::nullopt;
+  report.covariance = trust->covariance;
+  return *trust;
+}
+
+// The answer with its verdict, and with what each view contributes to it.
+CalibrationResult CheckedResult(const Solver& solver, const CalibrateOptions& options,
+                                SolveReport& report, Calibration& calibration) {
   const Assembly& assembly = calibration.assembly;
-  const std::uint64_t seed = options.observe.search.seed;
+  calibration.trust = CheckAnswer(solver, options, calibration, report);
+  if (report.covariance) {
+    report.covariance =
+        WithRangeDisagreement(*report.covariance, assembly.problem, report.cam_from_lidar);
+  }
   CalibrationResult result = MakeResult(
       calibration.observed.views, assembly, report,
-      {.seed = seed,
+      {.seed = options.observe.search.seed,
        .configuration = ConfigurationLines(calibration.observed, options, solver.spec().name),
        .warnings = calibration.warnings});
+  if (calibration.trust) AddTrust(*calibration.trust, result);
+  calibration.warnings = result.warnings;
   AddInformation(assembly.problem, result);
-  if (options.bootstrap_samples == 0) return result;
-  const Expected<Trust> trust = AssessTrust(assembly.problem, solver, report,
-                                            {.bootstrap_samples = options.bootstrap_samples,
-                                             .seed = seed,
-                                             .together = ViewsThatShare(assembly.repeated),
-                                             .progress = options.progress});
-  if (!trust) return result;
-  AddTrust(*trust, result);
-  calibration.trust = *trust;
+  const MatchSettings match = MatchSettingsFor(calibration.observed.session, options);
+  result.verdict =
+      JudgeResult(FiguresOf({.views = calibration.observed.views,
+                             .assembly = assembly,
+                             .report = report,
+                             .trust = calibration.trust ? &*calibration.trust : nullptr,
+                             .rough_pose = match.initial}),
+                  options.need);
   return result;
+}
+
+// What the first solver leaves out of its answer is left out of all that follows.
+void Solve(const std::vector<SolverPtr>& solvers, const CalibrateOptions& options,
+           Calibration& calibration) {
+  calibration.problem = calibration.assembly.problem;
+  calibration.comparison =
+      Compare(calibration.problem, solvers, calibration.observed.session.true_cam_from_lidar,
+              options.progress);
+  for (ComparisonRow& row : calibration.comparison) {
+    if (!row.report) continue;
+    for (std::string& line : row.report->warnings) {
+      line = WithViewNames(line, calibration.observed.views);
+    }
+  }
+  Expected<SolveReport>& report = calibration.comparison.front().report;
+  if (report) LeaveOut(*report, calibration.assembly);
 }
 
 }  // namespace
@@ -119,16 +163,14 @@ Calibration CalibrateObserved(ObservedSession observed, const CalibrateOptions& 
   calibration.assembly = std::move(*assembly);
   const std::vector<SolverPtr> solvers =
       options.solvers.empty() ? std::vector<SolverPtr>{DefaultSolver()} : options.solvers;
-  calibration.comparison =
-      Compare(calibration.assembly.problem, solvers,
-              calibration.observed.session.true_cam_from_lidar, options.progress);
+  Solve(solvers, options, calibration);
   calibration.warnings = WarningsFor(calibration, match);
-  const Expected<SolveReport>& report = calibration.comparison.front().report;
+  Expected<SolveReport>& report = calibration.comparison.front().report;
   if (!report) {
     calibration.result = tl::unexpected<Error>(NoPose(calibration, options, report.error()));
     return calibration;
   }
-  calibration.result = CheckedResult(*solvers.front(), *report, options, calibration);
+  calibration.result = CheckedResult(*solvers.front(), options, *report, calibration);
   calibration.warnings = calibration.result->warnings;
   return calibration;
 }
@@ -144,7 +186,7 @@ Expected<Calibration> Calibrate(std::span<const Frame> frames, const CalibrateOp
 }
 
 ProblemFile ProblemFileOf(const Calibration& calibration) {
-  const CalibrationProblem& problem = calibration.assembly.problem;
+  const CalibrationProblem& problem = calibration.problem;
   return {.problem = problem,
           .true_cam_from_lidar = calibration.observed.session.true_cam_from_lidar,
           .comment =

@@ -21,8 +21,11 @@ namespace sextant {
 /// A calibration with every intermediate product. Members behind the first stage that failed keep
 /// their defaults, and `result` has that stage's error.
 struct Calibration {
-  ObservedSession observed{};  ///< Views with the boards in them, or their errors.
-  Assembly assembly{};         ///< The solvers' problem, and the status of each board.
+  ObservedSession observed{};    ///< Views with the boards in them, or their errors.
+  CalibrationProblem problem{};  ///< What the solvers were given.
+  /// The data that the answer rests on: the problem without the boards that the first solver left
+  /// out. With the status of each board.
+  Assembly assembly{};
   /// One row per solver, in the order of CalibrateOptions::solvers, with the distances to the first
   /// solver's pose and to the session's true pose, where known.
   std::vector<ComparisonRow> comparison{};

@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include "base/units.h"
+
 namespace sextant {
 namespace {
 
@@ -43,6 +45,9 @@ std::vector<std::string> ConfigurationLines(const ObservedSession& observed,
   if (!observed.session.bag.empty()) {
     lines.push_back(fmt::format("tolerance_s: {}", options.tolerance_s));
   }
+  lines.push_back(fmt::format("bootstrap_samples: {}", options.bootstrap_samples));
+  lines.push_back(fmt::format("need: {:g} mm {:g} deg", 1e3 * options.need.translation_m,
+                              options.need.rotation_rad * kDegPerRad));
   for (const Board& board : observed.boards) {
     lines.push_back(
         fmt::format("board {}: {} x {} m", board.id, board.top_right_m, board.right_bottom_m));

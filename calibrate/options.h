@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "calibrate/match/match.h"
 #include "calibrate/observe/observe.h"
+#include "calibrate/trust/verdict.h"
 #include "geometry/board.h"
 #include "geometry/camera.h"
 #include "solvers/core/solver.h"
@@ -25,6 +26,7 @@ struct CalibrateOptions {
   std::vector<SolverPtr> solvers{};
   /// Bootstrap samples over the views. 0: neither bootstrap nor cross-validation.
   int bootstrap_samples = 100;
+  AccuracyNeed need{};  ///< For the verdict: the accuracy that the result has to have.
   /// Lines ("name: value") that describe observe.search in the result's configuration. Empty: its
   /// numbers, one line each.
   std::vector<std::string> search_description{};

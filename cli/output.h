@@ -13,6 +13,7 @@ namespace sextant::cli {
 inline constexpr int kAnswered = 0;
 inline constexpr int kNoAnswer = 1;    ///< The input was read, and no solver answered.
 inline constexpr int kWrongUse = 2;    ///< Wrong usage, or an input that cannot be read.
+inline constexpr int kNotUsable = 3;   ///< Written, with the verdict NOT USABLE.
 inline constexpr int kNotWritten = 4;  ///< A file or standard output could not be written.
 inline constexpr int kFailed = 70;     ///< Out of memory, or an error in sextant itself.
 

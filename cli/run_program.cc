@@ -58,7 +58,8 @@ int RunLine(const Program& program, const ParsedLine& line) {
   const Expected<void> finished = FinishOutput();
   if (finished) return exit_code;
   PrintError("{}: {}\n", program.name, finished.error().message);
-  return exit_code == kAnswered || exit_code == kNoAnswer ? kNotWritten : exit_code;
+  return exit_code == kAnswered || exit_code == kNoAnswer || exit_code == kNotUsable ? kNotWritten
+                                                                                     : exit_code;
 }
 
 int RunProgram(const Program& program, int argc, const char* const* argv) {

@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   std::printf("  translation x y z   %.4f %.4f %.4f m\n", t.x(), t.y(), t.z());
   for (const std::string& warning : result.warnings) std::printf("%s\n", warning.c_str());
   std::printf("%s\n", result.closing.c_str());
-  if (result.trust) std::printf("%s\n", result.trust->verdict.c_str());
+  if (result.verdict) std::printf("%s\n", result.verdict->reason.c_str());
 
   if (argc < 3) return 0;
   const auto written =

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -27,25 +28,31 @@ std::string HeldOutText(const Calibration& calibration, int view) {
   return "-";
 }
 
+// Why boards were not kept, a line each, under the table.
+std::string ReasonsText(const Calibration& calibration) {
+  constexpr std::size_t kLongestWhy = 300;
+  std::string text;
+  for (const BoardRow& row : calibration.assembly.rows) {
+    if (row.why.empty()) continue;
+    text += fmt::format("  {}: {}: {}\n", Printable(calibration.observed.views[row.view].name, 30),
+                        ToString(row.fate), Printable(row.why, kLongestWhy));
+  }
+  return text.empty() ? text : "\nNot used:\n" + text;
+}
+
 // One row per board of each view, with its residuals where there is an answer.
 std::string DescribeViews(const Calibration& calibration) {
-  constexpr std::size_t kLongestWhy = 150;
   const Assembly& assembly = calibration.assembly;
   std::map<std::pair<int, int>, BoardResidual> residuals;
   if (const SolveReport* report = calibration.report()) {
     residuals = ResidualsByBoard(assembly.problem, report->evaluation);
   }
-  TextTable table({"view", "board", "", "range [m]", "off [mm]", "[px]", "held out [mm]", "why"},
+  TextTable table({"view", "board", "", "range [m]", "off [mm]", "[px]", "held out [mm]"},
                   TextTable::Columns::kWords);
   for (const BoardRow& row : assembly.rows) {
-    std::vector<std::string> cells = {Printable(calibration.observed.views[row.view].name, 30),
-                                      "-",
-                                      std::string(ToString(row.fate)),
-                                      "-",
-                                      "-",
-                                      "-",
-                                      "-",
-                                      Printable(row.why, kLongestWhy)};
+    std::vector<std::string> cells(7, "-");
+    cells[0] = Printable(calibration.observed.views[row.view].name, 30);
+    cells[2] = std::string(ToString(row.fate));
     if (row.board >= 0) {
       const int id = assembly.problem.boards[static_cast<std::size_t>(row.board)].id;
       cells[1] = std::to_string(id);
@@ -59,7 +66,7 @@ std::string DescribeViews(const Calibration& calibration) {
     }
     table.AddRow(std::move(cells));
   }
-  return table.Plain();
+  return table.Plain() + ReasonsText(calibration);
 }
 
 std::string ErrorAgainstTruth(const ComparisonRow& row) {
@@ -76,6 +83,27 @@ std::string ErrorAgainstTruth(const ComparisonRow& row) {
   return text + "\n";
 }
 
+// Each line that is too long is broken at blanks, with a hanging indent.
+std::string Narrow(const std::string& text) {
+  std::string narrow;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.size() <= kLineWidth) {
+      narrow += line + "\n";
+      continue;
+    }
+    const std::size_t indent = line.find_first_not_of(' ');
+    const std::string first(indent, ' ');
+    const std::string hanging(indent == 0 ? 0 : indent + 2, ' ');
+    std::istringstream parts(Wrapped(line.substr(indent), kLineWidth - hanging.size()));
+    bool is_first = true;
+    for (std::string part; std::getline(parts, part); is_first = false) {
+      narrow += (is_first ? first : hanging) + part + "\n";
+    }
+  }
+  return narrow;
+}
+
 std::string WarningsText(const std::vector<std::string>& warnings) {
   std::string text;
   for (const std::string& line : warnings) text += "  " + line + "\n";
@@ -84,18 +112,33 @@ std::string WarningsText(const std::vector<std::string>& warnings) {
 
 }  // namespace
 
+std::string DescribeVerdict(const ResultVerdict& verdict) {
+  return Wrapped(
+      fmt::format("{}: {}. {}.", ToString(verdict.usability), verdict.reason, verdict.next),
+      kLineWidth);
+}
+
+std::string CautionAbout(const CalibrationResult& result) {
+  if (!result.verdict || result.verdict->usability != Usability::kNotUsable) return {};
+  return DescribeVerdict(*result.verdict);
+}
+
 std::string DescribeCalibration(const Calibration& calibration) {
   if (calibration.assembly.rows.empty()) return {};
-  std::string text = DescribeViews(calibration) + "\n";
-  if (!calibration.result) return text + WarningsText(calibration.warnings);
+  std::string text;
+  if (calibration.result && calibration.result->verdict) {
+    text = DescribeVerdict(*calibration.result->verdict) + "\n";
+  }
+  text += DescribeViews(calibration) + "\n";
+  if (!calibration.result) return Narrow(text + WarningsText(calibration.warnings));
   const CalibrationResult& result = *calibration.result;
   text += DescribeAnswer(*calibration.report());
   text += ErrorAgainstTruth(calibration.comparison.front());
   if (calibration.comparison.size() > 1) text += "\n" + DescribeComparison(calibration.comparison);
   text += WarningsText(result.warnings);
-  text += "\n" + Wrapped(result.closing, kLineWidth);
-  if (result.trust) text += "\n" + Wrapped(result.trust->verdict, kLineWidth);
-  return text;
+  text += "\n" + result.closing + "\n";
+  if (result.trust) text += "\n" + result.trust->comparison + "\n";
+  return Narrow(text);
 }
 
 std::string Wrapped(const std::string& text, std::size_t width) {

@@ -86,15 +86,23 @@ std::vector<Rigid3d> BoardPosesOf(const CalibrationResult& result) {
   return poses;
 }
 
+// A view contributes as much less than its noise allows as those of the result do.
+double ShareOfPredicted(const CalibrationResult& result) {
+  const double excess =
+      result.trust && result.trust->stated_over_solver ? *result.trust->stated_over_solver : 1.0;
+  return 1.0 / (excess * excess);
+}
+
 std::optional<Matrix6d> InformationOf(const ResultView& view, const CalibrationResult& result,
                                       const SensorPair& sensors) {
   if (view.information) return view.information;
+  const double share = ShareOfPredicted(result);
   std::optional<Matrix6d> sum;
   for (const ResultBoardView& seen : view.boards) {
     const Board* board = FindBoard(result.boards, seen.board);
     if (board == nullptr || !seen.cam_from_board) continue;
     const auto information = InformationAt(sensors, *board, *seen.cam_from_board);
-    if (information) sum = sum.value_or(Matrix6d::Zero()) + *information;
+    if (information) sum = sum.value_or(Matrix6d::Zero()) + share * *information;
   }
   return sum;
 }
@@ -141,11 +149,12 @@ Matrix6d SumOfViews(const CalibrationResult& result, const SensorPair& sensors, 
 std::optional<std::size_t> BestOf(const std::vector<Candidate>& grid,
                                   const CalibrationResult& result, const SensorPair& sensors,
                                   const Matrix6d& known, int& considered) {
+  const double share = ShareOfPredicted(result);
   std::vector<std::optional<double>> gains(grid.size());
   tbb::parallel_for(std::size_t{0}, grid.size(), [&](std::size_t i) {
     const auto information =
         InformationAt(sensors, result.boards[grid[i].board], grid[i].cam_from_board);
-    if (information) gains[i] = LogDeterminant(known + *information);
+    if (information) gains[i] = LogDeterminant(known + share * *information);
   });
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < grid.size(); ++i) {
@@ -172,8 +181,8 @@ Expected<Advice> Advise(const CalibrationResult& result, const SensorPair& senso
   }
   const Candidate& chosen = grid[*best];
   const Board& board = result.boards[chosen.board];
-  const std::optional<Matrix6d> covariance =
-      CovarianceOf(known + *InformationAt(sensors, board, chosen.cam_from_board));
+  const std::optional<Matrix6d> covariance = CovarianceOf(
+      known + ShareOfPredicted(result) * *InformationAt(sensors, board, chosen.cam_from_board));
   if (!covariance) {
     return MakeError(ErrorCode::kDegenerate, "no single view of the grid determines the pose");
   }

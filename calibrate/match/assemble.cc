@@ -172,6 +172,8 @@ std::string_view ToString(BoardStatus fate) {
       return "not in the scan";
     case BoardStatus::kDisagrees:
       return "disagrees";
+    case BoardStatus::kContradicts:
+      return "left out";
     case BoardStatus::kCopy:
       return "copy";
   }

@@ -31,8 +31,9 @@ enum class BoardStatus {
   kLeftOut,     ///< Excluded before matching; see CameraSighting::left_out.
   kNotInImage,
   kNotInScan,
-  kDisagrees,  ///< The scan's candidate contradicts the image, or its pose the other views.
-  kCopy,       ///< Its image and scan are those of an earlier view.
+  kDisagrees,    ///< The scan's candidate contradicts the image, or its pose the other views.
+  kContradicts,  ///< The solver left it out: its data contradict the other views.
+  kCopy,         ///< Its image and scan are those of an earlier view.
 };
 std::string_view ToString(BoardStatus fate);
 

@@ -210,8 +210,7 @@ std::vector<std::string> DescribeAmbiguity(const Matching& matching,
   std::vector<std::string> lines;
   if (!matching.limited.empty()) {
     lines.push_back(fmt::format(
-        "patches: {} view{} {} more than {} board-like patches in the scan (first: view number "
-        "{}); "
+        "patches: {} view{} {} more than {} board-like patches in the scan (first: view {}); "
         "each board was matched with the {} that fit it best; restrict the search with --region",
         matching.limited.size(), matching.limited.size() == 1 ? "" : "s",
         matching.limited.size() == 1 ? "has" : "have", kMaxPatchesPerBoard,

@@ -4,80 +4,31 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <set>
 #include <utility>
 
-#include "base/median.h"
-#include "geometry/pair_noise.h"
-#include "geometry/so3.h"
-#include "geometry/symmetric.h"
+#include "calibrate/trust/measured_boards.h"
+#include "calibrate/trust/scale_fit.h"
 
 namespace sextant {
 namespace {
 
-using Vector7d = Eigen::Matrix<double, 7, 1>;
-using Matrix7d = Eigen::Matrix<double, 7, 7>;
-
-constexpr double kMinExcess = 0.02;  // Relative to a distance.
+constexpr double kMinExcess = 0.01;  // Relative to a distance.
 constexpr double kSigmas = 4.0;
-constexpr double kOtherPrintSize = 0.05;  // Relative to a side.
-constexpr double kPoorPrint_px = 1.0;     // RMS; a good lens model leaves a third of it.
-constexpr double kPoorPrint = 3.0;        // RMS over the stated noise.
+constexpr double kPoorPrint_px = 1.0;  // RMS; a good lens model leaves a third of it.
+constexpr double kPoorPrint = 3.0;     // RMS over the stated noise.
 constexpr double kSamePlace_m = 0.05;
 constexpr double kSameTurn_rad = 5.0 * std::numbers::pi / 180.0;
-
-// The centre of each board in the camera frame, by (view, board).
-std::map<std::pair<int, int>, Eigen::Vector3d> CentersInCam(const CalibrationProblem& problem) {
-  std::map<std::pair<int, int>, Eigen::Vector3d> centers;
-  for (const BoardView& view : problem.board_views) {
-    centers[{view.view, view.board}] = view.cam_from_board.translation;
-  }
-  return centers;
-}
-
-// `share` maps the centre of a board to its displacement per unit of the estimated share.
-template <class Share>
-std::optional<ScaleFit> FitScale(const CalibrationProblem& problem, const Rigid3d& pose,
-                                 const std::map<std::pair<int, int>, Eigen::Vector3d>& centers,
-                                 Share share) {
-  Matrix7d normal = Matrix7d::Zero();
-  Vector7d gradient = Vector7d::Zero();
-  double squares = 0.0;
-  int boards = 0;
-  for (const Pair3d3d& pair : problem.pairs_3d3d) {
-    const auto center = centers.find({pair.id.view, pair.id.board});
-    if (center == centers.end()) continue;
-    const Eigen::Vector3d turned = pose.rotation * pair.point_in_lidar;
-    Eigen::Matrix<double, 3, 7> jacobian;
-    jacobian << -Hat(turned), Eigen::Matrix3d::Identity(), share(center->second);
-    const Eigen::Vector3d residual = pair.point_in_cam - turned - pose.translation;
-    const double weight = IsotropicWeight(pair);
-    normal += weight * jacobian.transpose() * jacobian;
-    gradient += weight * jacobian.transpose() * residual;
-    squares += weight * residual.squaredNorm();
-    boards += pair.id.corner == 0 ? 1 : 0;
-  }
-  const std::optional<Eigen::MatrixXd> inverse = InvertSymmetric<Eigen::Dynamic>(normal);
-  if (boards < 2 || !inverse) return std::nullopt;
-  const Vector7d step = *inverse * gradient;
-  ScaleFit fit{.excess = step(6), .sum_squares = squares - step.dot(gradient)};
-  // The four corners of a board share its pose, so only six of their twelve numbers are
-  // independent.
-  const double variance = 2.0 * fit.sum_squares / (12.0 * boards - 7.0);
-  fit.sigma = std::sqrt(variance * (*inverse)(6, 6));
-  return fit;
-}
 
 void DiagnoseScale(const CalibrationProblem& problem, const Rigid3d& pose,
                    std::vector<std::string>& lines) {
   const std::optional<ScaleFits> fits = FitScales(problem, pose);
   if (!fits) return;
-  const bool is_print = fits->print.sum_squares <= fits->focal.sum_squares;
-  const ScaleFit& fit = is_print ? fits->print : fits->focal;
+  const bool is_print = fits->IsPrint();
+  const ScaleFit& fit = fits->Better();
   if (std::abs(fit.excess) < std::max(kMinExcess, kSigmas * fit.sigma)) return;
   const double percent = 100.0 * std::abs(fit.excess);
   const char* sign = fit.excess > 0.0 ? "longer" : "shorter";
@@ -97,55 +48,14 @@ void DiagnoseScale(const CalibrationProblem& problem, const Rigid3d& pose,
                         focal));
 }
 
-void DiagnoseSizes(std::span<const SessionView> views, const Assembly& assembly,
-                   std::vector<std::string>& lines) {
-  std::map<int, std::array<std::vector<double>, 2>> sides;
-  for (const MatchedBoard& kept : assembly.matching.kept) {
-    const LidarSighting& patch = views[static_cast<std::size_t>(kept.view)]
-                                     .seen->in_scan[static_cast<std::size_t>(kept.patch)];
-    if (patch.measured_sides_m.empty()) continue;
-    const BoardPlacement& best = patch.placements.front();
-    const BoardPlacement& taken = patch.placements[static_cast<std::size_t>(kept.placement)];
-    const auto turned = static_cast<std::size_t>(std::abs(best.turn - taken.turn) % 2);
-    for (std::size_t i = 0; i < 2; ++i) {
-      const double mean = 0.5 * (patch.measured_sides_m[i] + patch.measured_sides_m[i + 2]);
-      sides[taken.board][(i + turned) % 2].push_back(mean);
-    }
-  }
-  for (auto& [b, measured] : sides) {
-    const Board& board = assembly.problem.boards[static_cast<std::size_t>(b)];
-    for (std::size_t i = 0; i < 2; ++i) {
-      const double known = board.EdgeLengths()[i];
-      const double median = UpperMedian(measured[i]);
-      if (std::abs(median - known) < kOtherPrintSize * known) continue;
-      lines.push_back(fmt::format(
-          "board file: the edge from {} of board {} is {:.3f} m in the scans, {:.3f} m in the "
-          "board file: measure the board",
-          i == 0 ? "top to right" : "right to bottom", board.id, median, known));
-    }
-  }
-}
-
 void DiagnosePrints(std::span<const SessionView> views, const Assembly& assembly,
                     std::vector<std::string>& lines) {
-  std::vector<double> rms_px;
-  std::vector<double> over_noise;
-  for (const MatchedBoard& kept : assembly.matching.kept) {
-    const BoardPose& pose = views[static_cast<std::size_t>(kept.view)]
-                                .seen->in_image[static_cast<std::size_t>(kept.sighting)]
-                                .pose;
-    if (pose.residuals <= 6) continue;
-    rms_px.push_back(pose.rms_px);
-    over_noise.push_back(std::sqrt(pose.chi_square / (pose.residuals - 6)));
-  }
-  if (rms_px.empty()) return;
-  const double median_px = UpperMedian(rms_px);
-  const double median_over = UpperMedian(over_noise);
-  if (median_px < kPoorPrint_px || median_over < kPoorPrint) return;
+  const std::optional<PrintFit> fit = MeasurePrints(views, assembly);
+  if (!fit || fit->rms_px < kPoorPrint_px || fit->over_noise < kPoorPrint) return;
   lines.push_back(
       fmt::format("intrinsics: the prints fit the camera model only to {:.1f} px, {:.0f} times "
                   "their noise: the intrinsics do not describe the lens, or a print is not flat",
-                  median_px, median_over));
+                  fit->rms_px, fit->over_noise));
 }
 
 void DiagnoseSession(const Assembly& assembly, std::vector<std::string>& lines) {
@@ -208,24 +118,14 @@ void DiagnoseRepeats(std::span<const SessionView> views, const Assembly& assembl
 
 }  // namespace
 
-std::optional<ScaleFits> FitScales(const CalibrationProblem& problem,
-                                   const Rigid3d& cam_from_lidar) {
-  const auto centers = CentersInCam(problem);
-  const auto print = FitScale(problem, cam_from_lidar, centers,
-                              [](const Eigen::Vector3d& center) { return center; });
-  const auto focal = FitScale(problem, cam_from_lidar, centers, [](const Eigen::Vector3d& center) {
-    return Eigen::Vector3d(0.0, 0.0, center.z());
-  });
-  if (!print || !focal) return std::nullopt;
-  return ScaleFits{.print = *print, .focal = *focal};
-}
-
 std::vector<std::string> Diagnose(std::span<const SessionView> views, const Assembly& assembly,
                                   const Rigid3d& cam_from_lidar) {
   std::vector<std::string> lines;
   DiagnoseSession(assembly, lines);
   DiagnoseRepeats(views, assembly, lines);
-  DiagnoseSizes(views, assembly, lines);
+  for (std::string& line : DescribeEdges(MeasureEdges(views, assembly), assembly)) {
+    lines.push_back(std::move(line));
+  }
   DiagnoseScale(assembly.problem, cam_from_lidar, lines);
   DiagnosePrints(views, assembly, lines);
   return lines;

@@ -1,34 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "calibrate/match/assemble.h"
-#include "geometry/calibration_problem.h"
 #include "geometry/rigid3d.h"
 
 namespace sextant {
-
-/// Relative excess of the camera's distances over the LiDAR's.
-struct ScaleFit {
-  double excess = 0.0;
-  double sigma = 0.0;        ///< One standard deviation, from the residuals.
-  double sum_squares = 0.0;  ///< Remaining differences, whitened by their noise.
-};
-
-/// Two models of boards that appear too far away in images: a print smaller than the board file
-/// states scales the whole distance, a focal length that is too long scales the depth only. Each is
-/// a least-squares fit of pose and excess to the corners' differences.
-/// None for fewer than two boards, and where their positions do not determine the excess.
-struct ScaleFits {
-  ScaleFit print{};
-  ScaleFit focal{};
-};
-std::optional<ScaleFits> FitScales(const CalibrationProblem& problem,
-                                   const Rigid3d& cam_from_lidar);
 
 /// Contradictions between the measurements and the board file, the intrinsics or the session, one
 /// line each with figures and advice: sizes of boards in the scans, distances that are too long or

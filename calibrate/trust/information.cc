@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "calibrate/trust/stated_covariance.h"
 #include "geometry/symmetric.h"
 #include "solvers/core/board_view_check.h"
 #include "solvers/joint/board_view_information.h"
@@ -34,6 +35,14 @@ std::optional<Matrix6d> InformationOf(const CalibrationProblem& problem, int vie
     if (information) sum = sum.value_or(Matrix6d::Zero()) + *information;
   }
   return sum;
+}
+
+// T with T * sum * T = the inverse of the stated covariance; the identity where there is none.
+Matrix6d ToStated(const Matrix6d& sum, const std::optional<Matrix6d>& covariance) {
+  const std::optional<Matrix6d> target =
+      covariance ? InvertSymmetric<6>(*covariance) : std::nullopt;
+  if (!target) return Matrix6d::Identity();
+  return CongruenceTo(sum, *target).value_or(Matrix6d::Identity());
 }
 
 }  // namespace
@@ -81,7 +90,14 @@ void AddInformation(const CalibrationProblem& problem, CalibrationResult& result
   for (ResultView& view : result.views) {
     if (!view.kept) continue;
     view.information = InformationOf(problem, view.view, result.cam_from_lidar);
+    if (view.information) sum += *view.information;
+  }
+  const Matrix6d to_stated = ToStated(sum, result.covariance);
+  sum.setZero();
+  for (ResultView& view : result.views) {
     if (!view.information) continue;
+    const Matrix6d stated = to_stated * *view.information * to_stated;
+    view.information = 0.5 * (stated + stated.transpose());
     sum += *view.information;
     const std::optional<Matrix6d> covariance = CovarianceOf(sum);
     if (covariance) view.sigma_so_far = covariance->diagonal().cwiseSqrt();

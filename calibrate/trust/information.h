@@ -31,8 +31,10 @@ std::string DescribeWeakest(const WeakestDirections& weakest);
 std::optional<Matrix6d> CovarianceOf(const Matrix6d& information);
 
 /// Sets the information matrix of each kept view of the result, from the problem's board views
-/// (solvers/joint/board_view_information.h), and the predicted sigma with all views up to it. Views
-/// without board views, and views that the pose does not fit at all, get none.
+/// (solvers/joint/board_view_information.h), and the predicted sigma with all views up to it. Where
+/// the result has a covariance, each I becomes T I T with the symmetric T for which they sum up to
+/// its inverse, so that all figures are those of one covariance. Views without board views, and
+/// views that the pose does not fit at all, get none.
 void AddInformation(const CalibrationProblem& problem, CalibrationResult& result);
 
 }  // namespace sextant

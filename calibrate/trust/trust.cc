@@ -11,6 +11,7 @@
 #include "base/random.h"
 #include "calibrate/trust/outlier_views.h"
 #include "calibrate/trust/select_views.h"
+#include "calibrate/trust/stated_covariance.h"
 #include "calibrate/trust/trust_text.h"
 
 namespace sextant {
@@ -95,6 +96,14 @@ Vector6d ScatterOf(const std::vector<Vector6d>& differences) {
   return scatter;
 }
 
+Matrix6d SampleCovariance(const std::vector<Vector6d>& differences) {
+  Vector6d mean = Vector6d::Zero();
+  for (const Vector6d& d : differences) mean += d / static_cast<double>(differences.size());
+  Matrix6d covariance = Matrix6d::Zero();
+  for (const Vector6d& d : differences) covariance += (d - mean) * (d - mean).transpose();
+  return covariance / static_cast<double>(differences.size() - 1);
+}
+
 // Linear interpolation between the order statistics.
 double Quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
@@ -119,6 +128,16 @@ void AddBootstrap(const std::vector<Vector6d>& differences, const TrustOptions& 
   }
   figures.bootstrap_sigma =
       (ScatterOf(differences) / static_cast<double>(differences.size() - 1)).cwiseSqrt();
+}
+
+void AddJackknife(const std::vector<Vector6d>& of_folds, TrustFigures& figures) {
+  const double g = figures.folds;
+  if (of_folds.size() < 2 || static_cast<double>(of_folds.size()) != g) return;
+  figures.jackknife_sigma = ((g - 1.0) / g * ScatterOf(of_folds)).cwiseSqrt();
+}
+
+Vector6d SigmaOf(const Matrix6d& covariance) {
+  return covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
 // Geometric mean of a / b over the axes; none where an axis has zero sigma.
@@ -246,10 +265,9 @@ Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& sol
   }
   const ViewGroups groups = GroupsOf(views, options.together);
   Trust trust;
+  trust.independent_views = static_cast<int>(groups.size());
   TrustFigures& figures = trust.figures;
-  if (answer.covariance) {
-    figures.covariance_sigma = answer.covariance->diagonal().cwiseMax(0.0).cwiseSqrt();
-  }
+  if (answer.covariance) figures.solver_sigma = SigmaOf(*answer.covariance);
   Poses folds;
   if (groups.size() > 1) {
     figures.folds = std::min(std::max(options.folds, 2), static_cast<int>(groups.size()));
@@ -260,24 +278,29 @@ Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& sol
     folds = SolveFolds(problem, solver, groups, static_cast<std::size_t>(figures.folds), counter);
   }
   AddFits(problem, views, groups, answer, folds, trust);
-  const std::vector<Vector6d> of_folds = DifferencesFrom(answer.cam_from_lidar, folds);
-  if (of_folds.size() > 2 && of_folds.size() == folds.size()) {
-    const double g = figures.folds;
-    figures.jackknife_sigma = ((g - 1.0) / g * ScatterOf(of_folds)).cwiseSqrt();
-  }
+  AddJackknife(DifferencesFrom(answer.cam_from_lidar, folds), figures);
+  ViewScatter scatter{.views = trust.independent_views};
   if (groups.size() > 2 && options.bootstrap_samples > 1) {
     const std::vector<Vector6d> draws = DifferencesFrom(
         answer.cam_from_lidar, SolveResamples(problem, solver, groups, options, counter));
-    if (draws.size() > 1) AddBootstrap(draws, options, figures);
+    if (draws.size() > 1) {
+      AddBootstrap(draws, options, figures);
+      scatter.bootstrap = SampleCovariance(draws);
+    }
   }
-  figures.bootstrap_over_covariance = MeanRatio(figures.bootstrap_sigma, figures.covariance_sigma);
-  figures.jackknife_over_covariance = MeanRatio(figures.jackknife_sigma, figures.covariance_sigma);
+  figures.bootstrap_over_solver = MeanRatio(figures.bootstrap_sigma, figures.solver_sigma);
+  figures.jackknife_over_solver = MeanRatio(figures.jackknife_sigma, figures.solver_sigma);
+  scatter.jackknife_over_solver = figures.jackknife_over_solver;
+  trust.covariance = StatedCovariance(answer.covariance, scatter);
+  if (trust.covariance) {
+    figures.stated_over_solver = MeanRatio(SigmaOf(*trust.covariance), figures.solver_sigma);
+  }
   const std::vector<bool> marked = MarkOutliers(problem, solver, views, trust);
   for (std::size_t i = 0; i < views.size(); ++i) {
     trust.views[i].outlier = marked[i];
     if (marked[i]) figures.outlier_views.push_back(views[i]);
   }
-  figures.verdict = TrustVerdict(figures, static_cast<int>(groups.size()));
+  figures.comparison = DescribeChecks(figures, trust.independent_views);
   counter.Finish();
   return trust;
 }
@@ -292,8 +315,8 @@ void AddTrust(const Trust& trust, CalibrationResult& result) {
     view.rmse_px = judged->rmse_px;
     view.held_out_m = judged->held_out_m;
     view.held_out_px = judged->held_out_px;
-    if (!judged->outlier) continue;
-    const std::string name = view.name.empty() ? "view " + std::to_string(view.view) : view.name;
+    if (!judged->outlier || !view.kept) continue;
+    const std::string name = "view " + (view.name.empty() ? std::to_string(view.view) : view.name);
     result.warnings.push_back(OutlierText(name, *judged, trust.figures));
   }
 }

@@ -37,6 +37,9 @@ struct ViewTrust {
 struct Trust {
   TrustFigures figures{};
   std::vector<ViewTrust> views{};  ///< Ascending.
+  int independent_views = 0;       ///< Groups of views that share no errors.
+  /// The covariance of the answer, enlarged to what the views show (StatedCovariance).
+  std::optional<Matrix6d> covariance{};
 };
 
 /// Tests how consistent the views of a problem are, with the solver that gave `answer`.
@@ -57,7 +60,8 @@ struct Trust {
 Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& solver,
                             const SolveReport& answer, const TrustOptions& options = {});
 
-/// Copies the figures into the result and into its views, and adds a warning for each outlier.
+/// Copies the figures into the result and its views, and adds a warning for each
+/// outlier that is kept.
 void AddTrust(const Trust& trust, CalibrationResult& result);
 
 }  // namespace sextant

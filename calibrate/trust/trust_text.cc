@@ -31,8 +31,8 @@ std::string CrossValidationText(const TrustFigures& figures) {
 
 std::string SigmasText(const TrustFigures& figures) {
   std::string text;
-  if (figures.covariance_sigma) {
-    text += "The covariance states " + SigmaText(*figures.covariance_sigma);
+  if (figures.solver_sigma) {
+    text += "The noise model alone allows " + SigmaText(*figures.solver_sigma);
   }
   if (figures.bootstrap_sigma) {
     text +=
@@ -47,23 +47,22 @@ std::string SigmasText(const TrustFigures& figures) {
 }
 
 std::string ComparisonText(const TrustFigures& figures, int views) {
-  if (!figures.bootstrap_over_covariance) return "";
+  if (!figures.bootstrap_over_solver) return "";
   const double band = 1.0 + 2.0 / std::sqrt(2.0 * std::max(1, views - 1));
   const double largest =
-      std::max(*figures.bootstrap_over_covariance, figures.jackknife_over_covariance.value_or(0.0));
+      std::max(*figures.bootstrap_over_solver, figures.jackknife_over_solver.value_or(0.0));
   const double smallest =
-      std::min(*figures.bootstrap_over_covariance,
-               figures.jackknife_over_covariance.value_or(*figures.bootstrap_over_covariance));
+      std::min(*figures.bootstrap_over_solver,
+               figures.jackknife_over_solver.value_or(*figures.bootstrap_over_solver));
   if (largest > band) {
     return fmt::format(
-        "The views differ from each other by {:.1f} times what their stated noise allows: trust "
-        "the larger figures, and look for a wrong board size, wrong intrinsics or a view that does "
-        "not belong.",
+        "The views differ from each other by {:.1f} times what the noise model allows, which the "
+        "stated covariance includes.",
         largest);
   }
   if (smallest < 1.0 / band) {
     return fmt::format(
-        "The views agree {:.1f} times better than their stated noise: the covariance is cautious, "
+        "The views agree {:.1f} times better than the noise model allows: it is cautious, "
         "or the views are too similar to show an error that they share.",
         1.0 / smallest);
   }
@@ -72,16 +71,15 @@ std::string ComparisonText(const TrustFigures& figures, int views) {
 
 }  // namespace
 
-std::string TrustVerdict(const TrustFigures& figures, int views) {
+std::string DescribeChecks(const TrustFigures& figures, int views) {
   if (views < 2) return "One view alone: its answer cannot be compared with any other.";
   std::string text = CrossValidationText(figures) + SigmasText(figures);
   if (views == 2) text += "Two views are too few for a bootstrap.";
   text += ComparisonText(figures, views);
   if (!figures.outlier_views.empty()) {
-    text +=
-        fmt::format(" {} {} with the others.", figures.outlier_views.size() == 1 ? "View" : "Views",
-                    fmt::format("{} {}", fmt::join(figures.outlier_views, ", "),
-                                figures.outlier_views.size() == 1 ? "disagrees" : "disagree"));
+    const std::size_t outliers = figures.outlier_views.size();
+    text += fmt::format(" {} view{} with the others; see the diagnostics.", outliers,
+                        outliers == 1 ? " disagrees" : "s disagree");
   }
   while (text.ends_with(' ')) text.pop_back();
   return text;

@@ -8,9 +8,9 @@
 
 namespace sextant {
 
-/// Compares covariance, bootstrap and cross-validation in a few sentences, with advice. Ratios up
+/// Compares the solver's covariance, bootstrap and cross-validation in a few sentences. Ratios up
 /// to 1 + 2 / sqrt(2 (n - 1)), two standard errors of a standard deviation, count as agreement.
-std::string TrustVerdict(const TrustFigures& figures, int views);
+std::string DescribeChecks(const TrustFigures& figures, int views);
 
 /// The warning for an outlying view, with its error.
 std::string OutlierText(const std::string& name, const ViewTrust& view,

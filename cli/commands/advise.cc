@@ -15,6 +15,7 @@
 #include "eval/metrics/bounds.h"
 #include "io/output/standard_output.h"
 #include "report/advice_picture.h"
+#include "report/calibrate_text.h"
 #include "simulator/lidar/lidar_model.h"
 
 namespace sextant::cli {
@@ -138,6 +139,7 @@ int Run(const AdviseCommandOptions& options) {
   }
   const Expected<SensorPair> sensors = SensorsOf(options, *result);
   if (!sensors) return Refuse("advise", sensors.error());
+  Print("{}", CautionAbout(*result));
   CalibrationResult growing = *result;
   std::vector<BoardProposal> proposals;
   for (int i = 0; i < options.count; ++i) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/units.h"
 #include "calibrate/session/session.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
@@ -38,7 +39,8 @@ struct CalibrateCommandOptions {
   std::string detector{};
   std::string extractor = "rectangle";
   SearchArguments search{};
-  int bootstrap = 100;  ///< Samples; 0: neither bootstrap nor cross-validation.
+  std::vector<double> need = {10.0, 0.1};  ///< mm and degrees.
+  int bootstrap = 100;                     ///< Samples; 0: neither bootstrap nor cross-validation.
   std::string out_path = "result.yaml";
   std::string json_path{};     ///< See Deliver.
   std::string problem_path{};  ///< The solvers' problem; empty: not written.
@@ -78,6 +80,15 @@ void Declare(CalibrateCommandOptions& options, Arguments& arguments) {
   arguments.Add("--detector", options.detector, "See sextant detect");
   arguments.Add("--extractor", options.extractor, "See sextant boards", {.shows_default = true});
   DeclareSearch(options.search, arguments);
+  arguments.Add(
+      "--need", options.need,
+      "The accuracy that you need, for the verdict: MM,DEG, 1 sigma of the least certain\n"
+      "direction",
+      {.shows_default = true,
+       .range = {{1e-3, 1e6}},
+       .min_values = 2,
+       .max_values = 2,
+       .separator = ','});
   arguments.Add("--bootstrap", options.bootstrap,
                 "Bootstrap samples over the views; 0: neither bootstrap nor cross-validation",
                 {.shows_default = true, .range = {{0, 100'000}}});
@@ -139,6 +150,8 @@ Expected<CalibrateOptions> SettingsFrom(const CalibrateCommandOptions& options) 
       .observe = {.detector = options.detector, .extractor = options.extractor},
       .tolerance_s = options.tolerance_s,
       .bootstrap_samples = options.bootstrap,
+      .need = {.translation_m = 1e-3 * options.need[0],
+               .rotation_rad = kRadPerDeg * options.need[1]},
       .search_description = ConfigurationOf(options.search)};
   SEXTANT_ASSIGN_OR_RETURN(settings.solvers, SolversFrom(options.solvers));
   if (!options.initial.empty()) {
@@ -181,14 +194,18 @@ int Run(const CalibrateCommandOptions& options) {
   if (!options.out_path.empty()) {
     text += "\n" + WroteLine(options.out_path, "the result, for project, export and advise");
   }
-  return Deliver("calibrate", options.json_path, text,
-                 FormatCalibrationResultJson(*calibration->result), kAnswered);
+  return Deliver(
+      "calibrate", options.json_path, text, FormatCalibrationResultJson(*calibration->result),
+      calibration->result->verdict->usability == Usability::kNotUsable ? kNotUsable : kAnswered);
 }
 
 }  // namespace
 
 Command CalibrateCommand() {
   constexpr const char* kFooter =
+      "The first line is the verdict: GOOD, USABLE WITH CARE or NOT USABLE, with its reason and "
+      "what\n"
+      "to do next. A result that is NOT USABLE is written too, with exit code 3.\n"
       "Examples:\n"
       "  sextant calibrate --image photo.png --cloud scan.pcd --board board.yaml --camera "
       "cam.yaml\n"

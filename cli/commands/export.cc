@@ -19,6 +19,7 @@ struct ExportCommandOptions {
   std::string out = "-";
   std::string camera_frame{};  ///< Empty: the result's.
   std::string lidar_frame{};
+  bool force = false;    ///< Also a result with the verdict NOT USABLE.
   std::string parent{};  ///< "lidar" or "camera"; empty: the LiDAR, if the format has a parent.
 };
 
@@ -45,6 +46,7 @@ void Declare(ExportCommandOptions& options, Arguments& arguments) {
                 "lidar or camera: the frame in which the pose of the other is stated; default:\n"
                 "lidar",
                 {.choices = {"lidar", "camera"}});
+  arguments.Add("--force", options.force, "Export also a result with the verdict NOT USABLE");
 }
 
 // By the conventions of ROS a frame of this name has x forward; ours has x to the right.
@@ -70,10 +72,21 @@ Expected<void> CheckParent(const ExportCommandOptions& options) {
       fmt::format("--parent: {} always holds cam_from_lidar; leave the option out", format->name));
 }
 
+Expected<void> CheckVerdict(const ExportCommandOptions& options, const CalibrationResult& result) {
+  if (options.force || !result.verdict) return {};
+  if (result.verdict->usability != Usability::kNotUsable) return {};
+  return MakeError(ErrorCode::kInvalidInput,
+                   fmt::format("{} is NOT USABLE: {}. {}. To export it nevertheless, add --force",
+                               options.result_path, result.verdict->reason, result.verdict->next));
+}
+
 int Run(const ExportCommandOptions& options) {
   if (const Expected<void> ok = CheckParent(options); !ok) return Refuse("export", ok.error());
   const Expected<CalibrationResult> result = ReadCalibrationResult(options.result_path);
   if (!result) return Refuse("export", result.error());
+  if (const Expected<void> ok = CheckVerdict(options, *result); !ok) {
+    return Refuse("export", ok.error(), kNotUsable);
+  }
   const ExportOptions frames = FramesOf(options, *result);
   const Expected<std::string> text = ExportTransform(options.format, *result, frames);
   if (!text) {

@@ -14,6 +14,7 @@
 #include "io/clouds/cloud_file.h"
 #include "io/output/standard_output.h"
 #include "io/results/calibration_result.h"
+#include "report/calibrate_text.h"
 #include "report/scan_on_image.h"
 #include "report/thinned_scan.h"
 
@@ -196,7 +197,8 @@ int Run(const ProjectOptions& options) {
     return Refuse("project", ok.error());
   }
   steps.Finish();
-  Print("{}{}", text, WroteLine(options.out_path, "the scan on its image"));
+  Print("{}{}{}", CautionAbout(inputs->result), text,
+        WroteLine(options.out_path, "the scan on its image"));
   if (drawn.in_view > 0) return kAnswered;
   return Refuse("project",
                 {ErrorCode::kInvalidInput,

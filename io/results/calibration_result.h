@@ -57,6 +57,18 @@ struct BootstrapFigures {
   Vector6d high = Vector6d::Zero();
 };
 
+/// Whether a result can be relied on; docs/formats.md has the rules (calibrate/trust/verdict.h).
+enum class Usability { kGood, kUsableWithCare, kNotUsable };
+
+/// "GOOD", "USABLE WITH CARE" or "NOT USABLE".
+std::string_view ToString(Usability usability);
+
+struct ResultVerdict {
+  Usability usability = Usability::kNotUsable;
+  std::string reason{};  ///< What decided it, in one sentence.
+  std::string next{};    ///< What to do next, in one sentence.
+};
+
 /// Consistency of the views with each other: cross-validation, bootstrap and jackknife.
 struct TrustFigures {
   int folds = 0;  ///< Number of folds of the cross-validation.
@@ -65,15 +77,17 @@ struct TrustFigures {
   std::optional<double> held_out_rmse_m{};
   std::optional<double> held_out_rmse_px{};
   std::optional<BootstrapFigures> bootstrap{};
-  /// 1 sigma of (dphi [rad], dt [m]) by three methods.
-  std::optional<Vector6d> covariance_sigma{};
+  /// 1 sigma of (dphi [rad], dt [m]): by the solver's noise model, and by two checks of it. The
+  /// covariance of the result is the solver's, enlarged to cover what the checks show.
+  std::optional<Vector6d> solver_sigma{};
   std::optional<Vector6d> bootstrap_sigma{};
   std::optional<Vector6d> jackknife_sigma{};  ///< From the results of the folds.
-  /// Ratios of the sigmas to those of the stated covariance, geometric means over the axes.
-  std::optional<double> bootstrap_over_covariance{};
-  std::optional<double> jackknife_over_covariance{};
-  std::vector<int> outlier_views{};  ///< PairId::view.
-  std::string verdict{};             ///< Comparison of the three, in words.
+  /// Ratios of the sigmas to the solver's, geometric means over the axes.
+  std::optional<double> bootstrap_over_solver{};
+  std::optional<double> jackknife_over_solver{};
+  std::optional<double> stated_over_solver{};  ///< Of the covariance of the result.
+  std::vector<int> outlier_views{};            ///< PairId::view.
+  std::string comparison{};                    ///< Comparison of the three, in words.
 };
 
 /// The result of a calibration with everything needed to use, assess and repeat it.
@@ -83,6 +97,7 @@ struct CalibrationResult {
   std::uint64_t seed = 0;
   /// "name: value" of each setting that influences the result.
   std::vector<std::string> configuration{};
+  std::optional<ResultVerdict> verdict{};  ///< None in files of version 0.1.
   std::string camera_frame = "camera";
   std::string lidar_frame = "lidar";
   Rigid3d cam_from_lidar;

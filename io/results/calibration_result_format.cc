@@ -107,14 +107,21 @@ Json TrustJson(const TrustFigures& trust) {
       {"held_out_rmse_m", OrNull(trust.held_out_rmse_m)},
       {"held_out_rmse_px", OrNull(trust.held_out_rmse_px)},
       {"bootstrap", trust.bootstrap ? BootstrapJson(*trust.bootstrap) : Json(nullptr)},
-      {"covariance_sigma", OrNull(trust.covariance_sigma)},
+      {"solver_sigma", OrNull(trust.solver_sigma)},
       {"bootstrap_sigma", OrNull(trust.bootstrap_sigma)},
       {"jackknife_sigma", OrNull(trust.jackknife_sigma)},
-      {"bootstrap_over_covariance", OrNull(trust.bootstrap_over_covariance)},
-      {"jackknife_over_covariance", OrNull(trust.jackknife_over_covariance)},
+      {"bootstrap_over_solver", OrNull(trust.bootstrap_over_solver)},
+      {"jackknife_over_solver", OrNull(trust.jackknife_over_solver)},
+      {"stated_over_solver", OrNull(trust.stated_over_solver)},
       {"outlier_views", trust.outlier_views},
-      {"verdict", OrNull(trust.verdict)},
+      {"comparison", OrNull(trust.comparison)},
   };
+}
+
+Json VerdictJson(const ResultVerdict& verdict) {
+  return {{"word", ToString(verdict.usability)},
+          {"reason", OrNull(verdict.reason)},
+          {"next", OrNull(verdict.next)}};
 }
 
 // Every text as one line without control characters, as the reader of both forms expects it.
@@ -130,27 +137,40 @@ Json ResultJson(const CalibrationResult& result) {
   Json views = Json::array();
   for (const ResultView& view : result.views) views.push_back(ViewJson(view));
   Json json = {{"sextant_result", 1},
-          {"sextant", result.version},
-          {"solver", result.solver},
-          {"seed", result.seed},
-          {"configuration_hash", ConfigurationHash(result.configuration)},
-          {"configuration", result.configuration},
-          {"camera_frame", result.camera_frame},
-          {"lidar_frame", result.lidar_frame},
-          {"cam_from_lidar", PoseJson(result.cam_from_lidar)},
-          {"covariance", OrNull(result.covariance)},
-          {"closing", OrNull(result.closing)},
-          {"warnings", result.warnings},
-          {"trust", result.trust ? TrustJson(*result.trust) : Json(nullptr)},
-          {"camera", result.camera ? CameraJson(*result.camera) : Json(nullptr)},
-          {"lidar", result.lidar ? LidarJson(*result.lidar) : Json(nullptr)},
-          {"boards", std::move(boards)},
-          {"views", std::move(views)}};
+               {"verdict", result.verdict ? VerdictJson(*result.verdict) : Json(nullptr)},
+               {"sextant", result.version},
+               {"solver", result.solver},
+               {"seed", result.seed},
+               {"configuration_hash", ConfigurationHash(result.configuration)},
+               {"configuration", result.configuration},
+               {"camera_frame", result.camera_frame},
+               {"lidar_frame", result.lidar_frame},
+               {"cam_from_lidar", PoseJson(result.cam_from_lidar)},
+               {"covariance", OrNull(result.covariance)},
+               {"closing", OrNull(result.closing)},
+               {"warnings", result.warnings},
+               {"trust", result.trust ? TrustJson(*result.trust) : Json(nullptr)},
+               {"camera", result.camera ? CameraJson(*result.camera) : Json(nullptr)},
+               {"lidar", result.lidar ? LidarJson(*result.lidar) : Json(nullptr)},
+               {"boards", std::move(boards)},
+               {"views", std::move(views)}};
   MakeTextsPlain(json);
   return json;
 }
 
 }  // namespace
+
+std::string_view ToString(Usability usability) {
+  switch (usability) {
+    case Usability::kGood:
+      return "GOOD";
+    case Usability::kUsableWithCare:
+      return "USABLE WITH CARE";
+    case Usability::kNotUsable:
+      return "NOT USABLE";
+  }
+  return "unknown";
+}
 
 std::string ConfigurationHash(const std::vector<std::string>& configuration) {
   std::uint64_t hash = 0xcbf29ce484222325U;

@@ -237,6 +237,11 @@ std::vector<int> ReadViewNumbers(YamlFields& in, const YamlNode& map, std::strin
   return views;
 }
 
+// The key, or the one that files of version 0.1 have in its place.
+std::string_view Renamed(const YamlNode& map, std::string_view key, std::string_view old_key) {
+  return map.Find(key) == nullptr ? old_key : key;
+}
+
 TrustFigures ReadTrust(YamlFields& in, const YamlNode& node) {
   static const Keys kKeys = {"folds",
                              "fit_rmse_m",
@@ -244,12 +249,17 @@ TrustFigures ReadTrust(YamlFields& in, const YamlNode& node) {
                              "held_out_rmse_m",
                              "held_out_rmse_px",
                              "bootstrap",
-                             "covariance_sigma",
+                             "solver_sigma",
                              "bootstrap_sigma",
                              "jackknife_sigma",
+                             "bootstrap_over_solver",
+                             "jackknife_over_solver",
+                             "stated_over_solver",
+                             "outlier_views",
+                             "comparison",
+                             "covariance_sigma",
                              "bootstrap_over_covariance",
                              "jackknife_over_covariance",
-                             "outlier_views",
                              "verdict"};
   TrustFigures trust;
   if (!in.IsMap(node, "trust", kKeys)) return trust;
@@ -259,14 +269,38 @@ TrustFigures ReadTrust(YamlFields& in, const YamlNode& node) {
   trust.held_out_rmse_m = OptionalNonNegative(in, node, "held_out_rmse_m");
   trust.held_out_rmse_px = OptionalNonNegative(in, node, "held_out_rmse_px");
   if (const YamlNode* part = Present(node, "bootstrap")) trust.bootstrap = ReadBootstrap(in, *part);
-  trust.covariance_sigma = OptionalVector6(in, node, "covariance_sigma");
+  trust.solver_sigma = OptionalVector6(in, node, Renamed(node, "solver_sigma", "covariance_sigma"));
   trust.bootstrap_sigma = OptionalVector6(in, node, "bootstrap_sigma");
   trust.jackknife_sigma = OptionalVector6(in, node, "jackknife_sigma");
-  trust.bootstrap_over_covariance = OptionalNonNegative(in, node, "bootstrap_over_covariance");
-  trust.jackknife_over_covariance = OptionalNonNegative(in, node, "jackknife_over_covariance");
+  trust.bootstrap_over_solver = OptionalNonNegative(
+      in, node, Renamed(node, "bootstrap_over_solver", "bootstrap_over_covariance"));
+  trust.jackknife_over_solver = OptionalNonNegative(
+      in, node, Renamed(node, "jackknife_over_solver", "jackknife_over_covariance"));
+  trust.stated_over_solver = OptionalNonNegative(in, node, "stated_over_solver");
   trust.outlier_views = ReadViewNumbers(in, node, "outlier_views");
-  trust.verdict = OptionalText(in, node, "verdict");
+  trust.comparison = OptionalText(in, node, Renamed(node, "comparison", "verdict"));
   return trust;
+}
+
+ResultVerdict ReadVerdict(YamlFields& in, const YamlNode& node) {
+  static const Keys kKeys = {"word", "reason", "next"};
+  ResultVerdict verdict;
+  if (!in.IsMap(node, "verdict", kKeys)) return verdict;
+  const std::string word = in.TextAt(node, "word");
+  bool known = false;
+  for (const Usability usability :
+       {Usability::kGood, Usability::kUsableWithCare, Usability::kNotUsable}) {
+    if (word != ToString(usability)) continue;
+    verdict.usability = usability;
+    known = true;
+  }
+  if (in.ok() && !known) {
+    in.Fail(node.Find("word")->line, "word",
+            fmt::format("expected GOOD, USABLE WITH CARE or NOT USABLE, got {}", Quoted(word)));
+  }
+  verdict.reason = OptionalText(in, node, "reason");
+  verdict.next = OptionalText(in, node, "next");
+  return verdict;
 }
 
 std::uint64_t ReadSeed(YamlFields& in, const YamlNode& root) {
@@ -299,7 +333,7 @@ void ReadResultHeader(YamlFields& in, const YamlNode& root) {
                              "camera_frame",   "lidar_frame",   "cam_from_lidar",
                              "covariance",     "closing",       "warnings",
                              "trust",          "camera",        "lidar",
-                             "boards",         "views"};
+                             "boards",         "views",         "verdict"};
   if (root.kind == YamlNode::Kind::kMap && root.Find("sextant_result") == nullptr) {
     in.Fail(root.line, {},
             fmt::format("expected result.yaml of sextant calibrate, or its JSON, "
@@ -311,6 +345,7 @@ void ReadResultHeader(YamlFields& in, const YamlNode& root) {
 }
 
 void ReadBody(YamlFields& in, const YamlNode& root, CalibrationResult& result) {
+  if (const YamlNode* node = Present(root, "verdict")) result.verdict = ReadVerdict(in, *node);
   result.version = in.TextAt(root, "sextant");
   result.solver = in.TextAt(root, "solver");
   result.seed = ReadSeed(in, root);

@@ -85,7 +85,10 @@ TEST(Calibrate, FramesGiveThePoseAndEveryProductOfThePipeline) {
   ASSERT_TRUE(calibration->trust);
   EXPECT_EQ(calibration->trust->figures.bootstrap->samples, 20);
   ASSERT_TRUE(result.trust);
-  EXPECT_EQ(result.trust->verdict, calibration->trust->figures.verdict);
+  EXPECT_EQ(result.trust->comparison, calibration->trust->figures.comparison);
+  ASSERT_TRUE(result.verdict);
+  EXPECT_THAT(DescribeCalibration(*calibration),
+              testing::StartsWith(std::string(ToString(result.verdict->usability)) + ": "));
 
   EXPECT_EQ(calibration->observed.views[1].name, "frame 1");
   EXPECT_EQ(calibration->assembly.rows.size(), 6U);

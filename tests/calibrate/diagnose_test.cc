@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "calibrate/trust/scale_fit.h"
 #include "geometry/scan_marks.h"
 #include "support/fake_observation.h"
 
@@ -82,7 +83,8 @@ TEST(Diagnose, ABoardOfAnotherSizeInTheScans) {
   }
   const std::vector<std::string> lines = DiagnoseIt(faked);
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_THAT(lines[0], HasSubstr("is 0.555 m in the scans, 0.500 m in the board file"));
+  EXPECT_THAT(lines[0],
+              HasSubstr("measures 0.555 m from top to right in the scans, the file says 0.500 m"));
 }
 
 TEST(Diagnose, PrintsThatTheLensDoesNotFit) {

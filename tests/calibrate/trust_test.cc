@@ -68,8 +68,8 @@ TEST(Trust, CovarianceBootstrapAndCrossValidationAgreeWhereTheNoiseIsWhatIsState
     const auto seed = static_cast<std::uint64_t>(session);
     const Trust trust = TrustOf(SomeViews(kViews, seed), {.bootstrap_samples = 100, .seed = seed});
     const TrustFigures& figures = trust.figures;
-    bootstrap += *figures.bootstrap_over_covariance / kSessions;
-    jackknife += *figures.jackknife_over_covariance / kSessions;
+    bootstrap += *figures.bootstrap_over_solver / kSessions;
+    jackknife += *figures.jackknife_over_solver / kSessions;
     held_out += std::pow(*figures.held_out_rmse_m / kSigma, 2) / 3.0 / kSessions;
     fit += std::pow(*figures.fit_rmse_m / kSigma, 2) / 3.0 / kSessions;
     EXPECT_EQ(figures.bootstrap->unanswered, 0);
@@ -92,10 +92,11 @@ TEST(Trust, CovarianceBootstrapAndCrossValidationAgreeWhereTheNoiseIsWhatIsState
 
 TEST(Trust, SaysWhereTheStatedNoiseIsTooSmall) {
   const Trust trust = TrustOf(SomeViews(30, 5, 0.3 * kSigma));
-  EXPECT_GT(*trust.figures.bootstrap_over_covariance, 2.0);
-  EXPECT_THAT(trust.figures.verdict, HasSubstr("times what their stated noise allows"));
-  EXPECT_THAT(TrustOf(SomeViews(30, 5)).figures.verdict, HasSubstr("They agree within"));
-  EXPECT_THAT(TrustOf(SomeViews(30, 5, 5.0 * kSigma)).figures.verdict, HasSubstr("is cautious"));
+  EXPECT_GT(*trust.figures.bootstrap_over_solver, 2.0);
+  EXPECT_THAT(trust.figures.comparison, HasSubstr("times what the noise model allows"));
+  EXPECT_THAT(TrustOf(SomeViews(30, 5)).figures.comparison, HasSubstr("They agree within"));
+  EXPECT_THAT(TrustOf(SomeViews(30, 5, 5.0 * kSigma)).figures.comparison,
+              HasSubstr("it is cautious"));
 }
 
 TEST(Trust, NamesTheViewsThatDoNotBelong) {
@@ -106,7 +107,7 @@ TEST(Trust, NamesTheViewsThatDoNotBelong) {
   }
   const Trust trust = TrustOf(problem);
   EXPECT_THAT(trust.figures.outlier_views, ElementsAre(3, 8));
-  EXPECT_THAT(trust.figures.verdict, HasSubstr("Views 3, 8 disagree with the others."));
+  EXPECT_THAT(trust.figures.comparison, HasSubstr("2 views disagree with the others"));
   EXPECT_TRUE(trust.views[8].outlier);
   EXPECT_GT(*trust.views[3].held_out_m, 0.2);
 }
@@ -124,12 +125,12 @@ TEST(Trust, TooFewViewsGiveAWarning) {
   const Trust one = TrustOf(SomeViews(1, 1));
   EXPECT_EQ(one.figures.folds, 0);
   EXPECT_FALSE(one.figures.bootstrap || one.figures.held_out_rmse_m);
-  EXPECT_TRUE(one.figures.covariance_sigma && one.figures.fit_rmse_m);
-  EXPECT_THAT(one.figures.verdict, HasSubstr("One view alone"));
+  EXPECT_TRUE(one.figures.solver_sigma && one.figures.fit_rmse_m);
+  EXPECT_THAT(one.figures.comparison, HasSubstr("One view alone"));
   const Trust two = TrustOf(SomeViews(2, 1));
   EXPECT_EQ(two.figures.folds, 2);
   EXPECT_TRUE(two.figures.held_out_rmse_m);
-  EXPECT_THAT(two.figures.verdict, HasSubstr("too few for a bootstrap"));
+  EXPECT_THAT(two.figures.comparison, HasSubstr("too few for a bootstrap"));
   EXPECT_THAT(two.figures.outlier_views, IsEmpty());
   const Expected<Trust> none = AssessTrust({}, *Kabsch(), {}, {});
   ASSERT_FALSE(none);
@@ -156,7 +157,7 @@ TEST(Trust, IsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(parallel.figures.bootstrap->low, serial.figures.bootstrap->low);
   EXPECT_EQ(parallel.figures.bootstrap_sigma, serial.figures.bootstrap_sigma);
   EXPECT_EQ(parallel.figures.jackknife_sigma, serial.figures.jackknife_sigma);
-  EXPECT_EQ(parallel.figures.verdict, serial.figures.verdict);
+  EXPECT_EQ(parallel.figures.comparison, serial.figures.comparison);
 }
 
 TEST(Trust, GoesIntoTheResult) {
@@ -167,7 +168,7 @@ TEST(Trust, GoesIntoTheResult) {
   EXPECT_EQ(result.views[0].held_out_m, trust.views[4].held_out_m);
   EXPECT_EQ(result.views[1].rmse_m, trust.views[2].rmse_m);
   EXPECT_FALSE(result.views[2].rmse_m);
-  EXPECT_EQ(result.trust->verdict, trust.figures.verdict);
+  EXPECT_EQ(result.trust->comparison, trust.figures.comparison);
 }
 
 TEST(Trust, OutliersAreNamedAmongTheWarnings) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
 #include <string>
 
 #include "e2e/run_sextant.h"
@@ -21,8 +24,10 @@ using test::ReadText;
 using test::RunSextant;
 using test::TestFolder;
 using test::WriteText;
+using testing::AnyOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 // Two boards that swing slowly and widely, so that they are in a different place in each scan.
 constexpr const char* kSceneToCalibrate = R"(sextant_scene: 1
@@ -55,6 +60,18 @@ fs::path Simulated(const std::string& options) {
   return test::SharedSession(kSceneToCalibrate, "--interval 60 " + options);
 }
 
+// The text on one line, however it is broken.
+std::string Unbroken(const std::string& text) {
+  return std::regex_replace(text, std::regex("\\s+"), " ");
+}
+
+std::size_t LongestLine(const std::string& text) {
+  std::istringstream lines(text);
+  std::size_t longest = 0;
+  for (std::string line; std::getline(lines, line);) longest = std::max(longest, line.size());
+  return longest;
+}
+
 std::string Out() { return " --out " + (TestFolder() / "result.yaml").string(); }
 
 TEST(Calibrate, ASimulatedSessionAsItStands) {
@@ -65,10 +82,13 @@ TEST(Calibrate, ASimulatedSessionAsItStands) {
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
   EXPECT_THAT(run.out, HasSubstr("error against the truth"));
   EXPECT_THAT(run.out, HasSubstr("cam_from_lidar maps a point of the LiDAR frame"));
-  EXPECT_THAT(run.out, HasSubstr("It rests on 8 boards in 4\nof 4 views"));
+  EXPECT_THAT(run.out, AnyOf(StartsWith("GOOD: "), StartsWith("USABLE WITH CARE: ")));
+  EXPECT_THAT(Unbroken(run.out), HasSubstr("It rests on 8 boards in 4 of 4 views"));
+  EXPECT_LE(LongestLine(run.out), 100U);
   EXPECT_THAT(run.out, Not(HasSubstr("ambiguous")));
   const json result = json::parse(ReadText(out));
   EXPECT_EQ(result["views"].size(), 4U);
+  EXPECT_THAT(run.out, StartsWith(result["verdict"]["word"].get<std::string>() + ": "));
   EXPECT_THAT(ReadText(TestFolder() / "result.yaml"), HasSubstr("cam_from_lidar"));
   // Again: the same bytes.
   const fs::path again = TestFolder() / "again.json";
@@ -86,7 +106,8 @@ TEST(Calibrate, ASimulatedSessionAsItStands) {
                 fs::copy_options::overwrite_existing);
   const ProgramRun mixed = RunSextant("calibrate " + session.string() + Out());
   EXPECT_EQ(mixed.exit_code, 0) << mixed.err;
-  EXPECT_THAT(mixed.out, HasSubstr("image and scan of different moments"));
+  EXPECT_THAT(Unbroken(mixed.out), HasSubstr("image and scan of different moments"));
+  EXPECT_THAT(mixed.out, StartsWith("USABLE WITH CARE: In 1 of 4 views"));
 }
 
 TEST(Calibrate, TheProblemFileGivesTheSameAnswerToSolve) {
@@ -117,6 +138,7 @@ TEST(Calibrate, OnePairOfFilesWarnsOfTheSingleView) {
       RunSextant("calibrate" + files + " --board " + (session / "boards.yaml").string() + Out());
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
   EXPECT_THAT(run.out, HasSubstr("one view only"));
+  EXPECT_THAT(run.out, Not(StartsWith("GOOD")));
 
   // A board file whose tags are a tenth too large.
   std::string boards = ReadText(session / "boards.yaml");
@@ -127,8 +149,28 @@ TEST(Calibrate, OnePairOfFilesWarnsOfTheSingleView) {
   WriteText(TestFolder() / "wrong.yaml", boards);
   const ProgramRun wrong = RunSextant("calibrate" + files + " --board " +
                                       (TestFolder() / "wrong.yaml").string() + Out());
-  EXPECT_EQ(wrong.exit_code, 0) << wrong.err;
+  EXPECT_EQ(wrong.exit_code, 3) << wrong.err;
+  EXPECT_THAT(wrong.out, StartsWith("NOT USABLE: Boards are "));
   EXPECT_THAT(wrong.out, HasSubstr("board file: distances in the images are"));
+  EXPECT_THAT(ReadText(TestFolder() / "result.yaml"), HasSubstr("NOT USABLE"));
+}
+
+TEST(Calibrate, TheNeedDecidesTheVerdict) {
+  const fs::path session = Simulated("--scans 4");
+  const ProgramRun run = RunSextant("calibrate " + session.string() + Out() + " --need 0.001,0.1");
+  EXPECT_EQ(run.exit_code, 3) << run.err;
+  EXPECT_THAT(run.out, StartsWith("NOT USABLE: The least certain direction is known to"));
+  const std::string result = (TestFolder() / "result.yaml").string();
+  const ProgramRun refused = RunSextant("export " + result + " --to matrix");
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("add --force"));
+  EXPECT_EQ(RunSextant("export " + result + " --to matrix --force").exit_code, 0);
+  const ProgramRun advice = RunSextant("advise " + result);
+  EXPECT_EQ(advice.exit_code, 0) << advice.err;
+  EXPECT_THAT(advice.out, StartsWith("NOT USABLE: "));
+  const ProgramRun wrong = RunSextant("calibrate " + session.string() + Out() + " --need 10");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("--need"));
 }
 
 TEST(Calibrate, NoCommonBoardEndsInOne) {

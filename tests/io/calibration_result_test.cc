@@ -27,6 +27,10 @@ void ExpectSame(const CalibrationResult& read, const CalibrationResult& written)
   EXPECT_EQ(read.cam_from_lidar.rotation.coeffs(), written.cam_from_lidar.rotation.coeffs());
   EXPECT_EQ(read.cam_from_lidar.translation, written.cam_from_lidar.translation);
   EXPECT_EQ(read.covariance, written.covariance);
+  ASSERT_TRUE(read.verdict);
+  EXPECT_EQ(read.verdict->usability, written.verdict->usability);
+  EXPECT_EQ(read.verdict->reason, written.verdict->reason);
+  EXPECT_EQ(read.verdict->next, written.verdict->next);
   EXPECT_EQ(read.closing, written.closing);
   EXPECT_EQ(read.warnings, written.warnings);
   ASSERT_TRUE(read.camera && read.lidar && read.trust && read.trust->bootstrap);
@@ -138,11 +142,26 @@ INSTANTIATE_TEST_SUITE_P(
                 "  matrix: [[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3.1], [0, 0, 0, 1]]\n"
                 "  translation_m: [1, 2, 3]\n  quaternion_wxyz: [1, 0, 0, 0]",
                 kParse, "r.yaml:6: matrix: expected the pose of translation_m and quaternion_wxyz"},
+        BadText{"UnknownVerdict", Result("verdict: {word: FINE}"), kParse,
+                "r.yaml:6: word: expected GOOD, USABLE WITH CARE or NOT USABLE, got 'FINE'"},
         BadText{"NotANumber", Result("views: [{view: 0, kept: true, rmse_m: .nan}]"),
                 ErrorCode::kNonFinite, "rmse_m: expected a finite number"},
         BadText{"NegativeResidual", Result("views: [{view: 0, kept: true, rmse_m: -1}]"), kParse,
                 "rmse_m: expected zero or more"}),
     [](const auto& bad) { return bad.param.name; });
+
+TEST(CalibrationResult, FilesOfTheFirstVersionAreRead) {
+  const Expected<CalibrationResult> read = ParseCalibrationResult(
+      Result("trust: {folds: 2, covariance_sigma: [1, 2, 3, 4, 5, 6], bootstrap_over_covariance: 2,"
+             " jackknife_over_covariance: 3, verdict: They agree.}"),
+      "r.yaml");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_FALSE(read->verdict);
+  EXPECT_EQ((*read->trust->solver_sigma)[5], 6.0);
+  EXPECT_EQ(read->trust->bootstrap_over_solver, 2.0);
+  EXPECT_EQ(read->trust->jackknife_over_solver, 3.0);
+  EXPECT_EQ(read->trust->comparison, "They agree.");
+}
 
 TEST(CalibrationResult, AMatrixAloneIsAPose) {
   const Expected<CalibrationResult> read = ParseCalibrationResult(

@@ -42,13 +42,14 @@ TrustFigures SomeTrust() {
   trust.bootstrap = BootstrapFigures{.samples = 198, .unanswered = 2};
   trust.bootstrap->low = Vector6d::Constant(-0.01);
   trust.bootstrap->high = Vector6d::Constant(0.02);
-  trust.covariance_sigma = Vector6d::Constant(1e-3);
+  trust.solver_sigma = Vector6d::Constant(1e-3);
   trust.bootstrap_sigma = Vector6d::Constant(1.1e-3);
   trust.jackknife_sigma = Vector6d::Constant(1.2e-3);
-  trust.bootstrap_over_covariance = 1.1;
-  trust.jackknife_over_covariance = 1.2;
+  trust.bootstrap_over_solver = 1.1;
+  trust.jackknife_over_solver = 1.2;
+  trust.stated_over_solver = 1.3;
   trust.outlier_views = {7, 16};
-  trust.verdict = "The three agree.";
+  trust.comparison = "The three agree.";
   return trust;
 }
 
@@ -56,6 +57,9 @@ TrustFigures SomeTrust() {
 
 CalibrationResult FullCalibrationResult() {
   CalibrationResult result;
+  result.verdict = ResultVerdict{.usability = Usability::kUsableWithCare,
+                                 .reason = "two of 9 views disagree",
+                                 .next = "record them again"};
   result.version = "0.1.0";
   result.solver = "joint(gnc(kabsch))";
   result.seed = 0xffffffffffffffffU;
