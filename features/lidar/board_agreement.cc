@@ -23,10 +23,11 @@ constexpr double kMinVisible = 0.5;
 // Of the edge points, on the outline. Hands, cables and uneven ranges spoil many edge points of a
 // real board; furniture that fits as well is not free on all sides.
 constexpr double kMinShare = 0.8;
-constexpr double kMinShareIfFree = 0.5;
+constexpr double kMinShareIfFree = 0.6;
 constexpr double kPartlyFree = 2.5;  // Sum of the visible fractions of the four sides.
 constexpr double kFree = 3.5;
-constexpr double kMaxRms = 2.8;  // In sigmas; a board of another size has more.
+constexpr double kMaxSizeError = 0.06;  // Real ranges make boards up to 4 % larger.
+constexpr double kMaxRms = 2.8;         // In sigmas; a board of another size has more.
 constexpr double kMinDensity = 0.3;
 constexpr int kMinEdgePoints = 10;
 constexpr int kMinEdgePointsOnMinRings = 12;  // With kMinRings, furniture has up to 11 by chance.
@@ -148,13 +149,13 @@ double OpenSum(const BoardAgreement& agreement) {
   return std::accumulate(agreement.open.begin(), agreement.open.end(), 0.0);
 }
 
-// Whether free space beyond its sides delimits the board: most of two opposite sides, or three
-// sides.
+// Whether free space beyond its sides delimits the board: three sides, or most of two opposite ones
+// and some of a third, as a board that stands on the ground.
 bool IsBounded(const BoardAgreement& agreement) {
   const std::array<double, kCornersPerBoard>& open = agreement.open;
   const auto mostly = [&](std::size_t side) { return open[side] >= kMainPart; };
-  if ((mostly(0) && mostly(2)) || (mostly(1) && mostly(3))) return true;
-  return std::ranges::count(open, 0.0) <= 1 && OpenSum(agreement) >= kThreeSides;
+  if (std::ranges::count(open, 0.0) > 1) return false;
+  return (mostly(0) && mostly(2)) || (mostly(1) && mostly(3)) || OpenSum(agreement) >= kThreeSides;
 }
 
 double MinShare(const BoardAgreement& agreement) {
@@ -248,10 +249,13 @@ std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board&
     return fmt::format("only {:.0f} % of the returns expected from a board there",
                        100.0 * agreement.density);
   }
-  if (patch.fit.share < MinShare(agreement) || patch.fit.rms > kMaxRms) {
+  if (patch.fit.share < MinShare(agreement) || patch.fit.rms > kMaxRms ||
+      std::abs(patch.fit.size_ratio - 1.0) > kMaxSizeError) {
     return fmt::format(
-        "its outline is not {:.3f} x {:.3f} m: {:.0f} % of the edge points fit, {:.1f} sigma rms",
-        board.top_right_m, board.right_bottom_m, 100.0 * patch.fit.share, patch.fit.rms);
+        "its outline is not {:.3f} x {:.3f} m: {:.0f} % of the edge points fit, {:.1f} sigma rms, "
+        "{:+.0f} % in size",
+        board.top_right_m, board.right_bottom_m, 100.0 * patch.fit.share, patch.fit.rms,
+        100.0 * (patch.fit.size_ratio - 1.0));
   }
   if (!IsBounded(agreement)) {
     const auto open = std::ranges::count_if(agreement.open, [](double part) { return part > 0.0; });
