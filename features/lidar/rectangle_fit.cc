@@ -31,6 +31,8 @@ constexpr double kSamePlace_m = 0.01;
 constexpr double kMaxSigma = 0.15;  // Of the position, relative to half the diagonal.
 constexpr int kMinEdges = 4;
 constexpr int kMinCrossing = 3;  // Ends of rings on the sides of an axis that determine it.
+constexpr double kMinCrossingSine =
+    0.12;                                 // Of the angle between a ring and a side that it crosses.
 constexpr double kMinVariance_m2 = 1e-6;  // Of a position within an interval.
 constexpr std::size_t kMaxSides = 8;      // For a hollow board.
 constexpr double kSameSides = 1e-6;       // Relative; the sides of a square.
@@ -230,7 +232,7 @@ class Fitter {
       fit.on_edge.push_back(edge.in_plane - place.grown);
       if (!belongs) continue;
       sums.Count(place);
-      if (!edge.across || !bracketed[AxisOf(place.side)]) sums.Add(place, half_);
+      if (!bracketed[AxisOf(place.side)]) sums.Add(place, half_);
     }
     if (sums.used < kMinEdges) return std::nullopt;
     // Angles are scaled by the board's half diagonal, to make both kinds of unknowns comparable.
@@ -287,6 +289,7 @@ class Fitter {
     for (const EdgePoint& edge : edges_) {
       const SidePlace place = Place(edge, pose, turn);
       if (edge.across || AxisOf(place.side) != static_cast<std::size_t>(axis)) continue;
+      if (std::abs(turn.col(axis).dot(edge.outward)) < kMinCrossingSine) continue;
       if (std::abs(place.distance) > kOutlier * place.sigma) continue;
       ++crossed.ends;
       crossed.information += 1.0 / (place.sigma * place.sigma);
