@@ -53,6 +53,7 @@ struct SidePlace {
   Eigen::Vector2d grown = Eigen::Vector2d::Zero();  // Displacement of the edge by the beam [m].
   double sigma = 1.0;                               // [m].
   double half_step = 0.0;                           // Across the side [m].
+  double along = 0.0;                               // Position along the side, from its middle [m].
   double excess = 0.0;                              // Subtracted from the distance [m].
   double growth_sigma = 0.0;  // Signed as the distance, common to all edges [m].
   Eigen::Vector4d by_pose = Eigen::Vector4d::Zero();  // Derivative by the placement.
@@ -63,7 +64,9 @@ struct Sums {
   Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
   Eigen::Vector3d by_growth = Eigen::Vector3d::Zero();
   std::array<SharedStep, kMaxSides> shared{};
-  std::array<Eigen::Vector3d, kMaxSides> by_side{};  // For an offset of all points of a side.
+  std::array<SharedSlope, kMaxSides> slopes{};
+  std::array<Eigen::Vector3d, kMaxSides> by_side{};   // For an offset of all points of a side.
+  std::array<Eigen::Vector3d, kMaxSides> by_slope{};  // For a slope of them.
   std::array<int, kMaxSides> of_side{};
   double by_size = 0.0;
   double size_weight = 0.0;
@@ -71,7 +74,10 @@ struct Sums {
   double squares = 0.0;
   int used = 0;
 
-  Sums() { by_side.fill(Eigen::Vector3d::Zero()); }
+  Sums() {
+    by_side.fill(Eigen::Vector3d::Zero());
+    by_slope.fill(Eigen::Vector3d::Zero());
+  }
 
   void Add(const SidePlace& place, const Eigen::Vector2d& half) {
     const auto side = static_cast<std::size_t>(place.side);
@@ -80,7 +86,9 @@ struct Sums {
     information += of_all * of_all.transpose();
     by_growth += j * place.growth_sigma / place.sigma;
     shared[side].Add(place.distance, place.half_step);
+    slopes[side].Add(place.along, place.distance, place.half_step);
     by_side[side] += j / place.sigma;
+    by_slope[side] += j * place.along / place.sigma;
     if (place.side < kCornersPerBoard) {
       const double arm = (place.side % 2 == 0 ? half.y() : half.x()) / place.sigma;
       by_size += arm * (place.distance + place.excess) / place.sigma;
@@ -109,6 +117,8 @@ struct Sums {
       if (of_side[side] < 2) continue;
       const Eigen::Vector3d by_offset = inverse * by_side[side] / scale;
       covariance += shared[side].Variance() * by_offset * by_offset.transpose();
+      const Eigen::Vector3d by_tilt = inverse * by_slope[side] / scale;
+      covariance += slopes[side].Variance() * by_tilt * by_tilt.transpose();
     }
     return covariance;
   }
@@ -167,6 +177,7 @@ class Fitter {
     place.distance = normal.dot(q) - normal.cwiseAbs().dot(half) -
                      outward * edge.Growth(normal_in_plane) - place.excess;
     place.sigma = std::sqrt(edge.VarianceAcross(normal_in_plane) + 1e-12);
+    place.along = normal.x() * q.y() - normal.y() * q.x();
     place.half_step = 0.5 * std::abs(normal.dot(out)) * edge.step_m;
     place.growth_sigma = outward * edge.beam.growth_sigma * edge.SpotAcross(normal_in_plane);
     place.by_pose << -normal_in_plane, normal.x() * in_board.y() - normal.y() * in_board.x(),
