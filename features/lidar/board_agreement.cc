@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace sextant {
 namespace {
@@ -19,10 +20,16 @@ constexpr double kMaxClosed = 0.7;  // Of one side.
 constexpr double kMainPart = 0.5;
 constexpr double kThreeSides = 1.5;  // Sum of the visible fractions of three or four sides.
 constexpr double kMinVisible = 0.5;
-constexpr double kMinShare = 0.6;
-constexpr double kMaxRms = 2.8;  // In sigmas; a board of another size has more.
+// Of the edge points, on the outline. Hands, cables and uneven ranges spoil many edge points of a
+// real board; furniture that fits as well is not free on all sides.
+constexpr double kMinShare = 0.8;
+constexpr double kMinShareIfFree = 0.6;
+constexpr double kPartlyFree = 2.5;  // Sum of the visible fractions of the four sides.
+constexpr double kFree = 3.5;
+constexpr double kMaxSizeError = 0.06;  // Real ranges make boards up to 4 % larger.
+constexpr double kMaxRms = 2.8;         // In sigmas; a board of another size has more.
 constexpr double kMinDensity = 0.3;
-constexpr int kMinEdgePoints = 8;
+constexpr int kMinEdgePoints = 10;
 constexpr int kMinEdgePointsOnMinRings = 12;  // With kMinRings, furniture has up to 11 by chance.
 constexpr int kMinPointsOfBoard = 16;
 constexpr double kThroughCost = 4.0;
@@ -138,14 +145,22 @@ double DensityOf(const ScanRings& scan, const BoardPatch& patch, const Board& bo
   return hit * level * scan.azimuth_step_rad() * scan.elevation_step_rad() / solid_angle;
 }
 
-// Whether free space beyond its sides delimits the board: most of two opposite sides, or three
-// sides.
+double OpenSum(const BoardAgreement& agreement) {
+  return std::accumulate(agreement.open.begin(), agreement.open.end(), 0.0);
+}
+
+// Whether free space beyond its sides delimits the board: three sides, or most of two opposite ones
+// and some of a third, as a board that stands on the ground.
 bool IsBounded(const BoardAgreement& agreement) {
   const std::array<double, kCornersPerBoard>& open = agreement.open;
   const auto mostly = [&](std::size_t side) { return open[side] >= kMainPart; };
-  if ((mostly(0) && mostly(2)) || (mostly(1) && mostly(3))) return true;
-  const double sum = open[0] + open[1] + open[2] + open[3];
-  return std::ranges::count(open, 0.0) <= 1 && sum >= kThreeSides;
+  if (std::ranges::count(open, 0.0) > 1) return false;
+  return (mostly(0) && mostly(2)) || (mostly(1) && mostly(3)) || OpenSum(agreement) >= kThreeSides;
+}
+
+double MinShare(const BoardAgreement& agreement) {
+  const double free = (OpenSum(agreement) - kPartlyFree) / (kFree - kPartlyFree);
+  return std::lerp(kMinShare, kMinShareIfFree, std::clamp(free, 0.0, 1.0));
 }
 
 }  // namespace
@@ -234,17 +249,20 @@ std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board&
     return fmt::format("only {:.0f} % of the returns expected from a board there",
                        100.0 * agreement.density);
   }
+  if (patch.fit.share < MinShare(agreement) || patch.fit.rms > kMaxRms ||
+      std::abs(patch.fit.size_ratio - 1.0) > kMaxSizeError) {
+    return fmt::format(
+        "its outline is not {:.3f} x {:.3f} m: {:.0f} % of the edge points fit, {:.1f} sigma rms, "
+        "{:+.0f} % in size",
+        board.top_right_m, board.right_bottom_m, 100.0 * patch.fit.share, patch.fit.rms,
+        100.0 * (patch.fit.size_ratio - 1.0));
+  }
   if (!IsBounded(agreement)) {
     const auto open = std::ranges::count_if(agreement.open, [](double part) { return part > 0.0; });
     return fmt::format(
         "its ends are visible at {} of its sides only, not far enough along two opposite ones or "
         "three",
         open);
-  }
-  if (patch.fit.share < kMinShare || patch.fit.rms > kMaxRms) {
-    return fmt::format(
-        "its outline is not {:.3f} x {:.3f} m: {:.0f} % of the edge points fit, {:.1f} sigma rms",
-        board.top_right_m, board.right_bottom_m, 100.0 * patch.fit.share, patch.fit.rms);
   }
   if (agreement.filled < kMinFilled) {
     return fmt::format("{:.0f} % of the rays pass through it", 100.0 * (1.0 - agreement.filled));

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "features/lidar/azimuth.h"
@@ -147,6 +148,22 @@ class EdgeFinder {
 };
 
 }  // namespace
+
+double SharedSlope::Variance() const {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  for (const Place& a : places_) {
+    for (const Place& b : places_) {
+      const double along = b.along - a.along;
+      if (along <= 0.0) continue;
+      const double rise = b.distance - a.distance;
+      high = std::min(high, (rise + a.half_step + b.half_step) / along);
+      low = std::max(low, (rise - a.half_step - b.half_step) / along);
+    }
+  }
+  const double open = high - low;
+  return open > 0.0 && std::isfinite(open) ? open * open / 12.0 : 0.0;
+}
 
 void SetSpot(const ScanRings& scan, const LidarPlane& plane, const Eigen::Vector3d& ray,
              const EdgeOptions& options, EdgePoint& edge) {

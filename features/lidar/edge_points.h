@@ -73,6 +73,26 @@ class SharedStep {
   double high_ = std::numeric_limits<double>::infinity();
 };
 
+/// The same for the side's direction: if neighbouring rings cross an edge at nearly the same phase,
+/// as an edge along the columns, the points constrain its slope no better than two of them do.
+/// `Add` takes the position along the side, too. Time: O(n^2) in the number of points.
+class SharedSlope {
+ public:
+  void Add(double along_m, double distance_m, double half_step_m) {
+    places_.push_back({along_m, distance_m, half_step_m});
+  }
+  /// Variance of the slope, uniform over the interval that all points allow.
+  double Variance() const;
+
+ private:
+  struct Place {
+    double along = 0.0;
+    double distance = 0.0;
+    double half_step = 0.0;
+  };
+  std::vector<Place> places_{};
+};
+
 /// Sets the beam and the spot of an edge point whose last return is `ray`.
 void SetSpot(const ScanRings& scan, const LidarPlane& plane, const Eigen::Vector3d& ray,
              const EdgeOptions& options, EdgePoint& edge);

@@ -28,16 +28,24 @@ constexpr double kReach = 8.0;
 constexpr double kEquallyLikely = 9.2;  // -2 ln(0.01): likelihood ratio of 1 %.
 constexpr double kSameAngle_rad = 0.02;
 constexpr double kSamePlace_m = 0.01;
-constexpr double kMaxSigma = 0.5;  // Of the position, relative to half the diagonal.
+constexpr double kMaxSigma = 0.15;  // Of the position, relative to half the diagonal.
 constexpr int kMinEdges = 4;
 constexpr int kMinCrossing = 3;  // Ends of rings on the sides of an axis that determine it.
+constexpr double kMinCrossingSine =
+    0.12;                                 // Of the angle between a ring and a side that it crosses.
 constexpr double kMinVariance_m2 = 1e-6;  // Of a position within an interval.
 constexpr std::size_t kMaxSides = 8;      // For a hollow board.
 constexpr double kSameSides = 1e-6;       // Relative; the sides of a square.
+// Prior sigma of the distance of all sides beyond where the board's size has them, relative to half
+// the mean side: boards are measured to that, and ranges are off by as much.
+constexpr double kExcessSigma = 0.01;
 
 // Outward normals of the sides 0 to 3 in the board's frame: y = -h/2 is the first.
 const std::array<Eigen::Vector2d, 4> kNormals = {Eigen::Vector2d(0, -1), Eigen::Vector2d(1, 0),
                                                  Eigen::Vector2d(0, 1), Eigen::Vector2d(-1, 0)};
+
+// Center and angle of a rectangle, and by how much each of its sides appears further out [m].
+using Placement = Eigen::Vector4d;
 
 struct SidePlace {
   int side = -1;
@@ -45,16 +53,20 @@ struct SidePlace {
   Eigen::Vector2d grown = Eigen::Vector2d::Zero();  // Displacement of the edge by the beam [m].
   double sigma = 1.0;                               // [m].
   double half_step = 0.0;                           // Across the side [m].
+  double along = 0.0;                               // Position along the side, from its middle [m].
+  double excess = 0.0;                              // Subtracted from the distance [m].
   double growth_sigma = 0.0;  // Signed as the distance, common to all edges [m].
-  Eigen::Vector3d by_pose = Eigen::Vector3d::Zero();  // Derivative by (center, angle).
+  Eigen::Vector4d by_pose = Eigen::Vector4d::Zero();  // Derivative by the placement.
 };
 
 // Sums over the edge points that belong to a side.
 struct Sums {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
   Eigen::Vector3d by_growth = Eigen::Vector3d::Zero();
   std::array<SharedStep, kMaxSides> shared{};
-  std::array<Eigen::Vector3d, kMaxSides> by_side{};  // For an offset of all points of a side.
+  std::array<SharedSlope, kMaxSides> slopes{};
+  std::array<Eigen::Vector3d, kMaxSides> by_side{};   // For an offset of all points of a side.
+  std::array<Eigen::Vector3d, kMaxSides> by_slope{};  // For a slope of them.
   std::array<int, kMaxSides> of_side{};
   double by_size = 0.0;
   double size_weight = 0.0;
@@ -62,18 +74,24 @@ struct Sums {
   double squares = 0.0;
   int used = 0;
 
-  Sums() { by_side.fill(Eigen::Vector3d::Zero()); }
+  Sums() {
+    by_side.fill(Eigen::Vector3d::Zero());
+    by_slope.fill(Eigen::Vector3d::Zero());
+  }
 
   void Add(const SidePlace& place, const Eigen::Vector2d& half) {
     const auto side = static_cast<std::size_t>(place.side);
-    const Eigen::Vector3d j = place.by_pose / place.sigma;
-    information += j * j.transpose();
+    const Eigen::Vector4d of_all = place.by_pose / place.sigma;
+    const Eigen::Vector3d j = of_all.head<3>();
+    information += of_all * of_all.transpose();
     by_growth += j * place.growth_sigma / place.sigma;
     shared[side].Add(place.distance, place.half_step);
+    slopes[side].Add(place.along, place.distance, place.half_step);
     by_side[side] += j / place.sigma;
+    by_slope[side] += j * place.along / place.sigma;
     if (place.side < kCornersPerBoard) {
       const double arm = (place.side % 2 == 0 ? half.y() : half.x()) / place.sigma;
-      by_size += arm * place.distance / place.sigma;
+      by_size += arm * (place.distance + place.excess) / place.sigma;
       size_weight += arm * arm;
     }
     chi2 += place.distance * place.distance / (place.sigma * place.sigma);
@@ -88,18 +106,28 @@ struct Sums {
 
   // A prior of four residuals of one sigma keeps the scale from vanishing for few residuals. A
   // single point of a side states its whole step in its own sigma.
-  Eigen::Matrix3d Covariance(const Eigen::Matrix3d& of_intervals) const {
+  Eigen::Matrix3d Covariance(const Eigen::Matrix3d& of_intervals, double excess_sigma) const {
     constexpr double kPrior = 4.0;
     const double scale = (chi2 + kPrior) / (std::max(used, 3) - 3 + kPrior);
-    const Eigen::Matrix3d inverse = (information / scale + of_intervals).inverse();
+    const Eigen::Matrix3d inverse =
+        (OfPose(scale * excess_sigma * excess_sigma) / scale + of_intervals).inverse();
     const Eigen::Vector3d by_all = inverse * by_growth / scale;  // Zero if opposite sides cancel.
     Eigen::Matrix3d covariance = inverse + by_all * by_all.transpose();
     for (std::size_t side = 0; side < kMaxSides; ++side) {
       if (of_side[side] < 2) continue;
       const Eigen::Vector3d by_offset = inverse * by_side[side] / scale;
       covariance += shared[side].Variance() * by_offset * by_offset.transpose();
+      const Eigen::Vector3d by_tilt = inverse * by_slope[side] / scale;
+      covariance += slopes[side].Variance() * by_tilt * by_tilt.transpose();
     }
     return covariance;
+  }
+
+  // The information on center and angle where the excess is unknown but for a prior.
+  Eigen::Matrix3d OfPose(double excess_variance) const {
+    const Eigen::Vector3d common = information.topRightCorner<3, 1>();
+    return information.topLeftCorner<3, 3>() -
+           common * common.transpose() / (information(3, 3) + 1.0 / excess_variance);
   }
 
   int SidesSeen() const {
@@ -124,11 +152,13 @@ struct AxisInterval {
 class Fitter {
  public:
   Fitter(std::span<const EdgePoint> edges, const Board& board)
-      : edges_(edges), board_(board), half_(0.5 * board.top_right_m, 0.5 * board.right_bottom_m) {}
+      : edges_(edges),
+        board_(board),
+        half_(0.5 * board.top_right_m, 0.5 * board.right_bottom_m),
+        excess_sigma_(kExcessSigma * half_.mean()) {}
 
   // `turn` is the rotation by the pose's angle.
-  SidePlace Place(const EdgePoint& edge, const Eigen::Vector3d& pose,
-                  const Eigen::Matrix2d& turn) const {
+  SidePlace Place(const EdgePoint& edge, const Placement& pose, const Eigen::Matrix2d& turn) const {
     const Eigen::Vector2d in_board = turn.transpose() * (edge.in_plane - pose.head<2>());
     const Eigen::Vector2d out = turn.transpose() * edge.outward;
     const bool inner = edge.inner && board_.hole;
@@ -143,20 +173,26 @@ class Fitter {
     place.side = inner ? side + kCornersPerBoard : side;
     const Eigen::Vector2d normal_in_plane = turn * normal;
     const double outward = inner ? -1.0 : 1.0;  // Growth makes the opening smaller.
-    place.distance =
-        normal.dot(q) - normal.cwiseAbs().dot(half) - outward * edge.Growth(normal_in_plane);
+    place.excess = inner ? 0.0 : pose(3);
+    place.distance = normal.dot(q) - normal.cwiseAbs().dot(half) -
+                     outward * edge.Growth(normal_in_plane) - place.excess;
     place.sigma = std::sqrt(edge.VarianceAcross(normal_in_plane) + 1e-12);
+    place.along = normal.x() * q.y() - normal.y() * q.x();
     place.half_step = 0.5 * std::abs(normal.dot(out)) * edge.step_m;
     place.growth_sigma = outward * edge.beam.growth_sigma * edge.SpotAcross(normal_in_plane);
-    place.by_pose << -normal_in_plane, normal.x() * in_board.y() - normal.y() * in_board.x();
+    place.by_pose << -normal_in_plane, normal.x() * in_board.y() - normal.y() * in_board.x(),
+        inner ? 0.0 : -1.0;
     return place;
   }
 
   // The sum of Huber's loss over the edges, truncated at `reach`, and the step that reduces it.
-  double Step(const Eigen::Vector3d& pose, double reach, Eigen::Vector3d& step) const {
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-    double cost = 0.0;
+  double Step(const Placement& pose, double reach, Placement& step) const {
+    Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
+    const double prior = 1.0 / (excess_sigma_ * excess_sigma_);
+    normal(3, 3) = prior;
+    gradient(3) = prior * pose(3);
+    double cost = prior * pose(3) * pose(3);
     const Eigen::Matrix2d turn = Eigen::Rotation2Dd(pose.z()).toRotationMatrix();
     for (const EdgePoint& edge : edges_) {
       const SidePlace place = Place(edge, pose, turn);
@@ -165,19 +201,24 @@ class Fitter {
       const double weight = size <= kHuber ? 1.0 : kHuber / size;
       cost += size <= kHuber ? r * r : kHuber * (2.0 * size - kHuber);
       if (size == reach) continue;
-      const Eigen::Vector3d j = place.by_pose / place.sigma;
+      const Eigen::Vector4d j = place.by_pose / place.sigma;
       normal += weight * j * j.transpose();
       gradient += weight * j * r;
     }
-    // Slight damping: an initial pose may leave a direction undetermined that the solution does
-    // not.
-    normal.diagonal() *= 1.0 + 1e-6;
-    normal.diagonal().array() += 1e-3;
-    step = -SolveSymmetric(normal, gradient);
+    // The excess is eliminated. Slight damping: an initial pose may leave a direction undetermined
+    // that the solution does not.
+    const Eigen::Vector3d common = normal.topRightCorner<3, 1>() / normal(3, 3);
+    Eigen::Matrix3d of_pose =
+        normal.topLeftCorner<3, 3>() - normal(3, 3) * common * common.transpose();
+    of_pose.diagonal() *= 1.0 + 1e-6;
+    of_pose.diagonal().array() += 1e-3;
+    step.head<3>() =
+        -SolveSymmetric<3>(of_pose, Eigen::Vector3d(gradient.head<3>() - common * gradient(3)));
+    step(3) = -gradient(3) / normal(3, 3) - common.dot(step.head<3>());
     return cost;
   }
 
-  std::optional<RectangleFit> Finish(Eigen::Vector3d pose) const {
+  std::optional<RectangleFit> Finish(Placement pose) const {
     RectangleFit fit;
     const Eigen::Matrix2d turn = Eigen::Rotation2Dd(pose.z()).toRotationMatrix();
     // Along an axis whose sides no ring crosses.
@@ -202,19 +243,20 @@ class Fitter {
       fit.on_edge.push_back(edge.in_plane - place.grown);
       if (!belongs) continue;
       sums.Count(place);
-      if (!edge.across || !bracketed[AxisOf(place.side)]) sums.Add(place, half_);
+      if (!bracketed[AxisOf(place.side)]) sums.Add(place, half_);
     }
     if (sums.used < kMinEdges) return std::nullopt;
     // Angles are scaled by the board's half diagonal, to make both kinds of unknowns comparable.
     const Eigen::Vector3d scale(1.0, 1.0, 1.0 / half_.norm());
-    const Eigen::Matrix3d scaled =
-        scale.asDiagonal() * (sums.information + of_intervals) * scale.asDiagonal();
+    const Eigen::Matrix3d scaled = scale.asDiagonal() *
+                                   (sums.OfPose(excess_sigma_ * excess_sigma_) + of_intervals) *
+                                   scale.asDiagonal();
     const double least = EigenOf(scaled).values(0);
     if (least * std::pow(kMaxSigma * half_.norm(), 2) < 1.0) return std::nullopt;
     fit.center = pose.head<2>();
     fit.angle_rad = UprightAngle(pose.z());
     fit.sides = InNumberingOf(fit.angle_rad - pose.z(), std::move(fit.sides));
-    fit.covariance = sums.Covariance(of_intervals);
+    fit.covariance = sums.Covariance(of_intervals, excess_sigma_);
     fit.rms = std::sqrt(sums.chi2 / sums.used);
     fit.rms_m = std::sqrt(sums.squares / sums.used);
     fit.share = static_cast<double>(sums.used) / static_cast<double>(edges_.size());
@@ -252,12 +294,13 @@ class Fitter {
     double information = 0.0;  // [1/m^2]
   };
 
-  CrossedSides CrossedAlong(Eigen::Index axis, const Eigen::Vector3d& pose,
+  CrossedSides CrossedAlong(Eigen::Index axis, const Placement& pose,
                             const Eigen::Matrix2d& turn) const {
     CrossedSides crossed;
     for (const EdgePoint& edge : edges_) {
       const SidePlace place = Place(edge, pose, turn);
       if (edge.across || AxisOf(place.side) != static_cast<std::size_t>(axis)) continue;
+      if (std::abs(turn.col(axis).dot(edge.outward)) < kMinCrossingSine) continue;
       if (std::abs(place.distance) > kOutlier * place.sigma) continue;
       ++crossed.ends;
       crossed.information += 1.0 / (place.sigma * place.sigma);
@@ -265,7 +308,7 @@ class Fitter {
     return crossed;
   }
 
-  AxisInterval IntervalAlong(Eigen::Index axis, const Eigen::Vector3d& pose,
+  AxisInterval IntervalAlong(Eigen::Index axis, const Placement& pose,
                              const Eigen::Matrix2d& turn) const {
     AxisInterval interval;
     for (const EdgePoint& edge : edges_) {
@@ -325,15 +368,16 @@ class Fitter {
   std::span<const EdgePoint> edges_;
   const Board& board_;
   Eigen::Vector2d half_;
+  double excess_sigma_;
 };
 
 struct Candidate {
-  Eigen::Vector3d pose = Eigen::Vector3d::Zero();
+  Placement pose = Placement::Zero();
   double cost = 0.0;
 };
 
 void Improve(const Fitter& fitter, int iterations, double reach, Candidate& candidate) {
-  Eigen::Vector3d step;
+  Placement step;
   for (int i = 0; i < iterations; ++i) {
     fitter.Step(candidate.pose, reach, step);
     candidate.pose += step;
@@ -363,7 +407,7 @@ std::vector<RectangleFit> FitRectangles(std::span<const EdgePoint> edges, const 
   const Eigen::Vector2d half(0.5 * board.top_right_m, 0.5 * board.right_bottom_m);
   std::vector<Candidate> candidates;
   for (const Eigen::Vector3d& start : RectangleStarts(edges, half, kStarts)) {
-    candidates.push_back({start, 0.0});
+    candidates.push_back({Placement(start.x(), start.y(), start.z(), 0.0), 0.0});
     Improve(fitter, kFirstIterations, kFirstReach, candidates.back());
   }
   std::ranges::sort(candidates, {}, &Candidate::cost);
@@ -404,7 +448,7 @@ std::optional<RectangleFit> RefineRectangle(std::span<const EdgePoint> edges, co
                                             const Eigen::Vector2d& center, double angle_rad) {
   if (static_cast<int>(edges.size()) < kMinEdges) return std::nullopt;
   const Fitter fitter(edges, board);
-  Candidate candidate{{center.x(), center.y(), angle_rad}, 0.0};
+  Candidate candidate{Placement(center.x(), center.y(), angle_rad, 0.0), 0.0};
   Improve(fitter, kIterations, kReach, candidate);
   return FinishCandidate(fitter, candidate);
 }

@@ -34,7 +34,9 @@ struct RectangleFit {
 /// Fits the position and the angle of the board by robust least squares of the edge points'
 /// distances to their sides, from the starts of RectangleStarts. The sigma of a residual comes from
 /// one step along the ring, projected across the side, and from the beam's width. The growth by the
-/// beam is subtracted; its uncertainty is common to all edges.
+/// beam is subtracted; its uncertainty is common to all edges. So is an excess of the outline over
+/// the stated size, of one percent (1 sigma), which keeps a board that appears too large or too
+/// small between its sides.
 ///
 /// Where no ring crosses the two sides of an axis, the position along it is the middle of the
 /// interval in which the board contains all of its edge points' returns and ends before the rings
@@ -43,7 +45,7 @@ struct RectangleFit {
 /// Returns distinct fits by ascending cost, at most `max_count`. A rectangle looks the same after
 /// half a turn and a square after a quarter; of these angles, the one is stated at which corner 0
 /// is highest. Empty for fewer than four edge points and where they leave a direction undetermined
-/// by more than half the board's size.
+/// by more than 15 % of half the board's diagonal (1 sigma).
 std::vector<RectangleFit> FitRectangles(std::span<const EdgePoint> edges, const Board& board,
                                         std::size_t max_count);
 

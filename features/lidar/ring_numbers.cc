@@ -2,14 +2,17 @@
 #include "features/lidar/ring_numbers.h"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 #include "base/median.h"
 #include "base/units.h"
+#include "features/lidar/ring_following.h"
+#include "features/lidar/ring_order.h"
 #include "geometry/symmetric.h"
 
 namespace sextant {
@@ -21,10 +24,6 @@ constexpr double kNarrow_rad = 0.0035;
 constexpr std::size_t kMinPerRing = 3;  // Fewer returns do not show that elevations repeat.
 constexpr double kNarrowShare = 0.95;   // Of the returns, on rings narrower than their gaps.
 constexpr double kMinTilt_rad = 0.005;  // A smaller tilt of the axis is noise.
-constexpr double kMaxSpread = 0.25;     // Of a ring found by the order, relative to the steps.
-constexpr std::size_t kMinColumns = 16;
-constexpr std::size_t kTestedColumns = 48;
-constexpr double kClearlyNearer = 0.3;  // Distance to a ring relative to that to the next.
 
 std::vector<double> ElevationsAbout(std::span<const UnsortedReturn> returns,
                                     const Eigen::Vector3d& axis) {
@@ -140,105 +139,25 @@ std::vector<int> RingsOfElevations(const std::vector<double>& elevations,
   return {};
 }
 
-// A layout of an ordered cloud.
-struct PointOrder {
-  std::size_t rings = 0;
-  std::size_t columns = 0;
-  bool column_by_column = true;  // Else ring by ring.
-
-  int RingOf(std::size_t index) const {
-    return static_cast<int>(column_by_column ? index % rings : index / columns);
-  }
-  std::size_t ColumnOf(std::size_t index) const {
-    return column_by_column ? index / rings : index % columns;
-  }
-};
-
-bool IsOrder(std::span<const UnsortedReturn> returns, const std::vector<double>& elevations,
-             const PointOrder& order) {
-  // An evenly spread subset of the columns.
-  const std::size_t stride = std::max<std::size_t>(1, order.columns / kTestedColumns);
-  std::vector<int> numbers;
-  std::vector<double> tested;
-  std::vector<bool> seen(order.rings, false);
+// Whether some neighbouring rings share nearly no azimuth, as the far and the near returns of one
+// ring whose beam starts beside the origin.
+bool SomeAreSplit(std::span<const UnsortedReturn> returns, const std::vector<int>& numbers) {
+  constexpr std::size_t kBins = 720;
+  constexpr double kMinShared = 0.1;
+  const auto rings = static_cast<std::size_t>(*std::ranges::max_element(numbers)) + 1;
+  std::vector<std::bitset<kBins>> azimuths(rings);
   for (std::size_t i = 0; i < returns.size(); ++i) {
-    if (order.ColumnOf(returns[i].index) % stride != 0) continue;
-    numbers.push_back(order.RingOf(returns[i].index));
-    tested.push_back(elevations[i]);
-    seen[static_cast<std::size_t>(numbers.back())] = true;
+    const Eigen::Vector3d& direction = returns[i].direction;
+    const double turn = 0.5 + std::atan2(direction.y(), direction.x()) / (2.0 * std::numbers::pi);
+    const auto bin = std::min(kBins - 1, static_cast<std::size_t>(turn * kBins));
+    azimuths[static_cast<std::size_t>(numbers[i])].set(bin);
   }
-  if (numbers.empty() || 2 * std::ranges::count(seen, true) < std::ssize(seen)) return false;
-  const RingSpread spread = SpreadOf(numbers, tested);
-  return spread.step_rad > 0.0 && spread.spread_rad < kMaxSpread * spread.step_rad;
-}
-
-std::optional<PointOrder> FindOrder(std::span<const UnsortedReturn> returns,
-                                    std::size_t cloud_size) {
-  const std::vector<double> elevations = ElevationsAbout(returns, Eigen::Vector3d::UnitZ());
-  for (std::size_t rings = kMinRepeating; rings <= kMaxRings; ++rings) {
-    if (cloud_size % rings != 0 || cloud_size / rings < kMinColumns) continue;
-    for (const bool column_by_column : {true, false}) {
-      const PointOrder order{rings, cloud_size / rings, column_by_column};
-      if (IsOrder(returns, elevations, order)) return order;
-    }
+  for (std::size_t ring = 1; ring < rings; ++ring) {
+    const std::size_t fewest = std::min(azimuths[ring - 1].count(), azimuths[ring].count());
+    const std::size_t shared = (azimuths[ring - 1] & azimuths[ring]).count();
+    if (static_cast<double>(shared) < kMinShared * static_cast<double>(fewest)) return true;
   }
-  return std::nullopt;
-}
-
-// Rings whose elevation changes slowly along some order of the returns: each return continues the
-// nearest ring within the tolerance, or begins another. Empty if that is ambiguous for too many.
-std::vector<int> RingsFollowed(const std::vector<double>& elevations,
-                               const std::vector<std::size_t>& order, double tolerance_rad) {
-  const double allowed = (1.0 - kNarrowShare) * static_cast<double>(order.size());
-  std::vector<double> last;  // Elevation of each ring's last return.
-  std::vector<int> rings(elevations.size(), 0);
-  std::size_t ambiguous = 0;
-  for (const std::size_t i : order) {
-    std::size_t ring = last.size();
-    double nearest = std::numeric_limits<double>::infinity();
-    double second = nearest;
-    for (std::size_t k = 0; k < last.size(); ++k) {
-      const double off = std::abs(last[k] - elevations[i]);
-      if (off < nearest) {
-        second = std::exchange(nearest, off);
-        ring = k;
-      } else {
-        second = std::min(second, off);
-      }
-    }
-    if (nearest > tolerance_rad) {
-      ambiguous += nearest < 2.0 * tolerance_rad ? 1U : 0U;
-      ring = last.size();
-      last.push_back(0.0);
-    } else {
-      ambiguous += nearest > kClearlyNearer * second ? 1U : 0U;
-    }
-    last[ring] = elevations[i];
-    rings[i] = static_cast<int>(ring);
-    if (last.size() > kMaxRings || static_cast<double>(ambiguous) > allowed) return {};
-  }
-  const bool repeat = last.size() >= kMinRepeating && kMinPerRing * last.size() <= order.size();
-  return repeat ? rings : std::vector<int>{};
-}
-
-// By nearness, for beams that start beside the origin; then by azimuth, for mirrors that tilt the
-// fan. The widest tolerance leaves the fewest rings.
-std::vector<int> RingsByFollowing(std::span<const UnsortedReturn> returns,
-                                  const std::vector<double>& elevations) {
-  std::vector<double> nearness;
-  std::vector<double> azimuths;
-  for (const UnsortedReturn& point : returns) {
-    nearness.push_back(1.0 / point.range_m);
-    azimuths.push_back(std::atan2(point.direction.y(), point.direction.x()));
-  }
-  for (const std::vector<double>& along : {nearness, azimuths}) {
-    const std::vector<std::size_t> order = OrderOf(along);
-    for (const double tolerance_deg : {0.8, 0.4, 0.2, 0.1, 0.05}) {
-      std::vector<int> rings = RingsFollowed(elevations, order, tolerance_deg * kRadPerDeg);
-      if (!rings.empty()) return rings;
-    }
-  }
-  return {};
+  return false;
 }
 
 }  // namespace
@@ -262,15 +181,17 @@ RingNumbers CheckRings(std::span<const UnsortedReturn> returns, std::vector<int>
 RingNumbers RecoverRings(std::span<const UnsortedReturn> returns, std::size_t cloud_size) {
   const std::vector<double> elevations = ElevationsAbout(returns, Eigen::Vector3d::UnitZ());
   RingNumbers rings;
-  rings.of_return = RingsOfElevations(elevations, OrderOf(elevations));
-  if (!rings.of_return.empty()) return rings;
-  if (const std::optional<PointOrder> order = FindOrder(returns, cloud_size)) {
-    std::vector<int> numbers;
-    for (const UnsortedReturn& point : returns) numbers.push_back(order->RingOf(point.index));
+  std::vector<int> repeating = RingsOfElevations(elevations, OrderOf(elevations));
+  if (!repeating.empty() && !SomeAreSplit(returns, repeating)) {
+    rings.of_return = std::move(repeating);
+    return rings;
+  }
+  if (std::vector<int> numbers = RingsByOrder(returns, cloud_size); !numbers.empty()) {
     rings = CheckRings(returns, std::move(numbers));
     if (!rings.of_return.empty()) return rings;
   }
-  rings.of_return = RingsByFollowing(returns, elevations);
+  rings.of_return = RingsByFollowing(returns);
+  if (rings.of_return.empty()) rings.of_return = std::move(repeating);
   return rings;
 }
 

@@ -139,7 +139,10 @@ TEST(Match, ARectangleLeavesHalfATurnOnly) {
   Board board = SquareBoard(0);
   board.right_bottom_m = 0.8;
   const std::vector<Board> boards = {board};
-  const std::vector<Rigid3d> poses = {PlacedAtRandom(random)};
+  // It nearly faces the sensors: after half a turn they are only 0.8 m apart.
+  const Eigen::Quaterniond leaning = ExpSo3({0.1, 0.2, 0.0});
+  const std::vector<Rigid3d> poses = {
+      {leaning * ExpSo3({0.0, 0.0, 0.25 * std::numbers::pi}), {0.1, 0.0, 2.0}}};
   const std::vector<Observation> views = {
       FakeObservation(boards, poses, kFakeCamFromLidar, random)};
   const Expected<Matching> matching = MatchViews(views);
@@ -218,13 +221,14 @@ TEST(Match, APatchThatFacesElsewhereIsNotUsed) {
               testing::HasSubstr("the sensors would be"));
 }
 
-// With several patches in a scan, the one where the image shows the board is used.
+// With several patches in a scan, the one where the image shows the board is used. The others are
+// not at one distance from it in all views: that would be another pose of the LiDAR.
 TEST(Match, OfTwoPatchesTheOneWhereTheImageShowsTheBoardIsUsed) {
   Faked faked = Fake(4, 1, 37);
   Random random(39);
   for (Observation& view : faked.views) {
     Rigid3d other = view.in_image[0].pose.cam_from_board;
-    other.translation += Eigen::Vector3d(1.5, 0.0, 0.8);
+    other.translation += Eigen::Vector3d(random.Uniform(-1.5, 1.5), 0.0, 0.8);
     const Observation ghost =
         FakeObservation(faked.boards, std::vector<Rigid3d>{other}, kFakeCamFromLidar, random);
     view.in_scan.insert(view.in_scan.begin(), ghost.in_scan[0]);

@@ -178,7 +178,7 @@ TEST(Observe, WhatIsMissingIsNamedWithItsReason) {
   EXPECT_EQ(observation.missing[0].board, 1);
   EXPECT_EQ(observation.missing[0].why, "tag 582 of aruco_original was not found");
   EXPECT_FALSE(observation.missing[1].image);
-  EXPECT_THAT(observation.missing[1].why, testing::HasSubstr("1 of 2 boards found"));
+  EXPECT_THAT(observation.missing[1].why, testing::HasSubstr("the scan shows 1 of 2 boards"));
 }
 
 TEST(Observe, UnknownExtractorAndBoardsWithoutSizeAreRefused) {

@@ -115,8 +115,8 @@ std::vector<Frame> TenthsOfASecond(const std::vector<std::size_t>& data) {
 }
 
 TEST_F(Recording, StillBoardsAreKeptAndMovingOnesLeftOut) {
-  Record({0.0, 0.07, 0.14, 0.2});
-  const auto bag = Write(TenthsOfASecond({0, 0, 1, 2, 3, 3}));
+  Record({0.0, 0.0, 0.07, 0.14, 0.2, 0.2});
+  const auto bag = Write(TenthsOfASecond({0, 1, 2, 3, 4, 5}));
   const Expected<BagPlan> plan = PlanBag(*bag, {});
   ASSERT_TRUE(plan) << plan.error().message;
   ASSERT_EQ(plan->moments.size(), 6U);
