@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "geometry/symmetric.h"
+#include "solvers/core/covariance_inflation.h"
 #include "solvers/core/solver.h"
 #include "solvers/least_squares/term_derivatives.h"
 
@@ -132,13 +133,6 @@ Components Separate(const BoardSums& sums, const Matrix6d& inverse, int dimensio
   return result;
 }
 
-// 6 F(6, freedom) / chi2(6), quantiles at 0.95, to 5 percent from 2 degrees of freedom on.
-double Inflation(double freedom) {
-  constexpr double kLeast = 2.0;
-  const double f = std::max(kLeast, freedom);
-  return (f + 3.0) / (f - 1.5);
-}
-
 // L C L^T of the header.
 Matrix6d Correlated(const Matrix6d& covariance, const Matrix6d& independent,
                     const Matrix6d& correlated) {
@@ -185,7 +179,7 @@ void Complete(std::span<const Pair> pairs, const Camera* camera, const SolverSpe
         parts.independent * *inverse + parts.shared * *inverse * sums->by_board * *inverse;
     estimate.covariance = Correlated(*estimate.covariance, variance * *inverse, correlated);
   }
-  *estimate.covariance *= Inflation(parts.freedom);
+  *estimate.covariance *= CovarianceInflation(parts.freedom);
   if (grouped && !tellable) {
     AddWarning(fmt::format("the pairs are of {} board{}, too few to tell what error the pairs of a "
                            "board share; the sigmas assume none and may be several times too small",

@@ -19,8 +19,9 @@ inline constexpr double kRivalShare = 0.75;
 ///
 /// Random samples of three of the pairs left out; at most 64, so that rivals are found only where
 /// they would be about half of these: among many outliers a second consensus is no rival. Empty
-/// where the answer uses all pairs, and for solvers of other data than one kind of pairs.
+/// where the answer uses all pairs, and for solvers of other data than one kind of pairs. `answer`
+/// has been evaluated. Cost: for random outliers a few residuals of each sampled pose.
 std::vector<Rigid3d> FindRivals(const CalibrationProblem& problem, const SolverSpec& spec,
-                                const Estimate& answer);
+                                const SolveReport& answer);
 
 }  // namespace sextant

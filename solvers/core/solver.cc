@@ -237,9 +237,6 @@ Expected<Estimate> Solver::SolveWithAlternatives(const CalibrationProblem& probl
     likely.poses.erase(likely.poses.begin() + static_cast<std::ptrdiff_t>(answer));
   }
   estimate->alternatives = std::move(likely.poses);
-  for (Rigid3d& rival : FindRivals(problem, spec_, *estimate)) {
-    estimate->alternatives.push_back(std::move(rival));
-  }
   return estimate;
 }
 
@@ -254,6 +251,9 @@ Expected<SolveReport> Solver::SolveAndEvaluate(const CalibrationProblem& problem
   report.wall_time_us = std::chrono::duration<double, std::micro>(end - start).count();
   EvaluateReport(problem, report);
   SEXTANT_RETURN_IF_ERROR(CheckPlausible(problem, spec_, report));
+  for (Rigid3d& rival : FindRivals(problem, spec_, report)) {
+    report.alternatives.push_back(std::move(rival));
+  }
   return report;
 }
 

@@ -24,11 +24,17 @@ constexpr double kChiSquare3At9999 = 21.107513466204896;
 
 // log of (n over k), as a sum: std::lgamma writes a global variable, which is a data race.
 double LogChoose(int n, int k) {
+  constexpr double kLarge = 1e290;
+  const int smaller = std::min(k, n - k);
   double sum = 0.0;
-  for (int i = 1; i <= std::min(k, n - k); ++i) {
-    sum += std::log(static_cast<double>(n - std::min(k, n - k) + i) / i);
+  double product = 1.0;
+  for (int i = 1; i <= smaller; ++i) {
+    product *= static_cast<double>(n - smaller + i) / i;
+    if (product < kLarge) continue;
+    sum += std::log(product);
+    product = 1.0;
   }
-  return sum;
+  return sum + std::log(product);
 }
 
 // P(Binomial(trials, p) >= successes).
