@@ -45,12 +45,19 @@ struct Shape {
   Shape(std::span<const Pair2d3d> pairs, std::span<const int> indices) {
     const Eigen::Vector3d& origin = pairs[static_cast<std::size_t>(indices.front())].point_in_lidar;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+    double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, xz = 0.0, yz = 0.0;
     for (const int i : indices) {
       const Eigen::Vector3d arm = pairs[static_cast<std::size_t>(i)].point_in_lidar - origin;
       sum += arm;
-      products.noalias() += arm * arm.transpose();
+      xx += arm.x() * arm.x();
+      yy += arm.y() * arm.y();
+      zz += arm.z() * arm.z();
+      xy += arm.x() * arm.y();
+      xz += arm.x() * arm.z();
+      yz += arm.y() * arm.z();
     }
+    Eigen::Matrix3d products;
+    products << xx, xy, xz, xy, yy, yz, xz, yz, zz;
     const auto count = static_cast<double>(indices.size());
     centre = origin + sum / count;
     scatter = products / count - sum * sum.transpose() / (count * count);

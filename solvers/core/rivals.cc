@@ -26,7 +26,6 @@ constexpr std::size_t kSampleSize = 3;
 constexpr int kMaxRefits = 3;
 
 using Sample = std::array<int, kSampleSize>;
-using Samples = std::array<Sample, kSimdWidth>;
 
 std::vector<int> OthersOf(const std::vector<int>& chosen, std::size_t count) {
   std::vector<int> others;
@@ -42,13 +41,14 @@ std::vector<int> OthersOf(const std::vector<int>& chosen, std::size_t count) {
   return others;
 }
 
-// Samples until one of the `wanted` among `count` pairs has been drawn with probability 0.98.
+// Samples until one of the `wanted` among `count` pairs has been drawn with probability 0.9; of
+// more than these it is nearer to 1.
 double SamplesFor(std::size_t count, std::size_t wanted) {
   double all = 1.0;
   for (std::size_t i = 0; i < kSampleSize; ++i) {
     all *= static_cast<double>(wanted - i) / static_cast<double>(count - i);
   }
-  return all < 1.0 ? std::ceil(std::log(0.02) / std::log1p(-all)) : 1.0;
+  return all < 1.0 ? std::ceil(std::log(0.1) / std::log1p(-all)) : 1.0;
 }
 
 /// The expected number of poses that `agreeing` of `count` pairs agree on by chance, each with
@@ -79,6 +79,10 @@ struct MatrixPose {
   Eigen::Matrix3d rotation;
   Eigen::Vector3d translation;
 
+  Eigen::Vector3d At(const Eigen::Vector3d& p) const {
+    return rotation.col(0) * p.x() + rotation.col(1) * p.y() + rotation.col(2) * p.z() +
+           translation;
+  }
   Rigid3d Rigid() const { return {Eigen::Quaterniond(rotation).normalized(), translation}; }
 };
 
@@ -96,15 +100,13 @@ class Pairs {
     const auto i = static_cast<std::size_t>(index);
     if (kind_ == PairKind::k3d3d) {
       const Pair3d3d& pair = problem_.pairs_3d3d[i];
-      const Eigen::Vector3d residual =
-          pair.point_in_cam - pose.rotation * pair.point_in_lidar - pose.translation;
+      const Eigen::Vector3d residual = pair.point_in_cam - pose.At(pair.point_in_lidar);
       if (pair.covariance_in_cam)
         return residual.dot(pair.covariance_in_cam->llt().solve(residual));
       return residual.squaredNorm() / Variance(pair);
     }
     const Pair2d3d& pair = problem_.pairs_2d3d[i];
-    const auto projected =
-        Project(*camera_, pose.rotation * pair.point_in_lidar + pose.translation);
+    const auto projected = Project(*camera_, pose.At(pair.point_in_lidar));
     if (!projected) return std::numeric_limits<double>::infinity();
     return (pair.pixel - *projected).squaredNorm() / Variance(pair);
   }
@@ -149,9 +151,8 @@ class Pairs {
     return true;
   }
 
-  void AddPosesOf(const Samples& samples, std::vector<MatrixPose>& poses) const {
-    if (kind_ == PairKind::k2d3d) return AddPosesOfPixels(samples, poses);
-    for (const Sample& sample : samples) AddPoseOfPoints(sample, poses);
+  void AddPosesOf(const Sample& sample, std::vector<MatrixPose>& poses) const {
+    kind_ == PairKind::k3d3d ? AddPoseOfPoints(sample, poses) : AddPosesOfPixels(sample, poses);
   }
 
   std::optional<Rigid3d> LeastSquares(const std::vector<int>& used, const Rigid3d& start) const {
@@ -198,30 +199,19 @@ class Pairs {
     if (fit) poses.push_back(MatrixOf(fit->b_from_a));
   }
 
-  // A pixel without a ray leaves three equal ones, which no pose has.
-  void AddPosesOfPixels(const Samples& samples, std::vector<MatrixPose>& poses) const {
-    P3pTriples triples;
-    for (std::size_t k = 0; k < kSimdWidth; ++k) {
-      for (std::size_t i = 0; i < kSampleSize; ++i) {
-        const Pair2d3d& pair = problem_.pairs_2d3d[static_cast<std::size_t>(samples[k][i])];
-        const std::optional<Eigen::Vector3d> ray = Unproject(*camera_, pair.pixel);
-        const Eigen::Vector3d unit = ray ? ray->normalized() : Eigen::Vector3d::Zero().eval();
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          triples.rays[3 * i + axis][k] = unit[static_cast<Eigen::Index>(axis)];
-          triples.points[3 * i + axis][k] = pair.point_in_lidar[static_cast<Eigen::Index>(axis)];
-        }
-      }
+  void AddPosesOfPixels(const Sample& sample, std::vector<MatrixPose>& poses) const {
+    std::array<Eigen::Vector3d, kSampleSize> rays;
+    std::array<Eigen::Vector3d, kSampleSize> points;
+    for (std::size_t i = 0; i < kSampleSize; ++i) {
+      const Pair2d3d& pair = problem_.pairs_2d3d[static_cast<std::size_t>(sample[i])];
+      const std::optional<Eigen::Vector3d> ray = Unproject(*camera_, pair.pixel);
+      if (!ray) return;
+      rays[i] = ray->normalized();
+      points[i] = pair.point_in_lidar;
     }
-    P3pPoses found;
-    SolveP3pBatch(triples, found);
-    for (std::size_t c = 0; c < kMaxP3pPoses; ++c) {
-      for (std::size_t k = 0; k < kSimdWidth; ++k) {
-        if (found.exists[c][k] == 0) continue;
-        MatrixPose& pose = poses.emplace_back();
-        for (int i = 0; i < 9; ++i) pose.rotation(i / 3, i % 3) = found.rotation[c][i][k];
-        for (int i = 0; i < 3; ++i) pose.translation[i] = found.translation[c][i][k];
-      }
-    }
+    std::array<Rigid3d, kMaxP3pPoses> found;
+    const int count = SolveP3p(rays, points, found);
+    for (int i = 0; i < count; ++i) poses.push_back(MatrixOf(found[static_cast<std::size_t>(i)]));
   }
 
   const CalibrationProblem& problem_;
@@ -229,17 +219,16 @@ class Pairs {
   const Camera* camera_;
 };
 
-Samples DrawFrom(const std::vector<int>& among, Random& random) {
+Sample DrawFrom(const std::vector<int>& among, Random& random) {
   const auto draw = [&] { return among[random.Below(among.size())]; };
-  Samples samples;
-  for (auto& [a, b, c] : samples) {
-    a = draw();
-    do b = draw();
-    while (b == a);
-    do c = draw();
-    while (c == a || c == b);
-  }
-  return samples;
+  Sample sample{};
+  auto& [a, b, c] = sample;
+  a = draw();
+  do b = draw();
+  while (b == a);
+  do c = draw();
+  while (c == a || c == b);
+  return sample;
 }
 
 /// The pose of samples of `among` that the most of these agree on, after least squares on them.
@@ -255,7 +244,7 @@ Consensus SearchAmong(const std::vector<int>& among, const Pairs& pairs, double 
   Random random(1);
   Consensus best;
   std::vector<MatrixPose> poses;
-  for (int drawn = 0; drawn < samples; drawn += static_cast<int>(kSimdWidth)) {
+  for (int drawn = 0; drawn < samples; ++drawn) {
     poses.clear();
     pairs.AddPosesOf(DrawFrom(among, random), poses);
     for (const MatrixPose& pose : poses) {

@@ -9,7 +9,7 @@
 namespace sextant {
 
 /// A set of pairs rivals that of the answer from this share of its size on.
-inline constexpr double kRivalShare = 0.75;
+inline constexpr double kRivalShare = 0.8;
 
 /// The pose of a second consensus: where a solver left pairs out, a pose that nearly as many of
 /// these agree on (kRivalShare), within twice the largest residual of the answer's own pairs, and

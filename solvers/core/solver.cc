@@ -245,14 +245,14 @@ Expected<SolveReport> Solver::SolveAndEvaluate(const CalibrationProblem& problem
   Expected<Estimate> estimate = SolveWithAlternatives(problem);
   const auto end = std::chrono::steady_clock::now();
   if (!estimate) return tl::unexpected<Error>(std::move(estimate.error()));
-  SolveReport report;
-  static_cast<Estimate&>(report) = std::move(*estimate);
-  report.solver = spec_.name;
-  report.wall_time_us = std::chrono::duration<double, std::micro>(end - start).count();
-  EvaluateReport(problem, report);
-  SEXTANT_RETURN_IF_ERROR(CheckPlausible(problem, spec_, report));
-  for (Rigid3d& rival : FindRivals(problem, spec_, report)) {
-    report.alternatives.push_back(std::move(rival));
+  Expected<SolveReport> report(tl::in_place);
+  static_cast<Estimate&>(*report) = std::move(*estimate);
+  report->solver = spec_.name;
+  report->wall_time_us = std::chrono::duration<double, std::micro>(end - start).count();
+  EvaluateReport(problem, *report);
+  SEXTANT_RETURN_IF_ERROR(CheckPlausible(problem, spec_, *report));
+  for (Rigid3d& rival : FindRivals(problem, spec_, *report)) {
+    report->alternatives.push_back(std::move(rival));
   }
   return report;
 }

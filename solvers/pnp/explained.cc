@@ -30,14 +30,17 @@ double SquaresAboutMean(std::size_t count, const PointAt& at) {
 Expected<void> AskSqpnp(const PnpView& view) {
   Expected<SqpnpFit> fit = SolveSqpnp(view.image_points, view.points);
   if (fit) return {};
-  const ErrorCode code = fit.error().code;
-  if (code != ErrorCode::kMirrored && code != ErrorCode::kNoConsensus) return {};
+  // That no pose of sqpnp explains the pixels says nothing of this one: see CheckPlausible.
+  if (fit.error().code != ErrorCode::kMirrored) return {};
   return tl::unexpected<Error>(std::move(fit.error()));
 }
 
 }  // namespace
 
 bool IsSmallAgainstImage(std::span<const Pair2d3d> pairs, double sum_squares_px2) {
+  // Two pixels are a lower bound of the extent, and mostly enough.
+  const double apart = (pairs.front().pixel - pairs.back().pixel).squaredNorm();
+  if (sum_squares_px2 <= kSmallShare * 0.5 * apart) return true;
   const double extent = SquaresAboutMean(
       pairs.size(), [&](std::size_t i) -> const Eigen::Vector2d& { return pairs[i].pixel; });
   return sum_squares_px2 <= kSmallShare * extent;

@@ -62,8 +62,8 @@ std::vector<Pair> WeightedPairs(const std::vector<Pair>& pairs,
 /// 3D-3D pairs with isotropic noise have a closed form of weighted least squares. Otherwise the
 /// inner solver gets the weights as sigma / sqrt(w), and weighted least squares starts from its
 /// answer, since not every closed form uses the sigmas. At the end the inner solver gets the
-/// inliers with their true sigmas. Errors: kNoConsensus (see CheckConsensus), those of the inner
-/// solver.
+/// inliers, within FinalMaxSquared of the options, with their true sigmas. Errors: kNoConsensus
+/// (see CheckConsensus), those of the inner solver.
 class GncSolver final : public Solver {
  public:
   GncSolver(const SolverArguments& arguments, PairKind kind, const GncOptions& options)
@@ -87,7 +87,8 @@ class GncSolver final : public Solver {
     const std::unique_ptr<PairScorer> scorer = MakePairScorer(problem, kind_);
     int iterations = 0;
     SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, Anneal(problem, *scorer, max_squared, iterations));
-    Expected<Estimate> estimate = BetterOnInliers(*inner_, problem, *scorer, pose, max_squared);
+    Expected<Estimate> estimate =
+        BetterOnInliers(*inner_, problem, *scorer, pose, options_.FinalMaxSquared(*scorer));
     if (!estimate) return estimate;
     SEXTANT_RETURN_IF_ERROR(
         CheckConsensus(*scorer, max_squared, estimate->inliers, MinPairs(spec().needs)));
