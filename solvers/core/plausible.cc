@@ -66,23 +66,22 @@ Expected<void> CheckPlausible(const CalibrationProblem& problem, const SolverSpe
                                  "which pixel belongs to which point",
                                  spec.name, used.size() - projected.count, used.size()));
   }
-  // A mean square of a quarter of the spread leaves half of the pairs or more within half of it.
+  // A mean square of half of the spread leaves half of the pairs or more within it.
   const std::span<const Pair2d3d> pairs = problem.pairs_2d3d;
   const bool all_project = projected.count == used.size();
-  if (all_project && 4.0 * projected.mean_square <= LeastSquaredSpread(pairs, used)) return {};
+  if (all_project && 2.0 * projected.mean_square <= LeastSquaredSpread(pairs, used)) return {};
   const double spread = SquaredSpread(pairs, used);
   const auto explained =
       static_cast<std::size_t>(std::count_if(used.begin(), used.end(), [&](int i) {
         const double residual = residuals[static_cast<std::size_t>(i)];
-        return 2.0 * residual * residual <= spread;
+        return residual * residual <= spread;
       }));
   if (2 * explained >= used.size()) return {};
   return MakeError(ErrorCode::kNoConsensus,
-                   fmt::format("{}: its pose leaves more than {:.3g} px at {} of {} pairs, and the "
-                               "pixels themselves spread over {:.3g} px, so it explains nothing; "
+                   fmt::format("{}: its pose leaves more than {:.3g} px, by which the pixels "
+                               "themselves spread, at {} of {} pairs, so it explains nothing; "
                                "check which pixel belongs to which point, and the camera",
-                               spec.name, std::sqrt(0.5 * spread), used.size() - explained,
-                               used.size(), std::sqrt(spread)));
+                               spec.name, std::sqrt(spread), used.size() - explained, used.size()));
 }
 
 }  // namespace sextant

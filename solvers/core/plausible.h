@@ -8,12 +8,10 @@
 namespace sextant {
 
 /// Whether the answer explains the pixels that it is based on at all: at least half of their points
-/// project, with a squared residual of at most half of the mean squared distance of the pixels from
-/// their mean. Residuals as large as that spread, which a pose that projects all points onto one
-/// pixel leaves, have a Rayleigh distribution, of which 39 percent are within. Half of the points,
-/// as outliers, and few points near the plane of the camera, project anywhere. An answer that fails
-/// this is none, whoever computed it. Three pairs, which every pose of p3p fits, and solvers of
-/// other data always pass.
+/// project, and to within the spread of the pixels, which a pose that projects all points onto one
+/// pixel leaves. Half of them, as outliers, and few points near the plane of the camera, project
+/// anywhere. An answer that fails this is none, whoever computed it. Three pairs, which every pose
+/// of p3p fits, and solvers of other data always pass.
 /// Error: kNoConsensus.
 Expected<void> CheckPlausible(const CalibrationProblem& problem, const SolverSpec& spec,
                               const SolveReport& report);
