@@ -133,14 +133,17 @@ Components Separate(const BoardSums& sums, const Matrix6d& inverse, int dimensio
   return result;
 }
 
-// L C L^T of the header.
+// The covariance of the header: V_0 = F F^T, M = F^-1 V F^-T.
 Matrix6d Correlated(const Matrix6d& covariance, const Matrix6d& independent,
                     const Matrix6d& correlated) {
-  const Eigen::LLT<Matrix6d> from(independent);
-  const Eigen::LLT<Matrix6d> to(correlated);
-  if (from.info() != Eigen::Success || to.info() != Eigen::Success) return covariance;
-  const Matrix6d factor = to.matrixL();
-  const Matrix6d turn = factor * from.matrixL().solve(Matrix6d(Matrix6d::Identity())).eval();
+  const Eigen::LLT<Matrix6d> factor(independent);
+  if (factor.info() != Eigen::Success) return covariance;
+  const Matrix6d f = factor.matrixL();
+  const Matrix6d inverse = factor.matrixL().solve(Matrix6d::Identity().eval());
+  const SymmetricEigen<6> m = EigenOf<6>(inverse * correlated * inverse.transpose());
+  const Matrix6d root =
+      m.vectors * m.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * m.vectors.transpose();
+  const Matrix6d turn = f * root * inverse;
   const Matrix6d result = turn * covariance * turn.transpose();
   return 0.5 * (result + result.transpose());
 }
