@@ -244,6 +244,7 @@ Consensus SearchAmong(const std::vector<int>& among, const Pairs& pairs, double 
   Random random(1);
   Consensus best;
   std::vector<MatrixPose> poses;
+  poses.reserve(kMaxP3pPoses);
   for (int drawn = 0; drawn < samples; ++drawn) {
     poses.clear();
     pairs.AddPosesOf(DrawFrom(among, random), poses);

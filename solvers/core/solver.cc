@@ -244,13 +244,19 @@ Expected<SolveReport> Solver::SolveAndEvaluate(const CalibrationProblem& problem
   const auto start = std::chrono::steady_clock::now();
   Expected<Estimate> estimate = SolveWithAlternatives(problem);
   const auto end = std::chrono::steady_clock::now();
-  if (!estimate) return tl::unexpected<Error>(std::move(estimate.error()));
   Expected<SolveReport> report(tl::in_place);
+  if (!estimate) {
+    report = tl::unexpected<Error>(std::move(estimate.error()));
+    return report;
+  }
   static_cast<Estimate&>(*report) = std::move(*estimate);
   report->solver = spec_.name;
   report->wall_time_us = std::chrono::duration<double, std::micro>(end - start).count();
   EvaluateReport(problem, *report);
-  SEXTANT_RETURN_IF_ERROR(CheckPlausible(problem, spec_, *report));
+  if (Expected<void> plausible = CheckPlausible(problem, spec_, *report); !plausible) {
+    report = tl::unexpected<Error>(std::move(plausible.error()));
+    return report;
+  }
   for (Rigid3d& rival : FindRivals(problem, spec_, *report)) {
     report->alternatives.push_back(std::move(rival));
   }
