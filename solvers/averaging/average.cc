@@ -170,8 +170,13 @@ class AverageSolver final : public Solver {
       estimate.alternatives.assign(candidates[0].begin() + 1, candidates[0].end());
     }
     estimate.cam_from_lidar = average;
-    estimate.covariance = AverageCovariance(poses, covariances, average, options_.rotation);
     std::sort(estimate.inliers.begin(), estimate.inliers.end());
+    // The scatter of the views, and the covariances of their answers, include what the noise of the
+    // pairs adds, so it is estimated before there is a covariance to complete.
+    CompleteNoise(problem, spec(), estimate);
+    estimate.covariance = AverageCovariance(poses, covariances, average, options_.rotation);
+    // What the answers of the views leave out is in their scatter.
+    if (poses.size() >= kMinViewsForScatter) estimate.warnings.clear();
     return estimate;
   }
 
@@ -190,11 +195,14 @@ class AverageSolver final : public Solver {
     return views;
   }
 
-  // Adds the inliers and the stage of one view.
+  // Adds the inliers, the warnings and the stage of one view.
   static void Append(const SolveReport& report, int view, std::span<const int> indices,
                      Estimate& estimate) {
     for (const int i : report.inliers) {
       estimate.inliers.push_back(indices[static_cast<std::size_t>(i)]);
+    }
+    for (const std::string& warning : report.warnings) {
+      estimate.warnings.push_back(fmt::format("view {}: {}", view, warning));
     }
     estimate.iterations += report.iterations;
     estimate.termination = std::max(estimate.termination, report.termination);

@@ -9,7 +9,6 @@
 #include <span>
 
 #include "geometry/symmetric.h"
-#include "solvers/kernels/cloud_sums.h"
 #include "solvers/kernels/p3p.h"
 #include "solvers/kernels/pair_terms.h"
 #include "solvers/least_squares/refine_pose.h"
@@ -42,12 +41,26 @@ struct Shape {
   Eigen::Vector3d centre;
   Eigen::Matrix3d scatter;
 
+  // In one pass without a copy, as every solver of pixels does it.
   Shape(std::span<const Pair2d3d> pairs, std::span<const int> indices) {
-    std::vector<Eigen::Vector3d> points;
-    points.reserve(indices.size());
-    for (const int i : indices) points.push_back(pairs[static_cast<std::size_t>(i)].point_in_lidar);
-    centre = MeanOf(points);
-    scatter = ScatterAbout(centre, points);
+    const Eigen::Vector3d& origin = pairs[static_cast<std::size_t>(indices.front())].point_in_lidar;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, xz = 0.0, yz = 0.0;
+    for (const int i : indices) {
+      const Eigen::Vector3d arm = pairs[static_cast<std::size_t>(i)].point_in_lidar - origin;
+      sum += arm;
+      xx += arm.x() * arm.x();
+      yy += arm.y() * arm.y();
+      zz += arm.z() * arm.z();
+      xy += arm.x() * arm.y();
+      xz += arm.x() * arm.z();
+      yz += arm.y() * arm.z();
+    }
+    Eigen::Matrix3d products;
+    products << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+    const auto count = static_cast<double>(indices.size());
+    centre = origin + sum / count;
+    scatter = products / count - sum * sum.transpose() / (count * count);
   }
 
   // Whether the smallest variance is under about 2 percent of the sum, so that the thickness does
@@ -155,8 +168,6 @@ class Minima {
   std::vector<Minimum> found_;
 };
 
-LikelyPoses AnswerAlone(const Estimate& answer) { return {{answer.cam_from_lidar}, 0}; }
-
 }  // namespace
 
 LikelyPoses FindLikelyPoses(const CalibrationProblem& problem, const SolverSpec& spec,
@@ -164,12 +175,12 @@ LikelyPoses FindLikelyPoses(const CalibrationProblem& problem, const SolverSpec&
   constexpr std::size_t kMinPairs = 3;
   const bool of_pixels = spec.needs.pairs_2d3d > 0 && spec.needs.pairs_3d3d == 0;
   if (!of_pixels || !FindsWholePose(spec) || answer.inliers.size() < kMinPairs) {
-    return AnswerAlone(answer);
+    return {};
   }
   const Shape shape(problem.pairs_2d3d, answer.inliers);
   const bool is_thin = shape.IsThin();
   const bool are_few = answer.inliers.size() <= kMaxForTriples;
-  if (!is_thin && !are_few && answer.alternatives.empty()) return AnswerAlone(answer);
+  if (!is_thin && !are_few && answer.alternatives.empty()) return {};
 
   const std::vector<Pair2d3d> pairs = PixelsOf(problem, answer.inliers);
   const Camera& camera = answer.camera ? answer.camera->camera : *problem.camera;

@@ -32,8 +32,8 @@ struct LikelyPoses {
 ///
 /// A pose of a plane and its reflection in the plane across the line of sight have the same image
 /// to first order (Schweighofer and Pinz 2006, "Robust pose estimation from a planar target", PAMI
-/// 28). `answer` alone, without a further test, where nothing of the above applies: for 3D-3D
-/// pairs, and solvers that keep a part of a given start. Cost: for points off a plane one pass over
+/// 28). Empty, without a further test, where nothing of the above applies: for 3D-3D pairs, and
+/// solvers that keep a part of a given start. Cost: for points off a plane one pass over
 /// them, else a least-squares fit for each candidate.
 LikelyPoses FindLikelyPoses(const CalibrationProblem& problem, const SolverSpec& spec,
                             const Estimate& answer);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "geometry/symmetric.h"
+#include "solvers/core/covariance_inflation.h"
 #include "solvers/core/solver.h"
 #include "solvers/least_squares/term_derivatives.h"
 
@@ -132,21 +133,17 @@ Components Separate(const BoardSums& sums, const Matrix6d& inverse, int dimensio
   return result;
 }
 
-// 6 F(6, freedom) / chi2(6), quantiles at 0.95, to 5 percent from 2 degrees of freedom on.
-double Inflation(double freedom) {
-  constexpr double kLeast = 2.0;
-  const double f = std::max(kLeast, freedom);
-  return (f + 3.0) / (f - 1.5);
-}
-
-// L C L^T of the header.
+// The covariance of the header: V_0 = F F^T, M = F^-1 V F^-T.
 Matrix6d Correlated(const Matrix6d& covariance, const Matrix6d& independent,
                     const Matrix6d& correlated) {
-  const Eigen::LLT<Matrix6d> from(independent);
-  const Eigen::LLT<Matrix6d> to(correlated);
-  if (from.info() != Eigen::Success || to.info() != Eigen::Success) return covariance;
-  const Matrix6d factor = to.matrixL();
-  const Matrix6d turn = factor * from.matrixL().solve(Matrix6d(Matrix6d::Identity())).eval();
+  const Eigen::LLT<Matrix6d> factor(independent);
+  if (factor.info() != Eigen::Success) return covariance;
+  const Matrix6d f = factor.matrixL();
+  const Matrix6d inverse = factor.matrixL().solve(Matrix6d::Identity().eval());
+  const SymmetricEigen<6> m = EigenOf<6>(inverse * correlated * inverse.transpose());
+  const Matrix6d root =
+      m.vectors * m.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * m.vectors.transpose();
+  const Matrix6d turn = f * root * inverse;
   const Matrix6d result = turn * covariance * turn.transpose();
   return 0.5 * (result + result.transpose());
 }
@@ -185,7 +182,7 @@ void Complete(std::span<const Pair> pairs, const Camera* camera, const SolverSpe
         parts.independent * *inverse + parts.shared * *inverse * sums->by_board * *inverse;
     estimate.covariance = Correlated(*estimate.covariance, variance * *inverse, correlated);
   }
-  *estimate.covariance *= Inflation(parts.freedom);
+  *estimate.covariance *= CovarianceInflation(parts.freedom);
   if (grouped && !tellable) {
     AddWarning(fmt::format("the pairs are of {} board{}, too few to tell what error the pairs of a "
                            "board share; the sigmas assume none and may be several times too small",

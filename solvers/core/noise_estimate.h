@@ -42,8 +42,8 @@ struct NoiseEstimate {
 ///   V = H^-1 (s_e^2 H + s_b^2 B) H^-1.
 /// The variances s_e^2, s_b^2 are those for which the sum of squares, and that of the means of the
 /// boards, have their expected values (Henderson 1953, fitting of constants), and not negative. A
-/// solver with covariance C under independent errors gets L C L^T with L = V^1/2 V_0^-1/2,
-/// V_0 = s^2 H^-1, which is V for least squares.
+/// solver with covariance C under independent errors gets L C L^T with V = L V_0 L^T,
+/// V_0 = s^2 H^-1, L symmetric where V_0 is the unit matrix: V for least squares.
 ///
 /// As the variances are estimates with f effective degrees of freedom (Satterthwaite 1946), the
 /// covariance is multiplied by 6 F(6, f) / chi2(6), quantiles at 95 percent: then the 95 percent

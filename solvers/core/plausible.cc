@@ -3,8 +3,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
+#include <vector>
 
 namespace sextant {
 namespace {
@@ -23,6 +25,30 @@ double SquaredSpread(std::span<const Pair2d3d> pairs, std::span<const int> indic
   return (squares - sum.squaredNorm() / count) / count;
 }
 
+// The pairs at `indices` whose residuals are finite, and the mean square of these.
+struct Projected {
+  std::size_t count = 0;
+  double mean_square = 0.0;
+
+  Projected(const std::vector<double>& residuals, std::span<const int> indices) {
+    double squares = 0.0;
+    for (const int i : indices) {
+      const double residual = residuals[static_cast<std::size_t>(i)];
+      if (!std::isfinite(residual)) continue;
+      squares += residual * residual;
+      ++count;
+    }
+    mean_square = squares / static_cast<double>(count);
+  }
+};
+
+// A lower bound of SquaredSpread, from two pixels.
+double LeastSquaredSpread(std::span<const Pair2d3d> pairs, std::span<const int> indices) {
+  const Eigen::Vector2d& first = pairs[static_cast<std::size_t>(indices.front())].pixel;
+  const Eigen::Vector2d& last = pairs[static_cast<std::size_t>(indices.back())].pixel;
+  return 0.5 * (first - last).squaredNorm() / static_cast<double>(indices.size());
+}
+
 }  // namespace
 
 Expected<void> CheckPlausible(const CalibrationProblem& problem, const SolverSpec& spec,
@@ -31,30 +57,31 @@ Expected<void> CheckPlausible(const CalibrationProblem& problem, const SolverSpe
   const std::vector<int>& used = report.inliers;
   const bool of_pixels = spec.needs.pairs_2d3d > 0 && spec.needs.pairs_3d3d == 0;
   if (!of_pixels || used.size() < kMinPairs) return {};
-  double squares = 0.0;
-  std::size_t projected = 0;
-  for (const int i : used) {
-    const double residual = report.evaluation.per_pair_px[static_cast<std::size_t>(i)];
-    if (!std::isfinite(residual)) continue;
-    squares += residual * residual;
-    ++projected;
-  }
-  if (2 * projected < used.size()) {
+  const std::vector<double>& residuals = report.evaluation.per_pair_px;
+  const Projected projected(residuals, used);
+  if (2 * projected.count < used.size()) {
     return MakeError(ErrorCode::kNoConsensus,
                      fmt::format("{}: its pose has {} of {} points behind the camera or outside "
                                  "the lens model; check the signs of the axes, the camera and "
                                  "which pixel belongs to which point",
-                                 spec.name, used.size() - projected, used.size()));
+                                 spec.name, used.size() - projected.count, used.size()));
   }
-  const double mean = squares / static_cast<double>(projected);
-  const double spread = SquaredSpread(problem.pairs_2d3d, used);
-  if (mean <= spread) return {};
-  return MakeError(
-      ErrorCode::kNoConsensus,
-      fmt::format("{}: its pose leaves {:.3g} px, and the pixels themselves spread over {:.3g} px, "
-                  "so it explains nothing; check which pixel belongs to which point, and the "
-                  "camera",
-                  spec.name, std::sqrt(mean), std::sqrt(spread)));
+  // A mean square of half of the spread leaves half of the pairs or more within it.
+  const std::span<const Pair2d3d> pairs = problem.pairs_2d3d;
+  const bool all_project = projected.count == used.size();
+  if (all_project && 2.0 * projected.mean_square <= LeastSquaredSpread(pairs, used)) return {};
+  const double spread = SquaredSpread(pairs, used);
+  const auto explained =
+      static_cast<std::size_t>(std::count_if(used.begin(), used.end(), [&](int i) {
+        const double residual = residuals[static_cast<std::size_t>(i)];
+        return residual * residual <= spread;
+      }));
+  if (2 * explained >= used.size()) return {};
+  return MakeError(ErrorCode::kNoConsensus,
+                   fmt::format("{}: its pose leaves more than {:.3g} px, by which the pixels "
+                               "themselves spread, at {} of {} pairs, so it explains nothing; "
+                               "check which pixel belongs to which point, and the camera",
+                               spec.name, std::sqrt(spread), used.size() - explained, used.size()));
 }
 
 }  // namespace sextant

@@ -11,6 +11,8 @@
 #include <optional>
 
 #include "base/random.h"
+#include "geometry/residuals.h"
+#include "solvers/core/subset.h"
 #include "solvers/kernels/kabsch_fit.h"
 #include "solvers/kernels/p3p.h"
 #include "solvers/kernels/pair_terms.h"
@@ -19,7 +21,6 @@
 namespace sextant {
 namespace {
 
-constexpr int kMinSamples = 8;
 constexpr int kMaxSamples = 64;
 constexpr std::size_t kSampleSize = 3;
 constexpr int kMaxRefits = 3;
@@ -27,21 +28,27 @@ constexpr int kMaxRefits = 3;
 using Sample = std::array<int, kSampleSize>;
 
 std::vector<int> OthersOf(const std::vector<int>& chosen, std::size_t count) {
-  std::vector<int> all(count);
-  std::iota(all.begin(), all.end(), 0);
   std::vector<int> others;
-  std::set_difference(all.begin(), all.end(), chosen.begin(), chosen.end(),
-                      std::back_inserter(others));
+  others.reserve(count - chosen.size());
+  auto next = chosen.begin();
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    if (next != chosen.end() && *next == i) {
+      ++next;
+    } else {
+      others.push_back(i);
+    }
+  }
   return others;
 }
 
-// Samples until one of the `wanted` among `count` pairs has been drawn with probability 0.999.
+// Samples until one of the `wanted` among `count` pairs has been drawn with probability 0.9; of
+// more than these it is nearer to 1.
 double SamplesFor(std::size_t count, std::size_t wanted) {
   double all = 1.0;
   for (std::size_t i = 0; i < kSampleSize; ++i) {
     all *= static_cast<double>(wanted - i) / static_cast<double>(count - i);
   }
-  return all < 1.0 ? std::ceil(std::log(1e-3) / std::log1p(-all)) : 1.0;
+  return all < 1.0 ? std::ceil(std::log(0.1) / std::log1p(-all)) : 1.0;
 }
 
 /// The expected number of poses that `agreeing` of `count` pairs agree on by chance, each with
@@ -57,27 +64,72 @@ double ChanceOf(PairKind kind, std::size_t agreeing, std::size_t count, double p
   return std::exp(log_chance);
 }
 
-/// Pairs of one kind as whitened terms.
+// Where all pairs are exact, rounding still is not.
+constexpr double kRounding = 1e-12;
+
+double Variance(const Pair3d3d& pair) {
+  return HasKnownNoise(pair) ? pair.sigma_m * pair.sigma_m : 1.0;
+}
+double Variance(const Pair2d3d& pair) {
+  return HasKnownNoise(pair) ? pair.sigma_px * pair.sigma_px : 1.0;
+}
+
+/// A pose in the form that a few residuals need.
+struct MatrixPose {
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d translation;
+
+  Eigen::Vector3d At(const Eigen::Vector3d& p) const {
+    return rotation.col(0) * p.x() + rotation.col(1) * p.y() + rotation.col(2) * p.z() +
+           translation;
+  }
+  Rigid3d Rigid() const { return {Eigen::Quaterniond(rotation).normalized(), translation}; }
+};
+
+MatrixPose MatrixOf(const Rigid3d& pose) {
+  return {pose.rotation.toRotationMatrix(), pose.translation};
+}
+
+/// Pairs of one kind of a problem, with residuals in their sigmas.
 class Pairs {
  public:
-  Pairs(const CalibrationProblem& problem, PairKind kind, const Camera* camera) : kind_(kind) {
-    terms_ = MakeTerms(problem, kind);
-    if (camera != nullptr) terms_.camera = *camera;
-  }
+  Pairs(const CalibrationProblem& problem, PairKind kind, const Camera* camera)
+      : problem_(problem), kind_(kind), camera_(camera) {}
 
-  double Squared(int index, const Rigid3d& pose) const {
+  double Squared(int index, const MatrixPose& pose) const {
     const auto i = static_cast<std::size_t>(index);
     if (kind_ == PairKind::k3d3d) {
-      const PointTerm& term = terms_.points[i];
-      return (term.whitener * (term.in_cam - pose * term.in_lidar)).squaredNorm();
+      const Pair3d3d& pair = problem_.pairs_3d3d[i];
+      const Eigen::Vector3d residual = pair.point_in_cam - pose.At(pair.point_in_lidar);
+      if (pair.covariance_in_cam)
+        return residual.dot(pair.covariance_in_cam->llt().solve(residual));
+      return residual.squaredNorm() / Variance(pair);
     }
-    const PixelTerm term = terms_.pixels[i];
-    const auto projected = Project(terms_.camera, pose * term.in_lidar);
+    const Pair2d3d& pair = problem_.pairs_2d3d[i];
+    const auto projected = Project(*camera_, pose.At(pair.point_in_lidar));
     if (!projected) return std::numeric_limits<double>::infinity();
-    return (term.inverse_sigma * (term.pixel - *projected)).squaredNorm();
+    return (pair.pixel - *projected).squaredNorm() / Variance(pair);
   }
 
-  std::vector<int> Agreeing(const std::vector<int>& among, const Rigid3d& pose,
+  // Of the pairs that the answer used.
+  double LargestSquared(const SolveReport& answer) const {
+    double largest = 0.0;
+    for (const int index : answer.inliers) {
+      const auto i = static_cast<std::size_t>(index);
+      if (kind_ == PairKind::k2d3d) {
+        const double residual = answer.evaluation.per_pair_px[i];
+        largest = std::max(largest, residual * residual / Variance(problem_.pairs_2d3d[i]));
+      } else if (problem_.pairs_3d3d[i].covariance_in_cam) {
+        largest = std::max(largest, Squared(index, MatrixOf(answer.cam_from_lidar)));
+      } else {
+        const double residual = answer.evaluation.per_pair_m[i];
+        largest = std::max(largest, residual * residual / Variance(problem_.pairs_3d3d[i]));
+      }
+    }
+    return largest;
+  }
+
+  std::vector<int> Agreeing(const std::vector<int>& among, const MatrixPose& pose,
                             double max_squared) const {
     std::vector<int> agreeing;
     for (const int i : among) {
@@ -86,13 +138,27 @@ class Pairs {
     return agreeing;
   }
 
-  std::vector<Rigid3d> PosesOf(const Sample& sample) const {
-    return kind_ == PairKind::k3d3d ? PosesOfPoints(sample) : PosesOfPixels(sample);
+  // Whether most pairs agree, by a few of them: false as soon as three more contradict the pose
+  // than agree, which of a pose that three of four agree on is one in 27.
+  bool MostMayAgree(const std::vector<int>& among, const MatrixPose& pose,
+                    double max_squared) const {
+    constexpr int kLead = 3;
+    int lead = 0;
+    for (const int i : among) {
+      lead += Squared(i, pose) <= max_squared ? -1 : 1;
+      if (lead == kLead) return false;
+    }
+    return true;
+  }
+
+  void AddPosesOf(const Sample& sample, std::vector<MatrixPose>& poses) const {
+    kind_ == PairKind::k3d3d ? AddPoseOfPoints(sample, poses) : AddPosesOfPixels(sample, poses);
   }
 
   std::optional<Rigid3d> LeastSquares(const std::vector<int>& used, const Rigid3d& start) const {
-    PairTerms terms;
-    terms.AssignSubset(terms_, used);
+    const DataNeeds needs = {.pairs_3d3d = kind_ == PairKind::k3d3d ? 1 : 0};
+    PairTerms terms = MakeTerms(SubsetOf(problem_, needs, used), kind_);
+    if (camera_ != nullptr) terms.camera = *camera_;
     const RefinedPose refined = RefinePose(terms.View(), start, {.wants_information = false});
     if (refined.outcome == RefineOutcome::kNotProjected) return std::nullopt;
     return refined.cam_from_lidar;
@@ -104,49 +170,66 @@ class Pairs {
     const double radius = std::sqrt(max_squared);
     if (kind_ == PairKind::k3d3d) {
       Eigen::AlignedBox3d box;
-      for (const PointTerm& term : terms_.points) box.extend(term.in_cam);
-      const double r = radius / terms_.points.front().whitener(0, 0);
+      for (const Pair3d3d& pair : problem_.pairs_3d3d) box.extend(pair.point_in_cam);
+      const double r = radius * LargestSigma(problem_.pairs_3d3d.front());
       const Eigen::Array3d sides = box.sizes().array() + 2.0 * r;
       return std::min(1.0, 4.0 / 3.0 * std::numbers::pi * r * r * r / sides.prod());
     }
     Eigen::AlignedBox2d box;
-    for (const PixelTerm& term : terms_.pixels) box.extend(term.pixel);
-    const double r = radius / terms_.pixels[0].inverse_sigma;
+    for (const Pair2d3d& pair : problem_.pairs_2d3d) box.extend(pair.pixel);
+    const double r = radius * std::sqrt(Variance(problem_.pairs_2d3d.front()));
     const Eigen::Array2d sides = box.sizes().array() + 2.0 * r;
     return std::min(1.0, std::numbers::pi * r * r / sides.prod());
   }
 
  private:
-  std::vector<Rigid3d> PosesOfPoints(const Sample& sample) const {
+  static double LargestSigma(const Pair3d3d& pair) {
+    return std::sqrt(pair.covariance_in_cam ? pair.covariance_in_cam->trace() : Variance(pair));
+  }
+
+  void AddPoseOfPoints(const Sample& sample, std::vector<MatrixPose>& poses) const {
     std::array<Eigen::Vector3d, kSampleSize> in_cam;
     std::array<Eigen::Vector3d, kSampleSize> in_lidar;
     for (std::size_t i = 0; i < kSampleSize; ++i) {
-      in_cam[i] = terms_.points[static_cast<std::size_t>(sample[i])].in_cam;
-      in_lidar[i] = terms_.points[static_cast<std::size_t>(sample[i])].in_lidar;
+      const Pair3d3d& pair = problem_.pairs_3d3d[static_cast<std::size_t>(sample[i])];
+      in_cam[i] = pair.point_in_cam;
+      in_lidar[i] = pair.point_in_lidar;
     }
     const KabschOutcome fit = FitPoints(in_cam, in_lidar, {});
-    if (!fit) return {};
-    return {fit->b_from_a};
+    if (fit) poses.push_back(MatrixOf(fit->b_from_a));
   }
 
-  std::vector<Rigid3d> PosesOfPixels(const Sample& sample) const {
+  void AddPosesOfPixels(const Sample& sample, std::vector<MatrixPose>& poses) const {
     std::array<Eigen::Vector3d, kSampleSize> rays;
     std::array<Eigen::Vector3d, kSampleSize> points;
     for (std::size_t i = 0; i < kSampleSize; ++i) {
-      const PixelTerm term = terms_.pixels[static_cast<std::size_t>(sample[i])];
-      const std::optional<Eigen::Vector3d> ray = Unproject(terms_.camera, term.pixel);
-      if (!ray) return {};
-      rays[i] = *ray;
-      points[i] = term.in_lidar;
+      const Pair2d3d& pair = problem_.pairs_2d3d[static_cast<std::size_t>(sample[i])];
+      const std::optional<Eigen::Vector3d> ray = Unproject(*camera_, pair.pixel);
+      if (!ray) return;
+      rays[i] = ray->normalized();
+      points[i] = pair.point_in_lidar;
     }
-    std::array<Rigid3d, kMaxP3pPoses> poses;
-    const int count = SolveP3p(rays, points, poses);
-    return {poses.begin(), poses.begin() + count};
+    std::array<Rigid3d, kMaxP3pPoses> found;
+    const int count = SolveP3p(rays, points, found);
+    for (int i = 0; i < count; ++i) poses.push_back(MatrixOf(found[static_cast<std::size_t>(i)]));
   }
 
+  const CalibrationProblem& problem_;
   PairKind kind_;
-  PairTerms terms_;
+  const Camera* camera_;
 };
+
+Sample DrawFrom(const std::vector<int>& among, Random& random) {
+  const auto draw = [&] { return among[random.Below(among.size())]; };
+  Sample sample{};
+  auto& [a, b, c] = sample;
+  a = draw();
+  do b = draw();
+  while (b == a);
+  do c = draw();
+  while (c == a || c == b);
+  return sample;
+}
 
 /// The pose of samples of `among` that the most of these agree on, after least squares on them.
 struct Consensus {
@@ -160,19 +243,21 @@ Consensus SearchAmong(const std::vector<int>& among, const Pairs& pairs, double 
   constexpr double kWidening = 4.0;
   Random random(1);
   Consensus best;
-  Sample sample{};
-  for (int i = 0; i < samples; ++i) {
-    random.Sample(static_cast<int>(among.size()), sample);
-    for (int& index : sample) index = among[static_cast<std::size_t>(index)];
-    for (const Rigid3d& pose : pairs.PosesOf(sample)) {
+  std::vector<MatrixPose> poses;
+  poses.reserve(kMaxP3pPoses);
+  for (int drawn = 0; drawn < samples; ++drawn) {
+    poses.clear();
+    pairs.AddPosesOf(DrawFrom(among, random), poses);
+    for (const MatrixPose& pose : poses) {
+      if (!pairs.MostMayAgree(among, pose, kWidening * max_squared)) continue;
       std::vector<int> agreeing = pairs.Agreeing(among, pose, kWidening * max_squared);
-      if (agreeing.size() > best.agreeing.size()) best = {pose, std::move(agreeing)};
+      if (agreeing.size() > best.agreeing.size()) best = {pose.Rigid(), std::move(agreeing)};
     }
   }
   for (int refit = 0; refit < kMaxRefits && best.agreeing.size() > kSampleSize; ++refit) {
     const std::optional<Rigid3d> pose = pairs.LeastSquares(best.agreeing, best.pose);
     if (!pose) break;
-    best = {*pose, pairs.Agreeing(among, *pose, max_squared)};
+    best = {*pose, pairs.Agreeing(among, MatrixOf(*pose), max_squared)};
   }
   return best;
 }
@@ -180,7 +265,7 @@ Consensus SearchAmong(const std::vector<int>& among, const Pairs& pairs, double 
 }  // namespace
 
 std::vector<Rigid3d> FindRivals(const CalibrationProblem& problem, const SolverSpec& spec,
-                                const Estimate& answer) {
+                                const SolveReport& answer) {
   const DataNeeds& needs = spec.needs;
   const bool one_kind = (needs.pairs_3d3d > 0) != (needs.pairs_2d3d > 0);
   if (!one_kind || needs.board_views > 0 || !FindsWholePose(spec)) return {};
@@ -195,21 +280,19 @@ std::vector<Rigid3d> FindRivals(const CalibrationProblem& problem, const SolverS
   const double samples = SamplesFor(count - used, wanted);
   if (samples > kMaxSamples) return {};
 
-  const Pairs pairs(problem, kind, answer.camera ? &answer.camera->camera : nullptr);
-  double largest = 0.0;
-  for (const int i : answer.inliers) {
-    largest = std::max(largest, pairs.Squared(i, answer.cam_from_lidar));
-  }
-  // Twice the largest residual. Where all pairs are exact, rounding still is not.
-  constexpr double kRounding = 1e-12;
-  const double max_squared = 4.0 * largest + kRounding;
-  const Consensus rival = SearchAmong(OthersOf(answer.inliers, count), pairs, max_squared,
-                                      std::max(kMinSamples, static_cast<int>(samples)));
+  const Camera* camera = answer.camera    ? &answer.camera->camera
+                         : problem.camera ? &*problem.camera
+                                          : nullptr;
+  const Pairs pairs(problem, kind, camera);
+  // Twice the largest residual.
+  const double max_squared = 4.0 * pairs.LargestSquared(answer) + kRounding;
+  const Consensus rival =
+      SearchAmong(OthersOf(answer.inliers, count), pairs, max_squared, static_cast<int>(samples));
   constexpr double kMaxChance = 0.01;
   if (rival.agreeing.size() < wanted ||
       ChanceOf(kind, rival.agreeing.size(), count - used, pairs.ChanceOfOne(max_squared)) >
           kMaxChance ||
-      2 * pairs.Agreeing(answer.inliers, rival.pose, max_squared).size() > used) {
+      2 * pairs.Agreeing(answer.inliers, MatrixOf(rival.pose), max_squared).size() > used) {
     return {};
   }
   return {rival.pose};

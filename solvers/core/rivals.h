@@ -9,7 +9,7 @@
 namespace sextant {
 
 /// A set of pairs rivals that of the answer from this share of its size on.
-inline constexpr double kRivalShare = 0.75;
+inline constexpr double kRivalShare = 0.8;
 
 /// The pose of a second consensus: where a solver left pairs out, a pose that nearly as many of
 /// these agree on (kRivalShare), within twice the largest residual of the answer's own pairs, and
@@ -19,8 +19,9 @@ inline constexpr double kRivalShare = 0.75;
 ///
 /// Random samples of three of the pairs left out; at most 64, so that rivals are found only where
 /// they would be about half of these: among many outliers a second consensus is no rival. Empty
-/// where the answer uses all pairs, and for solvers of other data than one kind of pairs.
+/// where the answer uses all pairs, and for solvers of other data than one kind of pairs. `answer`
+/// has been evaluated. Cost: for random outliers a few residuals of each sampled pose.
 std::vector<Rigid3d> FindRivals(const CalibrationProblem& problem, const SolverSpec& spec,
-                                const Estimate& answer);
+                                const SolveReport& answer);
 
 }  // namespace sextant

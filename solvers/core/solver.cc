@@ -237,9 +237,6 @@ Expected<Estimate> Solver::SolveWithAlternatives(const CalibrationProblem& probl
     likely.poses.erase(likely.poses.begin() + static_cast<std::ptrdiff_t>(answer));
   }
   estimate->alternatives = std::move(likely.poses);
-  for (Rigid3d& rival : FindRivals(problem, spec_, *estimate)) {
-    estimate->alternatives.push_back(std::move(rival));
-  }
   return estimate;
 }
 
@@ -247,13 +244,22 @@ Expected<SolveReport> Solver::SolveAndEvaluate(const CalibrationProblem& problem
   const auto start = std::chrono::steady_clock::now();
   Expected<Estimate> estimate = SolveWithAlternatives(problem);
   const auto end = std::chrono::steady_clock::now();
-  if (!estimate) return tl::unexpected<Error>(std::move(estimate.error()));
-  SolveReport report;
-  static_cast<Estimate&>(report) = std::move(*estimate);
-  report.solver = spec_.name;
-  report.wall_time_us = std::chrono::duration<double, std::micro>(end - start).count();
-  EvaluateReport(problem, report);
-  SEXTANT_RETURN_IF_ERROR(CheckPlausible(problem, spec_, report));
+  Expected<SolveReport> report(tl::in_place);
+  if (!estimate) {
+    report = tl::unexpected<Error>(std::move(estimate.error()));
+    return report;
+  }
+  static_cast<Estimate&>(*report) = std::move(*estimate);
+  report->solver = spec_.name;
+  report->wall_time_us = std::chrono::duration<double, std::micro>(end - start).count();
+  EvaluateReport(problem, *report);
+  if (Expected<void> plausible = CheckPlausible(problem, spec_, *report); !plausible) {
+    report = tl::unexpected<Error>(std::move(plausible.error()));
+    return report;
+  }
+  for (Rigid3d& rival : FindRivals(problem, spec_, *report)) {
+    report->alternatives.push_back(std::move(rival));
+  }
   return report;
 }
 

@@ -69,6 +69,7 @@ void PairTerms::AssignSubset(const PairTerms& all, std::span<const int> indices)
   pixels.clear();
   camera = all.camera;
   noise_known = all.noise_known;
+  all.pixels.empty() ? points.reserve(indices.size()) : pixels.reserve(indices.size());
   for (const int i : indices) {
     const auto index = static_cast<std::size_t>(i);
     if (all.pixels.empty()) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/pnp/explained.h"
 
+#include <Eigen/Geometry>
 #include <utility>
 
 #include "geometry/residuals.h"
@@ -27,20 +28,29 @@ double SquaresAboutMean(std::size_t count, const PointAt& at) {
   return squares - sum.squaredNorm() / static_cast<double>(count);
 }
 
-Expected<void> AskSqpnp(const PnpView& view) {
+// Sum of the squared distances of the pixels from their mean.
+double ExtentOf(std::span<const Pair2d3d> pairs) {
+  return SquaresAboutMean(pairs.size(),
+                          [&](std::size_t i) -> const Eigen::Vector2d& { return pairs[i].pixel; });
+}
+
+// `explains` is whether the pose in question leaves half of the pairs within half of the spread of
+// their pixels. Then it shows what sqpnp did not find.
+Expected<void> AskSqpnp(const PnpView& view, bool explains) {
   Expected<SqpnpFit> fit = SolveSqpnp(view.image_points, view.points);
   if (fit) return {};
   const ErrorCode code = fit.error().code;
-  if (code != ErrorCode::kMirrored && code != ErrorCode::kNoConsensus) return {};
+  if (code != ErrorCode::kMirrored && (code != ErrorCode::kNoConsensus || explains)) return {};
   return tl::unexpected<Error>(std::move(fit.error()));
 }
 
 }  // namespace
 
 bool IsSmallAgainstImage(std::span<const Pair2d3d> pairs, double sum_squares_px2) {
-  const double extent = SquaresAboutMean(
-      pairs.size(), [&](std::size_t i) -> const Eigen::Vector2d& { return pairs[i].pixel; });
-  return sum_squares_px2 <= kSmallShare * extent;
+  // Two pixels are a lower bound of the extent, and mostly enough.
+  const double apart = (pairs.front().pixel - pairs.back().pixel).squaredNorm();
+  if (sum_squares_px2 <= kSmallShare * 0.5 * apart) return true;
+  return sum_squares_px2 <= kSmallShare * ExtentOf(pairs);
 }
 
 Expected<void> CheckExplained(const PnpView& view, const Rigid3d& view_from_lidar) {
@@ -52,23 +62,36 @@ Expected<void> CheckExplained(const PnpView& view, const Rigid3d& view_from_lida
   const double extent = SquaresAboutMean(
       count, [&](std::size_t i) -> const Eigen::Vector2d& { return view.image_points[i]; });
   if (fit.behind == 0 && fit.sum_squares <= kSmallShare * extent) return {};
-  return AskSqpnp(view);
+  const double near = 0.25 * extent / static_cast<double>(count);
+  std::size_t explained = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d in_view = view_from_lidar * view.points[i];
+    const bool is_seen = in_view.z() > 0.0;
+    if (is_seen && (in_view.hnormalized() - view.image_points[i]).squaredNorm() <= near) {
+      ++explained;
+    }
+  }
+  return AskSqpnp(view, 2 * explained >= count);
 }
 
 Expected<void> CheckExplained(const Camera& camera, std::span<const Pair2d3d> pairs,
                               const Rigid3d& cam_from_lidar) {
   if (pairs.size() < kMinToCheck) return {};
+  const double near = 0.25 * ExtentOf(pairs) / static_cast<double>(pairs.size());
   double squares = 0.0;
   bool all_project = true;
+  std::size_t explained = 0;
   for (const Pair2d3d& pair : pairs) {
     const auto residual = ReprojectionResidual(camera, cam_from_lidar, pair);
     all_project = all_project && residual.has_value();
-    if (residual) squares += residual->squaredNorm();
+    if (!residual) continue;
+    squares += residual->squaredNorm();
+    if (residual->squaredNorm() <= near) ++explained;
   }
   if (all_project && IsSmallAgainstImage(pairs, squares)) return {};
   const Expected<PnpView> view = MakeView(camera, pairs);
   if (!view) return {};
-  return AskSqpnp(*view);
+  return AskSqpnp(*view, 2 * explained >= pairs.size());
 }
 
 }  // namespace sextant

@@ -3,6 +3,7 @@
 
 #include "geometry/residuals.h"
 #include "geometry/symmetric.h"
+#include "solvers/least_squares/term_derivatives.h"
 
 namespace sextant {
 namespace {
@@ -10,18 +11,24 @@ namespace {
 // Degrees of freedom of a pose.
 constexpr double kPoseFreedom = 6.0;
 
-}  // namespace
-
-std::optional<Eigen::Matrix<double, 2, 6>> ReprojectionJacobian(const Camera& camera,
-                                                                const Rigid3d& pose,
-                                                                const Pair2d3d& pair) {
-  const Eigen::Vector3d arm = pose.rotation * pair.point_in_lidar;
-  const auto projection = ProjectWithJacobian(camera, arm + pose.translation);
-  if (!projection) return std::nullopt;
-  Eigen::Matrix<double, 2, 6> jacobian;
-  jacobian << -projection->pixel_by_point * Hat(arm), projection->pixel_by_point;
-  return jacobian;
+// sum_i J_i^T J_i / sigma_i^2 over all projections, sigma_i = sigma_of(pair i). None where a point
+// does not project.
+template <class SigmaOf>
+std::optional<Matrix6d> Information(const Camera& camera, std::span<const Pair2d3d> pairs,
+                                    const Rigid3d& pose, const SigmaOf& sigma_of) {
+  const Eigen::Matrix3d r = pose.rotation.toRotationMatrix();
+  Matrix6d information = Matrix6d::Zero();
+  TermDerivatives<2> at;
+  for (const Pair2d3d& pair : pairs) {
+    const PixelTerm term = {pair.pixel, pair.point_in_lidar, 1.0 / sigma_of(pair)};
+    if (!Differentiate(term, &camera, r, pose.translation, at)) return std::nullopt;
+    const Eigen::Matrix<double, 2, 6> jacobian = at.Jacobian();
+    information.noalias() += jacobian.transpose() * jacobian;
+  }
+  return information;
 }
+
+}  // namespace
 
 std::optional<double> UnstatedVariance(const Camera& camera, std::span<const Pair2d3d> pairs,
                                        const Rigid3d& pose) {
@@ -43,15 +50,12 @@ std::optional<Matrix6d> ReprojectionCovariance(const Camera& camera,
                                                const Rigid3d& pose) {
   const std::optional<double> unstated = UnstatedVariance(camera, pairs, pose);
   if (!unstated) return std::nullopt;
-  Matrix6d information = Matrix6d::Zero();
-  for (const Pair2d3d& pair : pairs) {
-    const auto jacobian = ReprojectionJacobian(camera, pose, pair);
-    if (!jacobian) return std::nullopt;
-    // Unit variance where it is the same for all: that of exact data is zero and must not divide.
-    const double variance = HasKnownNoise(pair) ? pair.sigma_px * pair.sigma_px : 1.0;
-    information += jacobian->transpose() * *jacobian / variance;
-  }
-  const std::optional<Matrix6d> inverse = InvertSymmetric(information);
+  // Unit variance where it is the same for all: that of exact data is zero and must not divide.
+  const std::optional<Matrix6d> information =
+      Information(camera, pairs, pose,
+                  [](const Pair2d3d& pair) { return HasKnownNoise(pair) ? pair.sigma_px : 1.0; });
+  if (!information) return std::nullopt;
+  const std::optional<Matrix6d> inverse = InvertSymmetric(*information);
   if (!inverse) return std::nullopt;
   const double scale = HasKnownNoise(pairs.front()) ? 1.0 : *unstated;
   return Matrix6d(scale * *inverse);
@@ -69,13 +73,7 @@ std::optional<Matrix6d> RelativeTripleCovariance(const Camera& camera,
 
 std::optional<Matrix6d> ProjectionInformation(const Camera& camera, std::span<const Pair2d3d> pairs,
                                               const Rigid3d& pose) {
-  Matrix6d information = Matrix6d::Zero();
-  for (const Pair2d3d& pair : pairs) {
-    const auto jacobian = ReprojectionJacobian(camera, pose, pair);
-    if (!jacobian) return std::nullopt;
-    information.noalias() += jacobian->transpose() * *jacobian;
-  }
-  return information;
+  return Information(camera, pairs, pose, [](const Pair2d3d&) { return 1.0; });
 }
 
 std::optional<Matrix6d> TripleCovariance(const Camera& camera, std::span<const Pair2d3d> pairs,

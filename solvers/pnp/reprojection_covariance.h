@@ -9,12 +9,6 @@
 
 namespace sextant {
 
-/// Derivative of a pair's projection [px] by (dphi, dt) of the pose; none where the point does not
-/// project.
-std::optional<Eigen::Matrix<double, 2, 6>> ReprojectionJacobian(const Camera& camera,
-                                                                const Rigid3d& pose,
-                                                                const Pair2d3d& pair);
-
 /// Variance [px^2] per axis of pixels without a stated one: sum |r|^2 / (2 n - 6) over the
 /// residuals at `pose`; 0 where all pairs state theirs. None where n <= 3 or a point does not
 /// project.

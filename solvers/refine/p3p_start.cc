@@ -77,14 +77,17 @@ std::size_t SpreadTerms(PixelTermsView terms, std::array<std::size_t, kMaxCorner
   return corners;
 }
 
-void Place(const PixelTerm& term, const Camera& camera, std::size_t to, std::size_t k,
+Eigen::Vector3d RayOf(const PixelTerm& term, const Camera& camera) {
+  return Eigen::Vector3d((term.pixel.x() - camera.cx_px) / camera.fx_px,
+                         (term.pixel.y() - camera.cy_px) / camera.fy_px, 1.0)
+      .normalized();
+}
+
+void Place(const Eigen::Vector3d& ray, const Eigen::Vector3d& point, std::size_t to, std::size_t k,
            P3pTriples& triples) {
-  const Eigen::Vector3d ray = Eigen::Vector3d((term.pixel.x() - camera.cx_px) / camera.fx_px,
-                                              (term.pixel.y() - camera.cy_px) / camera.fy_px, 1.0)
-                                  .normalized();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     triples.rays[3 * to + axis][k] = ray[static_cast<Eigen::Index>(axis)];
-    triples.points[3 * to + axis][k] = term.in_lidar[static_cast<Eigen::Index>(axis)];
+    triples.points[3 * to + axis][k] = point[static_cast<Eigen::Index>(axis)];
   }
 }
 
@@ -93,13 +96,21 @@ void Place(const PixelTerm& term, const Camera& camera, std::size_t to, std::siz
 std::optional<Rigid3d> StartFromTriples(PixelTermsView terms, const Camera& camera) {
   const FewTerms few(terms);
   std::array<std::size_t, kMaxCorners> corners{};
-  const std::size_t triple_count = TriplesOf(SpreadTerms(few.view, corners));
+  const std::size_t corner_count = SpreadTerms(few.view, corners);
+  const std::size_t triple_count = TriplesOf(corner_count);
+  std::array<Eigen::Vector3d, kMaxCorners> rays;
+  std::array<Eigen::Vector3d, kMaxCorners> points;
+  for (std::size_t i = 0; i < corner_count; ++i) {
+    const PixelTerm term = few.view[corners[i]];
+    rays[i] = RayOf(term, camera);
+    points[i] = term.in_lidar;
+  }
   P3pTriples triples;
   for (std::size_t k = 0; k < kSimdWidth; ++k) {
     // Unused elements of the vector repeat a triple.
     const auto& triple = kTriples[k < triple_count ? k : 0];
     for (std::size_t to = 0; to < 3; ++to) {
-      Place(few.view[corners[triple[to]]], camera, to, k, triples);
+      Place(rays[triple[to]], points[triple[to]], to, k, triples);
     }
   }
   P3pPoses poses;

@@ -24,11 +24,17 @@ constexpr double kChiSquare3At9999 = 21.107513466204896;
 
 // log of (n over k), as a sum: std::lgamma writes a global variable, which is a data race.
 double LogChoose(int n, int k) {
+  constexpr double kLarge = 1e290;
+  const int smaller = std::min(k, n - k);
   double sum = 0.0;
-  for (int i = 1; i <= std::min(k, n - k); ++i) {
-    sum += std::log(static_cast<double>(n - std::min(k, n - k) + i) / i);
+  double product = 1.0;
+  for (int i = 1; i <= smaller; ++i) {
+    product *= static_cast<double>(n - smaller + i) / i;
+    if (product < kLarge) continue;
+    sum += std::log(product);
+    product = 1.0;
   }
-  return sum;
+  return sum + std::log(product);
 }
 
 // P(Binomial(trials, p) >= successes).
@@ -72,10 +78,11 @@ double InlierOptions::MaxSquared(PairKind kind) const {
 
 double InlierOptions::FinalMaxSquared(const PairScorer& scorer) const {
   constexpr double kMaxFalsePairs = 0.05;
+  if (scorer.kind() == PairKind::k2d3d || threshold > 0.0) return MaxSquared(scorer.kind());
   const bool is_safe =
       static_cast<double>(scorer.size()) * scorer.RandomAgreementProbability(kChiSquare3At9999) <
       kMaxFalsePairs;
-  return threshold == 0.0 && is_safe ? kChiSquare3At9999 : MaxSquared(PairKind::k3d3d);
+  return is_safe ? kChiSquare3At9999 : MaxSquared(PairKind::k3d3d);
 }
 
 int MinPairs(const DataNeeds& needs) { return std::max(needs.pairs_3d3d, needs.pairs_2d3d); }
@@ -195,8 +202,7 @@ Estimate LeastSquaresOnInliers(const PairScorer& scorer, const Rigid3d& pose, do
 }
 
 Expected<Estimate> BetterOnInliers(const Solver& inner, const CalibrationProblem& problem,
-                                   const PairScorer& scorer, const Rigid3d& pose,
-                                   double max_squared) {
+                                   PairScorer& scorer, const Rigid3d& pose, double max_squared) {
   if (!inner.spec().estimates_rotation) {
     return RefitOnInliers(inner, problem, scorer, pose, max_squared);
   }
@@ -209,7 +215,8 @@ Expected<Estimate> BetterOnInliers(const Solver& inner, const CalibrationProblem
       scorer.Cost(*refit, max_squared) <= (1.0 + kRounding) * scorer.Cost(pose, max_squared)) {
     return RefitOnInliers(inner, problem, scorer, pose, max_squared);
   }
-  return LeastSquaresOnInliers(scorer, pose, max_squared);
+  const std::optional<Rigid3d> fit = scorer.FitInliers(pose, max_squared, {});
+  return LeastSquaresOnInliers(scorer, fit && fit->IsFinite() ? *fit : pose, max_squared);
 }
 
 }  // namespace sextant

@@ -24,7 +24,7 @@ struct InlierOptions {
   /// degrees of freedom, or threshold^2.
   double MaxSquared(PairKind kind) const;
 
-  /// The same for the final choice of inliers among 3D-3D pairs: the 0.9999 quantile where no
+  /// The same for the final choice of inliers: among 3D-3D pairs the 0.9999 quantile where no
   /// threshold is set and hardly any false pair is expected within it. Leaving out one true pair in
   /// a hundred costs two percent of accuracy, and where few pairs are true the best four of five
   /// often look better than all five.
@@ -98,10 +98,9 @@ Expected<Estimate> RefitOnInliers(const Solver& inner, const CalibrationProblem&
 Estimate LeastSquaresOnInliers(const PairScorer& scorer, const Rigid3d& pose, double max_squared);
 
 /// RefitOnInliers, unless `inner` fits the inliers of `pose` worse than `pose` does, as a minimal
-/// solver or EPnP may; then LeastSquaresOnInliers. Where `inner` estimates the rotation, `pose`
-/// must be a minimum of least squares on its inliers.
+/// solver or EPnP may; then least squares on them from `pose`. Where `inner` estimates the
+/// rotation, `pose` must be near the minimum of least squares on its inliers.
 Expected<Estimate> BetterOnInliers(const Solver& inner, const CalibrationProblem& problem,
-                                   const PairScorer& scorer, const Rigid3d& pose,
-                                   double max_squared);
+                                   PairScorer& scorer, const Rigid3d& pose, double max_squared);
 
 }  // namespace sextant

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -22,7 +23,8 @@ struct GncOptions : InlierOptions {
   int max_iterations = 200;
 };
 
-// Pairs with less weight are left out: their sigma would be over a thousand times the stated one.
+// Pairs with less of the largest weight are left out: their sigma would be over a thousand times
+// that of the best.
 constexpr double kMinWeight = 1e-6;
 constexpr double kEveryPair = std::numeric_limits<double>::max();
 
@@ -43,9 +45,12 @@ Pair2d3d Weighted(Pair2d3d pair, double weight) {
 template <class Pair>
 std::vector<Pair> WeightedPairs(const std::vector<Pair>& pairs,
                                 const std::vector<double>& weights) {
+  // Least squares depends on the ratios of the weights only.
+  const double largest = *std::max_element(weights.begin(), weights.end());
   std::vector<Pair> weighted;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (weights[i] >= kMinWeight) weighted.push_back(Weighted(pairs[i], weights[i]));
+    const double weight = weights[i] / largest;
+    if (weight >= kMinWeight) weighted.push_back(Weighted(pairs[i], weight));
   }
   return weighted;
 }
@@ -57,8 +62,8 @@ std::vector<Pair> WeightedPairs(const std::vector<Pair>& pairs,
 /// 3D-3D pairs with isotropic noise have a closed form of weighted least squares. Otherwise the
 /// inner solver gets the weights as sigma / sqrt(w), and weighted least squares starts from its
 /// answer, since not every closed form uses the sigmas. At the end the inner solver gets the
-/// inliers with their true sigmas. Errors: kNoConsensus (see CheckConsensus), those of the inner
-/// solver.
+/// inliers, within FinalMaxSquared of the options, with their true sigmas. Errors: kNoConsensus
+/// (see CheckConsensus), those of the inner solver.
 class GncSolver final : public Solver {
  public:
   GncSolver(const SolverArguments& arguments, PairKind kind, const GncOptions& options)
@@ -82,7 +87,8 @@ class GncSolver final : public Solver {
     const std::unique_ptr<PairScorer> scorer = MakePairScorer(problem, kind_);
     int iterations = 0;
     SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, Anneal(problem, *scorer, max_squared, iterations));
-    Expected<Estimate> estimate = BetterOnInliers(*inner_, problem, *scorer, pose, max_squared);
+    Expected<Estimate> estimate =
+        BetterOnInliers(*inner_, problem, *scorer, pose, options_.FinalMaxSquared(*scorer));
     if (!estimate) return estimate;
     SEXTANT_RETURN_IF_ERROR(
         CheckConsensus(*scorer, max_squared, estimate->inliers, MinPairs(spec().needs)));
@@ -94,7 +100,9 @@ class GncSolver final : public Solver {
 
   Expected<Rigid3d> Anneal(const CalibrationProblem& problem, PairScorer& scorer,
                            double max_squared, int& iterations) const {
-    // Weights that are no further than this from 0 or 1, and from what they were, are settled.
+    // Weights that are no further than this from 0 or 1, and from what they were, are settled, once
+    // there are weights of 1: where the largest residual is a thousand times the threshold, all
+    // start near 0.
     constexpr double kSettled = 1e-3;
     SEXTANT_ASSIGN_OR_RETURN(Rigid3d pose, FitAll(problem, scorer, std::nullopt));
     iterations = 1;
@@ -104,7 +112,7 @@ class GncSolver final : public Solver {
     double mu = max_squared / (2.0 * largest - max_squared);
     for (; iterations < options_.max_iterations; ++iterations) {
       const GncReweighting reweighting = scorer.Reweight(pose, GncWeight(max_squared, mu));
-      if (reweighting.unsettled < kSettled) break;
+      if (mu >= 1.0 && reweighting.unsettled < kSettled) break;
       if (reweighting.fit && spec().estimates_rotation) {
         pose = *reweighting.fit;
       } else {

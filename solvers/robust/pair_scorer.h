@@ -51,7 +51,7 @@ class PairScorer {
                                             const RefineLimits& limits) = 0;
 
   /// The probability that a random pair is an inlier of a given pose: the volume within the
-  /// threshold over that of the measurements' bounding box, grown by the threshold.
+  /// threshold over that of the measurements' bounding box (RandomPointProbability).
   virtual double RandomAgreementProbability(double max_squared) const = 0;
 
   /// The number of pairs at `indices` that differ from each other in their measurements.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <span>
@@ -12,10 +13,17 @@
 
 namespace sextant {
 
-/// The probability that a random point in `box`, grown by `radius`, is within it of another point.
-inline double RandomPointProbability(const Eigen::AlignedBox3d& box, double radius) {
-  const double ball = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-  return std::min(1.0, ball / (box.sizes().array() + 2.0 * radius).prod());
+/// The probability that a random point in a box is within a distance of another one: that of being
+/// in a cube (or square) as large as the ball (or disc), which is 1 where that is wider than the
+/// box.
+template <int kSize>
+double RandomPointProbability(const Eigen::AlignedBox<double, kSize>& box, double radius) {
+  static_assert(kSize == 2 || kSize == 3);
+  const double width =
+      radius * (kSize == 2 ? std::sqrt(std::numbers::pi) : std::cbrt(4.0 / 3.0 * std::numbers::pi));
+  double probability = 1.0;
+  for (const double side : box.sizes()) probability *= width < side ? width / side : 1.0;
+  return probability;
 }
 
 /// The two measurements of a pair.

@@ -165,7 +165,8 @@ class RansacSolver final : public Solver {
     SampleSearch search(*inner_, sampling, problem, *scorer, max_squared);
     search.Run();
     if (!search.found()) return NoPose(search.iterations(), sampling.sample_size);
-    Expected<Estimate> estimate = Finish(problem, *scorer, search.best(), max_squared);
+    Expected<Estimate> estimate =
+        Finish(problem, *scorer, search.best(), options_.FinalMaxSquared(*scorer));
     if (!estimate) return estimate;
     SEXTANT_RETURN_IF_ERROR(CheckConsensus(*scorer, max_squared, estimate->inliers, MinInliers()));
     if (2 * estimate->inliers.size() < scorer->size()) {
@@ -210,7 +211,7 @@ class RansacSolver final : public Solver {
                                  samples, sample_size));
   }
 
-  Expected<Estimate> Finish(const CalibrationProblem& problem, const PairScorer& scorer,
+  Expected<Estimate> Finish(const CalibrationProblem& problem, PairScorer& scorer,
                             const Rigid3d& pose, double max_squared) const {
     if (options_.refit == Refit::kNone) return LeastSquaresOnInliers(scorer, pose, max_squared);
     if (options_.local_optimisation == 0) {

@@ -141,8 +141,7 @@ double TermScorer::RandomAgreementProbability(double max_squared) const {
     radius += threshold / term.inverse_sigma;
   }
   radius /= static_cast<double>(size());
-  const double disc = std::numbers::pi * radius * radius;
-  return std::min(1.0, disc / (box.sizes().array() + 2.0 * radius).prod());
+  return RandomPointProbability(box, radius);
 }
 
 int TermScorer::CountDistinct(std::span<const int> indices) const {

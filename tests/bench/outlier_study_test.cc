@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "solvers/builtin_solvers.h"
 #include "solvers/core/registry.h"
 
@@ -30,7 +32,10 @@ TEST(OutlierStudy, SeparatesRobustSolversFromOthers) {
   EXPECT_EQ(cells[7].contestant, "refine(epnp), inliers known");
   const std::string table = OutlierTable(cells, 100).Plain();
   EXPECT_THAT(table, testing::HasSubstr("50 %"));
-  EXPECT_THAT(table, testing::HasSubstr("0 (20)"));
+  // In brackets the wrong answers; what explains nothing is refused.
+  const int wrong = 20 - cells[3].unanswered;
+  EXPECT_GT(wrong, 10);
+  EXPECT_THAT(table, testing::HasSubstr("0 (" + std::to_string(wrong) + ")"));
 }
 
 // The goals that bench_outliers checks in the whole study, here in the most important cells.

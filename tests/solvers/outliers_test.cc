@@ -153,6 +153,30 @@ INSTANTIATE_TEST_SUITE_P(Every, Elimination,
                            return spec.param.find("11") != std::string::npos ? "to_11" : "to_8";
                          });
 
+// Of 5000 pairs 200 are true: a solver finds them, or says that it found no consensus.
+TEST(ManyOutliers, AreSeenThroughOrReported) {
+  const SceneOptions options{.pairs = 5000, .sigma_m = 0.01};
+  Random random(DeriveSeed(4, "many outliers", 0, 0));
+  PairScene scene = MakeScene(options, random);
+  AddOutliers(0.96, options, random, scene);
+  for (Pair3d3d& pair : scene.problem.pairs_3d3d) pair.id = {};
+  for (const double sigma_m : {0.01, 0.0}) {
+    for (Pair3d3d& pair : scene.problem.pairs_3d3d) pair.sigma_m = sigma_m;
+    for (const char* spec : {"robust(kabsch)", "clique(kabsch)", "ransac(kabsch)", "gnc(kabsch)"}) {
+      const Expected<SolveReport> report = (*BuiltinSolvers().Make(spec))->Solve(scene.problem);
+      if (!report) {
+        EXPECT_EQ(report.error().code, ErrorCode::kNoConsensus) << spec << report.error().message;
+        continue;
+      }
+      const PoseDistance distance = DistanceBetween(report->cam_from_lidar, scene.cam_from_lidar);
+      EXPECT_LT(distance.rotation_rad, 0.005) << spec;
+      EXPECT_LT(distance.translation_m, 0.01) << spec;
+      RecordProperty(std::string(spec) + (sigma_m > 0.0 ? "_known_ms" : "_unknown_ms"),
+                     std::to_string(report->wall_time_us * 1e-3));
+    }
+  }
+}
+
 class NoConsensus : public testing::TestWithParam<std::string> {};
 
 // At the stated rate of 0.01 false answers per problem, 40 problems would give more than 3 once in

@@ -14,23 +14,27 @@ namespace {
 using test::MakeScene;
 using test::PairScene;
 
-TEST(ReprojectionJacobian, IsTheDerivativeByThePose) {
+TEST(ReprojectionCovariance, IsTheInverseOfTheProjectionsDerivatives) {
   Random random(1);
-  const PairScene scene = MakeScene({.pairs = 20}, random);
+  const PairScene scene = MakeScene({.pairs = 20, .sigma_px = 0.5}, random);
   const Camera& camera = *scene.problem.camera;
+  Matrix6d information = Matrix6d::Zero();
   for (const Pair2d3d& pair : scene.problem.pairs_2d3d) {
-    const auto analytic = ReprojectionJacobian(camera, scene.cam_from_lidar, pair);
-    ASSERT_TRUE(analytic);
+    Eigen::Matrix<double, 2, 6> numeric;
     for (int k = 0; k < 6; ++k) {
       constexpr double kStep = 1e-6;
       const auto pixel_at = [&](double step) {
         const Rigid3d pose = Perturb(scene.cam_from_lidar, step * Vector6d::Unit(k));
         return *Project(camera, pose * pair.point_in_lidar);
       };
-      const Eigen::Vector2d numeric = (pixel_at(kStep) - pixel_at(-kStep)) / (2.0 * kStep);
-      EXPECT_LT((numeric - analytic->col(k)).norm(), 1e-5);
+      numeric.col(k) = (pixel_at(kStep) - pixel_at(-kStep)) / (2.0 * kStep);
     }
+    information += numeric.transpose() * numeric / (pair.sigma_px * pair.sigma_px);
   }
+  const auto covariance =
+      ReprojectionCovariance(camera, scene.problem.pairs_2d3d, scene.cam_from_lidar);
+  ASSERT_TRUE(covariance);
+  EXPECT_TRUE((*covariance * information).isIdentity(1e-4));
 }
 
 TEST(ReprojectionCovariance, EstimatesUnstatedNoiseFromTheResiduals) {
