@@ -182,7 +182,7 @@ void Complete(std::span<const Pair> pairs, const Camera* camera, const SolverSpe
         parts.independent * *inverse + parts.shared * *inverse * sums->by_board * *inverse;
     estimate.covariance = Correlated(*estimate.covariance, variance * *inverse, correlated);
   }
-  *estimate.covariance *= CovarianceInflation(parts.freedom);
+  if (tellable) *estimate.covariance *= CovarianceInflation(parts.freedom);
   if (grouped && !tellable) {
     AddWarning(fmt::format("the pairs are of {} board{}, too few to tell what error the pairs of a "
                            "board share; the sigmas assume none and may be several times too small",

@@ -45,9 +45,10 @@ struct NoiseEstimate {
 /// solver with covariance C under independent errors gets L C L^T with V = L V_0 L^T,
 /// V_0 = s^2 H^-1, L symmetric where V_0 is the unit matrix: V for least squares.
 ///
-/// As the variances are estimates with f effective degrees of freedom (Satterthwaite 1946), the
-/// covariance is multiplied by 6 F(6, f) / chi2(6), quantiles at 95 percent: then the 95 percent
-/// region of a Gaussian is that of the answer. Time N log N.
+/// As the variances of few boards are estimates with f effective degrees of freedom (Satterthwaite
+/// 1946), the covariance of correlated pairs is multiplied by 6 F(6, f) / chi2(6), quantiles at 95
+/// percent: then the 95 percent region of a Gaussian is that of the answer. Independent pairs keep
+/// the least-squares covariance s^2 H^-1, and `freedom` tells how well s is known. Time N log N.
 void CompleteNoise(const CalibrationProblem& problem, const SolverSpec& spec, Estimate& estimate);
 
 }  // namespace sextant
