@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "geometry/rigid3d.h"
@@ -30,8 +31,11 @@ struct EdgeRay {
 struct BoardView {
   int view = 0;   ///< Number of the image and scan.
   int board = 0;  ///< Board::id.
+  std::string name{};  ///< Of the view, for people; empty: its number is shown.
   std::vector<BoardPoints> printed{};
   std::vector<Eigen::Vector3d> face_in_lidar{};  ///< Returns from the face, as measured [m].
+  /// The ring of each face return, the same number in all views; empty where there are no rings.
+  std::vector<int> face_rings{};
   double range_sigma_m = 0.0;                    ///< Each return, along its ray.
   std::vector<EdgeRay> edges{};
   Rigid3d cam_from_board{};    ///< From the image alone.
