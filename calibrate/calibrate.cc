@@ -95,7 +95,7 @@ CalibrationResult CheckedResult(const Solver& solver, const SolveReport& report,
 
 }  // namespace
 
-SolverPtr DefaultSolver() { return *BuiltinSolvers().Make("joint(gnc(kabsch),board_size=scale)"); }
+SolverPtr DefaultSolver() { return *BuiltinSolvers().Make("joint(gnc(kabsch))"); }
 
 const SolveReport* Calibration::report() const {
   if (comparison.empty() || !comparison.front().report) return nullptr;

@@ -9,7 +9,7 @@
 namespace sextant {
 
 FaceOfBoard FaceReturns(const ScanRings& scan, const BoardPatch& patch,
-                                         std::span<const Board> boards) {
+                        std::span<const Board> boards) {
   const Board& board = boards[static_cast<std::size_t>(patch.board)];
   FaceOfBoard face;
   for (const std::size_t place : patch.on_plane) {

@@ -44,9 +44,7 @@ class ScanRings {
 
   /// The sensor's own number of a ring, or its place from the lowest up where the cloud has none;
   /// -1 for bands.
-  int number(int ring) const {
-    return has_rings_ ? numbers_[static_cast<std::size_t>(ring)] : -1;
-  }
+  int number(int ring) const { return has_rings_ ? numbers_[static_cast<std::size_t>(ring)] : -1; }
 
   /// Whether the sensor sweeps rings; if not, the rings are bands, whose points scatter in
   /// elevation.

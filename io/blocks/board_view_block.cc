@@ -60,9 +60,9 @@ EdgeRay ReadEdge(YamlFields& in, const YamlNode& node) {
 }
 
 BoardView ReadView(YamlFields& in, const YamlNode& node) {
-  static const Keys kKeys = {"view",          "board",         "name",       "cam_from_board",
-                             "lidar_from_board", "printed", "range_sigma_m", "face_in_lidar",
-                             "face_rings",    "edges"};
+  static const Keys kKeys = {
+      "view",    "board",         "name",          "cam_from_board", "lidar_from_board",
+      "printed", "range_sigma_m", "face_in_lidar", "face_rings",     "edges"};
   BoardView view;
   if (!in.IsMap(node, "board_views", kKeys)) return view;
   view.view = in.IntegerAt(node, "view", 0, kMaxId);

@@ -90,9 +90,17 @@ void ReadProblemBoards(YamlFields& in, const YamlNode& list, std::vector<Board>&
 }
 
 void ReadProblemHeader(YamlFields& in, const YamlNode& root) {
-  static const Keys kKeys = {
-      "sextant_problem", "comment",     "camera",     "boards", "pairs_3d3d",
-      "pairs_2d3d",      "board_views", "lidar_errors", "point_sets", "truth",  "initial_cam_from_lidar"};
+  static const Keys kKeys = {"sextant_problem",
+                             "comment",
+                             "camera",
+                             "boards",
+                             "pairs_3d3d",
+                             "pairs_2d3d",
+                             "board_views",
+                             "lidar_errors",
+                             "point_sets",
+                             "truth",
+                             "initial_cam_from_lidar"};
   if (root.kind == YamlNode::Kind::kMap && root.Find("sextant_problem") == nullptr) {
     in.Fail(root.line, {},
             "expected a problem file, with the key sextant_problem: 1; is this another kind of "
