@@ -11,6 +11,8 @@ namespace {
 
 // Median of the absolute value of a standard normal variable.
 constexpr double kNormalMedian = 0.6744897501960817;
+// Ranges are stated with the offsets of rings in them, which may be most of them.
+constexpr double kMinRatio = 0.3;
 constexpr double kPriorResiduals = 10.0;
 constexpr double kPriorShifts = 4.0;
 
@@ -40,7 +42,7 @@ JointNoise MedianNoise(const std::vector<BoardViewResiduals>& residuals, const J
   JointNoise noise = before;
   // The norm of many residuals is near 1 where their noise is as stated.
   noise.printed = std::max(1.0, RatioOf(std::move(all.printed), 1.0));
-  noise.face = RatioOf(std::move(all.face), kNormalMedian);
+  noise.face = std::max(kMinRatio, RatioOf(std::move(all.face), kNormalMedian));
   noise.edges = std::max(1.0, RatioOf(std::move(all.edges), kNormalMedian));
   return noise;
 }
