@@ -23,29 +23,46 @@ struct Normal {
   std::vector<ViewNormal> views;
 };
 
+/// The numbers of one row that are not 0, by their place among the shared columns and, after those,
+/// the 12 of its view.
+struct SparseRow {
+  std::vector<int> places;
+  std::vector<double> values;
+  int view = -1;  ///< None for priors.
+
+  void Read(const JointLinearisation& at, int row) {
+    const ceres::CRSMatrix& m = at.derivative;
+    places.clear();
+    values.clear();
+    view = -1;
+    const auto r = static_cast<std::size_t>(row);
+    for (auto k = static_cast<std::size_t>(m.rows[r]); k < static_cast<std::size_t>(m.rows[r + 1]);
+         ++k) {
+      if (m.values[k] == 0.0) continue;
+      const int own = m.cols[k] - at.shared;
+      if (own >= 0) view = own / kViewColumns;
+      places.push_back(own < 0 ? m.cols[k] : at.shared + own % kViewColumns);
+      values.push_back(m.values[k]);
+    }
+  }
+};
+
 // Every row has columns of at most one view, after its shared ones.
 Normal NormalOf(const JointLinearisation& at) {
   Normal normal{DynamicMatrix::Zero(at.shared, at.shared), std::vector<ViewNormal>(at.views)};
   for (ViewNormal& view : normal.views) view.mixed.setZero(kViewColumns, at.shared);
-  const ceres::CRSMatrix& m = at.derivative;
-  for (int row = 0; row < m.num_rows; ++row) {
-    const auto from = static_cast<std::size_t>(m.rows[static_cast<std::size_t>(row)]);
-    const auto to = static_cast<std::size_t>(m.rows[static_cast<std::size_t>(row) + 1]);
-    for (std::size_t a = from; a < to; ++a) {
-      if (m.values[a] == 0.0) continue;
-      const int i = m.cols[a] - at.shared;
-      ViewNormal* view =
-          i < 0 ? nullptr : &normal.views[static_cast<std::size_t>(i / kViewColumns)];
-      for (std::size_t b = from; b < to; ++b) {
-        const int j = m.cols[b] - at.shared;
-        const double product = m.values[a] * m.values[b];
-        if (view == nullptr) {
-          if (j < 0) normal.shared(m.cols[a], m.cols[b]) += product;
-        } else if (j < 0) {
-          view->mixed(i % kViewColumns, m.cols[b]) += product;
-        } else {
-          view->own(i % kViewColumns, j % kViewColumns) += product;
-        }
+  SparseRow row;
+  for (int i = 0; i < at.derivative.num_rows; ++i) {
+    row.Read(at, i);
+    ViewNormal* view = row.view < 0 ? nullptr : &normal.views[static_cast<std::size_t>(row.view)];
+    for (std::size_t a = 0; a < row.places.size(); ++a) {
+      const int own = row.places[a] - at.shared;
+      for (std::size_t b = 0; b < row.places.size(); ++b) {
+        const double product = row.values[a] * row.values[b];
+        const int other = row.places[b] - at.shared;
+        if (own < 0 && other < 0) normal.shared(row.places[a], row.places[b]) += product;
+        if (own >= 0 && other < 0) view->mixed(own, row.places[b]) += product;
+        if (own >= 0 && other >= 0) view->own(own, other) += product;
       }
     }
   }
@@ -64,66 +81,41 @@ DynamicMatrix InverseOf(const DynamicMatrix& information) {
   return vectors * inverse.asDiagonal() * vectors.transpose();
 }
 
-/// A row of the derivative by the shared numbers and the 12 of its view.
-Eigen::VectorXd RowOf(const JointLinearisation& at, std::size_t view, int row) {
-  Eigen::VectorXd dense = Eigen::VectorXd::Zero(at.shared + kViewColumns);
-  const ceres::CRSMatrix& m = at.derivative;
-  const int skipped = kViewColumns * static_cast<int>(view);
-  for (int k = m.rows[static_cast<std::size_t>(row)]; k < m.rows[static_cast<std::size_t>(row) + 1];
-       ++k) {
-    const int column = m.cols[static_cast<std::size_t>(k)];
-    dense[column < at.shared ? column : column - skipped] = m.values[static_cast<std::size_t>(k)];
-  }
-  return dense;
-}
-
-double LeverageOf(const JointLinearisation& at, std::size_t view, int row,
-                  const DynamicMatrix& covariance) {
-  const ceres::CRSMatrix& m = at.derivative;
-  const int skipped = kViewColumns * static_cast<int>(view);
-  const auto from = static_cast<std::size_t>(m.rows[static_cast<std::size_t>(row)]);
-  const auto to = static_cast<std::size_t>(m.rows[static_cast<std::size_t>(row) + 1]);
-  const auto place = [&](std::size_t k) {
-    return m.cols[k] < at.shared ? m.cols[k] : m.cols[k] - skipped;
-  };
+double LeverageOf(const SparseRow& row, const DynamicMatrix& covariance) {
   double leverage = 0.0;
-  for (std::size_t a = from; a < to; ++a) {
-    if (m.values[a] == 0.0) continue;
-    for (std::size_t b = from; b < to; ++b) {
-      leverage += m.values[a] * m.values[b] * covariance(place(a), place(b));
+  for (std::size_t a = 0; a < row.places.size(); ++a) {
+    double sum = 0.5 * row.values[a] * covariance(row.places[a], row.places[a]);
+    for (std::size_t b = 0; b < a; ++b) {
+      sum += row.values[b] * covariance(row.places[b], row.places[a]);
     }
+    leverage += 2.0 * row.values[a] * sum;
   }
   return leverage;
-}
-
-bool IsZero(const JointLinearisation& at, int row) {
-  const ceres::CRSMatrix& m = at.derivative;
-  for (int k = m.rows[static_cast<std::size_t>(row)]; k < m.rows[static_cast<std::size_t>(row) + 1];
-       ++k) {
-    if (m.values[static_cast<std::size_t>(k)] != 0.0) return false;
-  }
-  return true;
 }
 
 KindSum SumOf(const JointLinearisation& at, const JointRows& rows,
               const DynamicMatrix& covariance) {
   KindSum sum;
-  for (int row = rows.first; row < rows.first + rows.count; ++row) {
-    if (IsZero(at, row)) continue;
-    const double residual = at.residuals[static_cast<std::size_t>(row)];
+  SparseRow row;
+  for (int i = rows.first; i < rows.first + rows.count; ++i) {
+    row.Read(at, i);
+    if (row.values.empty()) continue;
+    const double residual = at.residuals[static_cast<std::size_t>(i)];
     sum.squares += residual * residual;
-    sum.redundancy += 1.0 - LeverageOf(at, rows.view, row, covariance);
+    sum.redundancy += 1.0 - LeverageOf(row, covariance);
   }
   return sum;
 }
 
 void AddLink(const JointLinearisation& at, const JointRows& rows, const DynamicMatrix& covariance,
              ViewSums& sums) {
-  if (IsZero(at, rows.first)) return;
-  Eigen::MatrixXd by(at.shared + kViewColumns, 6);
+  Eigen::MatrixXd by = Eigen::MatrixXd::Zero(at.shared + kViewColumns, 6);
   Vector6d residual;
+  SparseRow row;
   for (int i = 0; i < 6; ++i) {
-    by.col(i) = RowOf(at, rows.view, rows.first + i);
+    row.Read(at, rows.first + i);
+    if (row.values.empty()) return;
+    for (std::size_t k = 0; k < row.places.size(); ++k) by(row.places[k], i) = row.values[k];
     residual[i] = at.residuals[static_cast<std::size_t>(rows.first + i)];
   }
   // The covariance of the residuals of a least squares fit.

@@ -17,7 +17,7 @@ struct JointNoise {
 };
 
 /// Shift of the views where the sensor has none: so small that it does not change an answer.
-inline constexpr double kNoShift_m = 1e-5;
+inline constexpr double kNoShift_m = 2e-6;
 
 /// From the medians of the absolute residuals, robust to nearly half of the data being outliers;
 /// the shifts are those of `before`.

@@ -8,13 +8,16 @@
 #include <limits>
 #include <utility>
 
+#include "base/median.h"
+
 namespace sextant {
 namespace {
 
 constexpr int kMaxRounds = 20;
 // Tolerance [rad, m] of a minimum that is only the start of the next round.
 constexpr double kNearEnough = 1e-4;
-// Shift of the views while outliers among them are unknown.
+constexpr double kRoundTolerance = 1e-6;
+// Least shift of the views while outliers among them are unknown.
 constexpr double kLooseShift_m = 0.005;
 // Fewer views cannot tell which of them is wrong.
 constexpr std::ptrdiff_t kMinViews = 3;
@@ -87,19 +90,32 @@ class JointSearch {
     const bool is_last = tolerance < kNearEnough;
     for (int round = 0; round < kMaxRounds; ++round) {
       const std::vector<BoardViewResiduals> residuals = Residuals();
-      if (!is_last && IsEstimated()) noise_ = MedianNoise(residuals, noise_);
+      if (!is_last) LoosenNoise(residuals);
       constexpr double kAll = std::numeric_limits<double>::infinity();
       answer_.selection = SelectWithin(model_, residuals, noise_, kAll);
       const Rigid3d before = problem_.state().cam_from_lidar;
-      SEXTANT_RETURN_IF_ERROR(Minimise(residuals, Losses(), tolerance));
+      const Expected<void> ok = Minimise(residuals, Losses(), tolerance);
+      if (!ok && (is_last || ok.error().code != ErrorCode::kNoConvergence)) return ok;
       const Vector6d step = PoseDifference(problem_.state().cam_from_lidar, before);
-      if (step.norm() < std::max(tolerance, 1e-9) || (is_last && !IsRobust())) break;
+      if (step.norm() < std::max(10.0 * tolerance, 1e-9) || (is_last && !IsRobust())) break;
     }
     return {};
   }
 
+  // While the pose is inaccurate, the sensors disagree about every view.
+  void LoosenNoise(const std::vector<BoardViewResiduals>& residuals) {
+    if (IsEstimated()) noise_ = MedianNoise(residuals, noise_);
+    std::vector<double> shifts;
+    for (std::size_t i = 0; i < model_.views.size(); ++i) {
+      shifts.push_back(LinkError(problem_.state(), i, model_.views[i].lever_m).norm());
+    }
+    noise_.out_of_plane_m = noise_.in_plane_m =
+        std::max({shift_m_, kLooseShift_m, Median(shifts) / std::sqrt(6.0)});
+  }
+
   Expected<void> Cut() {
     SEXTANT_RETURN_IF_ERROR(LeaveOutViews());
+    bool settled = false;
     for (int round = 0; round < kMaxRounds; ++round) {
       const std::vector<BoardViewResiduals> residuals = Residuals();
       JointSelection within = SelectWithin(model_, residuals, noise_, options_.cut);
@@ -107,17 +123,21 @@ class JointSearch {
         if (left_out_[i]) within[i].Clear();
       }
       const bool same = within == answer_.selection;
+      const bool is_last = settled && same;
       answer_.selection = std::move(within);
-      SEXTANT_RETURN_IF_ERROR(Minimise(residuals, {}, options_.step_tolerance));
+      const double tolerance = is_last ? options_.step_tolerance : kRoundTolerance;
+      SEXTANT_RETURN_IF_ERROR(
+          Minimise(residuals, {}, std::max(tolerance, options_.step_tolerance)));
       const JointLinearisation at = problem_.Linearise();
       const auto covariance = JointCovariance::Of(at);
       if (!covariance) return Undetermined();
       answer_.covariance = covariance->shared();
+      if (is_last) break;
       const JointNoise before = noise_;
       const std::vector<ViewSums> sums = SumsOf(at, *covariance);
       const bool left_out = HasShift() && LeaveOut(sums);
       if (IsEstimated()) noise_ = EstimateNoise(sums, before, shift_m_);
-      if (same && !left_out && IsSameNoise(noise_, before)) break;
+      settled = same && !left_out && IsSameNoise(noise_, before);
     }
     return {};
   }

@@ -196,7 +196,7 @@ TEST(Joint, DropsAViewOfOneSensor) {
 }
 
 TEST(Joint, ReportsThatTheNoiseIsLargerThanStated) {
-  SimulatedViews session = Views({.seed = 14, .views = 6});
+  SimulatedViews session = Views({.seed = 14, .views = 20});
   for (BoardView& view : session.problem.board_views) view.range_sigma_m *= 0.4;
   const auto report = Solve(session.problem, "joint(kabsch)");
   ASSERT_TRUE(report) << report.error().message;
