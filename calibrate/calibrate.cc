@@ -139,7 +139,7 @@ void Solve(const std::vector<SolverPtr>& solvers, const CalibrateOptions& option
 
 }  // namespace
 
-SolverPtr DefaultSolver() { return *BuiltinSolvers().Make("joint(gnc(kabsch),board_size=scale)"); }
+SolverPtr DefaultSolver() { return *BuiltinSolvers().Make("joint(gnc(kabsch))"); }
 
 const SolveReport* Calibration::report() const {
   if (comparison.empty() || !comparison.front().report) return nullptr;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "geometry/rigid3d.h"
@@ -28,11 +29,14 @@ struct EdgeRay {
 /// Raw observations of one board by both sensors at one time: the data of the joint solver. Boards
 /// and corners are already associated: both poses have the same corner 0.
 struct BoardView {
-  int view = 0;   ///< Number of the image and scan.
-  int board = 0;  ///< Board::id.
+  int view = 0;        ///< Number of the image and scan.
+  int board = 0;       ///< Board::id.
+  std::string name{};  ///< Of the view, for people; empty: its number is shown.
   std::vector<BoardPoints> printed{};
   std::vector<Eigen::Vector3d> face_in_lidar{};  ///< Returns from the face, as measured [m].
-  double range_sigma_m = 0.0;                    ///< Each return, along its ray.
+  /// The ring of each face return, the same number in all views; empty where there are no rings.
+  std::vector<int> face_rings{};
+  double range_sigma_m = 0.0;  ///< Each return, along its ray.
   std::vector<EdgeRay> edges{};
   Rigid3d cam_from_board{};    ///< From the image alone.
   Rigid3d lidar_from_board{};  ///< From the scan alone.

@@ -9,6 +9,7 @@
 #include "geometry/board.h"
 #include "geometry/board_view.h"
 #include "geometry/camera.h"
+#include "geometry/lidar_errors.h"
 #include "geometry/rigid3d.h"
 
 namespace sextant {
@@ -64,6 +65,7 @@ struct CalibrationProblem {
   PointSets point_sets;  ///< With unknown pairing.
   /// Raw observations; their boards are among `boards`, and they need the camera.
   std::vector<BoardView> board_views;
+  LidarErrorModel lidar_errors;  ///< Of the returns in board_views.
   std::vector<Board> boards;  ///< Known boards, with the ids used in pairs and views; may be empty.
   std::optional<Rigid3d> initial_cam_from_lidar;
 };

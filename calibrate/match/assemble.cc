@@ -210,6 +210,7 @@ Expected<Assembly> Assemble(std::span<const SessionView> views, std::span<const 
   for (const MatchedBoard& kept : matching->kept) {
     const Observation& seen = observations[static_cast<std::size_t>(kept.view)];
     problem.board_views.push_back(MakeBoardView(seen, kept, boards));
+    problem.board_views.back().name = views[static_cast<std::size_t>(kept.view)].name;
     AppendPairs(seen, kept, boards, matching->cam_from_lidar, problem);
   }
   assembly.repeated = FindRepeatedPlacements(observations, matching->kept, settings.floor_m);

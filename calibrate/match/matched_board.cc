@@ -35,6 +35,7 @@ BoardView MakeBoardView(const Observation& observation, const MatchedBoard& matc
                  .board = boards[static_cast<std::size_t>(sighting.board)].id,
                  .printed = sighting.printed,
                  .face_in_lidar = patch.face,
+                 .face_rings = patch.face_rings,
                  .range_sigma_m = patch.range_sigma_m,
                  .edges = {},
                  .cam_from_board = match.other_pose ? *sighting.pose.ambiguous_with

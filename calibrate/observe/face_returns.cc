@@ -8,14 +8,16 @@
 
 namespace sextant {
 
-std::vector<Eigen::Vector3d> FaceReturns(const ScanRings& scan, const BoardPatch& patch,
-                                         std::span<const Board> boards) {
+FaceOfBoard FaceReturns(const ScanRings& scan, const BoardPatch& patch,
+                        std::span<const Board> boards) {
   const Board& board = boards[static_cast<std::size_t>(patch.board)];
-  std::vector<Eigen::Vector3d> face;
+  FaceOfBoard face;
   for (const std::size_t place : patch.on_plane) {
     const Eigen::Vector3d& point = scan.points()[place].point;
     const std::optional<Eigen::Vector2d> in_plane = patch.plane.Meet(point);
-    if (in_plane && BeyondBoard(patch.fit, board, *in_plane) < 0.0) face.push_back(point);
+    if (!in_plane || BeyondBoard(patch.fit, board, *in_plane) >= 0.0) continue;
+    face.in_lidar.push_back(point);
+    if (scan.has_rings()) face.rings.push_back(scan.number(scan.RingOf(place)));
   }
   return face;
 }

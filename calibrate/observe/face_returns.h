@@ -10,8 +10,13 @@
 
 namespace sextant {
 
-/// The patch's returns inside the fitted outline, in the LiDAR frame [m].
-std::vector<Eigen::Vector3d> FaceReturns(const ScanRings& scan, const BoardPatch& patch,
+struct FaceOfBoard {
+  std::vector<Eigen::Vector3d> in_lidar{};  ///< [m].
+  std::vector<int> rings{};                 ///< One for each; empty where the sensor has no rings.
+};
+
+/// The patch's returns inside the fitted outline.
+FaceOfBoard FaceReturns(const ScanRings& scan, const BoardPatch& patch,
                                          std::span<const Board> boards);
 
 /// Standard deviation of the returns' ranges about the ranges at which their rays meet the plane

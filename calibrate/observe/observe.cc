@@ -211,10 +211,12 @@ Expected<void> Observer::ObserveScan(const PointCloud& cloud, Observation& obser
       observation.missing.push_back({.why = why});
       continue;
     }
+    FaceOfBoard face = FaceReturns(rings, patch, boards());
     LidarSighting sighting{.placements = std::move(placements),
                            .plane = patch.plane,
                            .edges = patch.edges,
-                           .face = FaceReturns(rings, patch, boards())};
+                           .face = std::move(face.in_lidar),
+                           .face_rings = std::move(face.rings)};
     sighting.range_sigma_m = RangeSigma(sighting.face, patch.plane);
     sighting.measured_sides_m =
         MeasuredSides(patch, sighting.placements.front(),

@@ -35,6 +35,7 @@ struct LidarSighting {
   LidarPlane plane{};
   std::vector<EdgePoint> edges{};
   std::vector<Eigen::Vector3d> face{};  ///< Returns inside the outline [m].
+  std::vector<int> face_rings{};        ///< As in BoardView.
   double range_sigma_m = 0.0;           ///< Standard deviation of the face's ranges.
   /// Lengths of sides 0 to 3 in the numbering of the best placement, by lines fitted without the
   /// known size; empty where a side has too few edge points.

@@ -12,6 +12,7 @@ CalibrationProblem WithoutData(const CalibrationProblem& problem) {
   CalibrationProblem bare;
   bare.camera = problem.camera;
   bare.boards = problem.boards;
+  bare.lidar_errors = problem.lidar_errors;
   bare.initial_cam_from_lidar = problem.initial_cam_from_lidar;
   return bare;
 }

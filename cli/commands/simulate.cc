@@ -26,6 +26,7 @@ struct SimulateOptions {
   std::string pcd = "binary";
   std::string sheet_path{};  ///< Empty: none.
   std::uint64_t seed = 1;
+  std::optional<std::uint64_t> unit{};  ///< None: that of the seed.
   int scans = 1;
   double interval_s = 1.0;
   bool ideal = false;
@@ -44,6 +45,8 @@ void Declare(SimulateOptions& options, Arguments& arguments) {
                 {.shows_default = true, .range = {{1, 100'000}}});
   arguments.Add("--seed", options.seed, "The same seed gives the same bytes",
                 {.shows_default = true});
+  arguments.Add("--unit", options.unit,
+                "Number of the LiDAR's unit, which has its own ring biases; default: the seed");
   arguments.Add("--level", options.level,
                 "full: points and images; corners: as extractors find them; pairs: pixels marked\n"
                 "by a person",
@@ -73,6 +76,7 @@ Expected<SessionOptions> SessionOptionsOf(const SimulateOptions& options) {
   session.folder = options.out;
   session.level = level;
   session.seed = options.seed;
+  session.unit = options.unit;
   session.scans = options.scans;
   session.interval_s = options.interval_s;
   session.ideal = options.ideal;

@@ -42,11 +42,46 @@ Rigid3d DrawBoardPose(const ViewSimulation& simulation, const Rigid3d& cam_from_
           cam_from_lidar * centre_in_lidar};
 }
 
+/// What one unit of the LiDAR adds to its measurements.
+struct UnitErrors {
+  std::vector<double> ring_offsets_m;                  ///< With the constant of all rings.
+  Eigen::Vector2d growth_m = Eigen::Vector2d::Zero();  ///< Along and across the scan direction.
+};
+
+UnitErrors DrawUnit(const ViewSimulation& simulation) {
+  Random random(DeriveSeed(simulation.seed, "simulate views: unit", 0, 0));
+  const LidarErrorModel& errors = simulation.errors;
+  UnitErrors unit;
+  const double constant = errors.range_offset_sigma_m * random.Normal();
+  for (double& growth : unit.growth_m) growth = errors.edge_growth_sigma_m * random.Normal();
+  for (int ring = 0; ring < simulation.rings; ++ring) {
+    unit.ring_offsets_m.push_back(constant + errors.ring_offset_sigma_m * random.Normal());
+  }
+  if (simulation.exact) {
+    unit.growth_m.setZero();
+    unit.ring_offsets_m.assign(unit.ring_offsets_m.size(), 0.0);
+  }
+  return unit;
+}
+
+// The shift of all returns of one view, as of their board.
+Rigid3d DrawViewShift(const ViewSimulation& simulation, int view) {
+  Random random(
+      DeriveSeed(simulation.seed, "simulate views: shift", static_cast<std::uint64_t>(view), 0));
+  const double sigma = simulation.exact ? 0.0 : simulation.errors.view_shift_sigma_m;
+  Vector6d shift;
+  for (double& along : shift) along = sigma * random.Normal();
+  const double lever = 0.5 * simulation.board_side_m;
+  return {ExpSo3(shift.head<3>() / lever), shift.tail<3>()};
+}
+
 /// Simulates the returns and edge rays of one board in a scan with rings.
 class RingScan {
  public:
-  RingScan(const ViewSimulation& simulation, const Board& board, const Rigid3d& lidar_from_board)
+  RingScan(const ViewSimulation& simulation, const UnitErrors& unit, const Board& board,
+           const Rigid3d& lidar_from_board)
       : simulation_(simulation),
+        unit_(unit),
         half_(0.5 * board.top_right_m, 0.5 * board.right_bottom_m),
         lidar_from_board_(lidar_from_board),
         axes_(lidar_from_board.rotation.toRotationMatrix()) {}
@@ -61,7 +96,7 @@ class RingScan {
           (ring - 0.5 * (simulation_.rings - 1)) * simulation_.ring_step_deg * kRadPerDeg;
       double before = middle - reach - step * random.Uniform();
       for (double azimuth = before + step; azimuth < middle + reach + step; azimuth += step) {
-        if (IsOn(elevation, azimuth)) AddReturn(elevation, azimuth, view, random);
+        if (IsOn(elevation, azimuth)) AddReturn(ring, elevation, azimuth, view, random);
         if (IsOn(elevation, azimuth) != IsOn(elevation, before)) {
           AddEdge(elevation, before, azimuth, view, random);
         }
@@ -90,10 +125,13 @@ class RingScan {
     return at.x() < half_.x() && at.y() < half_.y();
   }
 
-  void AddReturn(double elevation, double azimuth, BoardView& view, Random& random) const {
+  void AddReturn(int ring, double elevation, double azimuth, BoardView& view,
+                 Random& random) const {
     const Eigen::Vector3d direction = Direction(elevation, azimuth);
     const double error = random.Normal() * (simulation_.exact ? 0.0 : simulation_.range_sigma_m);
-    view.face_in_lidar.push_back((RangeOf(direction) + error) * direction);
+    const double offset = unit_.ring_offsets_m[static_cast<std::size_t>(ring)];
+    view.face_in_lidar.push_back((RangeOf(direction) + offset + error) * direction);
+    view.face_rings.push_back(ring);
   }
 
   // Adds the edge between two azimuths of which exactly one is on the board.
@@ -113,12 +151,23 @@ class RingScan {
     const double uniform = random.Uniform(-1.0, 1.0);
     const double error = simulation_.exact ? 0.0 : std::sqrt(3.0) * ray.sigma_m * uniform;
     Eigen::Vector3d seen(at.x(), at.y(), 0.0);
-    seen[on_x ? 0 : 1] += error;
+    const double outward = share[on_x ? 0 : 1] > 0.0 ? 1.0 : -1.0;
+    seen[on_x ? 0 : 1] += error + outward * GrowthOf(elevation, from, on_x);
     ray.direction = (lidar_from_board_ * seen).normalized();
     view.edges.push_back(ray);
   }
 
+  // The distance by which a side normal to the board's x or y axis appears too far out.
+  double GrowthOf(double elevation, double azimuth, bool on_x) const {
+    const Eigen::Vector3d direction = Direction(elevation, azimuth);
+    const Eigen::Vector3d along = Eigen::Vector3d::UnitZ().cross(direction).normalized();
+    const Eigen::Vector3d normal = axes_.col(on_x ? 0 : 1);
+    return unit_.growth_m[0] * std::abs(normal.dot(along)) +
+           unit_.growth_m[1] * std::abs(normal.dot(direction.cross(along)));
+  }
+
   const ViewSimulation& simulation_;
+  const UnitErrors& unit_;
   Eigen::Vector2d half_;
   Rigid3d lidar_from_board_;
   Eigen::Matrix3d axes_;
@@ -217,7 +266,8 @@ Expected<void> Check(const ViewSimulation& simulation) {
 }
 
 // Adds one view; returns false if a sensor does not see the board or cannot determine its pose.
-bool TryView(const ViewSimulation& simulation, int index, Random& random, SimulatedViews& session) {
+bool TryView(const ViewSimulation& simulation, const UnitErrors& unit, int index, Random& random,
+             SimulatedViews& session) {
   CalibrationProblem& problem = session.problem;
   const Board& board = problem.boards.front();
   const Rigid3d cam_from_board = DrawBoardPose(simulation, session.true_cam_from_lidar, random);
@@ -228,7 +278,8 @@ bool TryView(const ViewSimulation& simulation, int index, Random& random, Simula
   view.board = board.id;
   view.range_sigma_m = simulation.range_sigma_m;
   AddTag(simulation, *problem.camera, board, cam_from_board, view, random);
-  RingScan(simulation, board, lidar_from_board).AddTo(view, random);
+  const Rigid3d seen_by_lidar = lidar_from_board * DrawViewShift(simulation, index);
+  RingScan(simulation, unit, board, seen_by_lidar).AddTo(view, random);
   if (!HasAllSides(view)) return false;
   const BoardViewTerms terms = TermsOf(view, board);
   const auto in_cam = FitBoardInCamera(terms, *problem.camera, cam_from_board);
@@ -249,14 +300,16 @@ Expected<SimulatedViews> SimulateViews(const ViewSimulation& simulation) {
   SimulatedViews session;
   session.problem.boards = {TheBoard(simulation)};
   session.problem.camera = ZedLikeCamera();
+  session.problem.lidar_errors = simulation.errors;
   Random pose_random(DeriveSeed(simulation.seed, "simulate views: extrinsic", 0, 0));
   session.true_cam_from_lidar = DrawExtrinsic(pose_random);
+  const UnitErrors unit = DrawUnit(simulation);
   constexpr int kMaxAttempts = 1000;
   for (int view = 0; view < simulation.views; ++view) {
     Random random(
         DeriveSeed(simulation.seed, "simulate views: view", static_cast<std::uint64_t>(view), 0));
     int attempts = 0;
-    while (!TryView(simulation, view, random, session)) {
+    while (!TryView(simulation, unit, view, random, session)) {
       if (++attempts < kMaxAttempts) continue;
       return MakeError(ErrorCode::kInvalidOption,
                        fmt::format("in {} attempts no board of {} m was in view of both sensors; "

@@ -28,6 +28,9 @@ struct ViewSimulation {
   /// ring that is sampled in steps.
   double edge_sigma_m = 0.002;
   double pixel_sigma_px = 0.3;
+  /// Drawn once a session, the view shift once a view, and stated in the problem. Growth is along
+  /// and across the scan direction.
+  LidarErrorModel errors = kWhiteNoiseOnly;
   /// If true, the observations have no errors, but the same sigmas are stated.
   bool exact = false;
 };

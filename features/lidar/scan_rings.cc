@@ -162,6 +162,7 @@ void ScanRings::SortByRing(const std::vector<RingPoint>& points, const std::vect
   starts_.assign(1, 0);
   for (const auto& [sine, ring] : by_elevation) {
     place[ring] = starts_.back();
+    numbers_.push_back(static_cast<int>(ring));
     starts_.push_back(place[ring] + of_ring[ring].size());
   }
   points_.resize(points.size());

@@ -42,6 +42,10 @@ class ScanRings {
   /// The ring of an index into points().
   int RingOf(std::size_t place) const;
 
+  /// The sensor's own number of a ring, or its place from the lowest up where the cloud has none;
+  /// -1 for bands.
+  int number(int ring) const { return has_rings_ ? numbers_[static_cast<std::size_t>(ring)] : -1; }
+
   /// Whether the sensor sweeps rings; if not, the rings are bands, whose points scatter in
   /// elevation.
   bool has_rings() const { return has_rings_; }
@@ -68,6 +72,7 @@ class ScanRings {
 
   std::vector<RingPoint> points_;
   std::vector<std::size_t> starts_;
+  std::vector<int> numbers_;
   Eigen::Matrix3d level_from_lidar_ = Eigen::Matrix3d::Identity();
   bool has_rings_ = true;
   double azimuth_step_rad_ = 0.0;

@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include "io/blocks/pose_block.h"
 #include "io/text/max_id.h"
 #include "solvers/core/board_view_check.h"
@@ -12,6 +14,7 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
+constexpr std::size_t kMaxFaceReturns = 10'000'000;
 constexpr std::size_t kMaxPrinted = 1000;  ///< Points of one tag or checkerboard.
 
 // x0, y0, x1, y1, ...
@@ -57,12 +60,14 @@ EdgeRay ReadEdge(YamlFields& in, const YamlNode& node) {
 }
 
 BoardView ReadView(YamlFields& in, const YamlNode& node) {
-  static const Keys kKeys = {"view",    "board",         "cam_from_board", "lidar_from_board",
-                             "printed", "range_sigma_m", "face_in_lidar",  "edges"};
+  static const Keys kKeys = {
+      "view",    "board",         "name",          "cam_from_board", "lidar_from_board",
+      "printed", "range_sigma_m", "face_in_lidar", "face_rings",     "edges"};
   BoardView view;
   if (!in.IsMap(node, "board_views", kKeys)) return view;
   view.view = in.IntegerAt(node, "view", 0, kMaxId);
   view.board = in.IntegerAt(node, "board", 0, kMaxId);
+  if (const YamlNode* name = node.Find("name")) view.name = in.Text(*name, "name");
   view.cam_from_board = ReadPoseBlock(in, in.Require(node, "cam_from_board"), "cam_from_board");
   view.lidar_from_board =
       ReadPoseBlock(in, in.Require(node, "lidar_from_board"), "lidar_from_board");
@@ -75,6 +80,16 @@ BoardView ReadView(YamlFields& in, const YamlNode& node) {
     view.range_sigma_m = in.RealAt(node, "range_sigma_m");
     for (const YamlNode& item : face->items) {
       view.face_in_lidar.push_back(in.Point(item, "face_in_lidar"));
+    }
+  }
+  if (const YamlNode* rings = node.Find("face_rings")) {
+    for (const double ring : in.RealList(*rings, "face_rings", kMaxFaceReturns)) {
+      if (!(ring >= 0.0 && ring <= kMaxId) || ring != std::floor(ring)) {
+        in.Fail(rings->line, "face_rings",
+                fmt::format("expected whole numbers from 0 to {}, got {}", kMaxId, ring));
+        break;
+      }
+      view.face_rings.push_back(static_cast<int>(ring));
     }
   }
   const YamlNode* edges = node.Find("edges");
@@ -102,9 +117,34 @@ std::vector<BoardView> ReadBoardViews(YamlFields& in, const YamlNode& list,
   return views;
 }
 
+LidarErrorModel ReadLidarErrors(YamlFields& in, const YamlNode& node) {
+  static const Keys kKeys = {"ring_offset_sigma_m", "range_offset_sigma_m", "edge_growth_sigma_m",
+                             "view_shift_sigma_m"};
+  LidarErrorModel errors;
+  if (!in.IsMap(node, "lidar_errors", kKeys)) return errors;
+  const auto read = [&](const char* key, double& sigma) {
+    sigma = in.RealAt(node, key);
+    if (!(sigma >= 0.0)) in.Fail(node.line, key, "expected a sigma of 0 or more");
+  };
+  read("ring_offset_sigma_m", errors.ring_offset_sigma_m);
+  read("range_offset_sigma_m", errors.range_offset_sigma_m);
+  read("edge_growth_sigma_m", errors.edge_growth_sigma_m);
+  read("view_shift_sigma_m", errors.view_shift_sigma_m);
+  return errors;
+}
+
+void WriteLidarErrors(YamlText& out, const LidarErrorModel& errors) {
+  out.Line("lidar_errors:");
+  out.Line("  ring_offset_sigma_m: {}", errors.ring_offset_sigma_m);
+  out.Line("  range_offset_sigma_m: {}", errors.range_offset_sigma_m);
+  out.Line("  edge_growth_sigma_m: {}", errors.edge_growth_sigma_m);
+  out.Line("  view_shift_sigma_m: {}", errors.view_shift_sigma_m);
+}
+
 void WriteBoardView(YamlText& out, const BoardView& view) {
   out.Line("  - view: {}", view.view);
   out.Line("    board: {}", view.board);
+  if (!view.name.empty()) out.Line("    name: {}", YamlQuoted(view.name));
   out.Line("    cam_from_board: {}", YamlPose(view.cam_from_board));
   out.Line("    lidar_from_board: {}", YamlPose(view.lidar_from_board));
   out.Line("    printed:{}", view.printed.empty() ? " []" : "");
@@ -125,6 +165,10 @@ void WriteBoardView(YamlText& out, const BoardView& view) {
     out.Line("    range_sigma_m: {}", view.range_sigma_m);
     out.Line("    face_in_lidar:");
     for (const Eigen::Vector3d& point : view.face_in_lidar) out.Line("      - {}", YamlList(point));
+    if (!view.face_rings.empty()) {
+      const std::vector<double> rings(view.face_rings.begin(), view.face_rings.end());
+      out.Line("    face_rings: {}", YamlList(rings));
+    }
   }
   if (!view.edges.empty()) out.Line("    edges:");
   for (const EdgeRay& ray : view.edges) {

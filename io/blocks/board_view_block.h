@@ -6,6 +6,7 @@
 
 #include "geometry/board.h"
 #include "geometry/board_view.h"
+#include "geometry/lidar_errors.h"
 #include "io/text/yaml_fields.h"
 #include "io/text/yaml_text.h"
 
@@ -15,6 +16,10 @@ namespace sextant {
 /// file's boards. Errors go to `in`, at the line of the field or the view.
 std::vector<BoardView> ReadBoardViews(YamlFields& in, const YamlNode& list,
                                       std::span<const Board> boards);
+
+/// The map `lidar_errors` of a problem file, and back.
+LidarErrorModel ReadLidarErrors(YamlFields& in, const YamlNode& node);
+void WriteLidarErrors(YamlText& out, const LidarErrorModel& errors);
 
 /// Writes a view as an item of that list; reading it again gives the same bits.
 void WriteBoardView(YamlText& out, const BoardView& view);

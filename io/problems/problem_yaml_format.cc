@@ -61,7 +61,10 @@ std::string FormatProblemYaml(const ProblemFile& file) {
   for (const Pair3d3d& pair : problem.pairs_3d3d) WritePair(out, pair);
   if (!problem.pairs_2d3d.empty()) out.Line("pairs_2d3d:");
   for (const Pair2d3d& pair : problem.pairs_2d3d) WritePair(out, pair);
-  if (!problem.board_views.empty()) out.Line("board_views:");
+  if (!problem.board_views.empty()) {
+    WriteLidarErrors(out, problem.lidar_errors);
+    out.Line("board_views:");
+  }
   for (const BoardView& view : problem.board_views) WriteBoardView(out, view);
   const PointSets implied = WithholdPairing(problem.pairs_3d3d);
   if (problem.point_sets.in_cam != implied.in_cam ||

@@ -90,9 +90,17 @@ void ReadProblemBoards(YamlFields& in, const YamlNode& list, std::vector<Board>&
 }
 
 void ReadProblemHeader(YamlFields& in, const YamlNode& root) {
-  static const Keys kKeys = {
-      "sextant_problem", "comment",     "camera",     "boards", "pairs_3d3d",
-      "pairs_2d3d",      "board_views", "point_sets", "truth",  "initial_cam_from_lidar"};
+  static const Keys kKeys = {"sextant_problem",
+                             "comment",
+                             "camera",
+                             "boards",
+                             "pairs_3d3d",
+                             "pairs_2d3d",
+                             "board_views",
+                             "lidar_errors",
+                             "point_sets",
+                             "truth",
+                             "initial_cam_from_lidar"};
   if (root.kind == YamlNode::Kind::kMap && root.Find("sextant_problem") == nullptr) {
     in.Fail(root.line, {},
             "expected a problem file, with the key sextant_problem: 1; is this another kind of "
@@ -127,6 +135,9 @@ Expected<ProblemFile> ParseProblemYaml(std::string_view text, const std::string&
   }
   if (const YamlNode* node = root.Find("pairs_3d3d")) ReadPairs3d3d(in, *node, problem.pairs_3d3d);
   if (const YamlNode* node = root.Find("pairs_2d3d")) ReadPairs2d3d(in, *node, problem.pairs_2d3d);
+  if (const YamlNode* node = root.Find("lidar_errors")) {
+    problem.lidar_errors = ReadLidarErrors(in, *node);
+  }
   if (const YamlNode* node = root.Find("board_views")) {
     problem.board_views = ReadBoardViews(in, *node, problem.boards);
   }

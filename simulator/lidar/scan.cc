@@ -42,7 +42,7 @@ class Scanner {
       start_azimuth_rad_ = start.Uniform(-model.start_jitter_rad, model.start_jitter_rad);
     }
     start_azimuth_rad_ += model.start_azimuth_rad;
-    Random bias(DeriveSeed(options.seed, "lidar_ring_bias", 0, 0));
+    Random bias(DeriveSeed(options.unit.value_or(options.seed), "lidar_ring_bias", 0, 0));
     for (int ring = 0; ring < Beams(); ++ring) {
       const double deviation = bias.Normal();
       biases_m_.push_back(model.bias_m + model.ring_bias_sigma_m * deviation);

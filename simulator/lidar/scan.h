@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/error.h"
@@ -22,8 +23,10 @@ struct PointTruth {
 };
 
 struct ScanOptions {
-  std::uint64_t seed = 1;  ///< Also determines what is constant for the unit, the ring biases.
-  int scan_index = 0;      ///< Distinguishes the scans of one seed.
+  std::uint64_t seed = 1;
+  /// Seed of what is constant for one unit of the model, the biases of its rings; none: `seed`.
+  std::optional<std::uint64_t> unit{};
+  int scan_index = 0;  ///< Distinguishes the scans of one seed.
   /// Time after the session's start; determines the pose of swinging boards.
   double start_time_s = 0.0;
   bool noise = true;         ///< Range noise, biases and jitter of the start azimuth.

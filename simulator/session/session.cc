@@ -70,6 +70,7 @@ std::string Configuration(const SessionOptions& options) {
   out.Line("version: {}", YamlQuoted(std::string(Version())));
   out.Line("level: {}", NameOf(options.level));
   out.Line("seed: {}", options.seed);
+  if (options.unit) out.Line("unit: {}", *options.unit);
   out.Line("interval_s: {}", options.interval_s);
   if (options.level == SessionLevel::kFull) {
     out.Line("ideal: {}", options.ideal);
@@ -196,6 +197,7 @@ class Session {
     SEXTANT_ASSIGN_OR_RETURN(const SimulatedScan scan,
                              SimulateScan(scene_, lidar_,
                                           {.seed = options_.seed,
+                                           .unit = options_.unit,
                                            .scan_index = truth.index,
                                            .start_time_s = truth.start_time_s,
                                            .noise = real,

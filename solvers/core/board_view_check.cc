@@ -87,6 +87,10 @@ class ViewCheck {
       return Invalid(
           fmt::format("a range sigma of {} m, expected more than 0", view_.range_sigma_m));
     }
+    if (!view_.face_rings.empty() && view_.face_rings.size() != view_.face_in_lidar.size()) {
+      return Invalid(fmt::format("{} ring numbers for {} face returns, expected one for each",
+                                 view_.face_rings.size(), view_.face_in_lidar.size()));
+    }
     return {};
   }
 

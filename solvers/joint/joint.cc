@@ -4,16 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string>
 #include <utility>
 
-#include "geometry/symmetric.h"
-#include "solvers/core/board_view_check.h"
 #include "solvers/core/inner_solver.h"
 #include "solvers/core/registry.h"
-#include "solvers/joint/joint_observability.h"
+#include "solvers/joint/joint_model.h"
 #include "solvers/joint/joint_search.h"
-#include "solvers/kernels/pair_terms.h"
-#include "solvers/refine/refine_camera.h"
 
 namespace sextant {
 namespace {
@@ -23,25 +20,33 @@ DataNeeds WithViews(DataNeeds needs) {
   return needs;
 }
 
-// Robust cost of one view with its board at `cam_from_board`; infinite where a residual is
-// undefined.
-double CostAt(const JointView& view, const JointUnknowns& unknowns, const JointState& state,
-              const Rigid3d& cam_from_board) {
-  JointState alone = state;
-  alone.cam_from_board = {cam_from_board};
-  const RobustLoss loss{.kind = LossKind::kCauchy, .scale = 3.0};
-  const auto system = Linearise({view}, unknowns, {loss, loss, loss}, alone);
-  return system ? system->cost : std::numeric_limits<double>::infinity();
+// Cauchy's loss of a squared residual, as it limits what an outlier costs.
+double Limited(double squared) {
+  constexpr double kScale = 3.0;
+  return kScale * kScale * std::log1p(squared / (kScale * kScale));
+}
+
+// Of a view's printed points.
+double CostAt(const JointModel& model, const JointState& state, std::size_t view) {
+  double cost = 0.0;
+  for (const double value : ResidualsAt(model, state, view).printed) cost += Limited(value * value);
+  return cost;
+}
+
+double LinkCostAt(const JointState& state, std::size_t view, double lever_m) {
+  constexpr double kUsual_m = 0.02;
+  return Limited((LinkError(state, view, lever_m) / kUsual_m).squaredNorm() / 6.0);
 }
 
 /// argmin of 1/2 sum |r|^2 over cam_from_lidar and the pose of every board, r the whitened
 /// residuals of the raw observations (solvers/joint/board_view_residuals.h), from the inner
 /// solver's pose.
 ///
-/// See SearchJointly for outliers and MinimiseJointly for the method. Covariance: inverse of the
-/// information with the boards' poses, and all else that was estimated, eliminated. Inliers: the
-/// pairs of the boards and views in use. Termination kConverged: every step is under
-/// step_tolerance. An unobservable parameter is fixed at its given value, with a warning. Errors:
+/// The LiDAR's systematic errors (CalibrationProblem::lidar_errors) are estimated along with the
+/// poses, and so is the level of each kind of noise. See SearchJointly for outliers and
+/// JointProblem for the method. Covariance: of the pose, marginal over all else that was estimated.
+/// A number that the views do not determine stays at its prior. Inliers: the pairs of the boards
+/// and views in use. Termination kConverged: Ceres's step is under step_tolerance. Errors:
 /// kDegenerate, kNoConvergence, kInvalidInput (distortion of a pinhole), those of the inner solver.
 class JointSolver final : public Solver {
  public:
@@ -57,185 +62,118 @@ class JointSolver final : public Solver {
  private:
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
     SEXTANT_ASSIGN_OR_RETURN(SolveReport start, inner_->Solve(problem));
-    SEXTANT_ASSIGN_OR_RETURN(JointUnknowns unknowns, UnknownsOf(problem));
-    std::vector<JointView> views = ViewsOf(problem, unknowns);
-    JointState state = StateAt(problem, start.cam_from_lidar, unknowns, views);
+    SEXTANT_ASSIGN_OR_RETURN(const JointModel model, ModelOf(problem, options_));
+    const JointState state = StateAt(problem, start.cam_from_lidar, model);
+    SEXTANT_ASSIGN_OR_RETURN(
+        const JointAnswer answer,
+        SearchJointly(model, state, problem.lidar_errors.view_shift_sigma_m, options_));
     Estimate estimate;
-    FixUnobservable(problem, InformationAt(views, unknowns, state), unknowns, views, state,
-                    estimate.warnings);
-    while (true) {
-      SEXTANT_ASSIGN_OR_RETURN(JointAnswer answer, SearchJointly(views, unknowns, state, options_));
-      estimate.iterations += answer.iterations;
-      const Eigen::MatrixXd information = SharedInformation(answer.minimum.system);
-      if (FixUnobservable(problem, information, unknowns, views, state, estimate.warnings)) {
-        continue;
-      }
-      SEXTANT_RETURN_IF_ERROR(Report(problem, unknowns, answer, information, estimate));
-      break;
-    }
+    SEXTANT_RETURN_IF_ERROR(Report(problem, model, answer, estimate));
     estimate.stages = std::move(start.stages);
     estimate.stages.push_back(
         {start.solver, start.cam_from_lidar, start.iterations, start.wall_time_us});
     return estimate;
   }
 
-  Expected<JointUnknowns> UnknownsOf(const CalibrationProblem& problem) const {
-    JointUnknowns unknowns;
-    unknowns.range_bias = options_.range_bias;
-    unknowns.board_size = options_.board_size;
-    if (options_.board_size == JointBoardSize::kSides) {
-      std::set<int> ids;
-      for (const BoardView& view : problem.board_views) ids.insert(view.board);
-      unknowns.sized_boards.assign(ids.begin(), ids.end());
-    }
-    return FreeIntrinsics(*problem.camera, options_.intrinsics)
-        .map([&](const std::vector<int>& free) {
-          unknowns.intrinsics = free;
-          return unknowns;
-        });
-  }
-
-  static std::vector<JointView> ViewsOf(const CalibrationProblem& problem,
-                                        const JointUnknowns& unknowns) {
-    std::vector<JointView> views;
-    const std::vector<int>& sized = unknowns.sized_boards;
-    for (const BoardView& view : problem.board_views) {
-      const auto at = std::find(sized.begin(), sized.end(), view.board);
-      views.push_back({TermsOf(view, *FindBoard(problem.boards, view.board)),
-                       at == sized.end() ? -1 : static_cast<int>(at - sized.begin())});
-    }
-    return views;
-  }
-
-  // Starts each board at the one of the two sensors' poses that fits the observations of both
-  // better.
+  // Each sensor's own pose of a board, or the LiDAR's for both where that fits the image better
+  // than the disagreement of the two.
   static JointState StateAt(const CalibrationProblem& problem, const Rigid3d& cam_from_lidar,
-                            const JointUnknowns& unknowns, const std::vector<JointView>& views) {
-    JointState state;
-    state.cam_from_lidar = cam_from_lidar;
-    state.size.setZero(unknowns.SizeCount());
-    state.camera = *problem.camera;
-    std::vector<Rigid3d> chosen;
-    for (std::size_t i = 0; i < views.size(); ++i) {
-      const Rigid3d by_camera = problem.board_views[i].cam_from_board;
-      const Rigid3d by_lidar = cam_from_lidar * problem.board_views[i].lidar_from_board;
-      const bool camera_is_better = CostAt(views[i], unknowns, state, by_camera) <=
-                                    CostAt(views[i], unknowns, state, by_lidar);
-      chosen.push_back(camera_is_better ? by_camera : by_lidar);
+                            const JointModel& model) {
+    JointState state{cam_from_lidar, {}, {}};
+    for (const SharedBlock& block : model.shared) state.shared.push_back(block.mean);
+    for (std::size_t i = 0; i < model.views.size(); ++i) {
+      const BoardView& view = problem.board_views[i];
+      const Rigid3d by_lidar = cam_from_lidar * view.lidar_from_board;
+      state.boards.push_back({view.cam_from_board, view.lidar_from_board});
+      const double by_camera_cost =
+          CostAt(model, state, i) + LinkCostAt(state, i, model.views[i].lever_m);
+      state.boards.back().cam_from_board = by_lidar;
+      if (by_camera_cost <= CostAt(model, state, i)) {
+        state.boards.back().cam_from_board = view.cam_from_board;
+      }
     }
-    state.cam_from_board = std::move(chosen);
     return state;
   }
 
-  // Used before the search, in which an unobservable parameter would drift.
-  static Eigen::MatrixXd InformationAt(const std::vector<JointView>& views,
-                                       const JointUnknowns& unknowns, const JointState& state) {
-    const JointSelection seen = SelectSeen(JointResidualsAt(views, unknowns, state));
-    const auto system = Linearise(Selected(views, seen), unknowns, {}, state);
-    return system ? SharedInformation(*system)
-                  : Eigen::MatrixXd::Zero(unknowns.Count(), unknowns.Count());
-  }
-
-  // True where there was one. `state` is the start of the search, which is then repeated.
-  static bool FixUnobservable(const CalibrationProblem& problem, Eigen::MatrixXd information,
-                              JointUnknowns& unknowns, std::vector<JointView>& views,
-                              JointState& state, std::vector<std::string>& warnings) {
-    bool any = false;
-    while (const auto unobservable = FindUnobservable(
-               information, UsefulSigmas(views, unknowns, state, problem.boards))) {
-      warnings.push_back(DescribeUnobservable(*unobservable, unknowns, *problem.camera));
-      FixParameter(unobservable->index, problem, unknowns, views, state);
-      information = InformationAt(views, unknowns, state);
-      any = true;
-    }
-    return any;
-  }
-
-  Expected<void> Report(const CalibrationProblem& problem, const JointUnknowns& unknowns,
-                        const JointAnswer& answer, const Eigen::MatrixXd& information,
-                        Estimate& estimate) const {
-    const auto covariance = InvertSymmetric(information);
-    if (!covariance) {
-      return MakeError(ErrorCode::kDegenerate,
-                       "the views leave a direction of the pose undetermined; hold the board at "
-                       "more positions and tilts");
-    }
-    const JointState& state = answer.minimum.state;
+  Expected<void> Report(const CalibrationProblem& problem, const JointModel& model,
+                        const JointAnswer& answer, Estimate& estimate) const {
+    const JointState& state = answer.state;
     estimate.cam_from_lidar = state.cam_from_lidar;
     estimate.termination = Termination::kConverged;
-    estimate.covariance = covariance->topLeftCorner<6, 6>();
-    ReportParameters(unknowns, state, *covariance, problem.boards, estimate);
+    estimate.iterations = answer.iterations;
+    estimate.covariance = answer.covariance.topLeftCorner<6, 6>();
+    ReportNumbers(model, answer, estimate);
     if (estimate.camera && !ValidateCamera(estimate.camera->camera)) {
       return MakeError(ErrorCode::kNoConvergence,
                        "the distortion found folds the image; free fewer intrinsics");
     }
-    estimate.board_views = FitsOf(problem, unknowns, answer);
+    estimate.board_views = FitsOf(problem, model, answer);
     estimate.inliers = InliersOf(problem, estimate.board_views);
-    WarnOfViews(estimate);
+    WarnOfViews(problem, estimate);
     WarnOfNoise(answer.noise, estimate);
     return {};
   }
 
-  static void ReportParameters(const JointUnknowns& unknowns, const JointState& state,
-                               const Eigen::MatrixXd& covariance, std::span<const Board> boards,
-                               Estimate& estimate) {
-    if (!unknowns.intrinsics.empty()) estimate.camera = CameraEstimate{state.camera, {}};
-    const IntrinsicVector numbers = IntrinsicsOf(state.camera);
-    for (int i = 6; i < unknowns.Count(); ++i) {
-      EstimatedNumber number{NameOf(unknowns, state.camera, i), 0.0, std::sqrt(covariance(i, i))};
-      if (i < unknowns.Size()) {
-        number.value = state.range_bias_m;
-      } else if (i < unknowns.Intrinsic()) {
-        const int at = i - unknowns.Size();
-        number.value = state.size[at] + GivenSize(unknowns, boards, at);
-      } else {
-        number.value =
-            numbers[unknowns.intrinsics[static_cast<std::size_t>(i - unknowns.Intrinsic())]];
-        estimate.camera->estimated.push_back(std::move(number));
-        continue;
+  static void ReportNumbers(const JointModel& model, const JointAnswer& answer,
+                            Estimate& estimate) {
+    if (!model.intrinsics.empty()) {
+      estimate.camera = CameraEstimate{model.CameraWith(answer.state.shared.back()), {}};
+    }
+    Eigen::Index at = 6;
+    for (std::size_t k = 0; k < model.shared.size(); ++k) {
+      const SharedBlock& block = model.shared[k];
+      const bool of_camera = estimate.camera && k + 1 == model.shared.size();
+      for (std::size_t i = 0; i < block.names.size(); ++i, ++at) {
+        if (!block.reported) continue;
+        EstimatedNumber number{block.names[i], answer.state.shared[k][static_cast<Eigen::Index>(i)],
+                               std::sqrt(answer.covariance(at, at))};
+        (of_camera ? estimate.camera->estimated : estimate.extras).push_back(std::move(number));
       }
-      estimate.extras.push_back(std::move(number));
     }
   }
 
-  static double GivenSize(const JointUnknowns& unknowns, std::span<const Board> boards, int at) {
-    if (unknowns.board_size == JointBoardSize::kScale) return 1.0;
-    const Board* board = FindBoard(boards, unknowns.sized_boards[static_cast<std::size_t>(at / 2)]);
-    return at % 2 == 0 ? board->top_right_m : board->right_bottom_m;
-  }
-
   static std::vector<BoardViewFit> FitsOf(const CalibrationProblem& problem,
-                                          const JointUnknowns& unknowns,
-                                          const JointAnswer& answer) {
-    const JointState& state = answer.minimum.state;
-    const std::vector<JointView> kept = Selected(ViewsOf(problem, unknowns), answer.selection);
+                                          const JointModel& model, const JointAnswer& answer) {
     std::vector<BoardViewFit> fits;
-    for (std::size_t i = 0; i < kept.size(); ++i) {
+    for (std::size_t i = 0; i < model.views.size(); ++i) {
       const BoardView& view = problem.board_views[i];
-      const BoardViewTerms& terms = kept[i].terms;
-      const auto count = [](std::size_t used, std::size_t of) {
-        return ObservationCount{static_cast<int>(used), static_cast<int>(of)};
+      const JointViewSelection& chosen = answer.selection[i];
+      const auto count = [](const std::vector<bool>& of) {
+        return ObservationCount{static_cast<int>(std::count(of.begin(), of.end(), true)),
+                                static_cast<int>(of.size())};
       };
-      BoardViewFit fit{.view = view.view, .board = view.board};
-      fit.cam_from_board = state.cam_from_board[i];
-      fit.printed = count(terms.printed.size(), view.printed.size());
-      fit.face = count(terms.face.size(), view.face_in_lidar.size());
-      fit.edges = count(terms.edges.size(), view.edges.size());
-      fit.used = !terms.printed.empty();
-      fit.rms = fit.used ? RmsOf(kept[i], unknowns, state, state.cam_from_board[i]) : 0.0;
-      fits.push_back(fit);
+      fits.push_back({.view = view.view,
+                      .board = view.board,
+                      .used = chosen.IsUsed(),
+                      .cam_from_board = answer.state.boards[i].cam_from_board,
+                      .printed = count(chosen.printed),
+                      .face = count(chosen.face),
+                      .edges = count(chosen.edges),
+                      .rms = chosen.IsUsed() ? RmsOf(model, answer, i) : 0.0});
     }
     return fits;
   }
 
-  static double RmsOf(const JointView& view, const JointUnknowns& unknowns, JointState state,
-                      const Rigid3d& cam_from_board) {
-    state.cam_from_board = {cam_from_board};
-    double count = static_cast<double>(view.terms.face.size() + view.terms.edges.size());
-    for (const PrintedTerm& term : view.terms.printed) {
-      count += 2.0 * static_cast<double>(term.pixels.size());
+  static double RmsOf(const JointModel& model, const JointAnswer& answer, std::size_t i) {
+    const BoardViewResiduals residuals = ResidualsAt(model, answer.state, i);
+    const JointViewSelection& chosen = answer.selection[i];
+    double squares = 0.0;
+    double count = 0.0;
+    const auto add = [&](double residual, double size) {
+      squares += size * residual * residual;
+      count += size;
+    };
+    for (std::size_t k = 0; k < chosen.printed.size(); ++k) {
+      const auto points = static_cast<double>(model.views[i].terms.printed[k].pixels.size());
+      if (chosen.printed[k]) add(residuals.printed[k], 2.0 * points);
     }
-    return std::sqrt(2.0 * Linearise({view}, unknowns, {}, state)->cost / count);
+    for (std::size_t k = 0; k < chosen.face.size(); ++k) {
+      if (chosen.face[k]) add(residuals.face[k], 1.0);
+    }
+    for (std::size_t k = 0; k < chosen.edges.size(); ++k) {
+      if (chosen.edges[k]) add(residuals.edges[k], 1.0);
+    }
+    return std::sqrt(squares / count);
   }
 
   // Indices into the kind of pairs that the inner solver uses.
@@ -261,12 +199,15 @@ class JointSolver final : public Solver {
     return inliers;
   }
 
-  static void WarnOfViews(Estimate& estimate) {
-    for (const BoardViewFit& fit : estimate.board_views) {
+  static void WarnOfViews(const CalibrationProblem& problem, Estimate& estimate) {
+    for (std::size_t i = 0; i < estimate.board_views.size(); ++i) {
+      const BoardViewFit& fit = estimate.board_views[i];
       if (fit.used) continue;
+      const std::string& name = problem.board_views[i].name;
       const bool one_sided = fit.printed.of == 0 || fit.face.of + fit.edges.of == 0;
       estimate.warnings.push_back(fmt::format(
-          "board {} of view {} was left out: {}", fit.board, fit.view,
+          "board {} of view {} was left out: {}", fit.board,
+          name.empty() ? std::to_string(fit.view) : name,
           one_sided ? "only one of the sensors saw it"
                     : "its image and its scan contradict the other views; was the board still, "
                       "and are its corners in the right order?"));
@@ -279,8 +220,8 @@ class JointSolver final : public Solver {
     const auto warn = [&](double ratio, const char* what) {
       if (ratio <= kMuch) return;
       estimate.warnings.push_back(fmt::format(
-          "{} is {:.1f} times as large as stated, so that the covariance is too small; "
-          "state a larger noise, or look for a systematic error (intrinsics, board size)",
+          "{} is {:.1f} times as large as stated, which the covariance includes; look for a "
+          "systematic error (intrinsics, board size)",
           what, ratio));
     };
     warn(noise.printed, "the noise of the printed corners");

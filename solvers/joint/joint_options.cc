@@ -15,8 +15,10 @@ OptionSet<JointOptions> JointOptionSet() {
             "transition point of the losses")
       .Real("cut", &JointOptions::cut, "sigma", 0.0, 1e6,
             "the answer is least squares of the residuals within; 0: the minimum of the losses")
+      .Choice("noise", &JointOptions::noise, {"estimated", "stated"},
+              "of each kind of observation: estimated from the residuals, or as the views state it")
       .Choice("range_bias", &JointOptions::range_bias, {"false", "true"},
-              "also estimates a constant that the LiDAR adds to every range")
+              "the constant that the LiDAR adds to every range may be as large as 0.1 m")
       .Choice("board_size", &JointOptions::board_size, {"given", "scale", "sides"},
               "also estimates the outlines: one scale of all boards, or both sides of each")
       .Set("intrinsics", &JointOptions::intrinsics, {"focal", "center", "distortion"},

@@ -2,11 +2,12 @@
 #pragma once
 
 #include "base/options.h"
-#include "solvers/joint/joint_problem.h"
 
 namespace sextant {
 
 enum class JointLoss { kNone, kHuber, kCauchy };
+enum class JointBoardSize { kGiven, kScale, kSides };
+enum class JointNoiseLevel { kEstimated, kStated };
 
 /// The options of `joint`.
 struct JointOptions {
@@ -15,6 +16,7 @@ struct JointOptions {
   JointLoss edge_loss = JointLoss::kCauchy;
   double loss_scale = 3.0;
   double cut = 4.0;
+  JointNoiseLevel noise = JointNoiseLevel::kEstimated;
   bool range_bias = false;
   JointBoardSize board_size = JointBoardSize::kGiven;
   unsigned intrinsics = 0;  ///< IntrinsicKind bits.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "base/error.h"
-#include "solvers/joint/joint_minimise.h"
 #include "solvers/joint/joint_options.h"
 #include "solvers/joint/joint_selection.h"
 
@@ -10,18 +9,19 @@ namespace sextant {
 
 /// The minimum over the inliers, and the selection of these.
 struct JointAnswer {
-  JointMinimum minimum;
-  JointSelection selection;  ///< One entry per view.
-  JointNoise noise;          ///< From all observations, at the answer.
-  int iterations = 0;        ///< Total over all rounds.
+  JointState state;
+  Eigen::MatrixXd covariance;  ///< Of (dphi, dt), then the shared numbers.
+  JointSelection selection;    ///< One entry per view.
+  JointNoise noise;
+  int iterations = 0;  ///< Total over all rounds.
 };
 
-/// First minimises with the robust losses, scaled by the noise estimated from the residuals; then
-/// alternates least squares with the selection of the observations within `cut`, until the
-/// selection stays the same. A view without printed points or without rays carries no information
-/// and is dropped. Errors: kDegenerate (no view is left), kNoConvergence.
-Expected<JointAnswer> SearchJointly(const std::vector<JointView>& views,
-                                    const JointUnknowns& unknowns, const JointState& start,
-                                    const JointOptions& options);
+/// First minimises with the robust losses, scaled by the noise, and with views that may be shifted;
+/// then alternates least squares, the estimate of the noise and the selection of the observations
+/// and views within `cut` of it, until both stay the same. `shift_m`: the expected shift of the
+/// returns of one view. Errors: kDegenerate (no view is left, or the views leave a direction of the
+/// pose undetermined), kNoConvergence.
+Expected<JointAnswer> SearchJointly(const JointModel& model, const JointState& start,
+                                    double shift_m, const JointOptions& options);
 
 }  // namespace sextant

@@ -3,127 +3,106 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-
-#include "base/median.h"
 
 namespace sextant {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
-// Median of the absolute value of a standard normal variable.
-constexpr double kNormalMedian = 0.6744897501960817;
+// Upper limit, relative to its mean sqrt(size), of the norm of `size` whitened normal variables at
+// `sigmas`: its standard deviation is 1/sqrt(2) (Fisher 1922).
+double NormLimit(double size, double sigmas) { return 1.0 + sigmas * std::sqrt(0.5 / size); }
 
-BoardViewResiduals ResidualsOfView(const JointView& view, const JointUnknowns& unknowns,
-                                   const JointState& state, const Rigid3d& cam_from_board) {
-  BoardViewResiduals residuals;
-  PrintedResidual printed;
-  for (const PrintedTerm& term : view.terms.printed) {
-    const bool seen = Differentiate(term, state.camera, cam_from_board, printed);
-    residuals.printed.push_back(
-        seen ? printed.value.norm() / std::sqrt(static_cast<double>(printed.value.size())) : kNone);
-  }
-  const BoardPlane plane(state.cam_from_lidar.Inverse() * cam_from_board);
-  const JointRayModel model(view, unknowns, state);
-  JointRay ray;
-  for (const FaceTerm& term : view.terms.face) {
-    residuals.face.push_back(model.Differentiate(term, plane, ray) ? ray.residual.value : kNone);
-  }
-  for (const EdgeTerm& term : view.terms.edges) {
-    residuals.edges.push_back(model.Differentiate(term, plane, ray) ? ray.residual.value : kNone);
-  }
-  return residuals;
+double SizeOf(const PrintedTerm& term) { return 2.0 * static_cast<double>(term.pixels.size()); }
+
+bool AnyOf(const std::vector<bool>& chosen) {
+  return std::find(chosen.begin(), chosen.end(), true) != chosen.end();
 }
 
-template <class Term>
-std::vector<Term> Keep(const std::vector<Term>& terms, const std::vector<bool>& chosen) {
-  std::vector<Term> kept;
-  kept.reserve(terms.size());
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    if (chosen[i]) kept.push_back(terms[i]);
-  }
-  return kept;
-}
-
-std::vector<bool> Within(const std::vector<double>& residuals, double limit) {
+std::vector<bool> WithinLimit(const std::vector<double>& residuals, double limit) {
   std::vector<bool> within;
   within.reserve(residuals.size());
   for (const double value : residuals) within.push_back(std::abs(value) < limit);
   return within;
 }
 
+// Root of rho'(s) at s = residual^2; Huber and Cauchy.
+double RootSlope(const RobustLoss& loss, double limit, double residual) {
+  const double ratio = std::abs(residual) / limit;
+  if (loss.kind == LossKind::kHuber) return ratio > 1.0 ? std::sqrt(1.0 / ratio) : 1.0;
+  if (loss.kind == LossKind::kCauchy) return 1.0 / std::sqrt(1.0 + ratio * ratio);
+  return 1.0;
+}
+
+std::vector<double> RayWeights(const std::vector<double>& residuals,
+                               const std::vector<bool>& chosen, double noise,
+                               const RobustLoss& loss) {
+  std::vector<double> weights(residuals.size(), 0.0);
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    if (chosen[k]) weights[k] = RootSlope(loss, loss.scale * noise, residuals[k]) / noise;
+  }
+  return weights;
+}
+
+Vector6d LinkScale(const JointNoise& noise) {
+  Vector6d scale;
+  for (int i = 0; i < 6; ++i) {
+    scale[i] = 1.0 / (kLinkIsOutOfPlane[i] ? noise.out_of_plane_m : noise.in_plane_m);
+  }
+  return scale;
+}
+
 }  // namespace
 
-std::vector<BoardViewResiduals> JointResidualsAt(const std::vector<JointView>& views,
-                                                 const JointUnknowns& unknowns,
-                                                 const JointState& state) {
-  std::vector<BoardViewResiduals> residuals;
-  residuals.reserve(views.size());
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    residuals.push_back(ResidualsOfView(views[i], unknowns, state, state.cam_from_board[i]));
-  }
-  return residuals;
+bool JointViewSelection::IsUsed() const { return AnyOf(printed) && (AnyOf(face) || AnyOf(edges)); }
+
+void JointViewSelection::Clear() {
+  for (std::vector<bool>* kind : {&printed, &face, &edges}) kind->assign(kind->size(), false);
 }
 
-JointNoise NoiseOf(const std::vector<BoardViewResiduals>& residuals) {
-  std::vector<double> printed;
-  std::vector<double> face;
-  std::vector<double> edges;
-  const auto add = [](const std::vector<double>& values, std::vector<double>& to) {
-    for (const double value : values) to.push_back(std::abs(value));
-  };
-  for (const BoardViewResiduals& of : residuals) {
-    add(of.printed, printed);
-    add(of.face, face);
-    add(of.edges, edges);
-  }
-  const auto at_least_stated = [](double ratio) {
-    return std::isfinite(ratio) ? std::max(1.0, ratio) : 1.0;
-  };
-  return {at_least_stated(UpperMedian(printed)), at_least_stated(UpperMedian(face) / kNormalMedian),
-          at_least_stated(UpperMedian(edges) / kNormalMedian)};
-}
-
-JointSelection SelectSeen(const std::vector<BoardViewResiduals>& residuals) {
-  JointSelection selection;
-  for (const BoardViewResiduals& of : residuals) {
-    selection.push_back(
-        {Within(of.printed, kNone), Within(of.face, kNone), Within(of.edges, kNone)});
-  }
-  return selection;
-}
-
-JointSelection SelectWithin(const std::vector<JointView>& views,
+JointSelection SelectWithin(const JointModel& model,
                             const std::vector<BoardViewResiduals>& residuals,
                             const JointNoise& noise, double sigmas) {
   JointSelection selection;
-  for (std::size_t i = 0; i < views.size(); ++i) {
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
     const BoardViewResiduals& of = residuals[i];
     JointViewSelection chosen{
-        {}, Within(of.face, sigmas * noise.face), Within(of.edges, sigmas * noise.edges)};
+        {}, WithinLimit(of.face, sigmas * noise.face), WithinLimit(of.edges, sigmas * noise.edges)};
     for (std::size_t k = 0; k < of.printed.size(); ++k) {
-      const std::size_t points = views[i].terms.printed[k].pixels.size();
-      const double limit =
-          PrintedLimit(points, sigmas) / std::sqrt(2.0 * static_cast<double>(points));
+      const double limit = NormLimit(SizeOf(model.views[i].terms.printed[k]), sigmas);
       chosen.printed.push_back(of.printed[k] < limit * noise.printed);
     }
+    if (!chosen.IsUsed()) chosen.Clear();
     selection.push_back(std::move(chosen));
   }
   return selection;
 }
 
-std::vector<JointView> Selected(const std::vector<JointView>& views,
-                                const JointSelection& selection) {
-  std::vector<JointView> selected;
-  selected.reserve(views.size());
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const BoardViewTerms& terms = views[i].terms;
-    selected.push_back(
-        {{Keep(terms.printed, selection[i].printed), Keep(terms.face, selection[i].face),
-          Keep(terms.edges, selection[i].edges)},
-         views[i].sized_board});
+std::vector<JointWeights> WeightsOf(const JointModel& model, const JointState& state,
+                                    const std::vector<BoardViewResiduals>& residuals,
+                                    const JointSelection& selection, const JointNoise& noise,
+                                    const JointLosses& losses) {
+  const Vector6d scale = LinkScale(noise);
+  std::vector<JointWeights> weights;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    const BoardViewResiduals& of = residuals[i];
+    JointWeights own{{},
+                     RayWeights(of.face, selection[i].face, noise.face, losses.face),
+                     RayWeights(of.edges, selection[i].edges, noise.edges, losses.edges),
+                     Vector6d::Zero()};
+    for (std::size_t k = 0; k < of.printed.size(); ++k) {
+      const double size = SizeOf(model.views[i].terms.printed[k]);
+      const double limit = noise.printed * NormLimit(size, losses.printed.scale);
+      own.printed.push_back(selection[i].printed[k]
+                                ? RootSlope(losses.printed, limit, of.printed[k]) / noise.printed
+                                : 0.0);
+    }
+    if (selection[i].IsUsed()) {
+      const double norm =
+          scale.cwiseProduct(LinkError(state, i, model.views[i].lever_m)).norm() / std::sqrt(6.0);
+      own.link = RootSlope(losses.link, NormLimit(6.0, losses.link.scale), norm) * scale;
+    }
+    weights.push_back(std::move(own));
   }
-  return selected;
+  return weights;
 }
 
 }  // namespace sextant

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "solvers/joint/joint_problem.h"
+#include "solvers/joint/joint_noise.h"
+#include "solvers/refine/refine_ceres.h"
 
 namespace sextant {
 
@@ -13,35 +14,34 @@ struct JointViewSelection {
   std::vector<bool> face;
   std::vector<bool> edges;
 
+  /// Whether both sensors contribute.
+  bool IsUsed() const;
+  void Clear();
+
   friend bool operator==(const JointViewSelection&, const JointViewSelection&) = default;
 };
 using JointSelection = std::vector<JointViewSelection>;
 
-/// The ratio of the noise of each kind to the stated one: the median of the absolute whitened
-/// residuals over that of a normal distribution, at least 1. Robust to nearly half of the data
-/// being outliers.
-struct JointNoise {
-  double printed = 1.0;
-  double face = 1.0;
-  double edges = 1.0;
-};
-
-/// Whitened residuals of every view's observations at a state.
-std::vector<BoardViewResiduals> JointResidualsAt(const std::vector<JointView>& views,
-                                                 const JointUnknowns& unknowns,
-                                                 const JointState& state);
-
-JointNoise NoiseOf(const std::vector<BoardViewResiduals>& residuals);
-
-/// All observations with a defined residual.
-JointSelection SelectSeen(const std::vector<BoardViewResiduals>& residuals);
-/// Those within `sigmas` times the estimated noise.
-JointSelection SelectWithin(const std::vector<JointView>& views,
+/// Observations within `sigmas` times the noise. A view that lacks one of the sensors has none, as
+/// it carries no information on the extrinsic.
+JointSelection SelectWithin(const JointModel& model,
                             const std::vector<BoardViewResiduals>& residuals,
                             const JointNoise& noise, double sigmas);
 
-/// The views, restricted to the selected observations.
-std::vector<JointView> Selected(const std::vector<JointView>& views,
-                                const JointSelection& selection);
+/// A robust loss for each kind of observation. A BoardPoints of n points counts as one observation,
+/// with its norm relative to the mean norm sqrt(2 n).
+struct JointLosses {
+  RobustLoss printed;
+  RobustLoss face;
+  RobustLoss edges;
+  RobustLoss link;
+};
+
+/// The weights of iteratively reweighted least squares: 1 / noise, times the root of the loss's
+/// slope at the residual (kNone, kHuber and kCauchy), for what is selected; 0 for all else.
+std::vector<JointWeights> WeightsOf(const JointModel& model, const JointState& state,
+                                    const std::vector<BoardViewResiduals>& residuals,
+                                    const JointSelection& selection, const JointNoise& noise,
+                                    const JointLosses& losses);
 
 }  // namespace sextant

@@ -243,6 +243,7 @@ TEST_P(SolverContract, OrderOfThePairsDoesNotMatter) {
   std::reverse(reversed.board_views.begin(), reversed.board_views.end());
   for (BoardView& view : reversed.board_views) {
     std::reverse(view.face_in_lidar.begin(), view.face_in_lidar.end());
+    std::reverse(view.face_rings.begin(), view.face_rings.end());
     std::reverse(view.edges.begin(), view.edges.end());
   }
   const Expected<SolveReport> forward = solver_->Solve(scene.problem);

@@ -37,6 +37,7 @@ CalibrationProblem ViewOf(const CalibrationProblem& problem, const DataKinds& ki
   if (kinds.pixels) view.pairs_2d3d = problem.pairs_2d3d;
   if (kinds.sets) view.point_sets = problem.point_sets;
   if (kinds.views) view.board_views = problem.board_views;
+  view.lidar_errors = problem.lidar_errors;
   return view;
 }
 
