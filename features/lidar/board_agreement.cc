@@ -149,13 +149,13 @@ double OpenSum(const BoardAgreement& agreement) {
   return std::accumulate(agreement.open.begin(), agreement.open.end(), 0.0);
 }
 
-// Whether free space beyond its sides delimits the board: three sides, or most of two opposite ones
-// and some of a third, as a board that stands on the ground.
+// Whether free space beyond its sides delimits the board: most of two opposite sides, or three
+// sides.
 bool IsBounded(const BoardAgreement& agreement) {
   const std::array<double, kCornersPerBoard>& open = agreement.open;
   const auto mostly = [&](std::size_t side) { return open[side] >= kMainPart; };
-  if (std::ranges::count(open, 0.0) > 1) return false;
-  return (mostly(0) && mostly(2)) || (mostly(1) && mostly(3)) || OpenSum(agreement) >= kThreeSides;
+  if ((mostly(0) && mostly(2)) || (mostly(1) && mostly(3))) return true;
+  return std::ranges::count(open, 0.0) <= 1 && OpenSum(agreement) >= kThreeSides;
 }
 
 double MinShare(const BoardAgreement& agreement) {

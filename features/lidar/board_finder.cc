@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "features/lidar/board_agreement.h"
@@ -208,9 +209,15 @@ class Finder {
           first.plane.x_axis * x_axis.x() + first.plane.y_axis * x_axis.y();
       const double angle = std::atan2(patch.plane.y_axis.dot(along), patch.plane.x_axis.dot(along));
       if (!center) return std::nullopt;
-      const std::optional<RectangleFit> fit = RefineRectangle(patch.edges, board, *center, angle);
-      if (!fit) return std::nullopt;
-      patch.fit = *fit;
+      // Without the others, a board that is nearly square may fit better after a quarter turn.
+      std::vector<RectangleFit> fits;
+      for (const double turned : {angle, angle + 0.5 * std::numbers::pi}) {
+        const std::optional<RectangleFit> fit =
+            RefineRectangle(patch.edges, board, *center, turned);
+        if (fit) fits.push_back(*fit);
+      }
+      if (fits.empty()) return std::nullopt;
+      patch.fit = fits[MostUpright(fits, board)];
     }
     patch.agreement = AgreementOf(scan_, patch, board);
     return patch;
