@@ -7,12 +7,13 @@ namespace sextant {
 /// standard deviations of their priors. Zero: the sensor has no such error. The white noise of
 /// ranges and edges is stated by each view. Defaults: a sensor about which nothing is known.
 struct LidarErrorModel {
-  /// Of a constant that one ring adds to every range; for returns with a ring number.
+  /// Standard deviation of a constant that one ring adds to every range; for returns with a ring
+  /// number.
   double ring_offset_sigma_m = 0.010;
-  /// Of a constant that the sensor adds to every range.
+  /// Standard deviation of a constant that the sensor adds to every range.
   double range_offset_sigma_m = 0.010;
-  /// Of the distance by which an outline appears too far out, for edges along the scan direction
-  /// and across it. Extractors have corrected its expected value.
+  /// Standard deviation of the distance by which an outline appears too far out, for edges along
+  /// the scan direction and across it. Extractors have corrected its expected value.
   double edge_growth_sigma_m = 0.003;
   /// Expected shift, along each axis, of all returns of one board in one view together, from a
   /// board that is not flat or not still and returns that are not independent. Estimated from the

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "features/lidar/scan_rings.h"
+#include "features/lidar/rings/scan_rings.h"
 #include "report/fixed_point.h"
 #include "report/hidden_returns.h"
 #include "report/projected_scan.h"

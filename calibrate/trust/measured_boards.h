@@ -17,7 +17,7 @@ struct MeasuredEdge {
   int edge = 0;             ///< 0: from top to right; 1: from right to bottom.
   double stated_m = 0.0;    ///< In the board file.
   double measured_m = 0.0;  ///< Median over the views.
-  double sigma_m = 0.0;     ///< Of that median, from the scatter of the views.
+  double sigma_m = 0.0;     ///< Standard deviation of that median, from the scatter of the views.
   double Excess() const { return measured_m / stated_m - 1.0; }
 };
 

@@ -19,7 +19,7 @@ struct AccuracyNeed {
 struct VerdictFigures {
   int views_with_board = 0;       ///< Views whose photo shows a board; copies do not count.
   int views_used = 0;             ///< Those of them that the answer rests on.
-  int independent_views = 0;      ///< Of the used ones: views of a board in one place count once.
+  int independent_views = 0;      ///< Used views, those of a board in one place counted once.
   int views_contradicting = 0;    ///< Their scan contradicts the photo, or the other views.
   int rival_poses = 0;            ///< Other poses that explain the views as well.
   bool has_rough_pose = false;    ///< Given by the user; it chose among the rivals. Else the axes.

@@ -13,7 +13,7 @@ namespace sextant {
 /// sentence each, with the cause and the remedy. Empty for data that is as it should be, and where
 /// no such change helps.
 
-/// Of 3D-3D pairs, at least three: one sensor's lengths are a multiple of the other's (units, or a
+/// For 3D-3D pairs, at least three: one sensor's lengths are a multiple of the other's (units, or a
 /// scale with its factor) or of a board's; both are in millimetres; camera points behind the
 /// camera (most, or more than of the LiDAR's), as when the sensors are exchanged; camera points in
 /// a frame of the world; one set is a mirror image of the other.
@@ -22,7 +22,7 @@ namespace sextant {
 /// not pass for one. O(n) time.
 std::vector<std::string> CausesInPoints(const CalibrationProblem& problem);
 
-/// Of 2D-3D pairs, at least six (four for units), whose pose leaves more than a fiftieth of the
+/// For 2D-3D pairs, at least six (four for units), whose pose leaves more than a fiftieth of the
 /// spread of the pixels: u and v exchanged, u from the right, v from below, normalised pixels, an
 /// image of another size, another focal length, a LiDAR axis with the wrong sign, LiDAR points in
 /// millimetres. Each change is undone on up to 24 pairs and the pose found again; it is reported if
@@ -31,7 +31,7 @@ std::vector<std::string> CausesInPoints(const CalibrationProblem& problem);
 /// of the number of pairs.
 std::vector<std::string> CausesInPixels(const CalibrationProblem& problem);
 
-/// Of the camera and the pixels: a field of view, focal length or principal point that no camera
+/// For the camera and the pixels: a field of view, focal length or principal point that no camera
 /// has, and pixels outside its image.
 std::vector<std::string> CausesInCamera(const CalibrationProblem& problem);
 

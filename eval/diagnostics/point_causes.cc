@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "eval/diagnostics/causes.h"
@@ -81,9 +82,13 @@ std::optional<std::string> FindScale(const Points& in_cam, const Points& in_lida
       std::sqrt(given->sum_squares / n), to_m * std::sqrt(with_ratio->sum_squares / n));
 }
 
-/// Both sensors' lengths as a multiple of the boards' known ones.
+/// Both sensors' lengths as a multiple of the boards' known ones, the same for every edge: a single
+/// edge that differs is no matter of units.
 std::optional<std::string> FindBoardScale(const CalibrationProblem& problem) {
   constexpr double kMinDeviation = 0.05;
+  constexpr double kMaxRatio = 1.1;  ///< Between the factors of two edges.
+  double smallest = std::numeric_limits<double>::infinity();
+  double largest = 0.0;
   double in_cam = 0.0;
   double in_lidar = 0.0;
   double known = 0.0;
@@ -91,15 +96,20 @@ std::optional<std::string> FindBoardScale(const CalibrationProblem& problem) {
     const int id = problem.pairs_3d3d[group.pair(0)].id.board;
     const auto board = std::ranges::find(problem.boards, id, &Board::id);
     if (board == problem.boards.end()) continue;
-    for (const double edge : board->EdgeLengths()) known += edge;
+    const auto edges = board->EdgeLengths();
     for (int i = 0; i < kCornersPerBoard; ++i) {
       const Pair3d3d& from = problem.pairs_3d3d[group.pair(i)];
       const Pair3d3d& to = problem.pairs_3d3d[group.pair((i + 1) % kCornersPerBoard)];
+      const double edge_m = edges[static_cast<std::size_t>(i)];
+      known += edge_m;
+      const double factor = (to.point_in_cam - from.point_in_cam).norm() / edge_m;
+      smallest = std::min(smallest, factor);
+      largest = std::max(largest, factor);
       in_cam += (to.point_in_cam - from.point_in_cam).norm();
       in_lidar += (to.point_in_lidar - from.point_in_lidar).norm();
     }
   }
-  if (!(known > 0.0)) return std::nullopt;
+  if (!(known > 0.0) || largest > kMaxRatio * smallest) return std::nullopt;
   const double of_cam = in_cam / known;
   const double of_lidar = in_lidar / known;
   const bool both_differ =

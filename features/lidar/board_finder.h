@@ -13,7 +13,7 @@
 #include "features/lidar/edge_points.h"
 #include "features/lidar/lidar_plane.h"
 #include "features/lidar/rectangle_fit.h"
-#include "features/lidar/scan_rings.h"
+#include "features/lidar/rings/scan_rings.h"
 #include "geometry/board.h"
 
 namespace sextant {

@@ -10,7 +10,7 @@
 
 #include "features/lidar/lidar_beam.h"
 #include "features/lidar/lidar_plane.h"
-#include "features/lidar/scan_rings.h"
+#include "features/lidar/rings/scan_rings.h"
 
 namespace sextant {
 

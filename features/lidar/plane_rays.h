@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "features/lidar/lidar_plane.h"
-#include "features/lidar/scan_rings.h"
+#include "features/lidar/rings/scan_rings.h"
 
 namespace sextant {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "features/lidar/scan_rings.h"
+#include "features/lidar/rings/scan_rings.h"
 
 namespace sextant {
 

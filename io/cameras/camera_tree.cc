@@ -68,8 +68,7 @@ std::vector<CameraNode> FindCameras(const YamlNode& root) {
   return cameras;
 }
 
-const YamlNode* FindCameraKey(const YamlNode& camera,
-                              std::initializer_list<std::string_view> keys) {
+const YamlNode* FindCameraKey(const YamlNode& camera, const std::vector<std::string_view>& keys) {
   for (const std::string_view key : keys) {
     if (const YamlNode* found = camera.Find(key)) return found;
     for (const std::string_view group : kGroups) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,7 +23,7 @@ std::vector<CameraNode> FindCameras(const YamlNode& root);
 
 /// The value of the first of these keys that a camera has, also in its groups of parameters
 /// (camodocal); null if there is none.
-const YamlNode* FindCameraKey(const YamlNode& camera, std::initializer_list<std::string_view> keys);
+const YamlNode* FindCameraKey(const YamlNode& camera, const std::vector<std::string_view>& keys);
 
 /// The numbers of a list, of a list of rows, of a matrix {rows, cols, data}, or of a text that
 /// separates them by blanks; an error for more than `max_size`.

@@ -69,7 +69,7 @@ int ReadSize(YamlFields& in, const YamlNode& camera, std::size_t index,
 
 double RealOf(YamlFields& in, const YamlNode& camera,
               std::initializer_list<std::string_view> keys) {
-  const YamlNode* node = FindCameraKey(camera, keys);
+  const YamlNode* node = FindCameraKey(camera, {keys.begin(), keys.end()});
   return in.Real(node == nullptr ? in.Require(camera, *keys.begin()) : *node, *keys.begin());
 }
 
@@ -138,7 +138,7 @@ std::vector<double> ReadDistortion(YamlFields& in, const YamlNode& camera, std::
     return CameraNumbers(in, *list, "distortion coefficients", kMaxCoefficients);
   }
   if (model == "double_sphere") return {};
-  using Keys = std::initializer_list<std::string_view>;
+  using Keys = std::vector<std::string_view>;
   const bool is_camodocal_fisheye = FindCameraKey(camera, {"mu"}) != nullptr;
   static const std::vector<Keys> kRadialTangential = {{"k1", "k_1", "Camera.k1", "cam_d0"},
                                                       {"k2", "k_2", "Camera.k2", "cam_d1"},
@@ -154,7 +154,7 @@ std::vector<double> ReadDistortion(YamlFields& in, const YamlNode& camera, std::
   std::vector<double> distortion;
   for (const Keys& keys : names) {
     const YamlNode* node = FindCameraKey(camera, keys);
-    distortion.push_back(node == nullptr ? 0.0 : in.Real(*node, *keys.begin()));
+    distortion.push_back(node == nullptr ? 0.0 : in.Real(*node, keys.front()));
   }
   return distortion;
 }

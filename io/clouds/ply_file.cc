@@ -151,6 +151,7 @@ Expected<PointCloud> ParsePly(std::string_view bytes, const std::string& file) {
   std::vector<double> values;
   for (const PlyElement& element : header.elements) {
     CheckCount(element, header.encoding, body);
+    if (!body.ok()) return body.TakeError();
     const bool is_vertex = element.name == "vertex";
     CloudColumns columns;
     if (is_vertex) {

@@ -85,7 +85,7 @@ struct TrustFigures {
   /// Ratios of the sigmas to the solver's, geometric means over the axes.
   std::optional<double> bootstrap_over_solver{};
   std::optional<double> jackknife_over_solver{};
-  std::optional<double> stated_over_solver{};  ///< Of the covariance of the result.
+  std::optional<double> stated_over_solver{};  ///< The ratio for the result.
   std::vector<int> outlier_views{};            ///< PairId::view.
   std::string comparison{};                    ///< Comparison of the three, in words.
 };

@@ -195,7 +195,7 @@ TEST(Outputs, AFileThatWasBeingReplacedSurvivesAKill) {
   const std::string problem = MakeProblem();
   const std::string out = TestPath("out.yaml");
   ASSERT_EQ(RunSextant("convert " + problem + " " + out).exit_code, 0);
-  const std::string before = ReadText(out);
+  std::string before = ReadText(out);
   // Killed at many moments of a run that replaces the file.
   for (int ms = 0; ms < 60; ms += 3) {
     Shell(
@@ -205,6 +205,7 @@ TEST(Outputs, AFileThatWasBeingReplacedSurvivesAKill) {
     const std::string now = ReadText(out);
     EXPECT_TRUE(now == before || now.find("seed " + std::to_string(ms)) != std::string::npos) << ms;
     EXPECT_TRUE(now.ends_with("\n"));
+    before = now;
   }
 }
 

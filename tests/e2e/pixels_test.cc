@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(BadPairs{"three", Csv({kPoints[0], kPoints[1], kPoints[2]}),
                              "at least 4 2D-3D pairs, got 3"},
                     BadPairs{"line", Csv(OnALine()), "on one line"},
-                    BadPairs{"far", Csv(Times(1e12)), "give LiDAR points in metres"},
+                    BadPairs{"far", Csv(Times(1e12)), "are they in metres?"},
                     BadPairs{"infinite", kHeader + "inf,1,1,1,1,1\n", "bad.csv:2: field 1 (u)"},
                     BadPairs{"behind", Csv(kPoints, -1.0), "behind the camera"},
                     BadPairs{"one_pair_eight_times", Csv(std::vector<Point>(8, kPoints[0])),

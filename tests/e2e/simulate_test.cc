@@ -145,7 +145,7 @@ TEST(Simulate, FewerScansLeaveAConsistentFolder) {
   const auto before = FilesIn(TestPath("used"));
   const ProgramRun refused = RunSextant("simulate" + scene + TestPath("used"));
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("sextant did not write it"));
+  EXPECT_THAT(refused.err, HasSubstr("it was changed since sextant wrote it"));
   EXPECT_EQ(FilesIn(TestPath("used")), before);
 }
 

@@ -87,7 +87,7 @@ TEST(PairDiagnostics, ReportsANominalSizeThatDisagreesWithBothSensors) {
   CalibrationProblem problem = CleanProblem(1);
   problem.boards[0].top_right_m = 0.60;
   const PairDiagnostics diagnostics = DiagnosePairs(problem);
-  ASSERT_FALSE(diagnostics.edges.empty());
+  ASSERT_FALSE(diagnostics.edges.empty()) << testing::PrintToString(Describe(diagnostics));
   EXPECT_EQ(diagnostics.edges[0].board, 0);
   EXPECT_EQ(diagnostics.edges[0].known_m, 0.60);
 }
@@ -102,7 +102,7 @@ TEST(PairDiagnostics, ReportsTheWeakRotationOfAlmostCollinearPoints) {
     pair.point_in_cam.z() += 1e-3 * (pair.id.corner - 1.5);
   }
   const PairDiagnostics diagnostics = DiagnosePairs(problem);
-  ASSERT_TRUE(diagnostics.weak_rotation);
+  ASSERT_TRUE(diagnostics.weak_rotation) << testing::PrintToString(Describe(diagnostics));
   EXPECT_GT(std::abs(diagnostics.weak_rotation->axis_in_cam.x()), 0.99);
   EXPECT_THAT(Describe(diagnostics), testing::Contains(HasSubstr("rotation about")));
 }

@@ -112,7 +112,7 @@ TEST(MarkerCoordinates, RefusesBadText) {
   const BadText cases[] = {
       {"empty", "", kParse, "m:1: the file ends here, expected the number of boards"},
       {"truncated", "1\n1\n2\n3\n4\n", kParse, "m:5: the file ends here, expected e"},
-      {"huge", "1000000000\n1\n", kParse, "m:2: the file ends here, expected s2"},
+      {"huge", "1000000000\n1\n", kParse, "expected a whole number from 1 to 1000"},
       {"negative", "1\n1\n-2\n3\n4\n5\n", kParse, "m:3: expected s2 >= 0 cm"},
       {"trailing", "1\n1\n2\n3\n4\n5\n6\n", kParse, "m:7: expected the end of the file"},
   };

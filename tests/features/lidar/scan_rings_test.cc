@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "features/lidar/scan_rings.h"
+#include "features/lidar/rings/scan_rings.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "features/lidar/ring_numbers.h"
+#include "features/lidar/rings/ring_numbers.h"
 
 #include <algorithm>
 #include <bitset>
@@ -11,8 +11,8 @@
 
 #include "base/median.h"
 #include "base/units.h"
-#include "features/lidar/ring_following.h"
-#include "features/lidar/ring_order.h"
+#include "features/lidar/rings/ring_following.h"
+#include "features/lidar/rings/ring_order.h"
 #include "geometry/symmetric.h"
 
 namespace sextant {

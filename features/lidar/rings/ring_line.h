@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "features/lidar/ring_numbers.h"
+#include "features/lidar/rings/ring_numbers.h"
 
 namespace sextant {
 
@@ -14,7 +14,7 @@ namespace sextant {
 /// line in these two numbers, wherever on the axis or around it the beam starts.
 struct ConePlace {
   double nearness = 0.0;  ///< 1 / distance from the axis z [1/m].
-  double tangent = 0.0;   ///< Of the elevation.
+  double tangent = 0.0;   ///< Tangent of the elevation.
 
   static ConePlace Of(const UnsortedReturn& point) {
     const double level = std::fmax(std::hypot(point.direction.x(), point.direction.y()), 1e-6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "features/lidar/ring_line.h"
+#include "features/lidar/rings/ring_line.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,7 +9,7 @@
 namespace sextant {
 namespace {
 
-constexpr std::size_t kFewestLines = 4;
+constexpr std::size_t kMinLines = 4;
 constexpr std::size_t kMinTested = 3;  // Fewer returns of a ring do not show that it is narrow.
 constexpr double kMaxSpread = 0.25;    // Of a ring about its line, relative to the next ring.
 constexpr double kNarrowRings = 0.9;   // Of the tested returns, on rings as narrow as that.
@@ -38,7 +38,7 @@ bool AreNarrow(std::span<const std::vector<ConePlace>> rings) {
   for (const std::vector<ConePlace>& ring : rings) {
     if (ring.size() >= kMinTested) lines.push_back(TestRing(ring));
   }
-  if (lines.size() < kFewestLines) return false;
+  if (lines.size() < kMinLines) return false;
   std::ranges::sort(lines, {}, &TestedRing::tangent);
   std::size_t tested = 0;
   std::size_t narrow = 0;

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "features/lidar/ring_numbers.h"
+#include "features/lidar/rings/ring_numbers.h"
 
 namespace sextant {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "features/lidar/ring_following.h"
+#include "features/lidar/rings/ring_following.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "base/units.h"
-#include "features/lidar/ring_line.h"
+#include "features/lidar/rings/ring_line.h"
 
 namespace sextant {
 namespace {
 
-constexpr std::size_t kFewestFollowed = 4;
-constexpr std::size_t kMostFollowed = 256;
+constexpr std::size_t kMinFollowed = 4;
+constexpr std::size_t kMaxFollowed = 256;
 constexpr std::size_t kMinOfFollowed = 3;  // Fewer returns do not show that elevations repeat.
 constexpr double kMaxAmbiguous = 0.05;     // Of the returns.
 constexpr double kClear = 0.001;           // Of the returns; so few need no other tolerance.
@@ -84,11 +84,9 @@ Followed Follow(const std::vector<ConePlace>& places, const std::vector<std::siz
     }
     rings[ring].Add(places[i]);
     followed.numbers[i] = static_cast<int>(ring);
-    if (rings.size() > kMostFollowed || static_cast<double>(followed.ambiguous) > allowed)
-      return {};
+    if (rings.size() > kMaxFollowed || static_cast<double>(followed.ambiguous) > allowed) return {};
   }
-  const bool repeat =
-      rings.size() >= kFewestFollowed && kMinOfFollowed * rings.size() <= order.size();
+  const bool repeat = rings.size() >= kMinFollowed && kMinOfFollowed * rings.size() <= order.size();
   return repeat ? followed : Followed{};
 }
 

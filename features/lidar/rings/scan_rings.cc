@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "features/lidar/scan_rings.h"
+#include "features/lidar/rings/scan_rings.h"
 
 #include <fmt/core.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/median.h"
-#include "features/lidar/ring_numbers.h"
+#include "features/lidar/rings/ring_numbers.h"
 
 namespace sextant {
 namespace {
