@@ -9,8 +9,8 @@
 namespace sextant {
 namespace {
 
-constexpr std::size_t kMinRings = 4;
-constexpr std::size_t kMaxRings = 256;
+constexpr std::size_t kMinOrderedRings = 4;
+constexpr std::size_t kMaxOrderedRings = 256;
 constexpr std::size_t kMinColumns = 16;
 constexpr std::size_t kTestedColumns = 48;
 
@@ -43,7 +43,7 @@ bool IsOrder(std::span<const UnsortedReturn> returns, const PointOrder& order) {
 
 std::optional<PointOrder> FindOrder(std::span<const UnsortedReturn> returns,
                                     std::size_t cloud_size) {
-  for (std::size_t rings = kMinRings; rings <= kMaxRings; ++rings) {
+  for (std::size_t rings = kMinOrderedRings; rings <= kMaxOrderedRings; ++rings) {
     if (cloud_size % rings != 0 || cloud_size / rings < kMinColumns) continue;
     for (const bool column_by_column : {true, false}) {
       const PointOrder order{rings, cloud_size / rings, column_by_column};
