@@ -31,7 +31,7 @@ struct EdgeRay {
 struct BoardView {
   int view = 0;        ///< Number of the image and scan.
   int board = 0;       ///< Board::id.
-  std::string name{};  ///< Of the view, for people; empty: its number is shown.
+  std::string name{};  ///< The view's name, for people; empty: its number is shown.
   std::vector<BoardPoints> printed{};
   std::vector<Eigen::Vector3d> face_in_lidar{};  ///< Returns from the face, as measured [m].
   /// The ring of each face return, the same number in all views; empty where there are no rings.

@@ -65,7 +65,7 @@ struct CalibrationProblem {
   PointSets point_sets;  ///< With unknown pairing.
   /// Raw observations; their boards are among `boards`, and they need the camera.
   std::vector<BoardView> board_views;
-  LidarErrorModel lidar_errors;  ///< Of the returns in board_views.
+  LidarErrorModel lidar_errors;  ///< For the returns in board_views.
   std::vector<Board> boards;  ///< Known boards, with the ids used in pairs and views; may be empty.
   std::optional<Rigid3d> initial_cam_from_lidar;
 };

@@ -33,7 +33,7 @@ bool IsTableExtension(const std::string& extension) {
   return std::ranges::find(kExtensions, extension) != kExtensions.end();
 }
 
-// Whether the bytes are lines of text whose first has three values at least.
+// Whether the bytes are lines of text with three values at least; the first may be a count.
 bool LooksLikeTable(std::string_view bytes) {
   const std::string_view head = bytes.substr(0, 4096);
   const bool is_text = std::ranges::none_of(
@@ -42,7 +42,9 @@ bool LooksLikeTable(std::string_view bytes) {
   for (const auto separator : {LineReader::Separator::kSemicolons, LineReader::Separator::kCommas,
                                LineReader::Separator::kBlanks}) {
     LineReader in("", head, separator);
-    if (in.Next() && in.field_count() >= 3) return true;
+    for (int line = 0; line < 2 && in.Next(); ++line) {
+      if (in.field_count() >= 3) return true;
+    }
   }
   return false;
 }

@@ -105,9 +105,11 @@ JointSteps JointProblem::Solve(int max_iterations, double step_tolerance) {
   options.num_threads = 1;
   options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   for (auto& board : boards_) options.linear_solver_ordering->AddElementToGroup(board.data(), 0);
-  options.linear_solver_ordering->AddElementToGroup(cam_from_lidar_.data(), 1);
+  // A group for each shared block: within one, Ceres orders by address, and sums would depend on it.
+  int group = 1;
+  options.linear_solver_ordering->AddElementToGroup(cam_from_lidar_.data(), group);
   for (Eigen::VectorXd& block : state_.shared) {
-    options.linear_solver_ordering->AddElementToGroup(block.data(), 1);
+    options.linear_solver_ordering->AddElementToGroup(block.data(), ++group);
   }
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem_, &summary);

@@ -12,12 +12,8 @@
 namespace sextant::test {
 namespace {
 
-std::size_t ResidentBytes() {
-  std::size_t all = 0;
-  std::size_t resident = 0;
-  std::ifstream("/proc/self/statm") >> all >> resident;
-  return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-}
+// A child begins with the peak of its parent; see proc(5), clear_refs.
+void ResetPeak() { std::ofstream("/proc/self/clear_refs") << 5; }
 
 std::size_t PeakBytes() {
   struct rusage usage {};
@@ -33,7 +29,8 @@ ChildCost CostOf(const std::function<bool()>& work) {
   const pid_t child = fork();
   if (child == 0) {
     malloc_trim(0);
-    const std::size_t before = ResidentBytes();
+    ResetPeak();
+    const std::size_t before = PeakBytes();
     const auto start = std::chrono::steady_clock::now();
     ChildCost cost{.ended = work()};
     cost.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
