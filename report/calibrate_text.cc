@@ -134,11 +134,11 @@ std::string DescribeCalibration(const Calibration& calibration) {
   const CalibrationResult& result = *calibration.result;
   text += DescribeAnswer(*calibration.report());
   text += ErrorAgainstTruth(calibration.comparison.front());
+  text = Narrow(text);
   if (calibration.comparison.size() > 1) text += "\n" + DescribeComparison(calibration.comparison);
-  text += WarningsText(result.warnings);
-  text += "\n" + result.closing + "\n";
-  if (result.trust) text += "\n" + result.trust->comparison + "\n";
-  return Narrow(text);
+  std::string conclusion = WarningsText(result.warnings) + "\n" + result.closing + "\n";
+  if (result.trust) conclusion += "\n" + result.trust->comparison + "\n";
+  return text + Narrow(conclusion);
 }
 
 std::string Wrapped(const std::string& text, std::size_t width) {
