@@ -174,8 +174,9 @@ class Fitter {
     const Eigen::Vector2d normal_in_plane = turn * normal;
     const double outward = inner ? -1.0 : 1.0;  // Growth makes the opening smaller.
     place.excess = inner ? 0.0 : pose(3);
-    place.distance = normal.dot(q) - normal.cwiseAbs().dot(half) -
-                     outward * edge.Growth(normal_in_plane) - place.excess;
+    const double growth = outward * edge.Growth(normal_in_plane);
+    place.grown = growth * normal_in_plane;
+    place.distance = normal.dot(q) - normal.cwiseAbs().dot(half) - growth - place.excess;
     place.sigma = std::sqrt(edge.VarianceAcross(normal_in_plane) + 1e-12);
     place.along = normal.x() * q.y() - normal.y() * q.x();
     place.half_step = 0.5 * std::abs(normal.dot(out)) * edge.step_m;

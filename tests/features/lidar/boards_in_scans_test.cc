@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "eval/extractors/board_scenes.h"
+#include "features/lidar/board_agreement.h"
 #include "features/lidar/corner_extractor.h"
 #include "geometry/symmetric.h"
 #include "simulator/lidar/lidar_model.h"
@@ -187,6 +188,28 @@ TEST(BoardsInScans, OtherAnglesThan45WhereTheRingsAllowIt) {
     for (const double off : WorstCorners(scene, search)) EXPECT_LT(off, 0.01) << turn;
     EXPECT_TRUE(ExtractCorners("plane_lines", search.found[0], boards[0])) << turn;
   }
+}
+
+// Users of RectangleFit::on_edge expect edge points on the board's true outline.
+TEST(BoardsInScans, EdgePointsLieOnTheOutlineWithoutTheGrowthByTheBeam) {
+  const LidarModel model = ModelWithSigma("os1_64", 0.01);
+  std::vector<double> beyond;
+  for (int i = 0; i < 4; ++i) {
+    Random random(DeriveSeed(10, "outline", 0, static_cast<std::uint64_t>(i)));
+    const Scene scene = TwoBoardsInRoom({}, random);
+    const std::vector<Board> boards = BoardsIn(scene);
+    const BoardSearch search = SearchScan(scene, boards, model, static_cast<std::uint64_t>(i));
+    ASSERT_EQ(search.found.size(), 2U) << i;
+    for (const BoardPatch& patch : search.found) {
+      const Board& board = boards[static_cast<std::size_t>(patch.board)];
+      for (std::size_t k = 0; k < patch.edges.size(); ++k) {
+        if (patch.fit.sides[k] < 0) continue;
+        beyond.push_back(BeyondBoard(patch.fit, board, patch.fit.on_edge[k]));
+      }
+    }
+  }
+  ASSERT_GT(beyond.size(), 100U);
+  EXPECT_NEAR(Mean(beyond), 0.0, 0.002);
 }
 
 // Upright, no ring crosses its upper and lower sides.
