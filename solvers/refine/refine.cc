@@ -140,8 +140,9 @@ class RefineSolver final : public Solver {
     limits.wants_information = false;
     const RefinedPose refined = RefinePose(terms.View(), *start, limits);
     if (terms.noise_known && !IsExplained(refined, terms.size())) return std::nullopt;
-    // Where no pose explains the pixels well, the inner solver decides whether to answer.
-    if (!IsSmallAgainstImage(problem.pairs_2d3d, SquaredPixels(problem, refined))) {
+    // Outliers may leave the inner solver a pose that explains nothing, and this one much.
+    if (!IsSmallAgainstImage(problem.pairs_2d3d, SquaredPixels(problem, refined)) &&
+        !CheckExplained(*problem.camera, problem.pairs_2d3d, refined.cam_from_lidar)) {
       return std::nullopt;
     }
     Expected<Estimate> estimate = EstimateOf(terms, refined);
