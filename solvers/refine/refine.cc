@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 #include <tuple>
+#include <utility>
 
 #include "geometry/lens_domain.h"
 #include "geometry/symmetric.h"
@@ -159,7 +160,7 @@ class RefineSolver final : public Solver {
     estimate->termination = Termination::kConverged;
     estimate->inliers = AllOf(terms.size());
     estimate->stages.push_back({inner_->spec().name, *start, 0, wall_time.count()});
-    return QuickAnswer{*std::move(estimate), is_certain};
+    return std::optional<QuickAnswer>(std::in_place, *std::move(estimate), is_certain);
   }
 
   // Names the first pixel whose point does not project at the start.
