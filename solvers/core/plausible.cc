@@ -25,28 +25,18 @@ double SquaredSpread(std::span<const Pair2d3d> pairs, std::span<const int> indic
   return (squares - sum.squaredNorm() / count) / count;
 }
 
-// The pairs at `indices` whose residuals are finite, and the mean square of these.
-struct Projected {
-  std::size_t count = 0;
-  double mean_square = 0.0;
-
-  Projected(const std::vector<double>& residuals, std::span<const int> indices) {
-    double squares = 0.0;
-    for (const int i : indices) {
-      const double residual = residuals[static_cast<std::size_t>(i)];
-      if (!std::isfinite(residual)) continue;
-      squares += residual * residual;
-      ++count;
-    }
-    mean_square = squares / static_cast<double>(count);
-  }
-};
-
-// A lower bound of SquaredSpread, from two pixels.
-double LeastSquaredSpread(std::span<const Pair2d3d> pairs, std::span<const int> indices) {
+// The squared distances of the pixels from their mean add up to at least this, from two pixels.
+double LeastExtent(std::span<const Pair2d3d> pairs, std::span<const int> indices) {
   const Eigen::Vector2d& first = pairs[static_cast<std::size_t>(indices.front())].pixel;
   const Eigen::Vector2d& last = pairs[static_cast<std::size_t>(indices.back())].pixel;
-  return 0.5 * (first - last).squaredNorm() / static_cast<double>(indices.size());
+  return 0.5 * (first - last).squaredNorm();
+}
+
+// Of all pairs, in one pass of vector instructions; infinite where one does not project.
+double SumOfSquares(const std::vector<double>& residuals) {
+  return Eigen::Map<const Eigen::VectorXd>(residuals.data(),
+                                           static_cast<Eigen::Index>(residuals.size()))
+      .squaredNorm();
 }
 
 }  // namespace
@@ -58,18 +48,21 @@ Expected<void> CheckPlausible(const CalibrationProblem& problem, const SolverSpe
   const bool of_pixels = spec.needs.pairs_2d3d > 0 && spec.needs.pairs_3d3d == 0;
   if (!of_pixels || used.size() < kMinPairs) return {};
   const std::vector<double>& residuals = report.evaluation.per_pair_px;
-  const Projected projected(residuals, used);
-  if (2 * projected.count < used.size()) {
+  const std::span<const Pair2d3d> pairs = problem.pairs_2d3d;
+  // A mean square of half of the spread leaves half of the pairs or more within it. That of all
+  // pairs bounds that of the used ones.
+  if (2.0 * SumOfSquares(residuals) <= LeastExtent(pairs, used)) return {};
+  const auto projected =
+      static_cast<std::size_t>(std::count_if(used.begin(), used.end(), [&](int i) {
+        return std::isfinite(residuals[static_cast<std::size_t>(i)]);
+      }));
+  if (2 * projected < used.size()) {
     return MakeError(ErrorCode::kNoConsensus,
                      fmt::format("{}: its pose has {} of {} points behind the camera or outside "
                                  "the lens model; check the signs of the axes, the camera and "
                                  "which pixel belongs to which point",
-                                 spec.name, used.size() - projected.count, used.size()));
+                                 spec.name, used.size() - projected, used.size()));
   }
-  // A mean square of half of the spread leaves half of the pairs or more within it.
-  const std::span<const Pair2d3d> pairs = problem.pairs_2d3d;
-  const bool all_project = projected.count == used.size();
-  if (all_project && 2.0 * projected.mean_square <= LeastSquaredSpread(pairs, used)) return {};
   const double spread = SquaredSpread(pairs, used);
   const auto explained =
       static_cast<std::size_t>(std::count_if(used.begin(), used.end(), [&](int i) {

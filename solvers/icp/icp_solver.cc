@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <numbers>
 
-#include "solvers/core/covariance_inflation.h"
 #include "solvers/core/registry.h"
 #include "solvers/icp/icp.h"
 #include "solvers/icp/projective_icp.h"
@@ -71,15 +70,7 @@ class IcpSolver final : public Solver {
     if (options_.match == IcpMatching::kProjective) {
       return FitProjectiveIcp(sets.in_cam, sets.in_lidar, start, Projective()).map(as_estimate);
     }
-    Expected<IcpFit> fit = FitIcp(sets.in_cam, sets.in_lidar, start, options_);
-    if (fit && fit->covariance) *fit->covariance *= Inflation(*fit);
-    return fit.map(as_estimate);
-  }
-
-  // The noise is estimated from the matches alone.
-  double Inflation(const IcpFit& fit) const {
-    const double residuals = options_.metric == IcpMetric::kPoint ? 3.0 : 1.0;
-    return CovarianceInflation(residuals * static_cast<double>(fit.matches.size()) - 6.0);
+    return FitIcp(sets.in_cam, sets.in_lidar, start, options_).map(as_estimate);
   }
 
   ProjectiveIcpSettings Projective() const {

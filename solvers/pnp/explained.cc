@@ -34,13 +34,38 @@ double ExtentOf(std::span<const Pair2d3d> pairs) {
                           [&](std::size_t i) -> const Eigen::Vector2d& { return pairs[i].pixel; });
 }
 
-// `explains` is whether the pose in question leaves half of the pairs within half of the spread of
-// their pixels. Then it shows what sqpnp did not find.
-Expected<void> AskSqpnp(const PnpView& view, bool explains) {
+// Square of three quarters. A pose that projects all points onto one pixel leaves 43 percent of
+// normally distributed pixels within this share of their squared spread.
+constexpr double kNearShare = 0.5625;
+
+/// Counts the pairs that a pose leaves within three quarters of the spread of the pixels.
+class WellExplained {
+ public:
+  WellExplained(std::size_t count, double extent)
+      : count_(count), near_(kNearShare * extent / static_cast<double>(count)) {}
+
+  void Add(double squared) {
+    if (squared <= near_) ++near_count_;
+  }
+  // Half or more, besides the three that a pose fits whatever they are.
+  bool AreHalf() const { return 2 * near_count_ >= count_ + kAbsorbed; }
+
+ private:
+  static constexpr std::size_t kAbsorbed = 3;
+
+  std::size_t count_;
+  double near_;
+  std::size_t near_count_ = 0;
+};
+
+// A pose that explains half of the pairs shows what sqpnp did not find.
+Expected<void> AskSqpnp(const PnpView& view, const WellExplained& pairs) {
   Expected<SqpnpFit> fit = SolveSqpnp(view.image_points, view.points);
   if (fit) return {};
   const ErrorCode code = fit.error().code;
-  if (code != ErrorCode::kMirrored && (code != ErrorCode::kNoConsensus || explains)) return {};
+  const bool refutes =
+      code == ErrorCode::kMirrored || (code == ErrorCode::kNoConsensus && !pairs.AreHalf());
+  if (!refutes) return {};
   return tl::unexpected<Error>(std::move(fit.error()));
 }
 
@@ -62,36 +87,32 @@ Expected<void> CheckExplained(const PnpView& view, const Rigid3d& view_from_lida
   const double extent = SquaresAboutMean(
       count, [&](std::size_t i) -> const Eigen::Vector2d& { return view.image_points[i]; });
   if (fit.behind == 0 && fit.sum_squares <= kSmallShare * extent) return {};
-  const double near = 0.25 * extent / static_cast<double>(count);
-  std::size_t explained = 0;
+  WellExplained explained(count, extent);
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3d in_view = view_from_lidar * view.points[i];
-    const bool is_seen = in_view.z() > 0.0;
-    if (is_seen && (in_view.hnormalized() - view.image_points[i]).squaredNorm() <= near) {
-      ++explained;
-    }
+    if (in_view.z() <= 0.0) continue;
+    explained.Add((in_view.hnormalized() - view.image_points[i]).squaredNorm());
   }
-  return AskSqpnp(view, 2 * explained >= count);
+  return AskSqpnp(view, explained);
 }
 
 Expected<void> CheckExplained(const Camera& camera, std::span<const Pair2d3d> pairs,
                               const Rigid3d& cam_from_lidar) {
   if (pairs.size() < kMinToCheck) return {};
-  const double near = 0.25 * ExtentOf(pairs) / static_cast<double>(pairs.size());
+  WellExplained explained(pairs.size(), ExtentOf(pairs));
   double squares = 0.0;
   bool all_project = true;
-  std::size_t explained = 0;
   for (const Pair2d3d& pair : pairs) {
     const auto residual = ReprojectionResidual(camera, cam_from_lidar, pair);
     all_project = all_project && residual.has_value();
     if (!residual) continue;
     squares += residual->squaredNorm();
-    if (residual->squaredNorm() <= near) ++explained;
+    explained.Add(residual->squaredNorm());
   }
   if (all_project && IsSmallAgainstImage(pairs, squares)) return {};
   const Expected<PnpView> view = MakeView(camera, pairs);
   if (!view) return {};
-  return AskSqpnp(*view, 2 * explained >= pairs.size());
+  return AskSqpnp(*view, explained);
 }
 
 }  // namespace sextant

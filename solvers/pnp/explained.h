@@ -17,7 +17,8 @@ bool IsSmallAgainstImage(std::span<const Pair2d3d> pairs, double sum_squares_px2
 /// Whether sqpnp, which finds all minima in front of the camera and behind it, accepts data that
 /// the pose of some solver explains badly, so that all solvers refuse what one of them refuses.
 /// Without a search where the residuals are small (IsSmallAgainstImage). A pose that leaves half of
-/// the pairs within half of the spread of their pixels is one that sqpnp did not find.
+/// the pairs, besides the three that any pose fits, within three quarters of the spread of their
+/// pixels is one that sqpnp did not find.
 /// `view_from_lidar` is the pose in the view. Errors: kMirrored and kNoConsensus, those of
 /// SolveSqpnp.
 Expected<void> CheckExplained(const PnpView& view, const Rigid3d& view_from_lidar);

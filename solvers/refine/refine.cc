@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 #include <tuple>
+#include <utility>
 
 #include "geometry/lens_domain.h"
 #include "geometry/symmetric.h"
@@ -84,12 +85,25 @@ class RefineSolver final : public Solver {
         options_(options) {}
 
  private:
+  struct QuickAnswer {
+    Estimate estimate;
+    bool is_certain = false;  // Of small residuals; else the start may have been a bad one.
+  };
+
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
-    if (std::optional<Estimate> quick = FromTriples(problem)) return *std::move(quick);
-    SEXTANT_ASSIGN_OR_RETURN(SolveReport start, inner_->Solve(problem));
-    start.stages.push_back(
-        {start.solver, start.cam_from_lidar, start.iterations, start.wall_time_us});
-    return RefineFrom(problem, start);
+    std::optional<QuickAnswer> quick = FromTriples(problem);
+    if (quick && quick->is_certain) return std::move(quick->estimate);
+    Expected<SolveReport> start = inner_->Solve(problem);
+    if (!start) {
+      // Outliers may leave the inner solver a pose that explains nothing, and the refined one much.
+      const bool is_refuted = !quick || !CheckExplained(*problem.camera, problem.pairs_2d3d,
+                                                        quick->estimate.cam_from_lidar);
+      if (is_refuted) return tl::unexpected<Error>(std::move(start.error()));
+      return std::move(quick->estimate);
+    }
+    start->stages.push_back(
+        {start->solver, start->cam_from_lidar, start->iterations, start->wall_time_us});
+    return RefineFrom(problem, *start);
   }
 
   std::optional<Estimate> DoSolveFrom(const CalibrationProblem& problem, const Estimate& answer,
@@ -121,9 +135,8 @@ class RefineSolver final : public Solver {
   }
 
   // Plain least squares on pixels from p3p, with the vectorised StartFromTriples in place of p3p
-  // itself. None for other settings, and where the residuals are too large, so that the start was a
-  // bad one.
-  std::optional<Estimate> FromTriples(const CalibrationProblem& problem) const {
+  // itself. None for other settings.
+  std::optional<QuickAnswer> FromTriples(const CalibrationProblem& problem) const {
     if (options_.on != RefineOn::k2d3d || options_.Loss().kind != LossKind::kNone ||
         options_.intrinsics != 0U || options_.sigma_px > 0.0 || !IsP3pOfPinhole(*inner_, problem)) {
       return std::nullopt;
@@ -139,17 +152,15 @@ class RefineSolver final : public Solver {
     // pixels.
     limits.wants_information = false;
     const RefinedPose refined = RefinePose(terms.View(), *start, limits);
-    if (terms.noise_known && !IsExplained(refined, terms.size())) return std::nullopt;
-    // Where no pose explains the pixels well, the inner solver decides whether to answer.
-    if (!IsSmallAgainstImage(problem.pairs_2d3d, SquaredPixels(problem, refined))) {
-      return std::nullopt;
-    }
+    const bool is_certain =
+        (!terms.noise_known || IsExplained(refined, terms.size())) &&
+        IsSmallAgainstImage(problem.pairs_2d3d, SquaredPixels(problem, refined));
     Expected<Estimate> estimate = EstimateOf(terms, refined);
     if (!estimate) return std::nullopt;
     estimate->termination = Termination::kConverged;
     estimate->inliers = AllOf(terms.size());
     estimate->stages.push_back({inner_->spec().name, *start, 0, wall_time.count()});
-    return *std::move(estimate);
+    return std::optional<QuickAnswer>(std::in_place, *std::move(estimate), is_certain);
   }
 
   // Names the first pixel whose point does not project at the start.
