@@ -87,7 +87,8 @@ std::vector<JointWeights> WeightsOf(const JointModel& model, const JointState& s
     JointWeights own{{},
                      RayWeights(of.face, selection[i].face, noise.face, losses.face),
                      RayWeights(of.edges, selection[i].edges, noise.edges, losses.edges),
-                     Vector6d::Zero()};
+                     Vector6d::Zero(),
+                     0.0};
     for (std::size_t k = 0; k < of.printed.size(); ++k) {
       const double size = SizeOf(model.views[i].terms.printed[k]);
       const double limit = noise.printed * NormLimit(size, losses.printed.scale);
@@ -98,7 +99,8 @@ std::vector<JointWeights> WeightsOf(const JointModel& model, const JointState& s
     if (selection[i].IsUsed()) {
       const double norm =
           scale.cwiseProduct(LinkError(state, i, model.views[i].lever_m)).norm() / std::sqrt(6.0);
-      own.link = RootSlope(losses.link, NormLimit(6.0, losses.link.scale), norm) * scale;
+      own.link_factor = RootSlope(losses.link, NormLimit(6.0, losses.link.scale), norm);
+      own.link = own.link_factor * scale;
     }
     weights.push_back(std::move(own));
   }
