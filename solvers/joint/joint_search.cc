@@ -93,7 +93,7 @@ class JointSearch {
       const std::vector<BoardViewResiduals> residuals = Residuals();
       if (!is_last) LoosenNoise(residuals);
       constexpr double kAll = std::numeric_limits<double>::infinity();
-      answer_.selection = SelectWithin(model_, residuals, noise_, kAll);
+      answer_.selection = SelectWithin(residuals, noise_, kAll);
       const Rigid3d before = problem_.state().cam_from_lidar;
       const Expected<void> ok = Minimise(residuals, Losses(), tolerance);
       if (!ok && (is_last || ok.error().code != ErrorCode::kNoConvergence)) return ok;
@@ -120,7 +120,7 @@ class JointSearch {
     SEXTANT_RETURN_IF_ERROR(JudgeLosses());
     for (int round = 0; round < kMaxRounds; ++round) {
       const JointSelection before = answer_.selection;
-      answer_.selection = SelectWithin(model_, Residuals(), noise_, options_.cut);
+      answer_.selection = SelectWithin(Residuals(), noise_, options_.cut);
       SEXTANT_RETURN_IF_ERROR(Minimise(Residuals(), {}, RoundTolerance()));
       SEXTANT_ASSIGN_OR_RETURN(const std::vector<ViewSums> sums, Sums());
       const std::vector<bool> left_out = LeftOutBy(sums);
