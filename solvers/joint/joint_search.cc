@@ -114,8 +114,8 @@ class JointSearch {
         std::max({shift_m_, kLooseShift_m, Median(shifts) / std::sqrt(6.0)});
   }
 
-  // Alternates least squares, noise and selection until both stay, with links as loose as tells
-  // wrong views from others; then the minimum over what is selected.
+  // Alternates least squares, noise and selection until all stay the same, while views that are
+  // left out are still compared; then the minimum over what is selected.
   Expected<void> Cut() {
     SEXTANT_RETURN_IF_ERROR(JudgeLosses());
     for (int round = 0; round < kMaxRounds; ++round) {
