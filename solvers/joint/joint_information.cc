@@ -124,12 +124,16 @@ void AddLink(const JointLinearisation& at, const JointRows& rows, const DynamicM
     KindSum& sum = kLinkIsOutOfPlane[i] ? sums.out_of_plane : sums.in_plane;
     sum += {residual[i] * residual[i], std::max(0.0, spread(i, i))};
   }
+  // Without this view's link, the residual is (I - H)^-1 r and its variance that of the estimate,
+  // H (I - H)^-1, and of the link; H = I - spread, both of weighted rows.
   constexpr double kSmallest = 1e-7;
+  const double weight = std::pow(at.link_factors[rows.view], 2);
   const SymmetricEigen<6> eigen = EigenOf<6>(spread);
   for (int i = 0; i < 6; ++i) {
-    if (eigen.values[i] < kSmallest) continue;
-    const double along = eigen.vectors.col(i).dot(residual);
-    sums.contradiction += along * along / eigen.values[i];
+    const double rest = eigen.values[i];
+    if (rest < kSmallest) continue;
+    const double along = eigen.vectors.col(i).dot(residual) / rest;
+    sums.contradiction += along * along / (weight + std::max(0.0, 1.0 - rest) / rest);
     ++sums.freedom;
   }
 }

@@ -48,7 +48,8 @@ struct ViewSums {
   KindSum edges;
   KindSum out_of_plane;  ///< Of LinkError.
   KindSum in_plane;
-  /// Squared norm of LinkError whitened by its own covariance, chi-square distributed.
+  /// Squared norm of LinkError where this view's link is without weight, whitened by its
+  /// covariance with the noise that a used view has: chi-square distributed.
   double contradiction = 0.0;
   int freedom = 0;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/median.h"
+#include "solvers/joint/joint_contradiction.h"
 
 namespace sextant {
 namespace {
@@ -48,12 +49,7 @@ JointNoise MedianNoise(const std::vector<BoardViewResiduals>& residuals, const J
 }
 
 JointNoise WithMedianShift(const std::vector<ViewSums>& sums, const JointNoise& before) {
-  constexpr double kMedianOfSix = 5.348 / 6.0;  // Of chi-square with 6 degrees, over its mean.
-  std::vector<double> ratios;
-  for (const ViewSums& of : sums) {
-    if (of.freedom > 0) ratios.push_back(of.contradiction / (kMedianOfSix * of.freedom));
-  }
-  const double scale = std::sqrt(std::clamp(Median(ratios), 0.01, 100.0));
+  const double scale = std::sqrt(std::clamp(ContradictionScale(sums), 0.01, 100.0));
   JointNoise noise = before;
   noise.out_of_plane_m *= scale;
   noise.in_plane_m *= scale;

@@ -15,7 +15,7 @@ namespace {
 JointWeights NoWeights(const JointView& view) {
   return {std::vector<double>(view.terms.printed.size(), 0.0),
           std::vector<double>(view.terms.face.size(), 0.0),
-          std::vector<double>(view.terms.edges.size(), 0.0), Vector6d::Zero()};
+          std::vector<double>(view.terms.edges.size(), 0.0), Vector6d::Zero(), 0.0};
 }
 
 ceres::Problem::Options Unchecked() {
@@ -90,6 +90,7 @@ void JointProblem::SetWeights(std::vector<JointWeights> weights) {
     std::ranges::copy(weights[i].face, weights_[i].face.begin());
     std::ranges::copy(weights[i].edges, weights_[i].edges.begin());
     weights_[i].link = weights[i].link;
+    weights_[i].link_factor = weights[i].link_factor;
   }
 }
 
@@ -126,8 +127,13 @@ void JointProblem::StoreState() {
 }
 
 JointLinearisation JointProblem::Linearise() {
-  JointLinearisation at{
-      .shared = 6, .views = boards_.size(), .residuals = {}, .derivative = {}, .rows = rows_};
+  JointLinearisation at{.shared = 6,
+                        .views = boards_.size(),
+                        .residuals = {},
+                        .derivative = {},
+                        .rows = rows_,
+                        .link_factors = {}};
+  for (const JointWeights& weights : weights_) at.link_factors.push_back(weights.link_factor);
   ceres::Problem::EvaluateOptions options;
   options.residual_blocks = residuals_;
   options.parameter_blocks.push_back(cam_from_lidar_.data());

@@ -18,6 +18,7 @@ struct JointWeights {
   std::vector<double> face;
   std::vector<double> edges;
   Vector6d link = Vector6d::Zero();  ///< Of LinkError [1/m].
+  double link_factor = 0.0;          ///< The part of `link` that is not 1 / noise.
 };
 
 enum class JointKind { kPrinted, kFace, kEdges, kLink };
@@ -37,7 +38,8 @@ struct JointLinearisation {
   std::size_t views = 0;
   std::vector<double> residuals;
   ceres::CRSMatrix derivative;
-  std::vector<JointRows> rows;  ///< Those of the priors are in none.
+  std::vector<JointRows> rows;       ///< Those of the priors are in none.
+  std::vector<double> link_factors;  ///< JointWeights::link_factor of each view.
 };
 
 struct JointSteps {

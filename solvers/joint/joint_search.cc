@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/median.h"
+#include "solvers/joint/joint_contradiction.h"
 
 namespace sextant {
 namespace {
@@ -19,8 +20,8 @@ constexpr double kNearEnough = 1e-4;
 constexpr double kRoundTolerance = 1e-6;
 // Least shift of the views while outliers among them are unknown.
 constexpr double kLooseShift_m = 0.005;
-// Fewer views cannot tell which of them is wrong.
-constexpr std::ptrdiff_t kMinViews = 3;
+// Less shift makes no difference to which view contradicts the others.
+constexpr double kDecisionShift_m = 1e-4;
 
 RobustLoss LossOf(JointLoss kind, double scale) {
   constexpr LossKind kKinds[] = {LossKind::kNone, LossKind::kHuber, LossKind::kCauchy};
@@ -92,7 +93,7 @@ class JointSearch {
       const std::vector<BoardViewResiduals> residuals = Residuals();
       if (!is_last) LoosenNoise(residuals);
       constexpr double kAll = std::numeric_limits<double>::infinity();
-      answer_.selection = SelectWithin(model_, residuals, noise_, kAll);
+      answer_.selection = SelectWithin(residuals, noise_, kAll);
       const Rigid3d before = problem_.state().cam_from_lidar;
       const Expected<void> ok = Minimise(residuals, Losses(), tolerance);
       if (!ok && (is_last || ok.error().code != ErrorCode::kNoConvergence)) return ok;
@@ -113,76 +114,73 @@ class JointSearch {
         std::max({shift_m_, kLooseShift_m, Median(shifts) / std::sqrt(6.0)});
   }
 
+  // Alternates least squares, noise and selection until all stay the same, while views that are
+  // left out are still compared; then the minimum over what is selected.
   Expected<void> Cut() {
-    SEXTANT_RETURN_IF_ERROR(LeaveOutViews());
-    bool settled = false;
+    SEXTANT_RETURN_IF_ERROR(JudgeLosses());
     for (int round = 0; round < kMaxRounds; ++round) {
-      const std::vector<BoardViewResiduals> residuals = Residuals();
-      JointSelection within = SelectWithin(model_, residuals, noise_, options_.cut);
-      for (std::size_t i = 0; i < within.size(); ++i) {
-        if (left_out_[i]) within[i].Clear();
-      }
-      const bool same = within == answer_.selection;
-      const bool is_last = settled && same;
-      answer_.selection = std::move(within);
-      const double tolerance = is_last ? options_.step_tolerance : kRoundTolerance;
-      SEXTANT_RETURN_IF_ERROR(
-          Minimise(residuals, {}, std::max(tolerance, options_.step_tolerance)));
-      const JointLinearisation at = problem_.Linearise();
-      const auto covariance = JointCovariance::Of(at);
-      if (!covariance) return Undetermined();
-      answer_.covariance = covariance->shared();
-      if (is_last) break;
-      const JointNoise before = noise_;
-      const std::vector<ViewSums> sums = SumsOf(at, *covariance);
-      const bool left_out = HasShift() && LeaveOut(sums);
-      if (IsEstimated()) noise_ = EstimateNoise(sums, before, shift_m_);
-      settled = same && !left_out && IsSameNoise(noise_, before);
+      const JointSelection before = answer_.selection;
+      answer_.selection = SelectWithin(Residuals(), noise_, options_.cut);
+      SEXTANT_RETURN_IF_ERROR(Minimise(Residuals(), {}, RoundTolerance()));
+      SEXTANT_ASSIGN_OR_RETURN(const std::vector<ViewSums> sums, Sums());
+      const std::vector<bool> left_out = LeftOutBy(sums);
+      const JointNoise noise = IsEstimated() ? NoiseOf(sums) : noise_;
+      const bool settled =
+          before == answer_.selection && left_out == left_out_ && IsSameNoise(noise, noise_);
+      left_out_ = left_out;
+      noise_ = noise;
+      if (settled) break;
     }
+    return Finish();
+  }
+
+  double RoundTolerance() const { return std::max(kRoundTolerance, options_.step_tolerance); }
+
+  // The level of the links by their median, and the first views to leave out.
+  Expected<void> JudgeLosses() {
+    SEXTANT_ASSIGN_OR_RETURN(const std::vector<ViewSums> sums, Sums());
+    left_out_ = LeftOutBy(sums);
+    if (IsEstimated() && HasShift()) {
+      noise_ = WithMedianShift(sums, noise_);
+    } else {
+      noise_.out_of_plane_m = noise_.in_plane_m = std::max(shift_m_, kDecisionShift_m);
+    }
+    if (!IsEstimated()) noise_.printed = noise_.face = noise_.edges = 1.0;
     return {};
   }
 
-  // Views that contradict the others, from the minimum of the losses with its loose shift.
-  Expected<void> LeaveOutViews() {
+  // Without the views that are left out.
+  Expected<void> Finish() {
+    for (std::size_t i = 0; i < left_out_.size(); ++i) {
+      if (left_out_[i]) answer_.selection[i].Clear();
+    }
+    if (!HasShift()) noise_.out_of_plane_m = noise_.in_plane_m = kNoShift_m;
+    SEXTANT_RETURN_IF_ERROR(Minimise(Residuals(), {}, options_.step_tolerance));
+    const auto covariance = JointCovariance::Of(problem_.Linearise());
+    if (!covariance) return Undetermined();
+    answer_.covariance = covariance->shared();
+    return {};
+  }
+
+  Expected<std::vector<ViewSums>> Sums() {
     const JointLinearisation at = problem_.Linearise();
     const auto covariance = JointCovariance::Of(at);
     if (!covariance) return Undetermined();
-    const std::vector<ViewSums> sums = SumsOf(at, *covariance);
-    if (HasShift()) {
-      const JointNoise loose = noise_;
-      noise_ = WithMedianShift(sums, loose);
-      const double scale = noise_.in_plane_m / loose.in_plane_m;
-      LeaveOut(sums, scale * scale);
-    } else {
-      LeaveOut(sums);
-      noise_.out_of_plane_m = noise_.in_plane_m = kNoShift_m;
-    }
-    if (!IsEstimated()) {
-      noise_ = {.out_of_plane_m = shift_m_, .in_plane_m = shift_m_};
-    }
-    return {};
+    return SumsOf(at, *covariance);
   }
 
-  // Leaves out the views beyond `cut`, all within a factor of two of the worst: one that is wrong
-  // makes others appear so. True where there was one.
-  bool LeaveOut(const std::vector<ViewSums>& sums, double scale = 1.0) {
-    constexpr double kAlike = 0.5;
-    const auto ratio = [&](const ViewSums& of) {
-      if (of.freedom == 0) return 0.0;
-      const double limit = std::sqrt(of.freedom) + options_.cut * std::sqrt(0.5);
-      return of.contradiction / (std::max(scale, 1e-6) * limit * limit);
-    };
-    double worst = 1.0;
-    std::ptrdiff_t seen = 0;
-    for (const ViewSums& of : sums) {
-      worst = std::max(worst, ratio(of));
-      seen += of.freedom > 0 ? 1 : 0;
-    }
-    if (worst <= 1.0 || seen < kMinViews) return false;
+  std::vector<bool> LeftOutBy(const std::vector<ViewSums>& sums) const {
+    return ContradictingViews(sums, left_out_, options_.cut);
+  }
+
+  JointNoise NoiseOf(std::vector<ViewSums> sums) const {
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      if (ratio(sums[i]) > std::max(1.0, kAlike * worst)) left_out_[i] = true;
+      if (left_out_[i]) sums[i] = {};
     }
-    return true;
+    JointNoise noise = EstimateNoise(sums, noise_, shift_m_);
+    noise.out_of_plane_m = std::max(noise.out_of_plane_m, kDecisionShift_m);
+    noise.in_plane_m = std::max(noise.in_plane_m, kDecisionShift_m);
+    return noise;
   }
 
   Expected<void> Minimise(const std::vector<BoardViewResiduals>& residuals,
@@ -193,8 +191,12 @@ class JointSearch {
                        "no view has a board that both sensors see at these poses; give views with "
                        "printed points and returns, or a better start");
     }
-    problem_.SetWeights(
-        WeightsOf(model_, problem_.state(), residuals, answer_.selection, noise_, losses));
+    std::vector<JointWeights> weights =
+        WeightsOf(model_, problem_.state(), residuals, answer_.selection, noise_, losses);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (left_out_[i]) Unlink(weights[i]);
+    }
+    problem_.SetWeights(std::move(weights));
     const JointSteps steps = problem_.Solve(options_.max_iterations, step_tolerance);
     answer_.iterations += steps.count;
     if (steps.converged) return {};
@@ -203,6 +205,14 @@ class JointSearch {
         fmt::format("no convergence within {} iterations; raise max_iterations, or wrap the inner "
                     "solver in gnc for a better start",
                     options_.max_iterations));
+  }
+
+  // A view that is left out keeps its poses by its own observations, so that it can be compared.
+  void Unlink(JointWeights& weights) const {
+    constexpr double kAnywhere_m = 1.0;
+    const double factor = noise_.in_plane_m / kAnywhere_m;
+    weights.link *= factor;
+    weights.link_factor *= factor;
   }
 
   const JointModel& model_;

@@ -11,7 +11,9 @@ namespace {
 // `sigmas`: its standard deviation is 1/sqrt(2) (Fisher 1922).
 double NormLimit(double size, double sigmas) { return 1.0 + sigmas * std::sqrt(0.5 / size); }
 
-double SizeOf(const PrintedTerm& term) { return 2.0 * static_cast<double>(term.pixels.size()); }
+// Degrees of freedom of what differs from print to print: blur, light and flatness change the
+// residuals of all its points together, so that they count as those of one point.
+constexpr double kPrintFreedom = 2.0;
 
 bool AnyOf(const std::vector<bool>& chosen) {
   return std::find(chosen.begin(), chosen.end(), true) != chosen.end();
@@ -58,8 +60,7 @@ void JointViewSelection::Clear() {
   for (std::vector<bool>* kind : {&printed, &face, &edges}) kind->assign(kind->size(), false);
 }
 
-JointSelection SelectWithin(const JointModel& model,
-                            const std::vector<BoardViewResiduals>& residuals,
+JointSelection SelectWithin(const std::vector<BoardViewResiduals>& residuals,
                             const JointNoise& noise, double sigmas) {
   JointSelection selection;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
@@ -67,8 +68,7 @@ JointSelection SelectWithin(const JointModel& model,
     JointViewSelection chosen{
         {}, WithinLimit(of.face, sigmas * noise.face), WithinLimit(of.edges, sigmas * noise.edges)};
     for (std::size_t k = 0; k < of.printed.size(); ++k) {
-      const double limit = NormLimit(SizeOf(model.views[i].terms.printed[k]), sigmas);
-      chosen.printed.push_back(of.printed[k] < limit * noise.printed);
+      chosen.printed.push_back(of.printed[k] < NormLimit(kPrintFreedom, sigmas) * noise.printed);
     }
     if (!chosen.IsUsed()) chosen.Clear();
     selection.push_back(std::move(chosen));
@@ -87,10 +87,10 @@ std::vector<JointWeights> WeightsOf(const JointModel& model, const JointState& s
     JointWeights own{{},
                      RayWeights(of.face, selection[i].face, noise.face, losses.face),
                      RayWeights(of.edges, selection[i].edges, noise.edges, losses.edges),
-                     Vector6d::Zero()};
+                     Vector6d::Zero(),
+                     0.0};
     for (std::size_t k = 0; k < of.printed.size(); ++k) {
-      const double size = SizeOf(model.views[i].terms.printed[k]);
-      const double limit = noise.printed * NormLimit(size, losses.printed.scale);
+      const double limit = noise.printed * NormLimit(kPrintFreedom, losses.printed.scale);
       own.printed.push_back(selection[i].printed[k]
                                 ? RootSlope(losses.printed, limit, of.printed[k]) / noise.printed
                                 : 0.0);
@@ -98,7 +98,8 @@ std::vector<JointWeights> WeightsOf(const JointModel& model, const JointState& s
     if (selection[i].IsUsed()) {
       const double norm =
           scale.cwiseProduct(LinkError(state, i, model.views[i].lever_m)).norm() / std::sqrt(6.0);
-      own.link = RootSlope(losses.link, NormLimit(6.0, losses.link.scale), norm) * scale;
+      own.link_factor = RootSlope(losses.link, NormLimit(6.0, losses.link.scale), norm);
+      own.link = own.link_factor * scale;
     }
     weights.push_back(std::move(own));
   }

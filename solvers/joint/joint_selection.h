@@ -24,12 +24,11 @@ using JointSelection = std::vector<JointViewSelection>;
 
 /// Observations within `sigmas` times the noise. A view that lacks one of the sensors has none, as
 /// it carries no information on the extrinsic.
-JointSelection SelectWithin(const JointModel& model,
-                            const std::vector<BoardViewResiduals>& residuals,
+JointSelection SelectWithin(const std::vector<BoardViewResiduals>& residuals,
                             const JointNoise& noise, double sigmas);
 
 /// A robust loss for each kind of observation. A BoardPoints of n points counts as one observation,
-/// with its norm relative to the mean norm sqrt(2 n).
+/// with its norm relative to the mean norm sqrt(2 n), but with the scatter of a single point.
 struct JointLosses {
   RobustLoss printed;
   RobustLoss face;

@@ -186,6 +186,22 @@ TEST(Joint, DropsAViewThatContradictsTheOthersAndNamesIt) {
   }
 }
 
+// Blur shifts all points of one photo, more than the others', but shows nothing wrong.
+TEST(Joint, KeepsAViewWhosePhotoIsNoisierThanTheOthers) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    SimulatedViews session = Views({.seed = seed, .views = 6});
+    Random random(seed);
+    BoardView& view = session.problem.board_views[2];
+    const double sigma_px = 2.0 * std::sqrt(view.printed.front().covariance_px2(0, 0));
+    for (Eigen::Vector2d& pixel : view.printed.front().pixels) {
+      pixel += sigma_px * Eigen::Vector2d(random.Normal(), random.Normal());
+    }
+    const auto report = Solve(session.problem, "joint(kabsch)");
+    ASSERT_TRUE(report) << "seed " << seed << ": " << report.error().message;
+    EXPECT_TRUE(report->board_views[2].used) << "seed " << seed;
+  }
+}
+
 TEST(Joint, DropsAViewOfOneSensor) {
   SimulatedViews session = Views({.seed = 13, .views = 4});
   session.problem.board_views[1].printed.clear();

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/joint/joint_contradiction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "base/median.h"
+
+namespace sextant {
+namespace {
+
+// A view's contribution to the degrees of freedom of the scale. Six normal differences would give
+// 3.8; those of real views have heavier tails.
+constexpr double kFreedomOfView = 2.0;
+constexpr double kAlike = 0.5;
+constexpr double kReturns = 0.7;
+
+// The normal quantile that corresponds to an F-distributed quotient (Wilson and Hilferty 1931;
+// Paulson 1942). It is bounded for few degrees of the denominator: three views and four never leave
+// one out at 4 sigma.
+double NormalOfF(double quotient, double freedom, double freedom_of_scale) {
+  const double root = std::cbrt(quotient);
+  const double a = 2.0 / (9.0 * freedom);
+  const double b = 2.0 / (9.0 * freedom_of_scale);
+  return ((1.0 - b) * root - (1.0 - a)) / std::sqrt(a + b * root * root);
+}
+
+}  // namespace
+
+double ContradictionScale(const std::vector<ViewSums>& sums) {
+  constexpr double kMedianOfSix = 5.348 / 6.0;  // Of chi-square with 6 degrees, over its mean.
+  std::vector<double> ratios;
+  for (const ViewSums& of : sums) {
+    if (of.freedom > 0) ratios.push_back(of.contradiction / (kMedianOfSix * of.freedom));
+  }
+  return Median(ratios);
+}
+
+std::vector<bool> ContradictingViews(const std::vector<ViewSums>& sums,
+                                     const std::vector<bool>& before, double sigmas) {
+  const double scale = std::max(ContradictionScale(sums), 1e-6);
+  const auto seen = static_cast<double>(
+      std::ranges::count_if(sums, [](const ViewSums& of) { return of.freedom > 0; }));
+  std::vector<double> beyond(sums.size(), 0.0);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (sums[i].freedom == 0) continue;
+    const double quotient = sums[i].contradiction / (scale * sums[i].freedom);
+    if (NormalOfF(quotient, sums[i].freedom, kFreedomOfView * seen) >
+        (before[i] ? kReturns : 1.0) * sigmas) {
+      beyond[i] = quotient;
+    }
+    if (!before[i]) worst = std::max(worst, beyond[i]);
+  }
+  std::vector<bool> contradicts;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    contradicts.push_back(beyond[i] > 0.0 && (before[i] || beyond[i] >= kAlike * worst));
+  }
+  const auto count = static_cast<double>(std::ranges::count(contradicts, true));
+  if (2.0 * count >= seen) contradicts.assign(sums.size(), false);
+  return contradicts;
+}
+
+}  // namespace sextant
