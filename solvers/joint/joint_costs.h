@@ -39,7 +39,7 @@ class FaceCost final : public ceres::CostFunction {
  private:
   const JointView& view_;
   const FaceGroup& group_;
-  const std::vector<double>& weights_;  ///< Of all face returns of the view.
+  const std::vector<double>& weights_;  ///< For all face returns of the view.
 };
 
 /// Edge rays of a view. Parameters: the view's, then what shifts its sides.

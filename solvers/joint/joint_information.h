@@ -17,10 +17,10 @@ class JointCovariance {
   /// None where the pose or a shared number is undetermined.
   static std::optional<JointCovariance> Of(const JointLinearisation& at);
 
-  /// Of (dphi, dt) of cam_from_lidar and the shared numbers.
+  /// For (dphi, dt) of cam_from_lidar and the shared numbers.
   const Eigen::MatrixXd& shared() const { return shared_; }
 
-  /// Of the shared numbers and the 12 of a view's poses. Directions of the latter without
+  /// For the shared numbers and the 12 of a view's poses. Directions of the latter without
   /// information count as known.
   Eigen::MatrixXd WithView(std::size_t view) const;
 
@@ -32,7 +32,7 @@ class JointCovariance {
 
 /// How the residuals of a linearisation compare with what is expected of them.
 struct KindSum {
-  double squares = 0.0;     ///< Of the weighted residuals.
+  double squares = 0.0;     ///< Sum over the weighted residuals.
   double redundancy = 0.0;  ///< Their expected sum: the rows' number less their leverages.
 
   KindSum& operator+=(const KindSum& other) {
@@ -46,7 +46,7 @@ struct ViewSums {
   KindSum printed;
   KindSum face;
   KindSum edges;
-  KindSum out_of_plane;  ///< Of LinkError.
+  KindSum out_of_plane;  ///< LinkError across the plane.
   KindSum in_plane;
   /// Squared norm of LinkError where this view's link is without weight, whitened by its
   /// covariance with the noise that a used view has: chi-square distributed.

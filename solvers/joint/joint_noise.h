@@ -12,7 +12,8 @@ struct JointNoise {
   double printed = 1.0;  ///< Standard deviation over the stated one, as the next two.
   double face = 1.0;
   double edges = 1.0;
-  double out_of_plane_m = 0.0;  ///< Of what shifts all returns of a view together; see LinkError.
+  double out_of_plane_m =
+      0.0;  ///< Sigma of what shifts all returns of a view together; see LinkError.
   double in_plane_m = 0.0;
 };
 

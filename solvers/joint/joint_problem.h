@@ -17,7 +17,7 @@ struct JointWeights {
   std::vector<double> printed;
   std::vector<double> face;
   std::vector<double> edges;
-  Vector6d link = Vector6d::Zero();  ///< Of LinkError [1/m].
+  Vector6d link = Vector6d::Zero();  ///< Weights of LinkError [1/m].
   double link_factor = 0.0;          ///< The part of `link` that is not 1 / noise.
 };
 

@@ -10,7 +10,7 @@ namespace sextant {
 /// The minimum over the inliers, and the selection of these.
 struct JointAnswer {
   JointState state;
-  Eigen::MatrixXd covariance;  ///< Of (dphi, dt), then the shared numbers.
+  Eigen::MatrixXd covariance;  ///< For (dphi, dt), then the shared numbers.
   JointSelection selection;    ///< One entry per view.
   JointNoise noise;
   int iterations = 0;  ///< Total over all rounds.

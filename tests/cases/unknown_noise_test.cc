@@ -110,7 +110,7 @@ struct Goals {
   Eigen::Vector3d translation;  ///< The right value [m].
   double sigma_ratio;           ///< Largest ratio of stated and bootstrap sigma; 0: not compared.
   bool says_too_few = false;    ///< The boards are too few to tell.
-  double rounding = 1e-5;       ///< Of the right value, and of the minimum [m].
+  double rounding = 1e-5;       ///< Rounding of the right value, and of the minimum [m].
 };
 
 void ExpectEveryRobustSolverIsRight(const FieldCase& of, const Goals& goals) {
