@@ -112,7 +112,9 @@ TEST(AcfrPairs, TheBoardOfEveryPairIsMatchedAndThePoseIsThePublishedOne) {
     EXPECT_LT(off.translation_m, 0.06) << spec;
     const double held_out_m = HeldOutRmse(assembly->problem, spec);
     EXPECT_LT(held_out_m, 0.025) << spec;
-    if (is_joint) EXPECT_LE(held_out_m, start_m) << spec;
+    if (is_joint) {
+      EXPECT_LE(held_out_m, start_m) << spec;
+    }
     start_m = held_out_m;
     EXPECT_TRUE(Diagnose(views, *assembly, report->cam_from_lidar).empty());
   }
