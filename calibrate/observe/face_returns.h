@@ -17,7 +17,7 @@ struct FaceOfBoard {
 
 /// The patch's returns inside the fitted outline.
 FaceOfBoard FaceReturns(const ScanRings& scan, const BoardPatch& patch,
-                                         std::span<const Board> boards);
+                        std::span<const Board> boards);
 
 /// Standard deviation of the returns' ranges about the ranges at which their rays meet the plane
 /// [m]. The plane's own sigma for fewer than four returns.

@@ -98,9 +98,8 @@ Expected<std::vector<fs::path>> ExpandPattern(const fs::path& pattern) {
     }
   }
   if (error) {
-    return MakeError(ErrorCode::kIo,
-                     fmt::format("cannot read the folder '{}': {}",
-                                 Printable(folder.string(), 300), error.message()));
+    return MakeError(ErrorCode::kIo, fmt::format("cannot read the folder '{}': {}",
+                                                 Printable(folder.string(), 300), error.message()));
   }
   if (files.empty()) {
     return MakeError(ErrorCode::kMissingData,

@@ -127,7 +127,8 @@ int Render(const std::string& path, const MarkController& controller, MarkCanvas
 int Run(const MarkOptions& options) {
   const bool renders = !options.render_path.empty();
   if (const Expected<void> ok = CheckDisplay(); !renders && !ok) return Refuse("mark", ok.error());
-  if (const Expected<void> ok = renders ? CheckRenderPath(options.render_path) : ClaimMarks(options);
+  if (const Expected<void> ok =
+          renders ? CheckRenderPath(options.render_path) : ClaimMarks(options);
       !ok) {
     return Refuse("mark", ok.error());
   }

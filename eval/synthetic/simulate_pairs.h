@@ -34,8 +34,8 @@ struct SimulatedSession {
 };
 
 /// Simulates pairs of both kinds with their stated noise, point sets, boards, camera and the true
-/// pose. The same seed gives the same bytes. Errors: kInvalidOption (not 1 to kMaxViews views, noise
-/// that is not positive, more outliers than corners).
+/// pose. The same seed gives the same bytes. Errors: kInvalidOption (not 1 to kMaxViews views,
+/// noise that is not positive, more outliers than corners).
 Expected<SimulatedSession> SimulatePairs(const PairSimulation& simulation);
 
 }  // namespace sextant

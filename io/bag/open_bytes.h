@@ -21,8 +21,7 @@ Expected<std::unique_ptr<Bag>> OpenMcap(std::string_view bytes, const std::strin
 // The bytes of a temporary string would not outlive the bag.
 Expected<std::unique_ptr<Bag>> OpenRosbag1(std::string&&, const std::string&,
                                            std::nullptr_t) = delete;
-Expected<std::unique_ptr<Bag>> OpenMcap(std::string&&, const std::string&,
-                                        std::nullptr_t) = delete;
+Expected<std::unique_ptr<Bag>> OpenMcap(std::string&&, const std::string&, std::nullptr_t) = delete;
 Expected<std::unique_ptr<Bag>> OpenRosbag2Sqlite(const std::filesystem::path& path);
 
 }  // namespace sextant

@@ -33,7 +33,8 @@ struct SessionOptions {
   std::filesystem::path folder{};
   SessionLevel level = SessionLevel::kFull;
   std::uint64_t seed = 1;
-  std::optional<std::uint64_t> unit{};  ///< Seed of the unit of the LiDAR (ScanOptions); none: seed.
+  std::optional<std::uint64_t>
+      unit{};  ///< Seed of the unit of the LiDAR (ScanOptions); none: seed.
   int scans = 1;
   double interval_s = 1.0;  ///< Time between the starts of successive scans.
   bool ideal = false;       ///< Level kFull without noise, blur, quantisation and beam width.

@@ -106,7 +106,8 @@ JointSteps JointProblem::Solve(int max_iterations, double step_tolerance) {
   options.num_threads = 1;
   options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   for (auto& board : boards_) options.linear_solver_ordering->AddElementToGroup(board.data(), 0);
-  // A group for each shared block: within one, Ceres orders by address, and sums would depend on it.
+  // A group for each shared block: within one, Ceres orders by address, and sums would depend on
+  // it.
   int group = 1;
   options.linear_solver_ordering->AddElementToGroup(cam_from_lidar_.data(), group);
   for (Eigen::VectorXd& block : state_.shared) {
