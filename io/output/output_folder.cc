@@ -55,6 +55,17 @@ Expected<void> MakeFolder(const fs::path& path) {
                                Printable(path.string(), 300), error.message()));
 }
 
+Expected<void> MakeSubfolder(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_symlink(path, error)) {
+    const std::string end = fs::read_symlink(path, error).string();
+    return WriteError(ErrorCode::kInvalidOption, path,
+                      fmt::format("it is a link to '{}'; remove it, or choose another folder",
+                                  Printable(end, 300)));
+  }
+  return MakeFolder(path);
+}
+
 class OutputFolder::Lock {
  public:
   explicit Lock(Descriptor folder) : folder_(std::move(folder)) {}

@@ -34,8 +34,7 @@ std::optional<ViewRectangle> MakeViewRectangle(const Rigid3d& cam_from_rectangle
   return face;
 }
 
-std::optional<ViewHit> ViewRectangle::Meet(const Eigen::Vector3d& ray) const {
-  const Eigen::Vector3d scaled = plane_from_ray * ray;
+std::optional<ViewHit> ViewRectangle::HitAt(const Eigen::Vector3d& scaled) const {
   const double s = scaled.z();
   if (!(s > 0.0) || std::abs(scaled.x()) > half_width_m * s ||
       std::abs(scaled.y()) > half_height_m * s) {

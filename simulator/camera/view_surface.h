@@ -44,7 +44,11 @@ struct ViewRectangle {
   Eigen::Vector3d center_in_cam = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_in_cam = Eigen::Vector3d::Zero();  ///< Normal of the visible side.
 
-  std::optional<ViewHit> Meet(const Eigen::Vector3d& ray) const;
+  std::optional<ViewHit> Meet(const Eigen::Vector3d& ray) const {
+    return HitAt(plane_from_ray * ray);
+  }
+  /// The hit of the ray that plane_from_ray maps to `scaled`.
+  std::optional<ViewHit> HitAt(const Eigen::Vector3d& scaled) const;
   ViewPatch PatchAt(const ViewHit& hit) const;
 };
 

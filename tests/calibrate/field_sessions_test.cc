@@ -99,20 +99,22 @@ TEST(FieldSessions, AcfrViewsOneByOneGiveTheSessionsPoseOrNone) {
   Board board{.id = 0, .top_right_m = 0.85, .right_bottom_m = 0.61};
   board.checker = BoardChecker{.inner_columns = 7, .inner_rows = 5, .square_m = 0.095};
   const Session session = SessionIn(folder / "images" / "*.png", folder / "full" / "*.pcd");
-  const Expected<Calibration> all = Calibrate(session, OptionsFor(board, camera));
-  ASSERT_TRUE(all && all->result);
-  for (const FilePair& pair : session.files.pairs) {
-    Session one = session;
-    one.files.pairs = {pair};
-    CalibrateOptions options = OptionsFor(board, camera);
-    options.match.initial = all->result->cam_from_lidar;
-    const Expected<Calibration> calibration = Calibrate(one, options);
-    ASSERT_TRUE(calibration);
-    if (!calibration->result) continue;
+  CalibrateOptions options = OptionsFor(board, camera);
+  const Expected<ObservedSession> observed = ObserveSession(session, options);
+  ASSERT_TRUE(observed) << observed.error().message;
+  const Calibration all = CalibrateObserved(*observed, options);
+  ASSERT_TRUE(all.result);
+  options.match.initial = all.result->cam_from_lidar;
+  for (std::size_t i = 0; i < observed->views.size(); ++i) {
+    ObservedSession one = *observed;
+    one.session.files.pairs = {session.files.pairs[i]};
+    one.views = {observed->views[i]};
+    const Calibration calibration = CalibrateObserved(std::move(one), options);
+    if (!calibration.result) continue;
     const PoseDistance off =
-        DistanceBetween(calibration->result->cam_from_lidar, all->result->cam_from_lidar);
-    EXPECT_LT(off.translation_m, 0.3) << pair.name;
-    EXPECT_LT(off.rotation_rad * kDegPerRad, 6.0) << pair.name;
+        DistanceBetween(calibration.result->cam_from_lidar, all.result->cam_from_lidar);
+    EXPECT_LT(off.translation_m, 0.3) << observed->views[i].name;
+    EXPECT_LT(off.rotation_rad * kDegPerRad, 6.0) << observed->views[i].name;
   }
 }
 

@@ -69,6 +69,24 @@ TEST(TextTable, WrapsTheWidestColumns) {
 }
 
 // Texts of others are cells of every output.
+TEST(TextTable, TheLastColumnsOfWideTablesFollowBelow) {
+  TextTable table({"solver", "x [m]", "y [m]", "time [us]"});
+  table.AddRow({"ransac(kabsch,seed=3)", "1.25", "-3.5", "17.0"});
+  EXPECT_EQ(table.Plain(32),
+            "solver        x [m]  y [m]\n"
+            "--------------------------\n"
+            "ransac(       1.25   -3.5\n"
+            "kabsch,\n"
+            "seed=3)\n"
+            "\n"
+            "solver        time [us]\n"
+            "-----------------------\n"
+            "ransac(            17.0\n");
+  for (int i = 0; i < 20; ++i) table.AddRow({std::string(50, 'a'), "1", "2", "3"});
+  std::istringstream lines(table.Plain());
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
+}
+
 TEST(TextTable, HostileCellsStayInTheirRow) {
   TextTable table({"a", "b"}, TextTable::Columns::kWords);
   for (const std::string& text : test::HostileTexts()) {
