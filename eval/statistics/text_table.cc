@@ -36,15 +36,16 @@ std::vector<std::vector<std::size_t>> BlocksOf(const std::vector<std::size_t>& w
   return blocks;
 }
 
-// The lines of a cell: broken at blanks, after the bars between choices and the commas of specs,
-// and where none of them is near.
+// The lines of a cell: broken at blanks and after the bars between choices, else within specs, else
+// anywhere.
 std::vector<std::string> WrapText(std::string_view text, std::size_t width) {
   std::vector<std::string> lines;
   while (text.size() > width) {
     // npos + 1 is 0, as for a break at the beginning.
     const std::size_t after_blank = text.substr(0, width + 1).rfind(' ') + 1;
-    const std::size_t after_bar = text.substr(0, width).find_last_of("|,") + 1;
+    const std::size_t after_bar = text.substr(0, width).rfind('|') + 1;
     std::size_t end = std::max(after_blank, after_bar);
+    if (end == 0) end = text.substr(0, width).find_last_of(",(") + 1;
     if (end == 0) end = width;
     lines.emplace_back(text.substr(0, end == after_blank ? end - 1 : end));
     text.remove_prefix(end);

@@ -98,7 +98,7 @@ TEST(TextTable, HostileCellsStayInTheirRow) {
   const auto count = static_cast<std::ptrdiff_t>(
       std::count_if(test::HostileTexts().begin(), test::HostileTexts().end(),
                     [](const std::string& text) { return text.size() < 100; }));
-  EXPECT_EQ(rows(table.Plain()), count + 2);
+  EXPECT_EQ(rows(table.Plain(std::string::npos)), count + 2);
   EXPECT_EQ(rows(table.Markdown()), count + 2);
   EXPECT_EQ(ExpectFullRows(table.Latex(), "table"), count + 1);
   for (std::string text : {table.Plain(), table.Markdown(), table.Latex()}) {
