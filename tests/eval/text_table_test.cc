@@ -75,13 +75,15 @@ TEST(TextTable, TheLastColumnsOfWideTablesFollowBelow) {
   EXPECT_EQ(table.Plain(32),
             "solver        x [m]  y [m]\n"
             "--------------------------\n"
-            "ransac(       1.25   -3.5\n"
+            "ransac(        1.25   -3.5\n"
             "kabsch,\n"
             "seed=3)\n"
             "\n"
             "solver        time [us]\n"
             "-----------------------\n"
-            "ransac(            17.0\n");
+            "ransac(            17.0\n"
+            "kabsch,\n"
+            "seed=3)\n");
   for (int i = 0; i < 20; ++i) table.AddRow({std::string(50, 'a'), "1", "2", "3"});
   std::istringstream lines(table.Plain());
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
