@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <vector>
 
+#include "base/text/lower_case.h"
 #include "io/clouds/cloud_builder.h"
 #include "io/clouds/csv_cloud.h"
 #include "io/clouds/float_cloud.h"
@@ -22,10 +22,7 @@ namespace sextant {
 namespace {
 
 std::string LowerExtension(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
+  return LowerCase(std::filesystem::path(file).extension().string());
 }
 
 bool IsTableExtension(const std::string& extension) {

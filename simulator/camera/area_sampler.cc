@@ -104,14 +104,12 @@ class Block {
   double MeanOf(const std::array<double, 4>& corners, const RadianceAt& radiance_at) {
     static const std::vector<Eigen::Vector2d> coarse = FibonacciLattice(55, 34);
     static const std::vector<Eigen::Vector2d> fine = FibonacciLattice(377, 233);
-    samples_.clear();
-    for (const Eigen::Vector2d& at : coarse) samples_.push_back({at, radiance_at(at)});
     const auto is_first = [&](double radiance) { return SameRadiance(radiance, corners[0]); };
-    if (std::ranges::all_of(corners, is_first) &&
-        std::ranges::all_of(samples_, is_first, &SquareSample::radiance)) {
-      return MeanOf(corners);
+    if (std::ranges::all_of(corners, is_first)) {
+      if (std::ranges::all_of(coarse, is_first, radiance_at)) return MeanOf(corners);
+    } else if (const auto mean = MeanAcrossStraightEdge(corners, coarse, radiance_at)) {
+      return *mean;
     }
-    if (const auto mean = MeanAcrossStraightEdge(corners, samples_, radiance_at)) return *mean;
     double sum = 0.0;
     for (const Eigen::Vector2d& at : fine) sum += radiance_at(at);
     return sum / static_cast<double>(fine.size());
@@ -185,7 +183,6 @@ class Block {
   std::vector<int> candidates_;
   bool has_sliver_ = false;
   std::vector<int> around_;
-  std::vector<SquareSample> samples_;
   std::vector<Seen> seen_;
   std::vector<bool> has_layers_;
 };

@@ -56,8 +56,7 @@ ViewPatch ViewRectangle::PatchAt(const ViewHit& hit) const {
   if (!(tile_m > 0.0)) return {.radiance = white};
   const int column = static_cast<int>((hit.u_m + half_width_m) / tile_m);
   const int row = static_cast<int>((hit.v_m + half_height_m) / tile_m);
-  const int columns = static_cast<int>(2.0 * half_width_m / tile_m) + 1;
-  const int cell = row * columns + column;
+  const int cell = row * tile_columns + column;
   if (speckled) return {0, cell, black + (white - black) * Speckle(cell)};
   return {0, cell, (row + column) % 2 == 0 ? white : black};
 }

@@ -38,6 +38,7 @@ struct ViewRectangle {
   std::optional<BoardHole> hole{};
   std::optional<BoardPrint> print{};  ///< If none, the face is plain, or tiled if tile_m > 0.
   double tile_m = 0.0;
+  int tile_columns = 1;   ///< For tile_m > 0.
   bool speckled = false;  ///< Each tile has its own radiance between black and white.
   double white = 0.0;     ///< Radiance.
   double black = 0.0;
