@@ -8,6 +8,7 @@
 #include "io/output/standard_output.h"
 
 namespace sextant::cli {
+
 std::string WroteLine(const std::filesystem::path& path, std::string_view what) {
   return fmt::format("{}: {}\n", PathText(path), what);
 }
