@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-#include "base/text/printable.h"
+#include "base/text/path_text.h"
 #include "calibrate/configuration.h"
 #include "calibrate/observe/probe_size.h"
 #include "calibrate/trust/diagnose.h"
@@ -67,7 +67,7 @@ std::vector<std::string> WarningsFor(const Calibration& calibration, const Match
   };
   add(named(DescribeAmbiguity(assembly.matching, match)));
   for (const std::filesystem::path& file : calibration.observed.session.files.without_partner) {
-    warnings.push_back(fmt::format("without a partner: {}", Printable(file.string(), 300)));
+    warnings.push_back(fmt::format("without a partner: {}", PathText(file)));
   }
   const SolveReport* report = calibration.report();
   const Rigid3d& pose =

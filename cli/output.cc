@@ -3,19 +3,14 @@
 
 #include <fmt/core.h>
 
-#include "base/text/printable.h"
+#include "base/text/path_text.h"
 #include "io/output/output_file.h"
 #include "io/output/standard_output.h"
 
 namespace sextant::cli {
-namespace {
-
-constexpr std::size_t kMaxPathBytes = 300;
-
-}  // namespace
 
 std::string WroteLine(const std::filesystem::path& path, std::string_view what) {
-  return fmt::format("{}: {}\n", Printable(path.string(), kMaxPathBytes), what);
+  return fmt::format("{}: {}\n", PathText(path), what);
 }
 
 int ExitCodeOf(const Error& error, int exit_code) {

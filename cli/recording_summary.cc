@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "base/text/path_text.h"
 #include "eval/statistics/text_table.h"
 #include "io/text/number_text.h"
 
@@ -25,8 +26,8 @@ std::string Summary(const Bag& bag, const std::string& path) {
     last = messages == 0 ? topic.last_ns : std::max(last, topic.last_ns);
     messages += topic.count;
   }
-  std::string text = fmt::format("{}: {}, {} topics, {} messages", Printable(path, 200),
-                                 bag.format(), bag.topics().size(), messages);
+  std::string text = fmt::format("{}: {}, {} topics, {} messages", PathText(path), bag.format(),
+                                 bag.topics().size(), messages);
   if (messages > 0) {
     text += fmt::format(", {} s from {:%Y-%m-%d %H:%M:%S} UTC", Fixed(Seconds(last - first), 3),
                         fmt::gmtime(static_cast<std::time_t>(first / 1'000'000'000)));

@@ -55,7 +55,7 @@ class Extractor {
     SEXTANT_ASSIGN_OR_RETURN(const std::optional<Extracted> file, Convert(message));
     if (!file) return {};
     const std::filesystem::path folder = FolderOf(message.topic_index);
-    SEXTANT_RETURN_IF_ERROR(MakeFolder(folder));
+    SEXTANT_RETURN_IF_ERROR(MakeSubfolder(folder));
     extensions_[message.topic_index] = file->extension;
     ++files_;
     return WriteFileAtomically(folder / (name + file->extension), file->bytes);

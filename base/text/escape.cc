@@ -179,4 +179,10 @@ std::string JsonText(const nlohmann::ordered_json& document, int indent) {
   return escaped;
 }
 
+std::string JsonLine(const nlohmann::ordered_json& document) {
+  std::string text = JsonText(document, /*indent=*/-1);
+  text.pop_back();
+  return text;
+}
+
 }  // namespace sextant

@@ -35,4 +35,7 @@ std::string YamlQuoted(std::string text);
 /// \uNNNN, and so survive; bytes that are not UTF-8 become U+FFFD.
 std::string JsonText(const nlohmann::ordered_json& document, int indent = 2);
 
+/// The same on one line, without a line feed at its end.
+std::string JsonLine(const nlohmann::ordered_json& document);
+
 }  // namespace sextant

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "base/text/path_text.h"
 #include "base/text/printable.h"
 
 namespace sextant {
@@ -99,11 +100,11 @@ Expected<std::vector<fs::path>> ExpandPattern(const fs::path& pattern) {
   }
   if (error) {
     return MakeError(ErrorCode::kIo, fmt::format("cannot read the folder '{}': {}",
-                                                 Printable(folder.string(), 300), error.message()));
+                                                 PathText(folder), error.message()));
   }
   if (files.empty()) {
     return MakeError(ErrorCode::kMissingData,
-                     fmt::format("no file is named '{}'", Printable(pattern.string(), 300)));
+                     fmt::format("no file is named '{}'", PathText(pattern)));
   }
   std::vector<std::pair<std::string, fs::path>> by_key;
   for (fs::path& file : files) by_key.emplace_back(NaturalKey(file.string()), std::move(file));

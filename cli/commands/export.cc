@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/text/printable.h"
+#include "base/text/path_text.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "io/export/export_transform.h"
@@ -100,8 +100,8 @@ int Run(const ExportCommandOptions& options) {
   if (const Expected<void> ok = WriteFileAtomically(options.out, *text); !ok) {
     return Refuse("export", ok.error());
   }
-  Print("{}", WroteLine(options.out, fmt::format("{} of {}", options.format,
-                                                 Printable(options.result_path, 200))));
+  Print("{}", WroteLine(options.out,
+                        fmt::format("{} of {}", options.format, PathText(options.result_path))));
   return kAnswered;
 }
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "base/text/printable.h"
+#include "base/text/path_text.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/pose_file.h"
@@ -134,7 +134,7 @@ int Run(const FuseOptions& options) {
   Print("{}{}", Describe(options, clouds, last_from_cloud),
         WroteLine(options.out,
                   fmt::format("{} points of {} clouds in the frame of {}", fused.points.size(),
-                              clouds.size(), Printable(options.clouds.back(), 200))));
+                              clouds.size(), PathText(options.clouds.back()))));
   return kAnswered;
 }
 

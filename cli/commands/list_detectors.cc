@@ -31,8 +31,7 @@ std::string DescribeEntry(const TagDetectorEntry& entry, bool markdown) {
     table.AddRow({doc.name, doc.default_value, doc.unit, doc.meaning});
   }
   return fmt::format("{}{}: {}, as in {}\n\n{}\n", markdown ? "### " : "", entry.name,
-                     entry.summary, entry.example,
-                     markdown ? table.Markdown() : table.Plain(/*max_width=*/100));
+                     entry.summary, entry.example, markdown ? table.Markdown() : table.Plain());
 }
 
 int Run(const ListDetectorsOptions& options) {

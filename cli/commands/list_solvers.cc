@@ -37,7 +37,7 @@ std::string InFull(const SolverEntry& entry) {
   std::string text =
       fmt::format("{}\n  does       {}\n  needs      {}\n  reference  {}\n  example    {}\n",
                   Usage(entry), entry.summary, entry.needs, entry.reference, entry.example);
-  if (!entry.options.empty()) text += "\n" + OptionsTable(entry).Plain(/*max_width=*/100);
+  if (!entry.options.empty()) text += "\n" + OptionsTable(entry).Plain();
   return text;
 }
 

@@ -20,7 +20,24 @@ std::size_t SumOf(const std::vector<std::size_t>& widths) {
   return std::accumulate(widths.begin(), widths.end(), kGap * (widths.size() - 1));
 }
 
-// The lines of a cell: broken at blanks, after the bars between choices, and where neither is near.
+// The columns of each block of lines, the first column in all of them.
+std::vector<std::vector<std::size_t>> BlocksOf(const std::vector<std::size_t>& widths,
+                                               std::size_t max_width) {
+  std::vector<std::vector<std::size_t>> blocks = {{0}};
+  std::size_t width = widths[0];
+  for (std::size_t i = 1; i < widths.size(); ++i) {
+    if (width + kGap + widths[i] > max_width && blocks.back().size() > 1) {
+      blocks.push_back({0});
+      width = widths[0];
+    }
+    blocks.back().push_back(i);
+    width += kGap + widths[i];
+  }
+  return blocks;
+}
+
+// The lines of a cell: broken at blanks and after the bars between choices, else within specs, else
+// anywhere.
 std::vector<std::string> WrapText(std::string_view text, std::size_t width) {
   std::vector<std::string> lines;
   while (text.size() > width) {
@@ -28,6 +45,7 @@ std::vector<std::string> WrapText(std::string_view text, std::size_t width) {
     const std::size_t after_blank = text.substr(0, width + 1).rfind(' ') + 1;
     const std::size_t after_bar = text.substr(0, width).rfind('|') + 1;
     std::size_t end = std::max(after_blank, after_bar);
+    if (end == 0) end = text.substr(0, width).find_last_of(",(") + 1;
     if (end == 0) end = width;
     lines.emplace_back(text.substr(0, end == after_blank ? end - 1 : end));
     text.remove_prefix(end);
@@ -48,6 +66,10 @@ std::vector<std::size_t> TextTable::Widths(std::size_t max_width) const {
   for (const auto& row : rows_) {
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
   }
+  if (columns_ == Columns::kNumbers) {
+    if (SumOf(widths) > max_width) widths[0] = std::min(widths[0], max_width * 2 / 5);
+    return widths;
+  }
   // Narrower columns would be harder to read than long lines.
   constexpr std::size_t kMinWrapped = 16;
   while (SumOf(widths) > max_width) {
@@ -59,10 +81,11 @@ std::vector<std::size_t> TextTable::Widths(std::size_t max_width) const {
 }
 
 std::string TextTable::PlainRow(const std::vector<std::string>& row,
-                                const std::vector<std::size_t>& widths) const {
+                                const std::vector<std::size_t>& widths,
+                                const std::vector<std::size_t>& columns) const {
   std::vector<std::vector<std::string>> cells;
   std::size_t height = 0;
-  for (std::size_t i = 0; i < row.size(); ++i) {
+  for (const std::size_t i : columns) {
     height = std::max(height, cells.emplace_back(WrapText(row[i], widths[i])).size());
   }
   std::string text;
@@ -71,8 +94,9 @@ std::string TextTable::PlainRow(const std::vector<std::string>& row,
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const std::string cell = k < cells[i].size() ? cells[i][k] : std::string();
       if (i > 0) line += std::string(kGap, ' ');
-      line += IsFlushLeft(i) ? fmt::format("{:<{}}", cell, widths[i])
-                             : fmt::format("{:>{}}", cell, widths[i]);
+      const std::size_t column = columns[i];
+      line += IsFlushLeft(column) ? fmt::format("{:<{}}", cell, widths[column])
+                                  : fmt::format("{:>{}}", cell, widths[column]);
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
@@ -83,9 +107,14 @@ std::string TextTable::PlainRow(const std::vector<std::string>& row,
 std::string TextTable::Plain(std::size_t max_width) const {
   const std::vector<std::size_t> widths = Widths(max_width);
   std::string text;
-  for (const auto& row : rows_) {
-    text += PlainRow(row, widths);
-    if (&row == &rows_.front()) text += std::string(SumOf(widths), '-') + "\n";
+  for (const std::vector<std::size_t>& block : BlocksOf(widths, max_width)) {
+    if (!text.empty()) text += "\n";
+    std::vector<std::size_t> shown;
+    for (const std::size_t column : block) shown.push_back(widths[column]);
+    for (const auto& row : rows_) {
+      text += PlainRow(row, widths, block);
+      if (&row == &rows_.front()) text += std::string(SumOf(shown), '-') + "\n";
+    }
   }
   return text;
 }

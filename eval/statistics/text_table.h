@@ -25,8 +25,10 @@ class TextTable {
   void AddRow(std::vector<std::string> cells);
 
   /// Text for a terminal; every line ends with a line feed and has no trailing blanks. Where the
-  /// lines would be longer than `max_width` characters, the widest columns are wrapped.
-  std::string Plain(std::size_t max_width = std::string::npos) const;
+  /// lines would be longer than `max_width` characters, the first column or, of words, the widest
+  /// columns are wrapped; if that is not enough, the last columns follow below, beside the first
+  /// one again.
+  std::string Plain(std::size_t max_width = 100) const;
 
   /// A Markdown table (GitHub's dialect); code in `backquotes` stays code.
   std::string Markdown() const;
@@ -36,8 +38,8 @@ class TextTable {
 
  private:
   std::vector<std::size_t> Widths(std::size_t max_width) const;
-  std::string PlainRow(const std::vector<std::string>& row,
-                       const std::vector<std::size_t>& widths) const;
+  std::string PlainRow(const std::vector<std::string>& row, const std::vector<std::size_t>& widths,
+                       const std::vector<std::size_t>& columns) const;
   bool IsFlushLeft(std::size_t column) const { return column == 0 || columns_ == Columns::kWords; }
 
   std::vector<std::vector<std::string>> rows_;

@@ -59,19 +59,49 @@ void Orient(const cv::Mat& grey, CheckerDetection& found) {
   if (turn) std::reverse(corners.begin(), corners.end());
 }
 
-// Refines the corners in windows that contain no other corner.
-void RefineBySubpix(const cv::Mat& grey, int columns, std::vector<cv::Point2f>& corners) {
-  constexpr int kLargestHalf_px = 11;
-  constexpr double kHalfOfSpacing = 0.4;
+// The smallest distance between neighbours of a row or column [px].
+double SmallestSpacing(int columns, const std::vector<cv::Point2f>& corners) {
   double spacing = std::numeric_limits<double>::infinity();
   const auto stride = static_cast<std::size_t>(columns);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (i % stride > 0) spacing = std::min(spacing, cv::norm(corners[i] - corners[i - 1]));
     if (i >= stride) spacing = std::min(spacing, cv::norm(corners[i] - corners[i - stride]));
   }
+  return spacing;
+}
+
+// Refines the corners in windows that contain no other corner.
+void RefineBySubpix(const cv::Mat& grey, int columns, std::vector<cv::Point2f>& corners) {
+  constexpr int kLargestHalf_px = 11;
+  constexpr double kHalfOfSpacing = 0.4;
+  const double spacing = SmallestSpacing(columns, corners);
   const int half = std::clamp(static_cast<int>(kHalfOfSpacing * spacing), 2, kLargestHalf_px);
   const cv::TermCriteria until(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 30, 0.01);
   cv::cornerSubPix(grey, corners, cv::Size(half, half), cv::Size(-1, -1), until);
+}
+
+// OpenCV's detector, whose time grows with the number of pixels.
+bool FindCorners(const cv::Mat& grey, const cv::Size& size, int flags,
+                 std::vector<cv::Point2f>& corners) {
+  // Normalising the image loses boards of low contrast but finds others in uneven light, so it
+  // is the second attempt.
+  const int thorough = flags | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE;
+  return cv::findChessboardCornersSB(grey, size, corners, flags) ||
+         cv::findChessboardCornersSB(grey, size, corners, thorough);
+}
+
+// Corners to about a pixel, from a large image at half its size; false where it has none, or where
+// the squares are so small there that they should be searched for in the whole image.
+bool FindInHalf(const cv::Mat& grey, const cv::Size& size, std::vector<cv::Point2f>& corners) {
+  constexpr int kLarge_px = 1'000'000;
+  constexpr double kMinSpacing_px = 10.0;
+  if (grey.rows * grey.cols < kLarge_px) return false;
+  cv::Mat half;
+  cv::resize(grey, half, {}, 0.5, 0.5, cv::INTER_AREA);
+  if (!cv::findChessboardCornersSB(half, size, corners, 0)) return false;
+  if (SmallestSpacing(size.width, corners) < kMinSpacing_px) return false;
+  for (cv::Point2f& corner : corners) corner = 2.0F * corner + cv::Point2f(0.5F, 0.5F);
+  return true;
 }
 
 class CheckerboardDetector final : public TagDetector {
@@ -84,11 +114,10 @@ class CheckerboardDetector final : public TagDetector {
     const int accuracy = options_.accurate ? cv::CALIB_CB_ACCURACY : 0;
     std::vector<cv::Point2f> corners;
     const cv::Size size(options_.columns, options_.rows);
-    // Normalising the image loses boards of low contrast but finds others in uneven light, so it
-    // is the second attempt.
-    const int thorough = accuracy | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE;
-    if (!cv::findChessboardCornersSB(grey, size, corners, accuracy) &&
-        !cv::findChessboardCornersSB(grey, size, corners, thorough)) {
+    // The grey levels of the whole image give the corners in the end.
+    const bool may_halve = options_.subpix && !options_.accurate;
+    if (!(may_halve && FindInHalf(grey, size, corners)) &&
+        !FindCorners(grey, size, accuracy, corners)) {
       return {};
     }
     if (options_.subpix) RefineBySubpix(grey, options_.columns, corners);

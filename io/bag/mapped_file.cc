@@ -11,14 +11,14 @@
 #include <system_error>
 
 #include "base/call_files.h"
+#include "base/text/path_text.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
 namespace {
 
 tl::unexpected<Error> ReadError(const std::filesystem::path& path, const std::string& reason) {
-  return MakeError(ErrorCode::kIo,
-                   fmt::format("cannot read '{}': {}", Printable(path.string(), 300), reason));
+  return MakeError(ErrorCode::kIo, fmt::format("cannot read '{}': {}", PathText(path), reason));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "base/text/path_text.h"
 #include "io/bag/byte_reader.h"
 #include "io/bag/decompress.h"
 #include "io/bag/open_bytes.h"
@@ -70,7 +71,7 @@ Expected<RecordsEnd> ForEachMcapRecord(std::string_view bytes, Take take) {
 class Mcap final : public Bag {
  public:
   Mcap(std::string_view bytes, const std::string& file, std::shared_ptr<const void> owner)
-      : bytes_(bytes), file_(Printable(file, 200)), owner_(std::move(owner)) {}
+      : bytes_(bytes), file_(PathText(file)), owner_(std::move(owner)) {}
 
   std::string_view format() const override { return "MCAP"; }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include "base/text/path_text.h"
 #include "io/bag/mapped_file.h"
 #include "io/bag/open_bytes.h"
 #include "io/bag/rosbag1_records.h"
@@ -29,7 +30,7 @@ Expected<std::filesystem::path> RecordingIn(const std::filesystem::path& folder)
     ++count;
     if (count == 1 || it->path() < found) found = it->path();
   }
-  const std::string name = Printable(folder.string(), 200);
+  const std::string name = PathText(folder);
   if (error) {
     return MakeError(ErrorCode::kIo, fmt::format("cannot read '{}': {}", name, error.message()));
   }
@@ -41,7 +42,7 @@ Expected<std::filesystem::path> RecordingIn(const std::filesystem::path& folder)
   return MakeError(ErrorCode::kIo,
                    fmt::format("the folder '{}' has {} recordings; name one of them, "
                                "such as '{}'",
-                               name, count, Printable(found.string(), 200)));
+                               name, count, PathText(found)));
 }
 
 }  // namespace
@@ -64,7 +65,7 @@ Expected<std::unique_ptr<Bag>> OpenBag(const std::filesystem::path& path) {
   return MakeError(ErrorCode::kParse,
                    fmt::format("{}: byte 0: expected a recording: .bag of ROS 1, .db3 of ROS 2 or "
                                ".mcap{}",
-                               Printable(path.string(), 200), hint));
+                               PathText(path), hint));
 }
 
 std::string DescribeCut(const Bag& bag) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "base/text/path_text.h"
 #include "io/bag/byte_reader.h"
 #include "io/bag/decompress.h"
 #include "io/bag/open_bytes.h"
@@ -30,7 +31,7 @@ using Connections = std::map<std::uint32_t, std::size_t>;
 class Rosbag1 final : public Bag {
  public:
   Rosbag1(std::string_view bytes, const std::string& file, std::shared_ptr<const void> owner)
-      : bytes_(bytes), file_(Printable(file, 200)), owner_(std::move(owner)) {}
+      : bytes_(bytes), file_(PathText(file)), owner_(std::move(owner)) {}
 
   std::string_view format() const override { return "ROS 1 bag"; }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/text/path_text.h"
 #include "io/bag/decompress.h"
 #include "io/bag/message_writer.h"
 #include "io/bag/rosbag1_records.h"
@@ -209,9 +210,8 @@ class Rosbag1Writer::Impl {
   }
 
   tl::unexpected<Error> Refuse(std::string_view topic, const std::string& what) const {
-    return MakeError(
-        ErrorCode::kInvalidInput,
-        fmt::format("{}: topic {}: {}", Printable(path_.string(), 300), Quoted(topic), what));
+    return MakeError(ErrorCode::kInvalidInput,
+                     fmt::format("{}: topic {}: {}", PathText(path_), Quoted(topic), what));
   }
 
   std::filesystem::path path_;

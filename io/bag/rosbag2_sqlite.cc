@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "base/text/path_text.h"
 #include "io/bag/decompress.h"
 #include "io/bag/open_bytes.h"
 #include "io/bag/topic_table.h"
@@ -40,8 +41,7 @@ std::string Text(sqlite3_stmt* row, int column) {
 
 class Rosbag2Sqlite final : public Bag {
  public:
-  explicit Rosbag2Sqlite(const std::filesystem::path& path)
-      : path_(path), file_(Printable(path.string(), 200)) {}
+  explicit Rosbag2Sqlite(const std::filesystem::path& path) : path_(path), file_(PathText(path)) {}
 
   std::string_view format() const override { return "ROS 2 bag (SQLite)"; }
 

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#ifdef SEXTANT_WITH_OPENCV
 #include <opencv2/core.hpp>
+#endif
 
 #include "io/cameras/camera_tree.h"
 
 namespace sextant {
+
+#ifdef SEXTANT_WITH_OPENCV
 namespace {
 
 constexpr std::size_t kMaxXmlBytes = std::size_t{1} << 20;
@@ -48,5 +52,13 @@ Expected<YamlNode> ParseCameraXml(std::string_view text, const std::string& file
         fmt::format("{}: expected OpenCV's XML (<opencv_storage>): {}", file, error.err));
   }
 }
+#else
+Expected<YamlNode> ParseCameraXml(std::string_view /*text*/, const std::string& file) {
+  return MakeError(ErrorCode::kParse,
+                   fmt::format("{}: expected YAML: XML is read only where sextant is built with "
+                               "-DSEXTANT_OPENCV=ON",
+                               file));
+}
+#endif
 
 }  // namespace sextant

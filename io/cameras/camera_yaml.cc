@@ -2,9 +2,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cctype>
 #include <initializer_list>
 
+#include "base/text/lower_case.h"
 #include "io/blocks/camera_block.h"
 #include "io/cameras/camera_file.h"
 #include "io/cameras/camera_parts.h"
@@ -27,10 +27,7 @@ constexpr KalibrModel kKalibrModels[] = {
     {"pinhole", 0}, {"omni", 1}, {"ds", 2}, {"eucm", 2}, {"fov", 1}};
 
 std::string TextOf(const YamlNode* node) {
-  std::string text = node == nullptr ? std::string{} : node->text;
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
+  return node == nullptr ? std::string{} : LowerCase(node->text);
 }
 
 // The distortion model in ROS's terms, from the two names that other programs use.

@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <vector>
 
+#include "base/text/lower_case.h"
+#include "base/text/path_text.h"
 #include "io/clouds/cloud_builder.h"
 #include "io/clouds/csv_cloud.h"
 #include "io/clouds/float_cloud.h"
@@ -22,10 +23,7 @@ namespace sextant {
 namespace {
 
 std::string LowerExtension(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
+  return LowerCase(std::filesystem::path(file).extension().string());
 }
 
 bool IsTableExtension(const std::string& extension) {
@@ -66,8 +64,7 @@ Expected<PointCloud> ParseByContent(std::string_view bytes, const std::string& f
       ErrorCode::kParse,
       fmt::format("{}: expected a scan: .pcd, .ply, .npy, .bin (KITTI, nuScenes), or a table of "
                   "numbers (.csv, .txt, .xyz, .pts){}",
-                  Printable(file, 200),
-                  bytes.starts_with("LASF") ? "; convert LAS to one of them" : ""));
+                  PathText(file), bytes.starts_with("LASF") ? "; convert LAS to one of them" : ""));
 }
 
 // No sensor measures as far as half of the points of a scan in millimetres.
@@ -86,7 +83,7 @@ Expected<void> CheckMetres(const PointCloud& cloud, const std::string& file) {
       fmt::format("{}: half of the points are {:.0f} m away and more; coordinates are "
                   "in metres and begin at the sensor. If these are millimetres, divide "
                   "by 1000",
-                  Printable(file, 200), *middle));
+                  PathText(file), *middle));
 }
 
 }  // namespace

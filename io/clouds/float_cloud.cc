@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include "base/text/path_text.h"
 #include "io/clouds/cloud_builder.h"
 #include "io/clouds/scalar_type.h"
 #include "io/text/number_text.h"
@@ -45,7 +46,7 @@ Expected<PointCloud> ParseFloatCloud(std::string_view bytes, const std::string& 
                      fmt::format("{}: byte {}: the file ends within a point; expected x, y, z, "
                                  "intensity as float32, 16 bytes per point (KITTI), or with the "
                                  "ring, 20 bytes (nuScenes)",
-                                 Printable(file, 200), bytes.size()));
+                                 PathText(file), bytes.size()));
   }
   const std::size_t numbers = has_rings ? kNuScenesNumbers : kKittiNumbers;
   const std::size_t points = bytes.size() / (sizeof(float) * numbers);

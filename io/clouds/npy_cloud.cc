@@ -6,6 +6,7 @@
 #include <charconv>
 #include <optional>
 
+#include "base/text/path_text.h"
 #include "io/clouds/cloud_builder.h"
 #include "io/clouds/scalar_type.h"
 #include "io/text/number_text.h"
@@ -26,8 +27,7 @@ struct NpyArray {
 };
 
 tl::unexpected<Error> RefuseNpy(const std::string& file, std::size_t byte, std::string_view what) {
-  return MakeError(ErrorCode::kParse,
-                   fmt::format("{}: byte {}: {}", Printable(file, 200), byte, what));
+  return MakeError(ErrorCode::kParse, fmt::format("{}: byte {}: {}", PathText(file), byte, what));
 }
 
 // What follows `'key':` in the header, a Python dictionary, without blanks before it.

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/text/path_text.h"
 #include "io/clouds/cloud_builder.h"
 #include "io/clouds/pcd_file.h"
 #include "io/clouds/scalar_type.h"
@@ -88,8 +89,8 @@ Expected<PointCloud> ReadValues(const PcdHeader& header, const CloudColumns& col
       return LoadScalar(data.data() + at, field.scalar_type(), false);
     });
     if (!added) {
-      return MakeError(added.error().code, fmt::format("{}: point {}: {}", Printable(file, 200), i,
-                                                       added.error().message));
+      return MakeError(added.error().code,
+                       fmt::format("{}: point {}: {}", PathText(file), i, added.error().message));
     }
   }
   return std::move(builder).Take();

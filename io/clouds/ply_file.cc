@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/text/path_text.h"
 #include "io/clouds/cloud_builder.h"
 #include "io/clouds/ply_header.h"
 #include "io/text/number_text.h"
@@ -170,7 +171,7 @@ Expected<PointCloud> ParsePly(std::string_view bytes, const std::string& file) {
     if (is_vertex) return std::move(builder).Finish();
   }
   return MakeError(ErrorCode::kParse,
-                   fmt::format("{}: expected an element 'vertex'", Printable(file, 200)));
+                   fmt::format("{}: expected an element 'vertex'", PathText(file)));
 }
 
 }  // namespace sextant

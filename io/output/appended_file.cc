@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "io/output/file_mark.h"
+#include "io/output/lock_holders.h"
 #include "io/output/write_all.h"
 #include "io/output/write_error.h"
 
@@ -52,8 +53,9 @@ Expected<AppendedFile> AppendedFile::Open(const std::filesystem::path& path) {
 Expected<void> AppendedFile::Lock() {
   if (flock(file_.get(), LOCK_EX | LOCK_NB) == 0) return {};
   return WriteError(ErrorCode::kInvalidOption, target_.path,
-                    "another process writes it; wait until it ends, or choose another folder with "
-                    "--out");
+                    fmt::format("{} writes it; wait until it ends, or choose another folder with "
+                                "--out",
+                                DescribeLockers(file_.get())));
 }
 
 Expected<std::string> AppendedFile::ReadBeginning(std::uint64_t count) const {

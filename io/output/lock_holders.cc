@@ -2,12 +2,15 @@
 #include "io/output/lock_holders.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <sstream>
 #include <thread>
 #include <vector>
@@ -22,6 +25,12 @@ std::vector<pid_t> NumbersIn(int file) {
   std::vector<pid_t> numbers;
   for (pid_t number = 0; text >> number;) numbers.push_back(number);
   return numbers;
+}
+
+std::string Describe(const std::vector<pid_t>& processes) {
+  if (processes.empty()) return "another process";
+  return fmt::format("{} {}", processes.size() == 1 ? "process" : "the processes",
+                     fmt::join(processes, ", "));
 }
 
 }  // namespace
@@ -39,9 +48,30 @@ std::string DescribeHolders(int lock_file) {
   }
   // On another machine, or in another container, its number says nothing here.
   if (running.empty()) running = all;
-  if (running.empty()) return "another process";
-  return fmt::format("{} {}", running.size() == 1 ? "process" : "the processes",
-                     fmt::join(running, ", "));
+  return Describe(running);
+}
+
+// A line of the list: "7: FLOCK  ADVISORY  WRITE 4711 fe:01:1835021 0 EOF", the device in
+// hexadecimal numbers.
+std::string DescribeLockers(int file) {
+  struct stat status {};
+  if (fstat(file, &status) != 0) return Describe({});
+  const std::string wanted =
+      fmt::format("{:02x}:{:02x}:{}", major(status.st_dev), minor(status.st_dev), status.st_ino);
+  std::vector<pid_t> holders;
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream words(line);
+    std::string number;
+    std::string kind;
+    std::string advisory;
+    std::string access;
+    std::string place;
+    pid_t process = 0;
+    words >> number >> kind >> advisory >> access >> process >> place;
+    if (kind == "FLOCK" && place == wanted && process > 0) holders.push_back(process);
+  }
+  return Describe(holders);
 }
 
 }  // namespace sextant

@@ -9,4 +9,8 @@ namespace sextant {
 /// one number a line.
 std::string DescribeHolders(int lock_file);
 
+/// The same for a file of data, from the system's list of locks (flock); "another process" where
+/// the list does not have it, as on network file systems.
+std::string DescribeLockers(int file);
+
 }  // namespace sextant

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/descriptor.h"
+#include "base/text/path_text.h"
 #include "io/output/lock_holders.h"
 #include "io/output/temporary.h"
 #include "io/output/write_all.h"
@@ -52,7 +53,18 @@ Expected<void> MakeFolder(const fs::path& path) {
   if (!error) error = std::make_error_code(std::errc::not_a_directory);
   return MakeError(ErrorCode::kUnwritable,
                    fmt::format("cannot make the folder '{}': {}; name another with --out",
-                               Printable(path.string(), 300), error.message()));
+                               PathText(path), error.message()));
+}
+
+Expected<void> MakeSubfolder(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_symlink(path, error)) {
+    const std::string end = fs::read_symlink(path, error).string();
+    return WriteError(
+        ErrorCode::kInvalidOption, path,
+        fmt::format("it is a link to '{}'; remove it, or choose another folder", PathText(end)));
+  }
+  return MakeFolder(path);
 }
 
 class OutputFolder::Lock {
@@ -128,7 +140,7 @@ Expected<OutputFolder> OutputFolder::Open(const fs::path& path, Sharing sharing)
     return MakeError(ErrorCode::kInvalidOption,
                      fmt::format("the folder '{}' is in use by {}; wait until it ends, or choose "
                                  "another folder",
-                                 Printable(path.string(), 300), DescribeHolders(lock->file())));
+                                 PathText(path), DescribeHolders(lock->file())));
   }
   if (sharing == Sharing::kAlone) lock->RemoveOnSignal();
   return OutputFolder(path, std::move(lock));

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "base/text/path_text.h"
 #include "io/output/file_mark.h"
 #include "io/output/write_error.h"
 #include "io/text/number_text.h"
@@ -25,7 +26,7 @@ tl::unexpected<Error> RefusedLink(const fs::path& path) {
   const std::string end = fs::read_symlink(path, ignored).string();
   return Refused(path,
                  fmt::format("it is a link to '{}'; name that file itself, or remove the link",
-                             Printable(end, 300)));
+                             PathText(end)));
 }
 
 Expected<void> CheckWritable(const OutputTarget& target) {

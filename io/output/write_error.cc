@@ -6,14 +6,14 @@
 #include <cerrno>
 #include <system_error>
 
+#include "base/text/path_text.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
 
 tl::unexpected<Error> WriteError(ErrorCode code, const std::filesystem::path& path,
                                  const std::string& reason) {
-  return MakeError(code,
-                   fmt::format("cannot write '{}': {}", Printable(path.string(), 300), reason));
+  return MakeError(code, fmt::format("cannot write '{}': {}", PathText(path), reason));
 }
 
 tl::unexpected<Error> WriteError(const std::filesystem::path& path) {

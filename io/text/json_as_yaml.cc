@@ -29,7 +29,7 @@ std::string OneLine(const Json& value) {
   }
   if (value.is_string()) return YamlQuoted(value.get<std::string>());
   if (value.is_number_float()) return fmt::format("{}", value.get<double>());
-  return value.dump();
+  return JsonLine(value);
 }
 
 void Write(const Json& value, std::size_t indent, std::string& text);

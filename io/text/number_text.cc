@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/text/path_text.h"
+
 namespace sextant {
 namespace {
 
@@ -41,7 +43,7 @@ std::string_view CommaHint(std::string_view text) {
 }  // namespace
 
 std::string ToString(const Place& place) {
-  std::string text = Printable(place.file, 200);
+  std::string text = PathText(place.file);
   if (place.line > 0) text += fmt::format(":{}", place.line);
   if (place.field > 0) text += fmt::format(": field {}", place.field);
   if (!place.name.empty()) {

@@ -11,6 +11,7 @@
 
 #include "base/call_files.h"
 #include "base/descriptor.h"
+#include "base/text/path_text.h"
 #include "io/text/git_lfs.h"
 #include "io/text/number_text.h"
 
@@ -19,8 +20,7 @@ namespace {
 
 tl::unexpected<Error> ReadError(const std::filesystem::path& path, const std::string& reason,
                                 ErrorCode code = ErrorCode::kIo) {
-  return MakeError(code,
-                   fmt::format("cannot read '{}': {}", Printable(path.string(), 300), reason));
+  return MakeError(code, fmt::format("cannot read '{}': {}", PathText(path), reason));
 }
 
 tl::unexpected<Error> SystemError(const std::filesystem::path& path) {

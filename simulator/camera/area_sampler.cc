@@ -37,6 +37,9 @@ struct PixelRays {
   Eigen::Vector3d At(const Eigen::Vector2d& at) const {
     return origin + at.x() * right + at.y() * down + at.x() * at.y() * twist;
   }
+  PixelRays Mapped(const Eigen::Matrix3d& map) const {
+    return {map * origin, map * right, map * down, map * twist};
+  }
 };
 
 // One block of the image with a border of one pixel around it.
@@ -66,35 +69,52 @@ class Block {
 
   // Mean radiance of the pixel in the block's row and column, both from 0.
   double Mean(int row, int column) {
-    static const std::vector<Eigen::Vector2d> coarse = FibonacciLattice(55, 34);
-    static const std::vector<Eigen::Vector2d> fine = FibonacciLattice(377, 233);
     ++row;
     ++column;
     if (!IsWhole(row, column)) return 0.0;
     const std::array<double, 4> corners = {
         At(row, column).patch.radiance, At(row, column + 1).patch.radiance,
         At(row + 1, column + 1).patch.radiance, At(row + 1, column).patch.radiance};
-    const double of_corners = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-    if (!has_sliver_ && IsOnePatch(row, column) && !IsNearLayers(row, column)) return of_corners;
+    if (!has_sliver_ && IsOnePatch(row, column) && !IsNearLayers(row, column)) {
+      return MeanOf(corners);
+    }
     FindSurfacesAround(row, column);
     const PixelRays rays = RaysOf(row, column);
-    const auto radiance_at = [&](const Eigen::Vector2d& at) {
-      return view_.Cast(rays.At(at), around_).patch.radiance;
-    };
-    samples_.clear();
-    for (const Eigen::Vector2d& at : coarse) samples_.push_back({at, radiance_at(at)});
-    const auto is_first = [&](double radiance) { return SameRadiance(radiance, corners[0]); };
-    if (std::ranges::all_of(corners, is_first) &&
-        std::ranges::all_of(samples_, is_first, &SquareSample::radiance)) {
-      return of_corners;
+    const ViewRectangle* only = around_.size() == 1 ? view_.RectangleOf(around_[0]) : nullptr;
+    if (only == nullptr) {
+      return MeanOf(corners, [&](const Eigen::Vector2d& at) {
+        return view_.Cast(rays.At(at), around_).patch.radiance;
+      });
     }
-    if (const auto mean = MeanAcrossStraightEdge(corners, samples_, radiance_at)) return *mean;
+    // Most often there is one face, whose map of rays is linear, too.
+    const PixelRays on_face = rays.Mapped(only->plane_from_ray);
+    return MeanOf(corners, [&](const Eigen::Vector2d& at) {
+      const std::optional<ViewHit> hit = only->HitAt(on_face.At(at));
+      return hit ? only->PatchAt(*hit).radiance : view_.background();
+    });
+  }
+
+ private:
+  static double MeanOf(const std::array<double, 4>& corners) {
+    return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+  }
+
+  // Mean over the pixel of a radiance that is not the same everywhere.
+  template <class RadianceAt>
+  double MeanOf(const std::array<double, 4>& corners, const RadianceAt& radiance_at) {
+    static const std::vector<Eigen::Vector2d> coarse = FibonacciLattice(55, 34);
+    static const std::vector<Eigen::Vector2d> fine = FibonacciLattice(377, 233);
+    const auto is_first = [&](double radiance) { return SameRadiance(radiance, corners[0]); };
+    if (std::ranges::all_of(corners, is_first)) {
+      if (std::ranges::all_of(coarse, is_first, radiance_at)) return MeanOf(corners);
+    } else if (const auto mean = MeanAcrossStraightEdge(corners, coarse, radiance_at)) {
+      return *mean;
+    }
     double sum = 0.0;
     for (const Eigen::Vector2d& at : fine) sum += radiance_at(at);
     return sum / static_cast<double>(fine.size());
   }
 
- private:
   static std::size_t LayerIndex(int row, int column) {
     return static_cast<std::size_t>(row * RayTile::kPixels + column);
   }
@@ -163,7 +183,6 @@ class Block {
   std::vector<int> candidates_;
   bool has_sliver_ = false;
   std::vector<int> around_;
-  std::vector<SquareSample> samples_;
   std::vector<Seen> seen_;
   std::vector<bool> has_layers_;
 };

@@ -77,6 +77,9 @@ std::optional<ViewRectangle> WallFace(const ViewFrame& frame, const SceneWall& w
       LitFace(frame, wall.world_from_wall, wall.width_m, wall.height_m, albedo, darkest * albedo);
   if (!face) return std::nullopt;
   face->tile_m = wall.tile_m;
+  if (wall.tile_m > 0.0) {
+    face->tile_columns = static_cast<int>(2.0 * face->half_width_m / wall.tile_m) + 1;
+  }
   face->speckled = wall.speckled;
   return face;
 }

@@ -47,6 +47,13 @@ class CameraView {
   /// The nearest hit of a ray (camera frame, any length) among the candidates.
   Seen Cast(const Eigen::Vector3d& ray, std::span<const int> candidates) const;
 
+  /// The surface if it is a rectangle, else null.
+  const ViewRectangle* RectangleOf(int surface) const {
+    const auto index = static_cast<std::size_t>(surface);
+    return index < rectangles_.size() ? &rectangles_[index] : nullptr;
+  }
+  double background() const { return background_; }  ///< Radiance where nothing is hit.
+
   /// Unit outward normal in the camera frame; zero for the background.
   Eigen::Vector3d NormalAt(const Seen& seen, const Eigen::Vector3d& ray) const;
 

@@ -10,12 +10,6 @@
 
 namespace sextant {
 
-/// Radiance at a point of the unit square.
-struct SquareSample {
-  Eigen::Vector2d at = Eigen::Vector2d::Zero();
-  double radiance = 0.0;
-};
-
 inline bool SameRadiance(double a, double b) { return std::abs(a - b) < 1e-12; }
 
 /// A straight line that divides a unit square into two parts, determined from the radiance of its
@@ -27,13 +21,15 @@ struct SquareCut {
   double first = 0.0;        ///< Radiance of the part with corner 0.
   double second = 0.0;       ///< Radiance of the other part.
 
-  /// Whether a sample agrees with the cut, or is too close to the line to decide.
-  bool Explains(const SquareSample& sample) const {
+  /// Whether the radiance at a point is that of its part, or the point is too close to the line to
+  /// decide.
+  template <class RadianceAt>
+  bool Explains(const Eigen::Vector2d& at, const RadianceAt& radiance_at) const {
     constexpr double kNear = 0.01;
     const Eigen::Vector2d along = (ends[1] - ends[0]).normalized();
-    const Eigen::Vector2d offset = sample.at - ends[0];
+    const Eigen::Vector2d offset = at - ends[0];
     const double beyond = along.x() * offset.y() - along.y() * offset.x();
-    return std::abs(beyond) < kNear || SameRadiance(sample.radiance, beyond > 0.0 ? first : second);
+    return std::abs(beyond) < kNear || SameRadiance(radiance_at(at), beyond > 0.0 ? first : second);
   }
 };
 
@@ -86,14 +82,15 @@ std::optional<SquareCut> FindSquareCut(const std::array<double, 4>& corners,
 }
 
 /// The exact mean of a unit square that is divided by one straight edge into two uniform parts.
-/// None if the corners or the samples do not agree with that.
+/// None if the corners, or the radiance at the points `within`, do not agree with that.
 template <class RadianceAt>
 std::optional<double> MeanAcrossStraightEdge(const std::array<double, 4>& corners,
-                                             std::span<const SquareSample> within,
+                                             std::span<const Eigen::Vector2d> within,
                                              const RadianceAt& radiance_at) {
   const std::optional<SquareCut> cut = FindSquareCut(corners, radiance_at);
-  if (!cut || !std::ranges::all_of(
-                  within, [&](const SquareSample& sample) { return cut->Explains(sample); })) {
+  if (!cut || !std::ranges::all_of(within, [&](const Eigen::Vector2d& at) {
+        return cut->Explains(at, radiance_at);
+      })) {
     return std::nullopt;
   }
   return cut->first_share * cut->first + (1.0 - cut->first_share) * cut->second;

@@ -34,8 +34,7 @@ std::optional<ViewRectangle> MakeViewRectangle(const Rigid3d& cam_from_rectangle
   return face;
 }
 
-std::optional<ViewHit> ViewRectangle::Meet(const Eigen::Vector3d& ray) const {
-  const Eigen::Vector3d scaled = plane_from_ray * ray;
+std::optional<ViewHit> ViewRectangle::HitAt(const Eigen::Vector3d& scaled) const {
   const double s = scaled.z();
   if (!(s > 0.0) || std::abs(scaled.x()) > half_width_m * s ||
       std::abs(scaled.y()) > half_height_m * s) {
@@ -57,8 +56,7 @@ ViewPatch ViewRectangle::PatchAt(const ViewHit& hit) const {
   if (!(tile_m > 0.0)) return {.radiance = white};
   const int column = static_cast<int>((hit.u_m + half_width_m) / tile_m);
   const int row = static_cast<int>((hit.v_m + half_height_m) / tile_m);
-  const int columns = static_cast<int>(2.0 * half_width_m / tile_m) + 1;
-  const int cell = row * columns + column;
+  const int cell = row * tile_columns + column;
   if (speckled) return {0, cell, black + (white - black) * Speckle(cell)};
   return {0, cell, (row + column) % 2 == 0 ? white : black};
 }

@@ -38,13 +38,18 @@ struct ViewRectangle {
   std::optional<BoardHole> hole{};
   std::optional<BoardPrint> print{};  ///< If none, the face is plain, or tiled if tile_m > 0.
   double tile_m = 0.0;
+  int tile_columns = 1;   ///< For tile_m > 0.
   bool speckled = false;  ///< Each tile has its own radiance between black and white.
   double white = 0.0;     ///< Radiance.
   double black = 0.0;
   Eigen::Vector3d center_in_cam = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_in_cam = Eigen::Vector3d::Zero();  ///< Normal of the visible side.
 
-  std::optional<ViewHit> Meet(const Eigen::Vector3d& ray) const;
+  std::optional<ViewHit> Meet(const Eigen::Vector3d& ray) const {
+    return HitAt(plane_from_ray * ray);
+  }
+  /// The hit of the ray that plane_from_ray maps to `scaled`.
+  std::optional<ViewHit> HitAt(const Eigen::Vector3d& scaled) const;
   ViewPatch PatchAt(const ViewHit& hit) const;
 };
 

@@ -66,6 +66,19 @@ TEST(BagCommand, CameraInfoIsWrittenAsAFileThatIsReadBack) {
   EXPECT_EQ(camera->cx_px, 320.0);
 }
 
+TEST(BagCommand, ALinkThatLeadsOutOfTheFolderIsRefused) {
+  SKIP_WHERE_NOT_BUILT();
+  namespace fs = std::filesystem;
+  fs::create_directories(TestFolder() / "elsewhere");
+  fs::create_directories(TestFolder() / "out");
+  fs::create_directory_symlink(TestFolder() / "elsewhere", TestFolder() / "out" / "p");
+  const ProgramRun run =
+      RunBag(Seed("rosbag1/none") + " --extract " + (TestFolder() / "out").string());
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("it is a link to "));
+  EXPECT_TRUE(fs::is_empty(TestFolder() / "elsewhere"));
+}
+
 TEST(BagCommand, ExtractsARealRecording) {
   SKIP_WHERE_NOT_BUILT();
   SEXTANT_REAL_DATA(bag, "fiducials/aruco_images.bag");

@@ -104,7 +104,7 @@ TEST(Calibrate, ASimulatedSessionAsItStands) {
   // The third image with the scan of the first.
   fs::copy_file(session / "scan_000.pcd", session / "scan_002.pcd",
                 fs::copy_options::overwrite_existing);
-  const ProgramRun mixed = RunSextant("calibrate " + session.string() + Out());
+  const ProgramRun mixed = RunSextant("calibrate " + session.string() + Out() + " --bootstrap 30");
   EXPECT_EQ(mixed.exit_code, 0) << mixed.err;
   EXPECT_THAT(Unbroken(mixed.out), HasSubstr("image and scan of different moments"));
   EXPECT_THAT(mixed.out, StartsWith("USABLE WITH CARE: In 1 of 4 views"));
@@ -115,8 +115,9 @@ TEST(Calibrate, TheProblemFileGivesTheSameAnswerToSolve) {
   const std::string problem = (TestFolder() / "problem.yaml").string();
   const fs::path calibrated = TestFolder() / "calibrated.json";
   const std::string solver = " --solver 'joint(gnc(kabsch),board_size=scale)'";
-  const ProgramRun run = RunSextant("calibrate " + session.string() + Out() + solver +
-                                    " --problem " + problem + " --json " + calibrated.string());
+  const ProgramRun run =
+      RunSextant("calibrate " + session.string() + Out() + solver + " --bootstrap 0 --problem " +
+                 problem + " --json " + calibrated.string());
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
   const fs::path solved = TestFolder() / "solved.json";
   const ProgramRun again = RunSextant("solve " + problem + solver + " --json " + solved.string());
@@ -157,7 +158,8 @@ TEST(Calibrate, OnePairOfFilesWarnsOfTheSingleView) {
 
 TEST(Calibrate, TheNeedDecidesTheVerdict) {
   const fs::path session = Simulated("--scans 4");
-  const ProgramRun run = RunSextant("calibrate " + session.string() + Out() + " --need 0.001,0.1");
+  const ProgramRun run =
+      RunSextant("calibrate " + session.string() + Out() + " --need 0.001,0.1 --bootstrap 30");
   EXPECT_EQ(run.exit_code, 3) << run.err;
   EXPECT_THAT(run.out, StartsWith("NOT USABLE: The least certain direction is known to"));
   const std::string result = (TestFolder() / "result.yaml").string();

@@ -42,11 +42,6 @@ std::vector<std::string> NamesIn(const fs::path& folder) {
   return names;
 }
 
-void ExpectRefused(const ProgramRun& run, const std::string& reason, int exit_code = 2) {
-  EXPECT_EQ(run.exit_code, exit_code) << run.out << run.err;
-  EXPECT_THAT(run.err, HasSubstr(reason));
-}
-
 TEST(Outputs, AnOutputIsNoInput) {
   const std::string problem = MakeProblem();
   const std::string before = ReadText(problem);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gmock/gmock.h>
+
 #include <string>
 
 #include "support/run_program.h"
@@ -10,6 +12,12 @@ namespace sextant::test {
 /// Runs the program that was built with the tests.
 inline ProgramRun RunSextant(const std::string& arguments) {
   return RunProgram(SEXTANT_BINARY, arguments);
+}
+
+/// It ended with that exit code and stated the reason.
+inline void ExpectRefused(const ProgramRun& run, const std::string& reason, int exit_code = 2) {
+  EXPECT_EQ(run.exit_code, exit_code) << run.out << run.err;
+  EXPECT_THAT(run.err, testing::HasSubstr(reason));
 }
 
 }  // namespace sextant::test

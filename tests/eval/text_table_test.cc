@@ -69,6 +69,26 @@ TEST(TextTable, WrapsTheWidestColumns) {
 }
 
 // Texts of others are cells of every output.
+TEST(TextTable, TheLastColumnsOfWideTablesFollowBelow) {
+  TextTable table({"solver", "x [m]", "y [m]", "time [us]"});
+  table.AddRow({"ransac(kabsch,seed=3)", "1.25", "-3.5", "17.0"});
+  EXPECT_EQ(table.Plain(32),
+            "solver        x [m]  y [m]\n"
+            "--------------------------\n"
+            "ransac(        1.25   -3.5\n"
+            "kabsch,\n"
+            "seed=3)\n"
+            "\n"
+            "solver        time [us]\n"
+            "-----------------------\n"
+            "ransac(            17.0\n"
+            "kabsch,\n"
+            "seed=3)\n");
+  for (int i = 0; i < 20; ++i) table.AddRow({std::string(50, 'a'), "1", "2", "3"});
+  std::istringstream lines(table.Plain());
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
+}
+
 TEST(TextTable, HostileCellsStayInTheirRow) {
   TextTable table({"a", "b"}, TextTable::Columns::kWords);
   for (const std::string& text : test::HostileTexts()) {
@@ -80,7 +100,7 @@ TEST(TextTable, HostileCellsStayInTheirRow) {
   const auto count = static_cast<std::ptrdiff_t>(
       std::count_if(test::HostileTexts().begin(), test::HostileTexts().end(),
                     [](const std::string& text) { return text.size() < 100; }));
-  EXPECT_EQ(rows(table.Plain()), count + 2);
+  EXPECT_EQ(rows(table.Plain(std::string::npos)), count + 2);
   EXPECT_EQ(rows(table.Markdown()), count + 2);
   EXPECT_EQ(ExpectFullRows(table.Latex(), "table"), count + 1);
   for (std::string text : {table.Plain(), table.Markdown(), table.Latex()}) {

@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tbb/collaborative_call_once.h>
+
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <string>
+#include <tuple>
+#include <utility>
 
 #include "base/units.h"
 #include "eval/experiment/definition/trials.h"
@@ -52,12 +59,48 @@ const ParameterSet<FusionSettings>& FusionParameters() {
   return set;
 }
 
+// What the stereo cameras of a scene see, rendered when it is first needed: a second per image, the
+// largest part of an experiment of few trials.
+class StereoRendering {
+ public:
+  explicit StereoRendering(Scene scene) : scene_(std::move(scene)) {}
+
+  const Expected<StereoPair>& Get() {
+    // Not std::call_once: rendering is parallel, and its thread may take another trial meanwhile.
+    tbb::collaborative_call_once(rendered_, [this] { pair_ = RenderStereoPair(scene_); });
+    return pair_;
+  }
+
+ private:
+  Scene scene_;
+  tbb::collaborative_once_flag rendered_;
+  Expected<StereoPair> pair_ = MakeError(ErrorCode::kMissingData, "not rendered yet");
+};
+
+// Conditions of an experiment that differ in what is measured of the boards share one rendering.
+std::shared_ptr<StereoRendering> RenderingOf(const SceneObserver& observer,
+                                             const std::filesystem::path& folder) {
+  static std::mutex mutex;
+  static std::map<std::tuple<std::string, std::string, double>, std::weak_ptr<StereoRendering>>
+      renderings;
+  const SceneSettings& settings = observer.settings();
+  const std::lock_guard lock(mutex);
+  std::weak_ptr<StereoRendering>& known =
+      renderings[{(folder / settings.scene).string(), settings.camera_model, settings.board_scale}];
+  std::shared_ptr<StereoRendering> rendering = known.lock();
+  if (!rendering) known = rendering = std::make_shared<StereoRendering>(observer.whole_scene());
+  return rendering;
+}
+
 // cam1 and cam2 never see the same board: each is calibrated to the LiDAR, and the pose graph joins
 // them.
 class FusionTrials final : public Trials {
  public:
-  FusionTrials(SceneObserver first, SceneObserver second, const FusionSettings& settings)
-      : observers_{std::move(first), std::move(second)}, settings_(settings) {}
+  FusionTrials(SceneObserver first, SceneObserver second, const FusionSettings& settings,
+               std::shared_ptr<StereoRendering> rendering)
+      : observers_{std::move(first), std::move(second)},
+        settings_(settings),
+        rendering_(std::move(rendering)) {}
 
   const std::vector<std::string>& subjects() const override {
     static const std::vector<std::string> names = {"truth", "tape", "pipeline, one scan",
@@ -66,7 +109,6 @@ class FusionTrials final : public Trials {
   }
 
   void Run(const TrialId& id, TrialRows& rows) const override {
-    std::call_once(rendered_, [this] { pair_ = RenderStereoPair(observers_[0].whole_scene()); });
     const Rigid3d truth = observers_[1].cam_from_lidar() * observers_[0].cam_from_lidar().Inverse();
     Measure(truth, truth, rows.Add(0));
     Measure(ByTape(id.seed), truth, rows.Add(1));
@@ -122,18 +164,18 @@ class FusionTrials final : public Trials {
     const PoseDistance error = DistanceBetween(*cam2_from_cam1, truth);
     values.Set(kFusedTranslationMm, 1e3 * error.translation_m);
     values.Set(kFusedRotationDeg, error.rotation_rad / kRadPerDeg);
-    if (!pair_) return;
-    values.Set(kCloudMm, 1e3 * CompareClouds(pair_->clouds[0], *cam2_from_cam1, pair_->clouds[1],
+    const Expected<StereoPair>& pair = rendering_->Get();
+    if (!pair) return;
+    values.Set(kCloudMm, 1e3 * CompareClouds(pair->clouds[0], *cam2_from_cam1, pair->clouds[1],
                                              {.max_points = kComparedPoints})
                                    .median_m);
-    values.Set(kWallMm, 1e3 * WallOffset(*pair_, *cam2_from_cam1));
-    values.Set(kCheckerMm, 1e3 * CheckerOffset(*pair_, *cam2_from_cam1));
+    values.Set(kWallMm, 1e3 * WallOffset(*pair, *cam2_from_cam1));
+    values.Set(kCheckerMm, 1e3 * CheckerOffset(*pair, *cam2_from_cam1));
   }
 
   std::array<SceneObserver, 2> observers_;
   FusionSettings settings_;
-  mutable std::once_flag rendered_;
-  mutable Expected<StereoPair> pair_ = MakeError(ErrorCode::kMissingData, "not rendered yet");
+  std::shared_ptr<StereoRendering> rendering_;
 };
 
 Expected<TrialsPtr> MakeFusionTrials(const KindArguments& arguments) {
@@ -147,7 +189,9 @@ Expected<TrialsPtr> MakeFusionTrials(const KindArguments& arguments) {
   SEXTANT_ASSIGN_OR_RETURN(SceneObserver first, SceneObserver::Make(settings, arguments.folder, 0));
   SEXTANT_ASSIGN_OR_RETURN(SceneObserver second,
                            SceneObserver::Make(settings, arguments.folder, 1));
-  return std::make_shared<FusionTrials>(std::move(first), std::move(second), settings);
+  std::shared_ptr<StereoRendering> rendering = RenderingOf(first, arguments.folder);
+  return std::make_shared<FusionTrials>(std::move(first), std::move(second), settings,
+                                        std::move(rendering));
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const 
       ReadExperiment(settings.experiments / (name + ".yaml"), BuiltinKinds(), registry));
   if (settings.quick) experiment.trials = experiment.quick_trials;
   const fs::path folder = settings.out / name;
+  SEXTANT_RETURN_IF_ERROR(MakeSubfolder(folder));
   SEXTANT_ASSIGN_OR_RETURN(const OutputFolder locked, OutputFolder::Open(folder));
   const ReportSettings report{.csv = false, .plots = true};
   SEXTANT_RETURN_IF_ERROR(ClaimReportFiles(experiment, folder, report));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/text/escape.h"
 #include "base/version.h"
 #include "io/text/json_depth.h"
 
@@ -43,7 +44,7 @@ std::string ConfigurationOf(const Experiment& experiment) {
                     {"axes", experiment.axes},
                     {"metrics", metrics},
                     {"conditions", conditions}};
-  return all.dump();
+  return JsonLine(nlohmann::ordered_json(all));
 }
 
 std::size_t CountMetrics(const std::string& configuration) {

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/call_files.h"
+#include "base/text/path_text.h"
 #include "eval/experiment/run/configuration.h"
 #include "eval/experiment/run/row_checksum.h"
 #include "eval/experiment/run/row_file.h"
@@ -22,7 +23,7 @@ constexpr std::uint64_t kMaxHeader = std::uint64_t{64} << 20U;
 tl::unexpected<Error> Unreadable(const std::filesystem::path& path) {
   return MakeError(
       ErrorCode::kIo,
-      fmt::format("cannot read '{}': {}", Printable(path.string(), 300),
+      fmt::format("cannot read '{}': {}", PathText(path),
                   errno == 0 ? "it ends too early" : std::generic_category().message(errno)));
 }
 
@@ -30,7 +31,7 @@ tl::unexpected<Error> Damaged(const std::filesystem::path& path) {
   return MakeError(
       ErrorCode::kParse,
       fmt::format("{}: not a row file of an experiment, or its header is damaged; check the path",
-                  Printable(path.string(), 300)));
+                  PathText(path)));
 }
 
 }  // namespace
@@ -73,7 +74,7 @@ Expected<RowFileReader> RowFileReader::Open(const std::filesystem::path& path) {
   if (!S_ISREG(status.st_mode)) return Damaged(path);
   if (const std::string why = NoteInput(status); !why.empty()) {
     return MakeError(ErrorCode::kInvalidOption,
-                     fmt::format("cannot read '{}': {}", Printable(path.string(), 300), why));
+                     fmt::format("cannot read '{}': {}", PathText(path), why));
   }
   reader.file_bytes_ = static_cast<std::uint64_t>(status.st_size);
   SEXTANT_RETURN_IF_ERROR(reader.ReadHeader());
@@ -175,9 +176,8 @@ void RowFileReader::SortBlocks() {
 std::vector<std::string> DescribeDamage(const RowFileReader& reader) {
   std::vector<std::string> lines;
   for (const RowFileDamage& damage : reader.damage()) {
-    lines.push_back(fmt::format("{}: bytes {} to {} are damaged",
-                                Printable(reader.path().string(), 200), damage.offset,
-                                damage.offset + damage.bytes));
+    lines.push_back(fmt::format("{}: bytes {} to {} are damaged", PathText(reader.path()),
+                                damage.offset, damage.offset + damage.bytes));
   }
   return lines;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include "base/text/path_text.h"
 #include "eval/experiment/run/row_checksum.h"
 #include "eval/experiment/run/row_file.h"
 #include "io/text/number_text.h"
@@ -23,7 +24,7 @@ Expected<void> RequireRowFile(const AppendedFile& file, const std::filesystem::p
   return MakeError(ErrorCode::kParse,
                    fmt::format("'{}' is not a row file of an experiment, and is not replaced; "
                                "remove it, or choose another folder with --out",
-                               Printable(path.string(), 300)));
+                               PathText(path)));
 }
 
 }  // namespace
@@ -51,7 +52,7 @@ Expected<void> RowFileWriter::Keep(const std::filesystem::path& path,
     return MakeError(ErrorCode::kInvalidInput,
                      fmt::format("'{}' holds the rows of another configuration of the experiment; "
                                  "start over with --fresh, or choose another folder with --out",
-                                 Printable(path.string(), 300)));
+                                 PathText(path)));
   }
   damage_ = DescribeDamage(reader);
   is_orderly_ = reader.is_orderly();

@@ -56,6 +56,26 @@ TEST(OutputFolder, IsSharedByThoseThatShareIt) {
   EXPECT_TRUE(fs::is_empty(scratch.path()));
 }
 
+TEST(OutputFolder, ASubfolderIsNoLink) {
+  const ScratchFolder scratch;
+  fs::create_directories(scratch.path() / "elsewhere");
+  fs::create_directory_symlink("elsewhere", scratch.path() / "link");
+  const Expected<void> made = MakeSubfolder(scratch.path() / "link");
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error().message, HasSubstr("it is a link to 'elsewhere'"));
+  EXPECT_TRUE(MakeSubfolder(scratch.path() / "new"));
+  EXPECT_TRUE(MakeSubfolder(scratch.path() / "new"));
+}
+
+TEST(AppendedFile, ASecondWriterIsRefusedWithTheFirstOnesNumber) {
+  const ScratchFolder scratch;
+  const Expected<AppendedFile> first = AppendedFile::Open(scratch.path() / "rows");
+  ASSERT_TRUE(first);
+  const Expected<AppendedFile> second = AppendedFile::Open(scratch.path() / "rows");
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error().message, HasSubstr(fmt::format("process {} writes it", getpid())));
+}
+
 TEST(OutputFolder, OnlyTheTemporariesOfTheDeadAreRemoved) {
   const ScratchFolder scratch;
   const fs::path dead = scratch.path() / ".scan.pcd.0123456789abcdef.sxtmp";
