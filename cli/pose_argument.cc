@@ -4,9 +4,11 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <optional>
 
-#include "cli/pose_file.h"
 #include "geometry/coordinate_range.h"
+#include "io/output/standard_output.h"
+#include "io/poses/pose_file.h"
 #include "io/text/number_text.h"
 
 namespace sextant::cli {
@@ -40,12 +42,54 @@ Expected<Rigid3d> PoseFromNumbers(const std::string& option,
   return Rigid3d{rotation.normalized(), translation};
 }
 
+std::optional<PoseDirection> AskedDirection(const std::string& pose_is) {
+  if (pose_is.empty()) return std::nullopt;
+  return pose_is == ToString(PoseDirection::kCamFromLidar) ? PoseDirection::kCamFromLidar
+                                                           : PoseDirection::kLidarFromCam;
+}
+
+Expected<Rigid3d> CamFromLidarWithNote(const StatedPose& pose, const std::string& pose_is,
+                                       const std::string& path) {
+  const std::optional<PoseDirection> asked = AskedDirection(pose_is);
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_lidar, CamFromLidar(pose, asked, path));
+  if (!asked && pose.camera_frame.empty()) {
+    PrintError("{}: read as {}: {}. If it is not, add --pose-is\n", path, ToString(*pose.direction),
+               pose.basis);
+  }
+  return cam_from_lidar;
+}
+
 }  // namespace
 
+void DeclarePoseIs(std::string& pose_is, Arguments& arguments) {
+  arguments.Add("--pose-is", pose_is,
+                "Direction of a pose whose file does not state it: cam_from_lidar maps points of\n"
+                "the LiDAR into the camera's optical frame",
+                {.choices = {"cam_from_lidar", "lidar_from_cam"}});
+}
+
+Expected<Rigid3d> PoseOfFile(const std::string& path, const std::string& pose_is) {
+  SEXTANT_ASSIGN_OR_RETURN(const StatedPose pose, ReadPoseFile(path));
+  return CamFromLidarWithNote(pose, pose_is, path);
+}
+
 Expected<Rigid3d> PoseFromArgument(const std::string& option,
-                                   const std::vector<std::string>& values) {
-  if (values.size() == 1) return ReadPoseFile(values.front());
-  return PoseFromNumbers(option, values);
+                                   const std::vector<std::string>& values,
+                                   const std::string& pose_is) {
+  if (values.size() == 1) return PoseOfFile(values.front(), pose_is);
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, PoseFromNumbers(option, values));
+  return AskedDirection(pose_is) == PoseDirection::kLidarFromCam ? pose.Inverse() : pose;
+}
+
+Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is) {
+  SEXTANT_ASSIGN_OR_RETURN(const StatedPose pose, ReadPoseFile(path));
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_lidar, CamFromLidarWithNote(pose, pose_is, path));
+  if (pose.is_result) return ReadCalibrationResult(path);
+  CalibrationResult result;
+  result.cam_from_lidar = cam_from_lidar;
+  if (!pose.camera_frame.empty()) result.camera_frame = pose.camera_frame;
+  if (!pose.lidar_frame.empty()) result.lidar_frame = pose.lidar_frame;
+  return result;
 }
 
 }  // namespace sextant::cli

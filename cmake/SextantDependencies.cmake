@@ -22,6 +22,7 @@ sextant_dependency(Ceres 2.1 REQUIRED)
 sextant_dependency(nanoflann REQUIRED)
 sextant_dependency(yaml-cpp REQUIRED)
 sextant_dependency(nlohmann_json REQUIRED)
+sextant_dependency(tinyxml2 REQUIRED)
 if(SEXTANT_OPENCV)
   # ArUco is a contributed module up to OpenCV 4.6 and part of objdetect from 4.7 on.
   find_package(OpenCV 4.5 REQUIRED COMPONENTS core)

@@ -34,7 +34,8 @@ struct CalibrateCommandOptions {
   std::string solvers{};      ///< The first gives the result, the others are compared with it.
   std::string image_topic{};  ///< For a recording; empty: the only one.
   std::string cloud_topic{};
-  double tolerance_s = 0.05;           ///< Between the stamps of an image and its scan.
+  double tolerance_s = 0.05;  ///< Between the stamps of an image and its scan.
+  std::string pose_is{};
   std::vector<std::string> initial{};  ///< A file, or X Y Z QW QX QY QZ; empty: along the axes.
   std::string detector{};
   std::string extractor = "rectangle";
@@ -74,9 +75,11 @@ void Declare(CalibrateCommandOptions& options, Arguments& arguments) {
                 "Solvers, separated by commas: the answer of the first is written, the others are\n"
                 "compared with it; see sextant list solvers");
   arguments.Add("--initial", options.initial,
-                "Rough cam_from_lidar, used only to choose if the views allow several: a file, or\n"
-                "X Y Z QW QX QY QZ; default: a camera that looks along the LiDAR's x",
+                "Rough cam_from_lidar, used only to choose if the views allow several: a file of\n"
+                "any form of sextant check, or X Y Z QW QX QY QZ; default: a camera that looks\n"
+                "along the LiDAR's x",
                 {.min_values = 1, .max_values = 7});
+  DeclarePoseIs(options.pose_is, arguments);
   arguments.Add("--detector", options.detector, "See sextant detect");
   arguments.Add("--extractor", options.extractor, "See sextant boards", {.shows_default = true});
   DeclareSearch(options.search, arguments);
@@ -156,7 +159,7 @@ Expected<CalibrateOptions> SettingsFrom(const CalibrateCommandOptions& options) 
   SEXTANT_ASSIGN_OR_RETURN(settings.solvers, SolversFrom(options.solvers));
   if (!options.initial.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(settings.match.initial,
-                             PoseFromArgument("--initial", options.initial));
+                             PoseFromArgument("--initial", options.initial, options.pose_is));
   }
   SEXTANT_ASSIGN_OR_RETURN(settings.observe.search, SearchOptionsFrom(options.search));
   return settings;

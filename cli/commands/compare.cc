@@ -7,6 +7,7 @@
 
 #include "cli/commands/commands.h"
 #include "cli/output.h"
+#include "cli/pose_argument.h"
 #include "cli/problem_input.h"
 #include "cli/progress.h"
 #include "eval/metrics/default_specs.h"
@@ -19,6 +20,8 @@ namespace {
 
 struct CompareOptions {
   ProblemInputOptions input{};
+  std::string truth_path{};  ///< Empty: the truth of the problem, if it has one.
+  std::string pose_is{};
   std::string solvers{};    ///< Empty: every one whose needs the input meets.
   std::string plot_path{};  ///< Empty: none.
 };
@@ -27,6 +30,9 @@ void Declare(CompareOptions& options, Arguments& arguments) {
   DeclareProblemInput(options.input, arguments);
   arguments.Add("--solvers", options.solvers,
                 "Solvers, separated by commas; default: every one whose needs the file meets");
+  arguments.Add("--truth", options.truth_path,
+                std::string("The true pose, for the distances: ") + kPoseHelp);
+  DeclarePoseIs(options.pose_is, arguments);
   arguments.Add("--plot", options.plot_path,
                 "Draw the residuals of every pair under every solver (.svg or .png)",
                 {.writes = Writes::kFile});
@@ -45,8 +51,13 @@ bool IsAnswered(const std::vector<SolverPtr>& solvers, const std::vector<Compari
 
 int Run(const CompareOptions& options) {
   const SolverRegistry registry = AllSolvers();
-  const Expected<LoadedProblem> input = LoadProblem(options.input);
+  Expected<LoadedProblem> input = LoadProblem(options.input);
   if (!input) return Refuse("compare", input.error());
+  if (!options.truth_path.empty()) {
+    const Expected<Rigid3d> truth = PoseOfFile(options.truth_path, options.pose_is);
+    if (!truth) return Refuse("compare", truth.error());
+    input->file.true_cam_from_lidar = *truth;
+  }
   const CalibrationProblem& problem = input->file.problem;
   std::string list = options.solvers;
   if (list.empty()) list = fmt::format("{}", fmt::join(DefaultSpecs(registry, problem), ","));

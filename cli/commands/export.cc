@@ -6,6 +6,7 @@
 #include "base/text/path_text.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
+#include "cli/pose_argument.h"
 #include "io/export/export_transform.h"
 #include "io/output/output_file.h"
 #include "io/output/standard_output.h"
@@ -15,6 +16,7 @@ namespace {
 
 struct ExportCommandOptions {
   std::string result_path{};
+  std::string pose_is{};
   std::string format{};
   std::string out = "-";
   std::string camera_frame{};  ///< Empty: the result's.
@@ -32,8 +34,8 @@ std::string FormatsHelp() {
 }
 
 void Declare(ExportCommandOptions& options, Arguments& arguments) {
-  arguments.Add("RESULT", options.result_path, "result.yaml of sextant calibrate, or its JSON",
-                {.required = true});
+  arguments.Add("RESULT", options.result_path, kPoseHelp, {.required = true});
+  DeclarePoseIs(options.pose_is, arguments);
   arguments.Add("--to", options.format, FormatsHelp(), {.required = true});
   arguments.Add("--out", options.out, "File to write; - for standard output",
                 {.shows_default = true, .writes = Writes::kFileOrStandardOutput});
@@ -82,7 +84,7 @@ Expected<void> CheckVerdict(const ExportCommandOptions& options, const Calibrati
 
 int Run(const ExportCommandOptions& options) {
   if (const Expected<void> ok = CheckParent(options); !ok) return Refuse("export", ok.error());
-  const Expected<CalibrationResult> result = ReadCalibrationResult(options.result_path);
+  const Expected<CalibrationResult> result = ResultOfFile(options.result_path, options.pose_is);
   if (!result) return Refuse("export", result.error());
   if (const Expected<void> ok = CheckVerdict(options, *result); !ok) {
     return Refuse("export", ok.error(), kNotUsable);

@@ -9,7 +9,7 @@
 #include "base/text/path_text.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
-#include "cli/pose_file.h"
+#include "cli/pose_argument.h"
 #include "eval/metrics/cloud_fusion.h"
 #include "io/clouds/cloud_file.h"
 #include "io/clouds/pcd_file.h"
@@ -25,7 +25,8 @@ struct FuseOptions {
   std::vector<std::string> clouds{};
   std::vector<std::string> from{};  ///< A file with cam_from_lidar for each cloud but the last.
   std::string to{};                 ///< The file for the last cloud.
-  std::string rts_path{};           ///< Replaces both.
+  std::string pose_is{};
+  std::string rts_path{};  ///< Replaces both.
   std::string out = "fused.ply";
 };
 
@@ -34,10 +35,10 @@ void Declare(FuseOptions& options, Arguments& arguments) {
                 "Clouds, each in the frame of its own camera: PCD, PLY, KITTI .bin or CSV",
                 {.required = true});
   arguments.Add("--from", options.from,
-                "cam_from_lidar of the camera of each cloud but the last: result.yaml, JSON\n"
-                "of sextant solve, or a 4x4 matrix in rows");
+                std::string("The pose of the camera of each cloud but the last: ") + kPoseHelp);
   arguments.Add("--to", options.to,
-                "cam_from_lidar of the camera of the last cloud, into whose frame all clouds go");
+                "The pose of the camera of the last cloud, into whose frame all clouds go");
+  DeclarePoseIs(options.pose_is, arguments);
   arguments.Add("--rts", options.rts_path,
                 "Instead: rts.txt of the original package, one 4x4 matrix per cloud");
   arguments.Add("--out", options.out,
@@ -64,7 +65,7 @@ Expected<std::vector<Rigid3d>> SensorsFromLidar(const FuseOptions& options) {
     std::vector<std::string> paths = options.from;
     if (!options.to.empty()) paths.push_back(options.to);
     for (const std::string& path : paths) {
-      SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, ReadPoseFile(path));
+      SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, PoseOfFile(path, options.pose_is));
       poses.push_back(pose);
     }
   }

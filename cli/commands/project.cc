@@ -8,12 +8,12 @@
 #include "calibrate/observe/photo_file.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
+#include "cli/pose_argument.h"
 #include "cli/progress.h"
 #include "io/boards/board_file.h"
 #include "io/cameras/camera_file.h"
 #include "io/clouds/cloud_file.h"
 #include "io/output/standard_output.h"
-#include "io/results/calibration_result.h"
 #include "report/calibrate_text.h"
 #include "report/scan_on_image.h"
 #include "report/thinned_scan.h"
@@ -25,6 +25,7 @@ struct ProjectOptions {
   std::string image_path{};
   std::string cloud_path{};
   std::string result_path{};
+  std::string pose_is{};
   std::string camera_path{};  ///< Empty: the result's.
   std::string boards_path{};  ///< Empty: the result's; they are searched for in the image.
   std::string out_path{};
@@ -36,8 +37,8 @@ void Declare(ProjectOptions& options, Arguments& arguments) {
   arguments.Add("--image", options.image_path, "The photo", {.required = true});
   arguments.Add("--cloud", options.cloud_path, "Its scan: PCD, PLY, KITTI .bin or CSV",
                 {.required = true});
-  arguments.Add("--result", options.result_path, "result.yaml of sextant calibrate",
-                {.required = true});
+  arguments.Add("--result", options.result_path, kPoseHelp, {.required = true});
+  DeclarePoseIs(options.pose_is, arguments);
   arguments.Add("--out", options.out_path, "Picture to write (.png or .jpg)",
                 {.required = true, .writes = Writes::kFile});
   arguments.Add("--camera", options.camera_path, "Intrinsics; default: the result's");
@@ -68,7 +69,8 @@ struct Inputs {
 
 Expected<Inputs> ReadInputs(const ProjectOptions& options) {
   Inputs inputs;
-  SEXTANT_ASSIGN_OR_RETURN(CalibrationResult result, ReadCalibrationResult(options.result_path));
+  SEXTANT_ASSIGN_OR_RETURN(CalibrationResult result,
+                           ResultOfFile(options.result_path, options.pose_is));
   if (!options.camera_path.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(const Camera camera, ReadCamera(options.camera_path));
     result.camera = camera;

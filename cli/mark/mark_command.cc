@@ -10,6 +10,7 @@
 #include "cli/mark/mark_input.h"
 #include "cli/mark/mark_window.h"
 #include "cli/output.h"
+#include "cli/pose_argument.h"
 #include "io/boards/polygon_file.h"
 #include "io/output/output_file.h"
 #include "io/output/remove_file.h"
@@ -28,6 +29,7 @@ void Declare(MarkOptions& options, Arguments& arguments) {
                 "Rough pose: results (JSON), rts.txt, or X Y Z QW QX QY QZ; default: the camera\n"
                 "looks along the LiDAR's x axis",
                 {.min_values = 1, .max_values = 7});
+  DeclarePoseIs(options.pose_is, arguments);
   arguments.Add(
       "--yaw", options.yaw_deg,
       "Without a pose: turn the assumed camera to the left by this angle [deg]",

@@ -44,7 +44,7 @@ Expected<Rigid3d> ChoosePose(const MarkOptions& options) {
     const Eigen::AngleAxisd turn(-kRadPerDeg * options.yaw_deg, Eigen::Vector3d::UnitZ());
     return AxesCamFromLidar() * Rigid3d{Eigen::Quaterniond(turn), Eigen::Vector3d::Zero()};
   }
-  return PoseFromArgument("--cam-from-lidar", options.cam_from_lidar);
+  return PoseFromArgument("--cam-from-lidar", options.cam_from_lidar, options.pose_is);
 }
 
 bool SameProjection(const ScanMarks& a, const ScanMarks& b) {

@@ -13,8 +13,9 @@ namespace sextant::cli {
 
 struct MarkOptions {
   std::string cloud_path{};
-  std::string image_path{};                   ///< Empty: none.
-  std::string camera_path{};                  ///< Empty: an assumed camera.
+  std::string image_path{};   ///< Empty: none.
+  std::string camera_path{};  ///< Empty: an assumed camera.
+  std::string pose_is{};
   std::vector<std::string> cam_from_lidar{};  ///< A file, or x y z qw qx qy qz; empty: the axes.
   double yaw_deg = 0.0;                       ///< Turns the assumed camera to the left.
   std::vector<int> ids{};                     ///< Ids of the boards, from left to right.

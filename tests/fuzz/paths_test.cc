@@ -10,7 +10,6 @@
 
 #include "calibrate/observe/photo_file.h"
 #include "calibrate/session/session.h"
-#include "cli/pose_file.h"
 #include "eval/experiment/definition/experiment.h"
 #include "eval/experiment/reproduction/claims.h"
 #include "eval/experiment/run/row_file.h"
@@ -22,6 +21,7 @@
 #include "io/clouds/cloud_file.h"
 #include "io/original/average_log.h"
 #include "io/original/original_config.h"
+#include "io/poses/pose_file.h"
 #include "io/problems/read_problem.h"
 #include "io/problems/transform_list.h"
 #include "io/results/calibration_result.h"
@@ -64,7 +64,7 @@ const std::vector<PathReader>& PathReaders() {
       {"Config", [](const fs::path& path) { return IsRead(ReadOriginalConfig(path)); }},
       {"Results", [](const fs::path& path) { return IsRead(ReadResults(path)); }},
       {"Result", [](const fs::path& path) { return IsRead(ReadCalibrationResult(path)); }},
-      {"Pose", [](const fs::path& path) { return IsRead(cli::ReadPoseFile(path)); }},
+      {"Pose", [](const fs::path& path) { return IsRead(ReadPoseFile(path)); }},
       {"Session", [](const fs::path& path) { return IsRead(ReadSession(path)); }},
       {"Scene", [](const fs::path& path) { return IsRead(ReadScene(path)); }},
       {"Claims", [](const fs::path& path) { return IsRead(ReadClaims(path)); }},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/pose_file.h"
+#include "io/poses/pose_file.h"
 
 #include "tests/fuzz/entry_point.h"
 #include "tests/fuzz/input_file.h"
@@ -9,7 +9,7 @@ namespace sextant::test {
 
 SEXTANT_FUZZ_TARGET(pose_file, bytes) {
   static InputFile file("pose.yaml");
-  CheckOutcome(cli::ReadPoseFile(file.Write(bytes)));
+  CheckOutcome(ReadPoseFile(file.Write(bytes)));
 }
 
 }  // namespace sextant::test

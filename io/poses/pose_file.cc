@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/poses/pose_file.h"
+
+#include <fmt/core.h>
+
+#include <system_error>
+
+#include "io/poses/pose_parts.h"
+#include "io/text/line_reader.h"
+#include "io/text/text_file.h"
+
+namespace sextant {
+namespace {
+
+// A line "Tr: 1 2 3" or "R: 1 2 3" is KITTI's.
+bool IsKitti(std::string_view text, const std::string& file) {
+  LineReader in(file, text);
+  while (in.Next()) {
+    const std::string_view first = in.Field(0);
+    const bool is_key = first == "Tr:" || first == "R:" || first.starts_with("Tr_velo");
+    if (is_key && in.field_count() > 9) return true;
+  }
+  return false;
+}
+
+bool BeginsWithNumber(std::string_view text, const std::string& file) {
+  LineReader in(file, text);
+  return in.Next() && ParseFinite(in.Field(0), {}).has_value();
+}
+
+bool IsXml(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  return first != std::string_view::npos && text[first] == '<';
+}
+
+}  // namespace
+
+std::string_view ToString(PoseDirection direction) {
+  return direction == PoseDirection::kCamFromLidar ? "cam_from_lidar" : "lidar_from_cam";
+}
+
+Expected<StatedPose> ReadPoseFile(const std::filesystem::path& path) {
+  const std::string text = path.string();
+  const std::size_t colon = text.rfind(':');
+  std::error_code ignored;
+  const bool is_named = colon != std::string::npos && !std::filesystem::exists(path, ignored);
+  const std::string name = is_named ? text.substr(colon + 1) : std::string();
+  return ReadWith(is_named ? text.substr(0, colon) : text,
+                  [&](std::string_view content, const std::string& file) {
+                    return ParsePose(content, file, name);
+                  });
+}
+
+Expected<StatedPose> ParsePose(std::string_view text, const std::string& file,
+                               std::string_view name) {
+  if (IsKitti(text, file)) return ParsePoseKitti(text, file, name);
+  if (!name.empty()) {
+    return MakeError(
+        ErrorCode::kParse,
+        fmt::format("{}: only KITTI's calibration has a camera {} to choose", file, Quoted(name)));
+  }
+  if (IsXml(text)) return ParsePoseXml(text, file);
+  if (text.find("static_transform_publisher") != std::string_view::npos &&
+      text.find("LaunchDescription") != std::string_view::npos) {
+    return ParsePoseLaunch(text, file);
+  }
+  if (BeginsWithNumber(text, file)) return ParsePoseNumbers(text, file);
+  return ParsePoseYaml(text, file);
+}
+
+Expected<Rigid3d> CamFromLidar(const StatedPose& pose, std::optional<PoseDirection> asked,
+                               const std::string& file) {
+  if (!asked && !pose.direction) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("{}: whether this is cam_from_lidar (it maps points of the LiDAR "
+                                 "into the camera's optical frame) or its inverse cannot be seen "
+                                 "from it{}; add --pose-is cam_from_lidar or lidar_from_cam",
+                                 file, pose.basis.empty() ? "" : ": " + pose.basis));
+  }
+  // Axes are evidence, names and keys are statements.
+  const bool is_stated = pose.direction && !pose.camera_frame.empty();
+  if (asked && is_stated && *asked != *pose.direction) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("--pose-is {} contradicts {}, which holds {}: {}",
+                                 ToString(*asked), file, ToString(*pose.direction), pose.basis));
+  }
+  const PoseDirection direction = asked ? *asked : *pose.direction;
+  return direction == PoseDirection::kCamFromLidar ? pose.transform : pose.transform.Inverse();
+}
+
+}  // namespace sextant

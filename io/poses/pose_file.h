@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+#include "geometry/rigid3d.h"
+
+namespace sextant {
+
+/// Which way a transform between a LiDAR and a camera maps points.
+enum class PoseDirection { kCamFromLidar, kLidarFromCam };
+
+/// "cam_from_lidar" or "lidar_from_cam".
+std::string_view ToString(PoseDirection direction);
+
+/// A transform between a LiDAR and a camera as a file states it.
+struct StatedPose {
+  Rigid3d transform;
+  std::optional<PoseDirection> direction{};  ///< None: neither names nor axes tell.
+  std::string basis{};         ///< What the direction follows from; a phrase for people.
+  std::string camera_frame{};  ///< Empty: the file has no names.
+  std::string lidar_frame{};
+  bool is_result = false;  ///< ReadCalibrationResult reads this file.
+};
+
+/// Reads a pose from any of these, recognised by the content:
+/// - result.yaml of sextant calibrate or its JSON, JSON of sextant solve (its first answer), and
+/// any
+///   YAML or JSON with the key cam_from_lidar or lidar_from_cam (also as OpenCV's matrix);
+/// - geometry_msgs/TransformStamped as YAML, alone or as the list `transforms` of a TFMessage;
+/// - static transforms of ROS 1 (.launch) and ROS 2 (.launch.py, YAML), joints of a URDF;
+/// - KITTI's calibration: Tr_velo_to_cam or Tr, rotated by R0_rect and moved by the fourth column
+/// of
+///   the camera's projection; calib.txt:P2 chooses the camera. R and T of calib_velo_to_cam.txt;
+/// - a 4x4 or 3x4 matrix in rows, or the seven numbers x y z qx qy qz qw;
+/// - `extrinsics` with translation and rotation (a quaternion w x y z), as JSON.
+/// Several transforms of ROS are connected from the only LiDAR to the only camera, by their names.
+/// The direction follows from a key, from the names of frames or from the format. Where a file has
+/// only numbers, it is the one in which the camera is upright (its y axis along -z of the LiDAR),
+/// if the other is not.
+/// Errors: kIo; kParse with file and line; kNonFinite; kMissingData where no such pose is found.
+/// Time and memory are those of ParseYaml; XML is read up to 1 MiB.
+Expected<StatedPose> ReadPoseFile(const std::filesystem::path& path);
+/// `name` chooses the camera of a KITTI file; empty: the only one.
+Expected<StatedPose> ParsePose(std::string_view text, const std::string& file,
+                               std::string_view name = {});
+
+/// cam_from_lidar of a pose. `asked` is the direction that the user states; it may not contradict
+/// the file. Errors: kInvalidOption, also where neither states a direction; with the file's name.
+Expected<Rigid3d> CamFromLidar(const StatedPose& pose, std::optional<PoseDirection> asked,
+                               const std::string& file);
+
+}  // namespace sextant
