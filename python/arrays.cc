@@ -5,7 +5,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "python/raise.h"
 
@@ -107,6 +109,19 @@ std::vector<double> NumbersFrom(const py::handle& object, const char* name, std:
                        ShapeOf(array)));
   }
   return {array.data(), array.data() + count};
+}
+
+std::vector<int> IntegersFrom(const py::handle& object, const char* name, std::size_t count) {
+  std::vector<int> integers;
+  integers.reserve(count);
+  for (const double number : NumbersFrom(object, name, count)) {
+    constexpr double kMax = std::numeric_limits<int>::max();
+    if (!(std::abs(number) <= kMax) || number != std::floor(number)) {
+      Refuse(fmt::format("{}: expected whole numbers, got {}", name, number));
+    }
+    integers.push_back(static_cast<int>(number));
+  }
+  return integers;
 }
 
 Eigen::MatrixXd MatrixFrom(const py::handle& object, const char* name, Eigen::Index rows,

@@ -21,6 +21,8 @@ std::vector<Eigen::Vector3d> Points3From(const py::handle& array, const char* na
 std::vector<Eigen::Vector2d> Points2From(const py::handle& array, const char* name);
 /// A number for all of `count`, or an array of shape (count,).
 std::vector<double> NumbersFrom(const py::handle& array, const char* name, std::size_t count);
+/// The same of whole numbers.
+std::vector<int> IntegersFrom(const py::handle& array, const char* name, std::size_t count);
 /// A matrix of this shape.
 Eigen::MatrixXd MatrixFrom(const py::handle& array, const char* name, Eigen::Index rows,
                            Eigen::Index columns);

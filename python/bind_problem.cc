@@ -30,8 +30,8 @@ std::vector<PairId> IdsFrom(const py::object& views, const py::object& boards,
   std::vector<PairId> ids(count);
   const auto read = [&](const py::object& object, const char* name, int PairId::*member) {
     if (object.is_none()) return;
-    const std::vector<double> numbers = NumbersFrom(object, name, count);
-    for (std::size_t i = 0; i < count; ++i) ids[i].*member = static_cast<int>(numbers[i]);
+    const std::vector<int> numbers = IntegersFrom(object, name, count);
+    for (std::size_t i = 0; i < count; ++i) ids[i].*member = numbers[i];
   };
   read(views, "views", &PairId::view);
   read(boards, "boards", &PairId::board);

@@ -12,5 +12,8 @@ void BindEstimate(pybind11::module_& module);
 void BindSolve(pybind11::module_& module);
 void BindOwnSolvers(pybind11::module_& module);
 void BindExperiment(pybind11::module_& module);
+void BindBoards(pybind11::module_& module);
+void BindSimulate(pybind11::module_& module);
+void BindCalibrate(pybind11::module_& module);
 
 }  // namespace sextant::python

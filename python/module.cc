@@ -42,4 +42,7 @@ PYBIND11_MODULE(_core, module) {
   BindSolve(module);
   BindOwnSolvers(module);
   BindExperiment(module);
+  BindBoards(module);
+  BindSimulate(module);
+  BindCalibrate(module);
 }

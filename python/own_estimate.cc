@@ -61,9 +61,7 @@ OwnEstimate MakeOwnEstimate(const py::object& matrix, const py::object& covarian
   if (!covariance.is_none()) own.estimate.covariance = CovarianceFrom(covariance);
   own.states_inliers = !inliers.is_none();
   if (own.states_inliers) {
-    // numpy's integers and floats without a fraction count too.
-    const std::vector<double> numbers = NumbersFrom(inliers, "inliers", py::len(inliers));
-    for (const double number : numbers) own.estimate.inliers.push_back(static_cast<int>(number));
+    own.estimate.inliers = IntegersFrom(inliers, "inliers", py::len(inliers));
   }
   for (const py::handle& other : alternatives) {
     own.estimate.alternatives.push_back(PoseFrom(other, "alternatives"));

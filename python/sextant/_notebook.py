@@ -57,3 +57,16 @@ def comparison_html(comparison):
         rows.append((name, rmse, f"{np.degrees(turn):.4f}", f"{shift * 1e3:.2f}",
                      f"{solution.wall_time_us:.0f}"))
     return table(rows, ("solver", "RMSE", "from first [deg]", "from first [mm]", "time [us]"))
+
+
+def calibration_html(calibration):
+    lines = [("verdict", f"{calibration.verdict}: {calibration.reason}"),
+             ("next", calibration.next)] + sigma_lines(calibration.sigma)
+    lines += [("note", warning) for warning in calibration.warnings]
+    views = [(view["name"], "yes" if view["kept"] else view["reason"],
+              "" if view["rmse_m"] is None else f"{view['rmse_m'] * 1e3:.2f}",
+              "" if view["rmse_px"] is None else f"{view['rmse_px']:.3f}")
+             for view in calibration.views]
+    return (f"<p><b>cam_from_lidar</b> by {html.escape(calibration.solver)}</p>"
+            + matrix(calibration.matrix) + table(lines)
+            + table(views, ("view", "used", "RMSE [mm]", "RMSE [px]")))

@@ -78,6 +78,7 @@ def test_wrong_arguments_are_named():
             (dict(points_in_cam="x"), "points_in_cam: expected an array of numbers"),
             (dict(points_in_cam=in_cam, sigma_m=[1, 2]), "sigma_m: expected a number or an array"),
             (dict(points_in_cam=in_cam, initial=np.diag([1, 1, -1, 1])), "initial: its 3x3 part"),
+            (dict(points_in_cam=in_cam, views=[0.5] * 8), "views: expected whole numbers, got 0.5"),
             (dict(points_in_cam=in_cam, solver="kabsh"), "did you mean 'kabsch'?"),
             (dict(points_in_cam=in_cam, solver=3), "expected a solver as text or a function")]:
         with pytest.raises(sextant.Error) as raised:
