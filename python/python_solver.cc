@@ -86,7 +86,11 @@ Expected<Estimate> PythonSolver::DoSolve(const CalibrationProblem& problem) cons
     const ModuleProblem seen{.data = std::make_shared<CalibrationProblem>(problem)};
     return EstimateFromAnswer((*function_)(seen), problem, spec().needs);
   } catch (const py::error_already_set& raised) {
-    return Refusal(spec().name, raised);
+    try {
+      return Refusal(spec().name, raised);
+    } catch (const py::error_already_set&) {
+      return Fault(spec().name, ErrorCode::kInvalidInput, "an exception whose text raises another");
+    }
   } catch (const ErrorException& exception) {
     const Error& error = exception.error();
     // None is the way to say that there is no pose.

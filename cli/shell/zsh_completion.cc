@@ -87,7 +87,11 @@ std::string ZshCompletion(const Program& program) {
   text += ZshChooser(all, "_" + program.name, "",
                      " '--help[Show the help and exit]' '--help-all[The help of every command]' "
                      "'--version[Show the version and exit]'");
-  return text + fmt::format("_{} \"$@\"\n", program.name);
+  // As a file of fpath it is the body of the function; sourced, it registers it.
+  return text + fmt::format(
+                    "if [[ $funcstack[1] == _{0} ]]; then\n  _{0} \"$@\"\nelse\n"
+                    "  compdef _{0} {0}\nfi\n",
+                    program.name);
 }
 
 }  // namespace sextant::cli

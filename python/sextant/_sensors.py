@@ -81,7 +81,7 @@ def detect(image, boards=None, camera=None, *, detector=""):
     for board in found.boards:
         corners = board["corners_in_cam_m"]
         board["corners_in_cam"] = np.array(corners) if corners else None
-    found.tags = [dict(tag, corners=np.array(tag["detected_px"])) for tag in found.data["other_tags"]]
+    found.tags = [dict(tag, corners=np.array(tag["corners_px"])) for tag in found.data["other_tags"]]
     return found
 
 

@@ -147,7 +147,7 @@ def test_wrong_input_is_named(session):
     with pytest.raises(sextant.Error) as raised:
         sextant.calibrate(images=blank, clouds=clouds, boards=boards, camera=camera)
     assert raised.value.code == "missing_data"
-    with pytest.raises(sextant.Error, match="unknown corner extractor|rectangel"):
+    with pytest.raises(sextant.Error, match="rectangel"):
         sextant.boards(clouds[0], boards, extractor="rectangel")
 
 

@@ -110,6 +110,15 @@ def test_exceptions_become_refusals_with_text_and_place():
     assert "AttributeError" in str(error) and "points_in_lidra" in str(error)
     assert "test_own_solvers.py:" in str(error)
 
+    class Unprintable(Exception):
+        def __str__(self):
+            raise RuntimeError
+
+    def unprintable(problem):
+        raise Unprintable
+
+    assert "an exception whose text raises another" in str(refusal_of(unprintable))
+
     def degenerate(problem):
         raise sextant.Error("all points on a line", code="degenerate")
 

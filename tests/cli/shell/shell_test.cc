@@ -103,11 +103,12 @@ TEST(ZshCompletions, AreReadByZsh) {
   // -n reads without running.
   test::WriteText(test::TestPath("_odd"), script);
   EXPECT_EQ(test::RunProgram("zsh", "-n " + test::TestPath("_odd")).err, "");
-  const test::ProgramRun run = RunSextantIn(
-      "zsh", "autoload -Uz compinit && compinit -u -d " + test::TestPath("dump") + "\n" +
-                 "source <(" SEXTANT_BINARY " completion zsh) 2>/dev/null\n" +
-                 "print $+functions[_sextant_calibrate] $+functions[_sextant_list_solvers]\n");
-  EXPECT_THAT(run.out, HasSubstr("1 1")) << run.err;
+  const test::ProgramRun run =
+      RunSextantIn("zsh", "autoload -Uz compinit && compinit -u -d " + test::TestPath("dump") +
+                              "\n" + "source <(" SEXTANT_BINARY " completion zsh)\n" +
+                              "print $+functions[_sextant_calibrate] "
+                              "$+functions[_sextant_list_solvers] $_comps[sextant]\n");
+  EXPECT_THAT(run.out, HasSubstr("1 1 _sextant")) << run.err;
 }
 
 TEST(ManualPages, HaveEveryCommandAndNoFaultForGroff) {
