@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -68,9 +69,20 @@ class Arguments {
 
   const std::vector<Argument>& all() const { return all_; }
 
+  /// Whether the command writes files, and so has the flag kOverwrite.
+  bool HaveOutputs() const {
+    return std::ranges::any_of(
+        all_, [](const Argument& argument) { return argument.rules.writes != Writes::kNothing; });
+  }
+
  private:
   std::vector<Argument> all_;
 };
+
+/// The flag of every command that writes files.
+inline constexpr const char* kOverwrite = "--overwrite";
+inline constexpr const char* kOverwriteHelp =
+    "Replace also files that sextant did not write, or that were changed since";
 
 struct Command {
   std::string name;
@@ -102,6 +114,7 @@ struct CommandGroup {
 
 struct Program {
   std::string name;
+  std::string version{};  ///< What --version prints.
   std::string introduction;
   std::string footer;
   std::vector<CommandGroup> groups;

@@ -17,7 +17,6 @@
 
 #include "base/nearest_name.h"
 #include "base/text/printable.h"
-#include "base/version.h"
 #include "cli/output.h"
 #include "io/text/number_text.h"
 
@@ -109,16 +108,6 @@ void SetRules(const ArgumentRules& rules, CLI::App& app, CLI::Option& option) {
   if (!rules.excludes.empty()) option.excludes(app.get_option(rules.excludes));
 }
 
-constexpr const char* kOverwrite = "--overwrite";
-constexpr const char* kOverwriteHelp =
-    "Replace also files that sextant did not write, or that were changed since";
-
-bool HasOutputs(const Arguments& arguments) {
-  return std::ranges::any_of(arguments.all(), [](const Argument& argument) {
-    return argument.rules.writes != Writes::kNothing;
-  });
-}
-
 void AddCommand(const Command& command, const std::string& group, bool& overwrites,
                 CLI::App& parent) {
   CLI::App& app = *parent.add_subcommand(command.name, command.summary);
@@ -131,7 +120,7 @@ void AddCommand(const Command& command, const std::string& group, bool& overwrit
         [&](auto* value) { SetRules(argument.rules, app, AddOption(argument, *value, app)); },
         argument.target);
   }
-  if (HasOutputs(arguments)) app.add_flag(kOverwrite, overwrites, kOverwriteHelp);
+  if (arguments.HaveOutputs()) app.add_flag(kOverwrite, overwrites, kOverwriteHelp);
   for (const Command& sub : command.subcommands) AddCommand(sub, "Subcommands", overwrites, app);
   if (!command.run) app.require_subcommand(1);
 }
@@ -294,7 +283,7 @@ ParsedLine ParseLine(const Program& program, int argc, const char* const* argv) 
     return {.exit_code = kWrongUse, .err = std::move(error)};
   }
   CLI::App app(program.introduction, program.name);
-  app.set_version_flag("--version", std::string(Version()));
+  app.set_version_flag("--version", program.version);
   app.set_help_all_flag("--help-all", "The help of every command");
   app.require_subcommand(1);
   app.footer(program.footer);

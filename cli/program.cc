@@ -2,6 +2,7 @@
 #include "cli/program.h"
 
 #include "cli/commands/commands.h"
+#include "cli/features.h"
 
 namespace sextant::cli {
 namespace {
@@ -32,6 +33,7 @@ constexpr const char* kFooter =
 
 Program SextantProgram() {
   return {.name = "sextant",
+          .version = VersionText(),
           .introduction = kIntroduction,
           .footer = kFooter,
           .groups = {{"Calibrate",
@@ -42,7 +44,8 @@ Program SextantProgram() {
                       {SimulateCommand(), PrintBoardCommand(), ConvertCommand(), FuseCommand()}},
                      {"Solvers, on correspondences of your own",
                       {SolveCommand(), CompareCommand(), AverageCommand(), ListCommand()}},
-                     {"Experiments", {RunCommand(), MergeCommand(), ReproduceCommand()}}},
+                     {"Experiments", {RunCommand(), MergeCommand(), ReproduceCommand()}},
+                     {"The program itself", {CompletionCommand(), ManualCommand()}}},
           .renamed = {{"board", "print-board"},
                       {"solvers", "list solvers"},
                       {"detectors", "list detectors"},

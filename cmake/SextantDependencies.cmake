@@ -80,6 +80,23 @@ if(SEXTANT_MPI AND SEXTANT_OPENCV)
   endif()
 endif()
 
+# The Python module is optional, and for the system's Python, whose numpy and pybind11 it uses. The
+# sanitizers would have to be loaded before Python.
+option(SEXTANT_PYTHON "Build the Python module if pybind11 is found" ON)
+if(SEXTANT_PYTHON AND SEXTANT_OPENCV AND NOT SEXTANT_SANITIZE)
+  set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "The Python that the module is for")
+  find_package(Python 3.9 QUIET COMPONENTS Interpreter Development.Module NumPy)
+  if(Python_FOUND)
+    find_package(pybind11 2.10 QUIET CONFIG)
+  endif()
+  if(NOT pybind11_FOUND)
+    message(STATUS "pybind11, numpy or Python's headers not found: no Python module")
+    set(SEXTANT_PYTHON OFF)
+  endif()
+else()
+  set(SEXTANT_PYTHON OFF)
+endif()
+
 # yaml-cpp 0.7 (Debian 12) exports its target without the namespace that 0.8 gives it.
 if(NOT TARGET yaml-cpp::yaml-cpp)
   add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)

@@ -12,11 +12,13 @@ Command BagCommand();
 Command BoardsCommand();
 Command CalibrateCommand();
 Command CompareCommand();
+Command CompletionCommand();
 Command ConvertCommand();
 Command DetectCommand();
 Command ExportCommand();
 Command FuseCommand();
 Command ListCommand();
+Command ManualCommand();
 Command MarkCommand();  ///< In cli/mark.
 Command MergeCommand();
 Command PrintBoardCommand();

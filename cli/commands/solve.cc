@@ -5,8 +5,8 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/problem_input.h"
-#include "eval/diagnostics/outlying_pairs.h"
 #include "eval/metrics/compare.h"
+#include "eval/metrics/default_specs.h"
 #include "report/overlay.h"
 #include "report/report_text.h"
 #include "solvers/all/all_solvers.h"
@@ -43,21 +43,6 @@ std::string TextOf(const CalibrationProblem& problem, const Solver& solver,
   return text;
 }
 
-// The choice that the help describes.
-std::string SolverFor(const CalibrationProblem& problem, const SolverRegistry& registry) {
-  const std::size_t pixels = problem.pairs_2d3d.size();
-  if (!problem.pairs_3d3d.empty() || pixels == 0) return "kabsch";
-  if (pixels == 3) return "p3p";
-  const std::string least_squares = "refine(sqpnp)";
-  const std::string robust = "refine(ransac(p3p))";
-  const auto answer_of = [&](const std::string& spec) {
-    return registry.Make(spec).and_then([&](const SolverPtr& s) { return s->Solve(problem); });
-  };
-  const Expected<SolveReport> report = answer_of(least_squares);
-  if (report && OutlyingResiduals(report->evaluation.per_pair_px, 2).empty()) return least_squares;
-  return answer_of(robust) ? robust : least_squares;
-}
-
 int Run(const SolveOptions& options) {
   const SolverRegistry registry = AllSolvers();
   Expected<SolverPtr> solver = registry.Make(options.solver.empty() ? "kabsch" : options.solver);
@@ -66,7 +51,7 @@ int Run(const SolveOptions& options) {
   if (!input) return Refuse("solve", input.error());
   const CalibrationProblem& problem = input->file.problem;
   if (options.solver.empty()) {
-    solver = registry.Make(SolverFor(problem, registry));
+    solver = registry.Make(DefaultSpec(registry, problem));
     if (!solver) return Refuse("solve", solver.error());
   }
   const std::vector<ComparisonRow> rows =

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <exception>
 
+#include "base/version.h"
 #include "cli/mpi/run_on_ranks.h"
 #include "cli/output.h"
 #include "cli/run_program.h"
@@ -34,6 +35,7 @@ int Main(int argc, char** argv) {
   ExperimentOptions options;
   const Program program{
       .name = "sextant-mpi",
+      .version = std::string(Version()),
       .introduction =
           "Experiments on many machines: each process that mpirun starts runs its share.",
       .footer = {},

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/metrics/default_specs.h"
 
+#include "eval/diagnostics/outlying_pairs.h"
+
 namespace sextant {
 
 std::vector<std::string> DefaultSpecs(const SolverRegistry& registry,
@@ -25,6 +27,20 @@ std::vector<std::string> DefaultSpecs(const SolverRegistry& registry,
   const bool sets_given = problem.point_sets.in_cam.size() >= 3;
   if (!any_whole_pose && !sets_given) specs.clear();
   return specs;
+}
+
+std::string DefaultSpec(const SolverRegistry& registry, const CalibrationProblem& problem) {
+  const std::size_t pixels = problem.pairs_2d3d.size();
+  if (!problem.pairs_3d3d.empty() || pixels == 0) return "kabsch";
+  if (pixels == 3) return "p3p";
+  const std::string least_squares = "refine(sqpnp)";
+  const std::string robust = "refine(ransac(p3p))";
+  const auto answer_of = [&](const std::string& spec) {
+    return registry.Make(spec).and_then([&](const SolverPtr& s) { return s->Solve(problem); });
+  };
+  const Expected<SolveReport> report = answer_of(least_squares);
+  if (report && OutlyingResiduals(report->evaluation.per_pair_px, 2).empty()) return least_squares;
+  return answer_of(robust) ? robust : least_squares;
 }
 
 }  // namespace sextant

@@ -21,6 +21,7 @@ endfunction()
 expect_installed(experiments/*.yaml ${PREFIX}/share/sextant)
 expect_installed(docs/* ${doc})
 expect_installed(examples/*.cc ${doc})
+expect_installed(examples/*.py ${doc})
 
 file(READ ${doc}/README.md readme)
 # A lone bracket in an item would join it with the next one of the list.

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <exception>
+#include <utility>
+
+#include "base/error.h"
+
+namespace sextant::python {
+
+/// An Error on its way to Python, where it becomes sextant.Error with its message and code.
+class ErrorException final : public std::exception {
+ public:
+  explicit ErrorException(Error error) : error_(std::move(error)) {}
+  const char* what() const noexcept override { return error_.message.c_str(); }
+  const Error& error() const { return error_; }
+
+ private:
+  Error error_;
+};
+
+/// The value, or an ErrorException with the error.
+template <class T>
+T ValueOf(Expected<T> expected) {
+  if (!expected) throw ErrorException(std::move(expected.error()));
+  if constexpr (!std::is_void_v<T>) return *std::move(expected);
+}
+
+/// Runs the computation while other Python threads run. It may touch no Python object.
+template <class Computation>
+auto WithoutGil(Computation&& computation) {
+  const pybind11::gil_scoped_release released;
+  return computation();
+}
+
+}  // namespace sextant::python
