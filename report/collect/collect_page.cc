@@ -124,7 +124,7 @@ ReportPage CollectPage(const PageSource& source) {
                   .figures = FiguresFor(result),
                   .transforms = TransformsOf(result),
                   .sensors = PageSensorsOf(result),
-                  .views = PageViewsOf(result, source.frames),
+                  .views = PageViewsOf(result, source.calibration, source.frames),
                   .coverage = CoverageOf(result),
                   .coverage_plots = CoveragePlots(result),
                   .residual_plots = ResidualPlots(result),

@@ -28,6 +28,22 @@ std::string NameOf(const Board& board) {
                             : fmt::format("{} ({})", board.id, board.name);
 }
 
+void AddByCamera(const CalibrationResult& result, const Board& board, const Rigid3d& cam_from_board,
+                 PageBoard& page) {
+  page.range_m = cam_from_board.translation.norm();
+  page.by_camera = OuterCorners(board, result.cam_from_lidar.Inverse() * cam_from_board);
+  if (result.camera) page.camera_in_px = OutlineInImage(*result.camera, board, cam_from_board);
+}
+
+void AddByLidar(const CalibrationResult& result, const Board& board,
+                const Rigid3d& lidar_from_board, PageBoard& page) {
+  page.by_lidar = OuterCorners(board, lidar_from_board);
+  if (result.camera) {
+    page.lidar_in_px =
+        OutlineInImage(*result.camera, board, result.cam_from_lidar * lidar_from_board);
+  }
+}
+
 PageBoard BoardOf(const CalibrationResult& result, const ResultBoardView& seen) {
   PageBoard page{.name = fmt::format("{}", seen.board),
                  .residuals_m = seen.residuals_m,
@@ -35,22 +51,45 @@ PageBoard BoardOf(const CalibrationResult& result, const ResultBoardView& seen) 
   const Board* board = FindBoard(result, seen.board);
   if (board == nullptr) return page;
   page.name = NameOf(*board);
-  const Rigid3d& cam_from_lidar = result.cam_from_lidar;
-  if (seen.cam_from_board) {
-    page.range_m = seen.cam_from_board->translation.norm();
-    page.by_camera = OuterCorners(*board, cam_from_lidar.Inverse() * *seen.cam_from_board);
-    if (result.camera) {
-      page.camera_in_px = OutlineInImage(*result.camera, *board, *seen.cam_from_board);
-    }
-  }
-  if (seen.lidar_from_board) {
-    page.by_lidar = OuterCorners(*board, *seen.lidar_from_board);
-    if (result.camera) {
-      page.lidar_in_px =
-          OutlineInImage(*result.camera, *board, cam_from_lidar * *seen.lidar_from_board);
-    }
-  }
+  if (seen.cam_from_board) AddByCamera(result, *board, *seen.cam_from_board, page);
+  if (seen.lidar_from_board) AddByLidar(result, *board, *seen.lidar_from_board, page);
   return page;
+}
+
+// What each sensor saw in a view that was left out, each sighting on its own.
+std::vector<PageBoard> SightingsOf(const CalibrationResult& result, const Observation& seen) {
+  std::vector<PageBoard> pages;
+  for (const CameraSighting& sighting : seen.in_image) {
+    const Board& board = result.boards[static_cast<std::size_t>(sighting.board)];
+    AddByCamera(result, board, sighting.pose.cam_from_board, pages.emplace_back());
+    pages.back().name = NameOf(board);
+  }
+  for (const LidarSighting& sighting : seen.in_scan) {
+    const BoardPlacement& placed = sighting.placements.front();
+    const Board& board = result.boards[static_cast<std::size_t>(placed.board)];
+    AddByLidar(result, board, placed.lidar_from_board, pages.emplace_back());
+    pages.back().name = NameOf(board);
+  }
+  return pages;
+}
+
+// Requires a result of this calibration, whose views and boards are its own.
+void AddFromCalibration(const CalibrationResult& result, const Calibration& calibration,
+                        std::vector<PageView>& pages) {
+  const std::vector<SessionView>& views = calibration.observed.views;
+  for (std::size_t i = 0; i < pages.size() && i < views.size(); ++i) {
+    if (pages[i].boards.empty() && views[i].seen) {
+      pages[i].boards = SightingsOf(result, *views[i].seen);
+    }
+  }
+  for (const BoardRow& row : calibration.assembly.rows) {
+    if (row.why.empty() || row.board < 0 || row.view >= pages.size()) continue;
+    PageView& page = pages[row.view];
+    if (!page.is_kept) continue;  // Its reason is that of all its boards.
+    const Board& board = result.boards[static_cast<std::size_t>(row.board)];
+    page.reason += fmt::format("{}board {} {}: {}", page.reason.empty() ? "" : "; ", board.id,
+                               ToString(row.fate), row.why);
+  }
 }
 
 PageView ViewWithoutMedia(const CalibrationResult& result, const ResultView& view) {
@@ -170,13 +209,15 @@ std::vector<PageSensor> PageSensorsOf(const CalibrationResult& result) {
   return {std::move(lidar), std::move(camera)};
 }
 
-std::vector<PageView> PageViewsOf(const CalibrationResult& result, const FrameSource& frames) {
+std::vector<PageView> PageViewsOf(const CalibrationResult& result, const Calibration* calibration,
+                                  const FrameSource& frames) {
   const MediaBudget budget = BudgetFor(result.views.size());
   std::vector<PageView> pages(result.views.size());
   for (std::size_t i = 0; i < pages.size(); ++i) {
     pages[i] = ViewWithoutMedia(result, result.views[i]);
     pages[i].no_photo = "There is no photo and no scan of this view.";
   }
+  if (calibration != nullptr) AddFromCalibration(result, *calibration, pages);
   if (!result.camera || !frames) return pages;
   const Expected<void> ok = frames(result.views, [&](std::size_t i, const Expected<Frame>& frame) {
     if (i >= pages.size()) return;

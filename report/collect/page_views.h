@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "calibrate/calibrate.h"
 #include "io/results/calibration_result.h"
 #include "report/collect/frame_source.h"
 #include "report/page/page.h"
@@ -12,8 +13,11 @@ namespace sextant {
 /// The camera and the LiDAR, with the camera's pose in the LiDAR frame.
 std::vector<PageSensor> PageSensorsOf(const CalibrationResult& result);
 
-/// Every view with its boards, its photo and its scan; or why it has none.
-std::vector<PageView> PageViewsOf(const CalibrationResult& result, const FrameSource& frames);
+/// Every view with its boards, its photo and its scan; or why it has none. A result file has no
+/// boards of the views that were left out: those that each sensor saw come from the calibration,
+/// which may be null, as does the reason why a board of a kept view was left out.
+std::vector<PageView> PageViewsOf(const CalibrationResult& result, const Calibration* calibration,
+                                  const FrameSource& frames);
 
 /// Outline of a board in the image, with the lens: closed, in pieces. Empty where a part of it does
 /// not project.

@@ -24,7 +24,7 @@ std::string CornerName(std::size_t corner) {
 std::string RangesOf(const PageView& view) {
   std::string text;
   for (const PageBoard& board : view.boards) {
-    text += (text.empty() ? "" : ", ") + NumberHtml(board.range_m, 1.0, 2);
+    if (board.range_m > 0.0) text += (text.empty() ? "" : ", ") + NumberHtml(board.range_m, 1.0, 2);
   }
   return text.empty() ? "–" : text;
 }
