@@ -89,7 +89,7 @@ std::string SeriesSvg(const PlotFrame& frame, const PageSeries& series, std::siz
     }
     svg += "\"/>";
   }
-  svg += series.is_line ? "<g>" : "<g fill-opacity=\".65\" stroke=\"none\">";
+  svg += series.is_line ? "<g>" : "<g fill-opacity=\".65\" stroke-width=\".5\">";
   for (const Eigen::Vector2d& point : series.points) {
     svg += MarkSvg(kind, frame.X(point.x()), frame.Y(point.y()));
   }
