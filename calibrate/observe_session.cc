@@ -4,9 +4,13 @@
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
+#include <memory>
+
+#include "calibrate/observe/photo_file.h"
 #include "calibrate/session/observe_files.h"
 #include "io/boards/board_file.h"
 #include "io/cameras/camera_file.h"
+#include "io/clouds/cloud_file.h"
 #include "io/text/text_file.h"
 #ifdef SEXTANT_WITH_BAG
 #include "calibrate/bag/observe_recording.h"
@@ -34,15 +38,39 @@ Expected<std::optional<Camera>> CameraFor(const Session& session, const Calibrat
                    "the camera is missing: the session does not name a camera file");
 }
 
+Expected<Frame> ReadFrame(const FilePair& pair) {
+  Frame frame{.name = pair.name};
+  SEXTANT_ASSIGN_OR_RETURN(frame.image, ReadImage(pair.image));
+  SEXTANT_ASSIGN_OR_RETURN(frame.cloud, ReadCloud(pair.cloud));
+  return frame;
+}
+
 #ifdef SEXTANT_WITH_BAG
+BagSource SourceOf(const Session& session, double tolerance_s) {
+  return {.image_topic = session.image_topic,
+          .cloud_topic = session.cloud_topic,
+          .tolerance_s = tolerance_s};
+}
+
+Expected<void> VisitRecording(const Session& session, double tolerance_s,
+                              const FrameVisitor& visit) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::unique_ptr<Bag> bag, OpenBag(session.bag));
+  SEXTANT_ASSIGN_OR_RETURN(const BagPlan plan, PlanBag(*bag, SourceOf(session, tolerance_s)));
+  return VisitMoments(
+      *bag, plan,
+      [&](std::size_t i, const Expected<cv::Mat>& image, const Expected<PointCloud>& cloud) {
+        if (!image) return visit(i, tl::unexpected<Error>(image.error()));
+        if (!cloud) return visit(i, tl::unexpected<Error>(cloud.error()));
+        visit(i, Frame{.image = *image, .cloud = *cloud});
+      });
+}
+
 Expected<void> ObserveBagOf(const CalibrateOptions& options, const std::optional<Camera>& camera,
                             ObservedSession& observed) {
   const Session& session = observed.session;
   SEXTANT_ASSIGN_OR_RETURN(RecordedViews recorded,
                            ObserveRecording(session.bag,
-                                            {.source = {.image_topic = session.image_topic,
-                                                        .cloud_topic = session.cloud_topic,
-                                                        .tolerance_s = options.tolerance_s},
+                                            {.source = SourceOf(session, options.tolerance_s),
                                              .boards = observed.boards,
                                              .camera = camera,
                                              .observe = options.observe},
@@ -53,13 +81,21 @@ Expected<void> ObserveBagOf(const CalibrateOptions& options, const std::optional
   return {};
 }
 #else
-Expected<void> ObserveBagOf(const CalibrateOptions&, const std::optional<Camera>&,
-                            ObservedSession& observed) {
+tl::unexpected<Error> NoRecordings(const Session& session) {
   return MakeError(ErrorCode::kMissingData,
                    fmt::format("cannot read '{}': this build has no recordings of ROS. Install "
                                "libbz2-dev, liblz4-dev, libzstd-dev and libsqlite3-dev, configure "
                                "with -DSEXTANT_BAG=ON and build again",
-                               observed.session.bag.string()));
+                               session.bag.string()));
+}
+
+Expected<void> VisitRecording(const Session& session, double, const FrameVisitor&) {
+  return NoRecordings(session);
+}
+
+Expected<void> ObserveBagOf(const CalibrateOptions&, const std::optional<Camera>&,
+                            ObservedSession& observed) {
+  return NoRecordings(observed.session);
 }
 #endif
 
@@ -92,6 +128,14 @@ Expected<ObservedSession> ObserveSession(const Session& session, const Calibrate
   observed.views = ObserveFiles(observer, pairs, [&counter] { counter.Step(); });
   counter.Finish();
   return observed;
+}
+
+Expected<void> VisitFrames(const Session& session, double tolerance_s, const FrameVisitor& visit) {
+  if (!session.bag.empty()) return VisitRecording(session, tolerance_s, visit);
+  const std::vector<FilePair>& pairs = session.files.pairs;
+  tbb::parallel_for(std::size_t{0}, pairs.size(),
+                    [&](std::size_t i) { visit(i, ReadFrame(pairs[i])); });
+  return {};
 }
 
 Expected<ObservedSession> ObserveFrames(std::span<const Frame> frames,

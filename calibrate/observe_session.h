@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <span>
 #include <string>
@@ -38,7 +39,15 @@ struct Frame {
 /// in a build without recordings of ROS; those of the readers and of Observer::Make.
 Expected<ObservedSession> ObserveSession(const Session& session, const CalibrateOptions& options);
 
-/// The same for data in memory; options.boards and options.camera are required.
+/// The photo and the scan of a view, by its index, or why they cannot be read.
+using FrameVisitor = std::function<void(std::size_t view, const Expected<Frame>& frame)>;
+
+/// Reads the images and scans of the session again and passes them on, with the indices of
+/// ObservedSession::views, on all cores and in no certain order; a photo and a scan for each core
+/// are in memory. Errors: those of a recording as a whole.
+Expected<void> VisitFrames(const Session& session, double tolerance_s, const FrameVisitor& visit);
+
+/// The same as ObserveSession for data in memory; options.boards and options.camera are required.
 Expected<ObservedSession> ObserveFrames(std::span<const Frame> frames,
                                         const CalibrateOptions& options);
 

@@ -44,6 +44,8 @@ if(SEXTANT_OPENCV)
   find_package(CLI11 REQUIRED)
   # Draws boards to print.
   pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
+  # Names the inputs of a report.
+  pkg_check_modules(SHA REQUIRED IMPORTED_TARGET libmd)
   # For the program only: highgui maps over a hundred shared objects into a process.
   find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs highgui)
 endif()

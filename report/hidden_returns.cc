@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "features/lidar/rings/scan_rings.h"
 #include "report/quadrant_front.h"
+#include "report/thinned_scan.h"
 
 namespace sextant {
 namespace {
@@ -162,6 +164,14 @@ class ReturnTiles {
 };
 
 }  // namespace
+
+SampleSpacing SpacingOf(const PointCloud& scan, const Camera& camera) {
+  const std::size_t step = ThinningOf(scan);
+  const Expected<ScanRings> rings = ScanRings::Build(step > 1 ? Thinned(scan, step) : scan);
+  if (!rings) return {};
+  return {.across_px = camera.fx_px * rings->azimuth_step_rad() / static_cast<double>(step),
+          .down_px = camera.fy_px * rings->elevation_step_rad()};
+}
 
 std::vector<bool> HiddenReturns(const std::vector<ProjectedReturn>& returns,
                                 const SampleSpacing& spacing) {

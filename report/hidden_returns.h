@@ -13,6 +13,9 @@ struct SampleSpacing {
   double down_px = 1.0;
 };
 
+/// The spacing of the scan's samples in the camera's picture; 1 px for a scan without returns.
+SampleSpacing SpacingOf(const PointCloud& scan, const Camera& camera);
+
 /// Returns that are visible to the LiDAR and hidden from the camera by something nearer, because
 /// the sensors are in different places. A return is hidden if returns that are nearer to the camera
 /// by a tenth and 0.2 m surround it: in at least three of its four quadrants, within two samples. A

@@ -7,11 +7,9 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "features/lidar/rings/scan_rings.h"
 #include "report/fixed_point.h"
 #include "report/hidden_returns.h"
 #include "report/projected_scan.h"
-#include "report/thinned_scan.h"
 
 namespace sextant {
 namespace {
@@ -27,14 +25,6 @@ void MakePale(cv::Mat& canvas) {
   cv::cvtColor(canvas, grey, cv::COLOR_BGR2GRAY);
   cv::cvtColor(grey, canvas, cv::COLOR_GRAY2BGR);
   canvas.convertTo(canvas, -1, 0.6, 20.0);
-}
-
-SampleSpacing SpacingOf(const PointCloud& scan, const Camera& camera) {
-  const std::size_t step = ThinningOf(scan);
-  const Expected<ScanRings> rings = ScanRings::Build(step > 1 ? Thinned(scan, step) : scan);
-  if (!rings) return {};
-  return {.across_px = camera.fx_px * rings->azimuth_step_rad() / static_cast<double>(step),
-          .down_px = camera.fy_px * rings->elevation_step_rad()};
 }
 
 // The colour for a range; share 0 is near and blue, 1 is far and red.

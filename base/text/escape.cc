@@ -160,6 +160,32 @@ std::string YamlQuoted(std::string text) {
   return quoted + "\"";
 }
 
+std::string HtmlText(std::string text) {
+  std::string escaped;
+  for (const char c : PrintableLine(std::move(text))) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\'':
+        escaped += "&#39;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
 // The library writes only the controls below 0x20 as \uNNNN; the others can stand in strings alone.
 std::string JsonText(const nlohmann::ordered_json& document, int indent) {
   const std::string text =
@@ -183,6 +209,16 @@ std::string JsonLine(const nlohmann::ordered_json& document) {
   std::string text = JsonText(document, /*indent=*/-1);
   text.pop_back();
   return text;
+}
+
+// Outside of strings JSON has none of these characters.
+std::string ScriptJson(const nlohmann::ordered_json& document) {
+  std::string escaped;
+  for (const char c : JsonText(document, -1)) {
+    const bool is_markup = c == '<' || c == '>' || c == '&';
+    escaped += is_markup ? fmt::format("\\u{:04x}", static_cast<unsigned>(c)) : std::string(1, c);
+  }
+  return escaped;
 }
 
 }  // namespace sextant

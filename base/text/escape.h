@@ -31,11 +31,18 @@ std::string CsvField(std::string text);
 /// A scalar of YAML in double quotes.
 std::string YamlQuoted(std::string text);
 
+/// Text of HTML, between tags or as an attribute in double quotes.
+std::string HtmlText(std::string text);
+
 /// The document as text, ending with a line feed. Control characters in strings are written as
 /// \uNNNN, and so survive; bytes that are not UTF-8 become U+FFFD.
 std::string JsonText(const nlohmann::ordered_json& document, int indent = 2);
 
 /// The same on one line, without a line feed at its end.
 std::string JsonLine(const nlohmann::ordered_json& document);
+
+/// The same on one line, for a script element of HTML: no text in it can end the element or open a
+/// comment.
+std::string ScriptJson(const nlohmann::ordered_json& document);
 
 }  // namespace sextant

@@ -123,7 +123,7 @@ struct MessageCopy {
 };
 
 struct PendingMoment {
-  std::size_t view = 0;
+  std::size_t index = 0;
   std::optional<MessageCopy> image{};
   std::optional<MessageCopy> cloud{};
 };
@@ -137,36 +137,29 @@ Expected<cv::Mat> DecodeAny(const BagMessage& message) {
   return ToMat(image);
 }
 
-Expected<Observation> Examine(const Observer& observer, const PendingMoment& moment) {
-  SEXTANT_ASSIGN_OR_RETURN(const cv::Mat image, DecodeAny(moment.image->Get()));
-  SEXTANT_ASSIGN_OR_RETURN(const CloudMessage cloud, DecodePointCloud(moment.cloud->Get()));
-  return observer.Observe(image, cloud.cloud);
+Expected<PointCloud> DecodeScan(const BagMessage& message) {
+  SEXTANT_ASSIGN_OR_RETURN(CloudMessage cloud, DecodePointCloud(message));
+  return std::move(cloud.cloud);
 }
 
-// Collects messages until a batch of moments is complete, then observes the batch on all cores.
+// Collects messages until a batch of moments is complete, then visits the batch on all cores.
 class Batches {
  public:
-  Batches(const BagPlan& plan, const Observer& observer, const std::function<void()>& step)
-      : plan_(plan), observer_(observer), step_(step), views_(plan.moments.size()) {
+  Batches(const BagPlan& plan, const MomentVisitor& visit) : plan_(plan), visit_(visit) {
     for (std::size_t i = 0; i < plan.moments.size(); ++i) {
-      view_of_image_[plan.moments[i].image] = i;
-      view_of_cloud_[plan.moments[i].cloud] = i;
-      const BagMoment& moment = plan.moments[i];
-      views_[i].cloud_time_s = Seconds(moment.stamp_ns);
-      views_[i].image_time_s = Seconds(moment.stamp_ns + moment.difference_ns);
-      views_[i].name = fmt::format(
-          "{:.3f} s", Seconds(plan.moments[i].stamp_ns - plan.moments.front().stamp_ns));
+      moment_of_image_[plan.moments[i].image] = i;
+      moment_of_cloud_[plan.moments[i].cloud] = i;
     }
   }
 
   void Take(const BagMessage& message) {
     const bool is_image = message.topic_index == plan_.image_topic;
     const std::size_t number = is_image ? images_++ : clouds_++;
-    const auto& views = is_image ? view_of_image_ : view_of_cloud_;
-    const auto found = views.find(number);
-    if (found == views.end()) return;
+    const auto& moments = is_image ? moment_of_image_ : moment_of_cloud_;
+    const auto found = moments.find(number);
+    if (found == moments.end()) return;
     PendingMoment& moment = waiting_[found->second];
-    moment.view = found->second;
+    moment.index = found->second;
     (is_image ? moment.image : moment.cloud) = MessageCopy{message, std::string(message.data)};
     if (!moment.image || !moment.cloud) return;
     whole_.push_back(std::move(moment));
@@ -174,33 +167,45 @@ class Batches {
     if (whole_.size() == kBatch) Work();
   }
 
-  std::vector<SessionView> Finish() {
-    Work();
-    return std::move(views_);
+  void Work() {
+    tbb::parallel_for(std::size_t{0}, whole_.size(), [this](std::size_t i) {
+      visit_(whole_[i].index, DecodeAny(whole_[i].image->Get()),
+             DecodeScan(whole_[i].cloud->Get()));
+    });
+    whole_.clear();
   }
 
  private:
   static constexpr std::size_t kBatch = 64;
 
-  void Work() {
-    tbb::parallel_for(std::size_t{0}, whole_.size(), [this](std::size_t i) {
-      views_[whole_[i].view].seen = Examine(observer_, whole_[i]);
-      if (step_) step_();
-    });
-    whole_.clear();
-  }
-
   const BagPlan& plan_;
-  const Observer& observer_;
-  const std::function<void()>& step_;
-  std::vector<SessionView> views_;
-  std::map<std::size_t, std::size_t> view_of_image_;
-  std::map<std::size_t, std::size_t> view_of_cloud_;
+  const MomentVisitor& visit_;
+  std::map<std::size_t, std::size_t> moment_of_image_;
+  std::map<std::size_t, std::size_t> moment_of_cloud_;
   std::map<std::size_t, PendingMoment> waiting_;
   std::vector<PendingMoment> whole_;
   std::size_t images_ = 0;  // Number of the next image, and below of the next scan.
   std::size_t clouds_ = 0;
 };
+
+std::vector<SessionView> ViewsOf(const BagPlan& plan) {
+  std::vector<SessionView> views(plan.moments.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const BagMoment& moment = plan.moments[i];
+    views[i].cloud_time_s = Seconds(moment.stamp_ns);
+    views[i].image_time_s = Seconds(moment.stamp_ns + moment.difference_ns);
+    views[i].name =
+        fmt::format("{:.3f} s", Seconds(moment.stamp_ns - plan.moments.front().stamp_ns));
+  }
+  return views;
+}
+
+Expected<Observation> Examine(const Observer& observer, const Expected<cv::Mat>& image,
+                              const Expected<PointCloud>& cloud) {
+  if (!image) return tl::unexpected<Error>(image.error());
+  if (!cloud) return tl::unexpected<Error>(cloud.error());
+  return observer.Observe(*image, *cloud);
+}
 
 }  // namespace
 
@@ -229,16 +234,27 @@ Expected<BagPlan> PlanBag(const Bag& bag, const BagSource& source) {
   return plan;
 }
 
-Expected<std::vector<SessionView>> ObserveBag(const Bag& bag, const BagPlan& plan,
-                                              const Observer& observer,
-                                              const std::function<void()>& step) {
-  Batches batches(plan, observer, step);
+Expected<void> VisitMoments(const Bag& bag, const BagPlan& plan, const MomentVisitor& visit) {
+  Batches batches(plan, visit);
   SEXTANT_RETURN_IF_ERROR(bag.Read({plan.image_topic, plan.cloud_topic},
                                    [&batches](const BagMessage& message) -> Expected<void> {
                                      batches.Take(message);
                                      return {};
                                    }));
-  std::vector<SessionView> views = batches.Finish();
+  batches.Work();
+  return {};
+}
+
+Expected<std::vector<SessionView>> ObserveBag(const Bag& bag, const BagPlan& plan,
+                                              const Observer& observer,
+                                              const std::function<void()>& step) {
+  std::vector<SessionView> views = ViewsOf(plan);
+  SEXTANT_RETURN_IF_ERROR(VisitMoments(
+      bag, plan,
+      [&](std::size_t i, const Expected<cv::Mat>& image, const Expected<PointCloud>& cloud) {
+        views[i].seen = Examine(observer, image, cloud);
+        if (step) step();
+      }));
   std::vector<double> times_s;
   for (const BagMoment& moment : plan.moments) times_s.push_back(Seconds(moment.stamp_ns));
   LeaveOutMotion(views, times_s, observer.camera());

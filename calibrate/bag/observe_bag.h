@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "calibrate/match/assemble.h"
 #include "calibrate/observe/observe.h"
 #include "geometry/camera.h"
+#include "geometry/point_cloud.h"
 #include "io/bag/bag.h"
 
 namespace sextant {
@@ -43,9 +45,17 @@ struct BagPlan {
 /// within the tolerance of a scan (with the smallest difference in time); those of the messages.
 Expected<BagPlan> PlanBag(const Bag& bag, const BagSource& source);
 
+/// The image and the scan of a moment, by its index in the plan, or why they cannot be decoded.
+using MomentVisitor = std::function<void(std::size_t moment, const Expected<cv::Mat>& image,
+                                         const Expected<PointCloud>& cloud)>;
+
+/// Decodes every moment and passes it on, on all cores and in no certain order. Only the messages
+/// of one batch (64 moments) are in memory at a time. Errors: those of Bag::Read.
+Expected<void> VisitMoments(const Bag& bag, const BagPlan& plan, const MomentVisitor& visit);
+
 /// Observes every moment, on all cores, and excludes boards in motion (LeaveOutMotion). The views
 /// are in the order of the plan. `step` is called after each, from any thread, and may be empty.
-/// Only the messages of one batch (64 moments) are in memory at a time. Errors: those of Bag::Read;
+/// Memory is that of VisitMoments. Errors: those of Bag::Read;
 /// a message that cannot be decoded gives a view with that error.
 Expected<std::vector<SessionView>> ObserveBag(const Bag& bag, const BagPlan& plan,
                                               const Observer& observer,

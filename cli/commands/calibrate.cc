@@ -13,6 +13,7 @@
 #include "cli/output.h"
 #include "cli/pose_argument.h"
 #include "cli/progress.h"
+#include "cli/report_file.h"
 #include "cli/search_options.h"
 #include "io/output/output_file.h"
 #include "io/output/standard_output.h"
@@ -45,6 +46,7 @@ struct CalibrateCommandOptions {
   std::string out_path = "result.yaml";
   std::string json_path{};     ///< See Deliver.
   std::string problem_path{};  ///< The solvers' problem; empty: not written.
+  std::string report_path{};   ///< The report in HTML; empty: not written.
 };
 
 void DeclareSources(CalibrateCommandOptions& options, Arguments& arguments) {
@@ -101,6 +103,10 @@ void Declare(CalibrateCommandOptions& options, Arguments& arguments) {
                 {.writes = Writes::kFileOrStandardOutput});
   arguments.Add("--problem", options.problem_path,
                 "Write the correspondences, for sextant solve and compare (YAML)",
+                {.writes = Writes::kFile});
+  arguments.Add("--report", options.report_path,
+                "Write a report for people who did not run this: one file of HTML that opens\n"
+                "offline (with an answer only)",
                 {.writes = Writes::kFile});
 }
 
@@ -180,7 +186,12 @@ Expected<void> WriteFiles(const CalibrateCommandOptions& options, const Calibrat
         WriteFileAtomically(options.problem_path, FormatProblemYaml(ProblemFileOf(calibration))));
   }
   if (!calibration.result) return {};
-  return WriteFileAtomically(options.out_path, FormatCalibrationResult(*calibration.result));
+  SEXTANT_RETURN_IF_ERROR(
+      WriteFileAtomically(options.out_path, FormatCalibrationResult(*calibration.result)));
+  if (options.report_path.empty()) return {};
+  return WriteReport(
+      {.result = *calibration.result, .calibration = &calibration, .frames = FramesOfFiles({})},
+      options.report_path);
 }
 
 int Run(const CalibrateCommandOptions& options) {
@@ -197,6 +208,7 @@ int Run(const CalibrateCommandOptions& options) {
   if (!options.out_path.empty()) {
     text += "\n" + WroteLine(options.out_path, "the result, for project, export and advise");
   }
+  if (!options.report_path.empty()) text += WroteLine(options.report_path, kReportWords);
   return Deliver(
       "calibrate", options.json_path, text, FormatCalibrationResultJson(*calibration->result),
       calibration->result->verdict->usability == Usability::kNotUsable ? kNotUsable : kAnswered);
@@ -216,7 +228,8 @@ Command CalibrateCommand() {
       "--camera cam.yaml\n"
       "  sextant calibrate session.yaml --solver 'gnc(kabsch),kabsch,refine(ransac(p3p))'\n"
       "  sextant calibrate session.yaml --problem found.yaml && sextant compare found.yaml\n"
-      "  sextant calibrate recording.bag --board board.yaml";
+      "  sextant calibrate recording.bag --board board.yaml\n"
+      "  sextant calibrate session.yaml --report report.html";
   return MakeCommand<CalibrateCommandOptions>(
       "calibrate", "cam_from_lidar from images and scans of boards, with its uncertainty", kFooter,
       Declare, Run);

@@ -23,6 +23,7 @@ Command MarkCommand();  ///< In cli/mark.
 Command MergeCommand();
 Command PrintBoardCommand();
 Command ProjectCommand();
+Command ReportCommand();
 Command ReproduceCommand();
 Command RunCommand();
 Command SimulateCommand();

@@ -110,6 +110,32 @@ TEST(Calibrate, ASimulatedSessionAsItStands) {
   EXPECT_THAT(mixed.out, StartsWith("USABLE WITH CARE: In 1 of 4 views"));
 }
 
+// The same calibration twice: with all that a calibration knows, and from its result alone.
+TEST(Calibrate, TheReportHoldsTheViewsWithPhotosAndScans) {
+  const fs::path session = Simulated("--scans 4");
+  const std::string path = (TestFolder() / "report.html").string();
+  const ProgramRun run = RunSextant("calibrate " + session.string() + Out() + " --report " + path);
+  ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+  EXPECT_THAT(run.out, HasSubstr("report.html: the report, one file"));
+  const std::string full = ReadText(path);
+  EXPECT_THAT(full, HasSubstr(run.out.substr(0, run.out.find(':'))));
+  for (const char* part :
+       {"id=\"view-3\"", "data:image/jpeg;base64,", "data:image/png;base64,", "edge_growth_along_m",
+        "gnc(kabsch)", "cam_000.png", "scan_003.pcd", "Hold board", "\"xyz\":"}) {
+    EXPECT_THAT(full, HasSubstr(part)) << part;
+  }
+  const ProgramRun again =
+      RunSextant("report " + (TestFolder() / "result.yaml").string() + " --out " + path);
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const std::string from_result = ReadText(path);
+  EXPECT_THAT(from_result, HasSubstr("data:image/jpeg;base64,"));
+  EXPECT_THAT(from_result, HasSubstr("Result files do not contain the nuisance parameters"));
+  EXPECT_LT(from_result.size(), full.size());
+  const ProgramRun absent = RunSextant("report " + (TestFolder() / "absent.yaml").string());
+  EXPECT_EQ(absent.exit_code, 2);
+  EXPECT_THAT(absent.err, HasSubstr("run sextant calibrate --report"));
+}
+
 TEST(Calibrate, TheProblemFileGivesTheSameAnswerToSolve) {
   const fs::path session = Simulated("--scans 3");
   const std::string problem = (TestFolder() / "problem.yaml").string();
@@ -195,7 +221,7 @@ TEST(Calibrate, AnOutputThatIsAScanIsRefused) {
   const fs::path session = test::CopyOfSession(Simulated("--scans 4"));
   const fs::path scan = session / "scan_001.pcd";
   const std::string before = ReadText(scan);
-  for (const char* option : {" --out ", " --json ", " --problem "}) {
+  for (const char* option : {" --out ", " --json ", " --problem ", " --report "}) {
     const ProgramRun run =
         RunSextant("calibrate " + session.string() + " --overwrite" + option + scan.string());
     EXPECT_EQ(run.exit_code, 2) << option << run.out;

@@ -151,6 +151,7 @@ TEST(HostileArguments, MessagesQuoteThemSafely) {
       {"export", bad, "--to", bad},
       {"bag", bad},
       {"advise", bad, "--picture", bad + ".png"},
+      {"report", bad, "--out", bad},
       {"simulate", bad, "--out", bad},
       {"simulate", "pairs", "--out", bad + "/x"},
       {"print-board", bad, "--out", bad},

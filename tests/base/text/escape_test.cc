@@ -192,6 +192,46 @@ TEST(Json, TheStringIsTheText) {
   }
 }
 
+// What a browser shows of escaped text. Fails the test for a character that could be markup.
+std::string ShownByBrowser(std::string_view html) {
+  static const std::map<std::string_view, char> kEntities = {
+      {"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&#39;", '\''}};
+  std::string shown;
+  for (std::size_t i = 0; i < html.size();) {
+    EXPECT_TRUE(std::string_view("<>\"'").find(html[i]) == std::string_view::npos) << html;
+    std::size_t bytes = 1;
+    char c = html[i];
+    if (c == '&') {
+      bytes = html.find(';', i) + 1 - i;
+      const auto entity = kEntities.find(html.substr(i, bytes));
+      if (entity == kEntities.end()) return "not an entity";
+      c = entity->second;
+    }
+    shown += c;
+    i += bytes;
+  }
+  return shown;
+}
+
+TEST(Html, TheBrowserShowsTheText) {
+  for (const std::string& text : Texts()) {
+    ASSERT_TRUE(IsPlainLine(HtmlText(text)));
+    EXPECT_EQ(ShownByBrowser(HtmlText(text)), PrintableLine(text));
+  }
+}
+
+TEST(ScriptJson, NeitherEndsTheElementNorChangesTheText) {
+  for (const std::string& text : Texts()) {
+    const std::string json = ScriptJson({{"key", text}, {text, 1}});
+    ASSERT_EQ(json.find_first_of("<>&"), std::string::npos) << json.substr(0, 100);
+    const auto read = nlohmann::json::parse(json);
+    const bool is_utf8 = text.find("invalid") != 0;
+    if (is_utf8) {
+      EXPECT_EQ(read["key"], text);
+    }
+  }
+}
+
 // The formats of a whole document leave line feeds to its writer alone.
 TEST(Json, IndentsAsAsked) {
   EXPECT_EQ(JsonText({{"a", {1, 2}}}, 1), "{\n \"a\": [\n  1,\n  2\n ]\n}\n");

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "calibrate/calibrate.h"
+#include "io/results/calibration_result.h"
+#include "report/collect/frame_source.h"
+#include "report/page/page.h"
+
+namespace sextant {
+
+/// What a report is made of.
+struct PageSource {
+  CalibrationResult result{};
+  /// What a result file does not contain: noise, nuisance parameters, solvers, input files. Null:
+  /// the page says that it is absent.
+  const Calibration* calibration = nullptr;
+  FrameSource frames{};            ///< Photos and scans of the views.
+  std::filesystem::path folder{};  ///< Where relative paths of the result may start, too.
+  std::string written{};           ///< The date of the report.
+};
+
+/// Collects the content of the report: reads the photos and scans of the views, on all cores, and
+/// keeps as much of each as gives a page below kMaxPageBytes with so many views. A view whose files
+/// cannot be read says why. With a calibration of a single solver, a few others are run on its
+/// data.
+///
+/// Memory: the page, and a photo and a scan for each core.
+ReportPage CollectPage(const PageSource& source);
+
+}  // namespace sextant

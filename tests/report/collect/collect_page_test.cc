@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/collect/collect_page.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "base/units.h"
+#include "report/collect/file_hash.h"
+#include "report/collect/pose_in_words.h"
+#include "report/collect/utc_text.h"
+#include "report/collect/view_media.h"
+#include "report/page/page_html.h"
+#include "support/calibration_result.h"
+#include "support/run_program.h"
+
+namespace sextant {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+// Looks along the LiDAR's x from its origin, with a board 2 m away in each view.
+CalibrationResult ResultWith(int views) {
+  CalibrationResult result = test::FullCalibrationResult();
+  result.camera = Camera{.width_px = 480,
+                         .height_px = 300,
+                         .fx_px = 250.0,
+                         .fy_px = 250.0,
+                         .cx_px = 239.5,
+                         .cy_px = 149.5};
+  Eigen::Matrix3d axes;
+  axes << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  result.cam_from_lidar = {Eigen::Quaterniond(axes), Eigen::Vector3d::Zero()};
+  result.boards = {Board{.id = 26, .top_right_m = 0.6, .right_bottom_m = 0.6}};
+  const Rigid3d cam_from_board{Eigen::Quaterniond::Identity(), {0.0, 0.0, 2.0}};
+  ResultView view{.name = "view"};
+  view.rmse_m = 0.01;
+  view.boards = {{.board = 26,
+                  .cam_from_board = cam_from_board,
+                  .lidar_from_board = result.cam_from_lidar.Inverse() * cam_from_board,
+                  .residuals_m = {0.01, 0.01, 0.01, 0.01},
+                  .residuals_px = {0.5, 0.5, 0.5, 0.5}}};
+  result.views.assign(static_cast<std::size_t>(views), view);
+  for (int i = 0; i < views; ++i) result.views[static_cast<std::size_t>(i)].view = i;
+  return result;
+}
+
+// A photo that hardly compresses, and a scan of a wall 3 m away behind the board.
+Frame NoisyFrame() {
+  Frame frame;
+  frame.image = cv::Mat(300, 480, CV_8UC3);
+  cv::RNG noise(1);
+  noise.fill(frame.image, cv::RNG::UNIFORM, 0, 256);
+  for (int i = 0; i < 100; ++i) {
+    for (int k = 0; k < 60; ++k) {
+      const double y = -2.0 + 0.04 * i;
+      const double z = -1.0 + 0.033 * k;
+      const bool is_board = std::abs(y) < 0.3 && std::abs(z) < 0.3;
+      frame.cloud.points.emplace_back(is_board ? 2.0 : 3.0, y, z);
+      frame.cloud.intensity.push_back(static_cast<float>(k));
+    }
+  }
+  return frame;
+}
+
+FrameSource AlwaysThe(const Frame& frame) {
+  return [&frame](const std::vector<ResultView>& views, const FrameVisitor& visit) {
+    for (std::size_t i = 0; i < views.size(); ++i) visit(i, frame);
+    return Expected<void>();
+  };
+}
+
+TEST(CollectPage, AHundredViewsFitIntoThePage) {
+  const Frame frame = NoisyFrame();
+  const ReportPage page = CollectPage({.result = ResultWith(100), .frames = AlwaysThe(frame)});
+  ASSERT_THAT(page.views, SizeIs(100));
+  for (const PageView& view : page.views) {
+    ASSERT_TRUE(view.photo && view.scan);
+    EXPECT_GT(view.photo->jpeg.size(), 3000U);
+    EXPECT_GT(view.scan->in_base.size(), 3000U);
+    EXPECT_GT(view.photo->dots.size(), 1000U);
+  }
+  EXPECT_LT(FormatPage(page).size(), kMaxPageBytes);
+}
+
+TEST(CollectPage, TheBoardIsWhereBothSensorsSawIt) {
+  const Frame frame = NoisyFrame();
+  const ReportPage page = CollectPage({.result = ResultWith(1), .frames = AlwaysThe(frame)});
+  const PageBoard& board = page.views.at(0).boards.at(0);
+  ASSERT_THAT(board.by_camera, SizeIs(4));
+  ASSERT_THAT(board.by_lidar, SizeIs(4));
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR((board.by_camera[i] - board.by_lidar[i]).norm(), 0.0, 1e-12);
+  }
+  EXPECT_NEAR((board.by_camera[0] - Eigen::Vector3d(2.0, 0.3, 0.3)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((board.camera_in_px.at(0) - Eigen::Vector2d(202.0, 112.0)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(page.coverage.at(0).share, 4.0 / 40.0, 1.0 / 40.0 + 1e-9);
+}
+
+TEST(CollectPage, AViewWithoutFilesSaysWhy) {
+  CalibrationResult result = ResultWith(2);
+  result.views[0].image_path = "absent.png";
+  result.views[0].cloud_path = "absent.pcd";
+  const ReportPage page =
+      CollectPage({.result = result, .frames = FramesOfFiles(test::TestFolder())});
+  EXPECT_THAT(page.views[0].no_photo, HasSubstr("absent.png"));
+  EXPECT_THAT(page.views[1].no_photo, HasSubstr("names no files"));
+  EXPECT_FALSE(page.views[0].photo);
+  EXPECT_THAT(page.noise.note, HasSubstr("sextant calibrate --report"));
+  EXPECT_THAT(page.comparison.rows, IsEmpty());
+  EXPECT_THAT(page.inputs.rows, SizeIs(2));
+  EXPECT_EQ(page.inputs.rows[0][2], "not a readable file");
+}
+
+TEST(CollectPage, HoldsWhatTheResultHolds) {
+  const CalibrationResult result = test::FullCalibrationResult();
+  const ReportPage page = CollectPage({.result = result, .written = "2026-01-02"});
+  EXPECT_EQ(page.verdict.word, "USABLE WITH CARE");
+  EXPECT_EQ(page.verdict.tone, PageTone::kCaution);
+  EXPECT_THAT(page.views, SizeIs(result.views.size()));
+  EXPECT_EQ(page.diagnostics, result.warnings);
+  EXPECT_EQ(page.closing, result.closing);
+  EXPECT_THAT(page.date, HasSubstr("Recorded 2017-05-03"));
+  EXPECT_THAT(page.date, HasSubstr("report of 2026-01-02"));
+  EXPECT_THAT(page.sigmas.rows, SizeIs(4));
+  EXPECT_THAT(FormatPage(page), HasSubstr("</html>"));
+}
+
+TEST(PoseInWords, NamesTheDirectionsOfTheLidar) {
+  Eigen::Matrix3d axes;
+  axes << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  const Rigid3d lidar_from_cam{
+      Eigen::Quaterniond(Eigen::AngleAxisd(5.0 * kRadPerDeg, Eigen::Vector3d::UnitZ()) *
+                         axes.transpose()),
+      {0.1, -0.2, -0.03}};
+  const std::string words = PoseInWords(lidar_from_cam.Inverse());
+  EXPECT_THAT(words, HasSubstr("100 mm in front of, 200 mm to the right of and 30 mm below"));
+  EXPECT_THAT(words, HasSubstr("5.0 deg to the left and 0.0 deg"));
+  const Rigid3d rolled{
+      lidar_from_cam.rotation * Eigen::AngleAxisd(3.0 * kRadPerDeg, Eigen::Vector3d::UnitZ()),
+      Eigen::Vector3d::Zero()};
+  EXPECT_THAT(PoseInWords(rolled.Inverse()), HasSubstr("3.0 deg clockwise"));
+}
+
+TEST(FileHash, AgreesWithTheStandard) {
+  constexpr const char* kAbc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+  EXPECT_EQ(HashOfBytes("abc"), kAbc);
+  test::WriteText(test::TestPath("abc"), "abc");
+  EXPECT_EQ(HashOfFile(test::TestPath("abc")), kAbc);
+  EXPECT_EQ(HashOfFile(test::TestPath("absent")), std::nullopt);
+  EXPECT_EQ(HashOfFile(test::TestFolder()), std::nullopt);
+}
+
+TEST(UtcText, IsACalendarTime) {
+  EXPECT_EQ(UtcText(1493815925.9), "2017-05-03 12:52:05 UTC");
+  EXPECT_EQ(UtcText(12.0), "");
+  EXPECT_EQ(UtcText(NAN), "");
+  EXPECT_THAT(TodayText(), testing::MatchesRegex("2[0-9]+-[0-9]+-[0-9]+"));
+}
+
+}  // namespace
+}  // namespace sextant
