@@ -22,6 +22,7 @@ Command MergeCommand();
 Command PrintBoardCommand();
 Command ProjectCommand();
 Command ReproduceCommand();
+Command RigCommand();
 Command RunCommand();
 Command SimulateCommand();
 Command SolveCommand();

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "solvers/core/board_view_check.h"
+#include "solvers/core/rig_problem_check.h"
 #include "solvers/rig/rig_search.h"
 #include "solvers/rig/rig_start.h"
 
@@ -24,13 +25,20 @@ std::string NameOfMoment(const RigPlacement& placement) {
 }
 
 // Returns and edge rays need a pose for the model; what the closed form gives is enough.
-RigProblem WithPoses(RigProblem problem) {
+Expected<RigProblem> WithPoses(RigProblem problem) {
   for (RigPlacement& placement : problem.placements) {
     const Board& board = *FindBoard(problem.boards, placement.board);
     for (RigObservation& seen : placement.seen) {
       if (seen.sensor_from_board || seen.raw.edges.empty()) continue;
       const auto poses = PosesAlone(seen, problem.sensors[seen.sensor], board);
-      if (!poses.empty()) seen.sensor_from_board = poses[0];
+      if (poses.empty()) {
+        return MakeError(ErrorCode::kMissingData,
+                         fmt::format("moment {}, board {}: the returns and edges of {} do not show "
+                                     "how the board lies; state sensor_from_board",
+                                     NameOfMoment(placement), placement.board,
+                                     problem.sensors[seen.sensor].name));
+      }
+      seen.sensor_from_board = poses[0];
     }
   }
   return problem;
@@ -194,8 +202,8 @@ RigProblem Restricted(const RigProblem& problem, std::span<const std::size_t> se
 }
 
 Expected<RigEstimate> SolveRig(const RigProblem& given, const RigOptions& options) {
-  const RigProblem problem = WithPoses(given);
-  SEXTANT_RETURN_IF_ERROR(CheckRigProblem(problem));
+  SEXTANT_RETURN_IF_ERROR(CheckRigProblem(given));
+  SEXTANT_ASSIGN_OR_RETURN(const RigProblem problem, WithPoses(given));
   const RigTree tree = TreeOf(problem, PairsOf(problem), options.root);
   std::vector<std::size_t> connected;
   for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
@@ -219,7 +227,7 @@ Expected<RigEstimate> SolveRig(const RigProblem& given, const RigOptions& option
 Expected<Eigen::MatrixXd> RigBound(const RigProblem& given, std::size_t root,
                                    const std::vector<Rigid3d>& sensor_from_root,
                                    const std::vector<Rigid3d>& root_from_board) {
-  const RigProblem problem = WithPoses(given);
+  SEXTANT_ASSIGN_OR_RETURN(const RigProblem problem, WithPoses(given));
   const RigModel model = RigModelOf(problem);
   RigState state = StateOf(problem, model, sensor_from_root);
   state.root_from_board = root_from_board;

@@ -69,11 +69,6 @@ struct RigEstimate {
   UncertainPose Between(std::size_t a, std::size_t b) const;
 };
 
-/// Whether the problem is usable: names are distinct, observations name sensors and boards that
-/// exist and have the right kind of data for them, each sensor once a placement; numbers are finite
-/// and sigmas positive. Errors: kMissingData, kNonFinite, kInvalidInput.
-Expected<void> CheckRigProblem(const RigProblem& problem);
-
 /// argmin of 1/2 sum |r|^2 over the poses of all sensors and of all boards, r the whitened
 /// residuals of what every sensor measured of every board. One camera and one LiDAR are the case of
 /// two sensors; cameras alone and LiDARs alone are cases, too.

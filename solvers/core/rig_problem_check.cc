@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "solvers/core/rig_problem_check.h"
+
 #include <fmt/core.h>
 
 #include <cmath>
@@ -6,7 +8,6 @@
 
 #include "geometry/board_check.h"
 #include "solvers/core/board_view_check.h"
-#include "solvers/rig/solve_rig.h"
 
 namespace sextant {
 namespace {
@@ -35,7 +36,7 @@ class ObservationCheck {
         seen_.lines.empty()) {
       return Wrong("is empty: give pixels, points, a plane, lines or returns");
     }
-    if (!view.edges.empty() && !seen_.sensor_from_board) {
+    if (!view.edges.empty() && view.face_in_lidar.size() < 3 && !seen_.sensor_from_board) {
       return Wrong("has edge rays without face returns or sensor_from_board, from which to start");
     }
     return {};
