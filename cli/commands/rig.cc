@@ -3,13 +3,11 @@
 
 #include "calibrate/rig/calibrate_rig.h"
 #include "cli/commands/commands.h"
-#include "cli/output.h"
-#include "io/output/output_file.h"
+#include "cli/rig_output.h"
 #include "io/problems/rig_yaml.h"
 #include "io/problems/transform_list.h"
 #include "io/results/rig_result.h"
 #include "io/text/text_file.h"
-#include "report/rig_text.h"
 
 namespace sextant::cli {
 namespace {
@@ -62,19 +60,7 @@ Expected<RigResult> ResultFrom(const RigCommandOptions& options) {
 }
 
 int Run(const RigCommandOptions& options) {
-  const Expected<RigResult> result = ResultFrom(options);
-  if (!result) {
-    const ErrorCode code = result.error().code;
-    const bool no_answer = code == ErrorCode::kDegenerate || code == ErrorCode::kNoConvergence;
-    return Refuse("rig", result.error(), no_answer ? kNoAnswer : kWrongUse);
-  }
-  const std::string json = FormatRigResult(*result);
-  if (const Expected<void> ok = WriteFileAtomically(options.out_path, json); !ok) {
-    return Refuse("rig", ok.error());
-  }
-  const std::string text =
-      DescribeRig(*result) + "\n" + WroteLine(options.out_path, "the result, for export");
-  return Deliver("rig", options.json_path, text, json, kAnswered);
+  return DeliverRig("rig", ResultFrom(options), options.out_path, options.json_path);
 }
 
 }  // namespace

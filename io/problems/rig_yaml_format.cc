@@ -2,11 +2,11 @@
 #include <fmt/core.h>
 
 #include "base/text/escape.h"
-#include "base/units.h"
 #include "io/blocks/board_block.h"
 #include "io/blocks/board_view_block.h"
 #include "io/blocks/camera_block.h"
 #include "io/problems/rig_yaml.h"
+#include "io/text/degrees.h"
 #include "io/text/yaml_text.h"
 
 namespace sextant {
@@ -47,7 +47,7 @@ void WriteFeatures(YamlText& out, const RigObservation& seen) {
   if (seen.plane) {
     out.Line("        plane: {{normal: {}, distance_m: {}, sigma_m: {}, sigma_deg: {}}}",
              YamlList(seen.plane->normal), seen.plane->distance_m, seen.plane->sigma_m,
-             seen.plane->sigma_rad * kDegPerRad);
+             ExactDegrees(seen.plane->sigma_rad));
   }
   if (!seen.lines.empty()) out.Line("        lines:");
   for (const MeasuredLine& line : seen.lines) {

@@ -23,7 +23,7 @@ namespace {
 using RigKeys = std::vector<std::string>;
 
 constexpr std::size_t kMaxSensors = 100;
-constexpr std::size_t kMaxNumbers = 10'000'000;
+constexpr std::size_t kMaxNumbers = 2000;  // Of the points of one board; two each.
 
 /// A board with the points on it that observations may refer to.
 struct RigBoard {
@@ -166,10 +166,9 @@ class RigReader {
   // Fills observation_; returns the board.
   int ReadObservation(const YamlNode& node) {
     static const RigKeys kKeys = {
-        "sensor",        "board",          "in_board_m", "pixels",
-        "sigma_px",      "covariance_px2", "points_m",   "plane",
-        "sigma_m",       "lines",          "face_m",     "face_rings",
-        "range_sigma_m", "edges",          "printed",    "sensor_from_board"};
+        "sensor",     "board",         "in_board_m", "pixels",  "sigma_px",
+        "points_m",   "plane",         "sigma_m",    "lines",   "face_m",
+        "face_rings", "range_sigma_m", "edges",      "printed", "sensor_from_board"};
     observation_ = {};
     if (!in_.IsMap(node, "observations", kKeys)) return 0;
     observation_.sensor = SensorNamed(in_.Require(node, "sensor"), "sensor");
