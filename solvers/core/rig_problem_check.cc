@@ -6,7 +6,6 @@
 #include <cmath>
 #include <set>
 
-#include "geometry/board_check.h"
 #include "solvers/core/board_view_check.h"
 
 namespace sextant {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/random.h"
 #include "eval/synthetic/simulate_rig.h"
 #include "geometry/symmetric.h"
 #include "solvers/rig/solve_rig.h"
