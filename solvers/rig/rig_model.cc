@@ -18,9 +18,6 @@
 namespace sextant {
 namespace {
 
-// So small a shift of a view changes no answer, and shows a view that contradicts the others.
-constexpr double kMinShift_m = 1e-4;
-
 /// The numbers that one LiDAR's observations share.
 struct SharedOf {
   std::optional<std::size_t> range;

@@ -120,10 +120,20 @@ RigNoise EstimatedLevels(const RigModel& model, const RigLinearisation& at,
           information.sums[k]);
     }
   }
+  std::vector<bool> shifts(model.sensors, false);
+  for (const RigPlacementModel& placement : model.placements) {
+    for (const RigShift& shift : placement.shifts) {
+      if (shift.sigma_m > kMinShift_m) shifts[shift.sensor] = true;
+    }
+  }
   RigNoise noise = before;
   for (std::size_t s = 0; s < sums.size(); ++s) {
     for (std::size_t kind = 0; kind < kRigKinds; ++kind) {
       const bool is_shift = kind >= static_cast<std::size_t>(RigKind::kShiftOut);
+      if (is_shift && !shifts[s]) {
+        noise[s][kind] = 1.0;
+        continue;
+      }
       const double prior = is_shift ? kPriorShifts : kPriorResiduals;
       const RigSum& sum = sums[s][kind];
       const double level = before[s][kind];
