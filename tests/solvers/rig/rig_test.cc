@@ -5,7 +5,9 @@
 
 #include "base/random.h"
 #include "eval/synthetic/simulate_rig.h"
+#include "eval/synthetic/simulate_views.h"
 #include "geometry/symmetric.h"
+#include "solvers/builtin_solvers.h"
 #include "solvers/rig/solve_rig.h"
 
 namespace sextant {
@@ -109,6 +111,35 @@ TEST(Rig, CamerasAloneAndLidarsAloneAreCases) {
     const PairErrors errors = ErrorsOver(simulation, 25);
     EXPECT_GT(errors.nees / errors.count, 0.75) << cameras << " cameras";
     EXPECT_LT(errors.nees / errors.count, 1.3) << cameras << " cameras";
+  }
+}
+
+TEST(Rig, OneCameraAndOneLidarAreTheCaseOfTwoSensors) {
+  const auto joint = *BuiltinSolvers().Make("joint(gnc(kabsch))");
+  for (int seed = 1; seed <= 10; ++seed) {
+    ViewSimulation simulation{.seed = static_cast<std::uint64_t>(seed), .views = 8};
+    simulation.errors = LidarErrorModel{};
+    const auto views = SimulateViews(simulation);
+    ASSERT_TRUE(views);
+    RigProblem rig{.boards = views->problem.boards};
+    rig.sensors.push_back({.name = "cam", .camera = views->problem.camera});
+    rig.sensors.push_back({.name = "lidar", .lidar_errors = views->problem.lidar_errors});
+    for (const BoardView& view : views->problem.board_views) {
+      RigPlacement placement{.moment = view.view, .board = view.board, .name = "", .seen = {}};
+      placement.seen = {{.sensor = 0}, {.sensor = 1, .sensor_from_board = view.lidar_from_board}};
+      placement.seen[0].raw.printed = view.printed;
+      placement.seen[1].raw = view;
+      placement.seen[1].raw.printed.clear();
+      rig.placements.push_back(std::move(placement));
+    }
+    const auto solved = SolveRig(rig);
+    ASSERT_TRUE(solved) << solved.error().message;
+    const auto report = joint->Solve(views->problem);
+    ASSERT_TRUE(report) << report.error().message;
+    const UncertainPose pose = solved->Between(0, 1);
+    const Vector6d off = PoseDifference(pose.b_from_a, report->cam_from_lidar);
+    EXPECT_LT(SquaredMahalanobis<6>(off, *report->covariance) / 6.0, 0.3 * 0.3) << seed;
+    EXPECT_NEAR(std::log(pose.covariance.trace() / report->covariance->trace()), 0.0, 0.5) << seed;
   }
 }
 
