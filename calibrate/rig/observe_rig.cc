@@ -12,7 +12,9 @@
 
 #include "base/text/printable.h"
 #include "calibrate/match/assemble.h"
+#include "calibrate/match/matched_board.h"
 #include "calibrate/observe/photo_file.h"
+#include "calibrate/rig/scan_as_image.h"
 #include "io/boards/board_file.h"
 #include "io/cameras/camera_file.h"
 #include "io/clouds/cloud_file.h"
@@ -53,6 +55,11 @@ class RigAssembly {
     }
     for (std::size_t s = 0; s < session_.sensors.size(); ++s) {
       if (!IsCamera(s)) AddLidar(s);
+    }
+    for (std::size_t s = 0; s < session_.sensors.size(); ++s) {
+      for (std::size_t r = 0; r < session_.sensors.size(); ++r) {
+        if (s != r && !IsCamera(s) && !IsCamera(r)) AddByLidar(s, r);
+      }
     }
     for (auto& [key, placement] : placements_) {
       result_.rig.problem.placements.push_back(std::move(placement));
@@ -159,13 +166,64 @@ class RigAssembly {
       for (BoardView& view : views) {
         const auto moment = static_cast<std::size_t>(view.view);
         if (!known.emplace(std::pair(moment, view.board), true).second) continue;
-        RigObservation observation{.sensor = lidar, .sensor_from_board = view.lidar_from_board};
-        observation.raw.face_in_lidar = std::move(view.face_in_lidar);
-        observation.raw.face_rings = std::move(view.face_rings);
-        observation.raw.range_sigma_m = view.range_sigma_m;
-        observation.raw.edges = std::move(view.edges);
-        PlacementOf(moment, view.board).seen.push_back(std::move(observation));
+        AddReturns(lidar, moment, std::move(view));
       }
+    }
+  }
+
+  void AddReturns(std::size_t lidar, std::size_t moment, BoardView view) {
+    RigObservation observation{.sensor = lidar, .sensor_from_board = view.lidar_from_board};
+    observation.raw.face_in_lidar = std::move(view.face_in_lidar);
+    observation.raw.face_rings = std::move(view.face_rings);
+    observation.raw.range_sigma_m = view.range_sigma_m;
+    observation.raw.edges = std::move(view.edges);
+    PlacementOf(moment, view.board).seen.push_back(std::move(observation));
+  }
+
+  // The poses of the boards that a LiDAR is known to see at a moment.
+  std::vector<Rigid3d> KnownPoses(std::size_t lidar, std::size_t moment) const {
+    std::vector<Rigid3d> poses;
+    for (const auto& [key, placement] : placements_) {
+      if (key.first != moment) continue;
+      for (const RigObservation& seen : placement.seen) {
+        if (seen.sensor == lidar) poses.push_back(*seen.sensor_from_board);
+      }
+    }
+    return poses;
+  }
+
+  bool Sees(std::size_t sensor, std::size_t moment, int board) const {
+    const auto at = placements_.find({moment, board});
+    if (at == placements_.end()) return false;
+    return std::ranges::count(at->second.seen, sensor, &RigObservation::sensor) > 0;
+  }
+
+  // Moments in which no camera tells what a LiDAR sees: by what another LiDAR sees.
+  void AddByLidar(std::size_t lidar, std::size_t other) {
+    std::vector<Observation> views(session_.moments.size());
+    std::vector<ScanAsImage> images(views.size());
+    int shared = 0;
+    for (std::size_t m = 0; m < views.size(); ++m) {
+      const Observation* scan = SeenBy(lidar, m);
+      const Observation* reference = SeenBy(other, m);
+      if (scan == nullptr || reference == nullptr || !KnownPoses(lidar, m).empty()) continue;
+      images[m] = AsImage(*reference, KnownPoses(other, m));
+      views[m].in_image = images[m].image.in_image;
+      views[m].in_scan = scan->in_scan;
+      shared += views[m].in_image.empty() || views[m].in_scan.empty() ? 0 : 1;
+    }
+    MatchSettings settings = options_.match;
+    if (!settings.initial) settings.initial = Rigid3d{};  // Upright, and facing the same way.
+    const Expected<Matching> matching = MatchViews(views, settings);
+    constexpr int kMinBoards = 3;
+    if (!matching || std::ssize(matching->kept) < std::max(kMinBoards, (shared + 1) / 2)) return;
+    for (const MatchedBoard& match : matching->kept) {
+      const auto m = static_cast<std::size_t>(match.view);
+      BoardView view = MakeBoardView(views[m], match, boards_);
+      if (!Sees(other, m, view.board)) {
+        AddReturns(other, m, ViewOfSighting(*SeenBy(other, m), images[m], match.sighting, boards_));
+      }
+      if (!Sees(lidar, m, view.board)) AddReturns(lidar, m, std::move(view));
     }
   }
 

@@ -28,8 +28,8 @@ struct ObservedRig {
 };
 
 /// Finds the boards in all images and scans, on all cores, and tells which patch of a scan is which
-/// board by the cameras of the same moment (MatchViews, for every camera and LiDAR): a LiDAR's
-/// returns count in the moments in which a camera sees the same board. Errors: kMissingData without
+/// board by the cameras of the same moment (MatchViews, for every camera and LiDAR), and where no
+/// camera sees it by the other LiDARs. Errors: kMissingData without
 /// boards or moments; those of ReadBoards, ReadCamera and Observer::Make.
 Expected<ObservedRig> ObserveRig(const RigSession& session, const ObserveRigOptions& options);
 
