@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "eval/synthetic/simulate_views.h"
-#include "geometry/rig_problem.h"
+#include "solvers/core/rig_problem.h"
 
 namespace sextant {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "geometry/rig_problem.h"
+#include "solvers/core/rig_problem.h"
 
 namespace sextant {
 

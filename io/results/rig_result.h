@@ -18,7 +18,7 @@ struct RigResultSensor {
   std::string name{};
   std::optional<Camera> camera{};             ///< None: a LiDAR.
   std::optional<Rigid3d> root_from_sensor{};  ///< None: not connected with the root.
-  std::optional<Matrix6d> covariance{};       ///< Of root_from_sensor; none for the root.
+  std::optional<Matrix6d> covariance{};       ///< That of root_from_sensor; none for the root.
   int views = 0;                              ///< Boards that it sees together with another sensor.
   int used = 0;                               ///< Those in use.
   std::optional<Rigid3d> true_root_from_sensor{};
@@ -29,7 +29,7 @@ struct RigResultPair {
   std::string a{};
   std::string b{};
   Rigid3d a_from_b{};
-  std::optional<Matrix6d> covariance{};  ///< Of (dphi [rad], dt [m]); see Perturb.
+  std::optional<Matrix6d> covariance{};  ///< Order: dphi [rad], dt [m]; see Perturb.
   int views = 0;                         ///< Boards that both see.
   /// The pair calibrated alone, where its own views determine it.
   std::optional<Rigid3d> alone_a_from_b{};
@@ -46,7 +46,7 @@ struct RigResultView {
   struct Seen {
     std::string sensor{};
     bool used = false;
-    double rms = 0.0;  ///< Of the whitened residuals, at the stated noise.
+    double rms = 0.0;  ///< The whitened residuals at their stated noise.
   };
   std::vector<Seen> seen{};
 };

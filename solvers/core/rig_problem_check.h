@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/error.h"
-#include "geometry/rig_problem.h"
+#include "solvers/core/rig_problem.h"
 
 namespace sextant {
 

@@ -32,7 +32,7 @@ struct RowEntries {
 
 /// The normal equations of one placement: its own columns and those that it shares.
 struct PlacementNormal {
-  Eigen::MatrixXd inverse;  ///< Of its own part; 0 along directions without information.
+  Eigen::MatrixXd inverse;  ///< The inverse of its own part; 0 along directions without information.
   Eigen::MatrixXd slope;    ///< Change of its minimum by the shared columns.
 };
 

@@ -15,7 +15,7 @@ namespace sextant {
 /// Factors of the whitened residuals; 0 leaves them out.
 struct RigWeights {
   std::vector<std::vector<double>> blocks;         ///< One for each unit of each block.
-  std::vector<std::vector<Vector6d>> shifts_by_m;  ///< Of (rotation times lever, translation).
+  std::vector<std::vector<Vector6d>> shifts_by_m;  ///< As ShiftAt has them.
 };
 
 /// Rows of a linearisation: residuals of one block, or of one shift's prior.
@@ -32,7 +32,7 @@ struct RigRows {
 /// placement's board and shifts.
 struct RigLinearisation {
   int shared = 0;                 ///< Columns before those of the placements.
-  std::vector<int> first_column;  ///< Of each placement, and one past the last.
+  std::vector<int> first_column;  ///< Each placement's, and one past the last.
   std::vector<double> residuals;
   ceres::CRSMatrix derivative;
   std::vector<RigRows> rows;  ///< By placement; those of the numbers' priors are in none.

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/rig_problem.h"
 #include "geometry/rigid3d.h"
+#include "solvers/core/rig_problem.h"
 
 namespace sextant {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/rig_problem.h"
+#include "solvers/core/rig_problem.h"
 #include "solvers/rig/rig_model.h"
 
 namespace sextant {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "geometry/rig_problem.h"
+#include "solvers/core/rig_problem.h"
 #include "solvers/joint/board_view_residuals.h"
 #include "solvers/rig/rig_model.h"
 

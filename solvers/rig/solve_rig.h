@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "geometry/rig_problem.h"
 #include "geometry/uncertain_pose.h"
+#include "solvers/core/rig_problem.h"
 #include "solvers/rig/rig_model.h"
 
 namespace sextant {
@@ -30,7 +30,7 @@ struct RigObservationFit {
   bool used = false;
   int units = 0;  ///< Prints, returns, edge rays, points, planes and lines in use.
   int of = 0;
-  double rms = 0.0;  ///< Of the whitened residuals in use, at their stated noise.
+  double rms = 0.0;  ///< The whitened residuals in use, at their stated noise.
 };
 
 /// A number that a sensor's observations share, such as a constant range error.
@@ -57,7 +57,7 @@ struct RigEstimate {
   /// None for a sensor that no view connects with the root.
   std::vector<std::optional<Rigid3d>> sensor_from_root{};
   std::vector<std::string> unconnected{};  ///< For each of these, what would connect it.
-  /// Of (dphi, dt) of sensor_from_root of the connected sensors but the root, in their order.
+  /// For (dphi, dt) of sensor_from_root of the connected sensors but the root, in their order.
   Eigen::MatrixXd covariance{};
   std::vector<RigObservationFit> fits{};  ///< By placement; only placements with two sensors.
   std::vector<RigEstimatedNumber> numbers{};

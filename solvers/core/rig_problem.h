@@ -33,8 +33,8 @@ struct MeasuredPoint {
 struct MeasuredPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< Unit, in the sensor frame.
   double distance_m = 0.0;
-  double sigma_rad = 0.005;  ///< Of the normal, about each axis in the plane.
-  double sigma_m = 0.005;    ///< Of the distance at the board's centre.
+  double sigma_rad = 0.005;  ///< The normal's, about each axis in the plane.
+  double sigma_m = 0.005;    ///< The distance's, at the board's centre.
 };
 
 /// The line along one of a board's sides; either direction.
@@ -42,7 +42,7 @@ struct MeasuredLine {
   int side = 0;                                          ///< As in EdgeRay.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< On it, in the sensor frame [m].
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< Unit.
-  double sigma_m = 0.01;  ///< Of each end of the side, along both axes across the line.
+  double sigma_m = 0.01;  ///< Each end of the side, along both axes across.
 };
 
 /// What one sensor measured of one board at one moment.
