@@ -80,11 +80,13 @@ class Observer {
   /// error; it is listed in Observation::missing.
   Expected<Observation> Observe(const cv::Mat& image, const PointCloud& cloud) const;
 
+  /// One of the two parts, added to `observation`. A scan needs no camera.
+  Expected<void> ObserveImage(const cv::Mat& image, Observation& observation) const;
+  Expected<void> ObserveScan(const PointCloud& cloud, Observation& observation) const;
+
  private:
   Observer(BoardFinder finder, ObserveOptions options)
       : finder_(std::move(finder)), options_(std::move(options)) {}
-  Expected<void> ObserveImage(const cv::Mat& image, Observation& observation) const;
-  Expected<void> ObserveScan(const PointCloud& cloud, Observation& observation) const;
 
   BoardFinder finder_;
   ObserveOptions options_;

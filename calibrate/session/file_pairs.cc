@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string_view>
 #include <system_error>
 
@@ -59,10 +60,8 @@ bool Matches(std::string_view name, std::string_view pattern) {
   return pattern.find_first_not_of('*', in_pattern) == std::string_view::npos;
 }
 
-// The distinguishing part of each file name: without the beginning and the end that all share.
-std::vector<std::string> DistinguishingParts(const std::vector<fs::path>& files) {
-  std::vector<std::string> names;
-  for (const fs::path& file : files) names.push_back(PrintableLine(file.stem().string()));
+// The distinguishing part of each name: without the beginning and the end that all share.
+std::vector<std::string> DistinguishingOf(const std::vector<std::string>& names) {
   std::size_t begin = names.front().size();
   std::size_t end = names.front().size();
   for (const std::string& name : names) {
@@ -83,24 +82,74 @@ std::vector<std::string> DistinguishingParts(const std::vector<fs::path>& files)
   return parts;
 }
 
+// The names of the files without their extensions, and where these are not enough, each folder's
+// name from the file's upwards as well.
+std::vector<std::string> DistinguishingParts(std::vector<fs::path> files) {
+  std::vector<std::string> parts;
+  constexpr int kMaxFolders = 8;
+  for (int level = 0; level <= kMaxFolders; ++level) {
+    std::vector<std::string> names;
+    for (fs::path& file : files) {
+      names.push_back(PrintableLine(file.stem().string()));
+      file = file.parent_path();
+    }
+    const std::vector<std::string> more = DistinguishingOf(names);
+    if (parts.empty()) parts.resize(more.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const bool both = !more[i].empty() && !parts[i].empty();
+      parts[i] = more[i] + (both ? "/" : "") + parts[i];
+    }
+    const std::set<std::string> distinct(parts.begin(), parts.end());
+    const bool has_folders = std::ranges::all_of(files, &fs::path::has_filename);
+    if (distinct.size() == parts.size() || !has_folders) break;
+  }
+  return parts;
+}
+
+// The files, or the folders, in one folder that match the last part of a pattern.
+Expected<void> AppendMatches(const fs::path& folder, const std::string& name, bool named,
+                             std::vector<fs::path>& files) {
+  std::error_code error;
+  fs::directory_iterator it(folder, error);
+  for (const fs::directory_iterator end; !error && it != end; it.increment(error)) {
+    if (Matches(it->path().filename().string(), name)) {
+      files.push_back(named ? it->path() : it->path().filename());
+    }
+  }
+  if (!error) return {};
+  return MakeError(ErrorCode::kIo, fmt::format("cannot read the folder '{}': {}", PathText(folder),
+                                               error.message()));
+}
+
+// The folders that a pattern with stars in its folders means.
+Expected<std::vector<fs::path>> FoldersOf(const fs::path& pattern) {
+  if (!pattern.has_parent_path()) return std::vector<fs::path>{"."};
+  const fs::path parent = pattern.parent_path();
+  if (parent.string().find('*') == std::string::npos) return std::vector<fs::path>{parent};
+  SEXTANT_ASSIGN_OR_RETURN(std::vector<fs::path> folders, ExpandPattern(parent));
+  std::erase_if(folders, [](const fs::path& path) {
+    std::error_code ignored;
+    return !fs::is_directory(path, ignored);
+  });
+  return folders;
+}
+
 }  // namespace
 
 Expected<std::vector<fs::path>> ExpandPattern(const fs::path& pattern) {
   const std::string name = pattern.filename().string();
   std::error_code error;
-  if (name.find('*') == std::string::npos || fs::exists(pattern, error)) {
+  if (pattern.string().find('*') == std::string::npos || fs::exists(pattern, error)) {
     return std::vector<fs::path>{pattern};
   }
-  const fs::path folder = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<fs::path> folders, FoldersOf(pattern));
   std::vector<fs::path> files;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (Matches(it->path().filename().string(), name)) {
-      files.push_back(pattern.has_parent_path() ? it->path() : it->path().filename());
+  for (const fs::path& folder : folders) {
+    if (name.find('*') != std::string::npos) {
+      SEXTANT_RETURN_IF_ERROR(AppendMatches(folder, name, pattern.has_parent_path(), files));
+    } else if (fs::exists(folder / name, error)) {
+      files.push_back(folder / name);
     }
-  }
-  if (error) {
-    return MakeError(ErrorCode::kIo, fmt::format("cannot read the folder '{}': {}",
-                                                 PathText(folder), error.message()));
   }
   if (files.empty()) {
     return MakeError(ErrorCode::kMissingData,
@@ -146,6 +195,28 @@ FilePairs PairFiles(const std::vector<fs::path>& images, const std::vector<fs::p
     }
   }
   return result;
+}
+
+std::vector<FileMoment> GroupFiles(const std::vector<std::vector<fs::path>>& lists) {
+  const bool single =
+      std::ranges::all_of(lists, [](const std::vector<fs::path>& list) { return list.size() < 2; });
+  std::map<std::string, FileMoment> by_key;
+  for (std::size_t k = 0; k < lists.size(); ++k) {
+    if (lists[k].empty()) continue;
+    const std::vector<std::string> parts =
+        single ? std::vector<std::string>{""} : DistinguishingParts(lists[k]);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      FileMoment& moment = by_key[NaturalKey(parts[i])];
+      if (moment.files.empty()) {
+        moment.name = single ? PrintableLine(lists[k][i].stem().string()) : parts[i];
+      }
+      moment.files.resize(lists.size());
+      moment.files[k] = lists[k][i];
+    }
+  }
+  std::vector<FileMoment> moments;
+  for (auto& [key, moment] : by_key) moments.push_back(std::move(moment));
+  return moments;
 }
 
 }  // namespace sextant

@@ -189,6 +189,18 @@ Expected<Session> ParseSession(std::string_view text, const std::string& file) {
   if (BeginsWithNumber(text)) return HintToSolve(file);
   SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   if (root.Find("sextant_problem") != nullptr) return HintToSolve(file);
+  if (root.Find("sextant_rig") != nullptr) {
+    return MakeError(ErrorCode::kParse,
+                     fmt::format("{}: expected a session file; this is a rig file: run 'sextant "
+                                 "rig' with it",
+                                 ToString(Place{.file = file})));
+  }
+  if (root.Find("sensors") != nullptr) {
+    return MakeError(ErrorCode::kParse,
+                     fmt::format("{}: a session of several sensors, which sextant calibrate takes "
+                                 "as a rig; expected one camera and one LiDAR",
+                                 ToString(Place{.file = file})));
+  }
   return SessionReader(file).Read(root);
 }
 

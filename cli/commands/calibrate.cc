@@ -8,13 +8,18 @@
 #include <vector>
 
 #include "base/units.h"
+#include "calibrate/rig/calibrate_rig.h"
+#include "calibrate/rig/observe_rig.h"
+#include "calibrate/session/rig_session.h"
 #include "calibrate/session/session.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/pose_argument.h"
 #include "cli/progress.h"
 #include "cli/report_file.h"
+#include "cli/rig_output.h"
 #include "cli/search_options.h"
+#include "io/boards/board_file.h"
 #include "io/output/output_file.h"
 #include "io/output/standard_output.h"
 #include "io/problems/problem_yaml.h"
@@ -31,7 +36,7 @@ struct CalibrateCommandOptions {
   std::vector<std::string> clouds{};
   std::string boards_path{};  ///< Empty: the session's.
   std::string camera_path{};  ///< Empty: the session's.
-  std::string camera_name{};  ///< For a simulated session with several; empty: the first.
+  std::string camera_name{};  ///< For a simulated session with several; empty: all, as a rig.
   std::string solvers{};      ///< The first gives the result, the others are compared with it.
   std::string image_topic{};  ///< For a recording; empty: the only one.
   std::string cloud_topic{};
@@ -52,7 +57,8 @@ struct CalibrateCommandOptions {
 void DeclareSources(CalibrateCommandOptions& options, Arguments& arguments) {
   arguments.Add("SESSION", options.session,
                 "Session file (YAML), folder of sextant simulate or with session.yaml, or a\n"
-                "recording (.bag, .db3, .mcap); or use --image and --cloud");
+                "recording (.bag, .db3, .mcap); or use --image and --cloud. Several cameras or\n"
+                "LiDARs are solved together, see docs/rigs.md; the result is then rig.json");
   arguments.Add("--image", options.images,
                 "Photos: one, several, or a quoted pattern such as 'photos/*.png'");
   arguments.Add("--cloud", options.clouds,
@@ -67,8 +73,9 @@ void DeclareSources(CalibrateCommandOptions& options, Arguments& arguments) {
                 "Boards (YAML, or marker_coordinates.txt); default: the session's");
   arguments.Add("--camera", options.camera_path,
                 "Intrinsics; default: the session's or the recording's");
-  arguments.Add("--camera-name", options.camera_name,
-                "The camera to use, for a simulated session with several");
+  arguments.Add(
+      "--camera-name", options.camera_name,
+      "The only camera to use, for a simulated session with several; default: all, as a rig");
 }
 
 void Declare(CalibrateCommandOptions& options, Arguments& arguments) {
@@ -171,6 +178,48 @@ Expected<CalibrateOptions> SettingsFrom(const CalibrateCommandOptions& options) 
   return settings;
 }
 
+// What the options that do not apply to several sensors would change.
+Expected<void> CheckRigOptions(const CalibrateCommandOptions& options) {
+  const std::pair<bool, const char*> given[] = {{!options.solvers.empty(), "--solver"},
+                                                {!options.initial.empty(), "--initial"},
+                                                {!options.camera_path.empty(), "--camera"}};
+  for (const auto& [is_given, name] : given) {
+    if (!is_given) continue;
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("{} is for one camera and one LiDAR, and this session has more "
+                                 "sensors; leave it out, or choose a camera with --camera-name",
+                                 name));
+  }
+  return {};
+}
+
+Expected<RigResult> CalibrateSensors(const CalibrateCommandOptions& options,
+                                     const RigSession& session) {
+  SEXTANT_RETURN_IF_ERROR(CheckRigOptions(options));
+  SEXTANT_ASSIGN_OR_RETURN(const CalibrateOptions settings, SettingsFrom(options));
+  ObserveRigOptions observe{.observe = settings.observe, .match = settings.match};
+  if (!options.boards_path.empty()) {
+    SEXTANT_ASSIGN_OR_RETURN(observe.boards, ReadBoards(options.boards_path));
+  }
+  Progress progress;
+  observe.progress = progress.Callback();
+  SEXTANT_ASSIGN_OR_RETURN(const ObservedRig observed, ObserveRig(session, observe));
+  if (!options.problem_path.empty()) {
+    SEXTANT_RETURN_IF_ERROR(WriteFileAtomically(options.problem_path, FormatRigFile(observed.rig)));
+  }
+  Expected<RigResult> result = CalibrateRig(observed.rig);
+  for (const std::string& note : observed.notes) {
+    if (!result) result.error().AddLine(note);
+    if (result) result->warnings.push_back(note);
+  }
+  return result;
+}
+
+// Without a path of its own, the result of a rig is no result.yaml.
+std::string RigPath(const std::string& out_path) {
+  return out_path == CalibrateCommandOptions{}.out_path ? "rig.json" : out_path;
+}
+
 Expected<Calibration> CalibrateWithProgress(const CalibrateCommandOptions& options) {
   SEXTANT_ASSIGN_OR_RETURN(const Session session, SessionFrom(options));
   SEXTANT_ASSIGN_OR_RETURN(CalibrateOptions settings, SettingsFrom(options));
@@ -195,6 +244,14 @@ Expected<void> WriteFiles(const CalibrateCommandOptions& options, const Calibrat
 }
 
 int Run(const CalibrateCommandOptions& options) {
+  if (!options.session.empty() && options.camera_name.empty()) {
+    const auto rig = ReadRigSession(options.session);
+    if (!rig) return Refuse("calibrate", rig.error());
+    if (*rig) {
+      return DeliverRig("calibrate", CalibrateSensors(options, **rig), RigPath(options.out_path),
+                        options.json_path);
+    }
+  }
   const Expected<Calibration> calibration = CalibrateWithProgress(options);
   if (!calibration) return Refuse("calibrate", calibration.error());
   if (Expected<void> ok = WriteFiles(options, *calibration); !ok) {
@@ -229,7 +286,8 @@ Command CalibrateCommand() {
       "  sextant calibrate session.yaml --solver 'gnc(kabsch),kabsch,refine(ransac(p3p))'\n"
       "  sextant calibrate session.yaml --problem found.yaml && sextant compare found.yaml\n"
       "  sextant calibrate recording.bag --board board.yaml\n"
-      "  sextant calibrate session.yaml --report report.html";
+      "  sextant calibrate session.yaml --report report.html\n"
+      "  sextant calibrate rig_session.yaml --out rig.json";
   return MakeCommand<CalibrateCommandOptions>(
       "calibrate", "cam_from_lidar from images and scans of boards, with its uncertainty", kFooter,
       Declare, Run);

@@ -25,6 +25,7 @@ Command PrintBoardCommand();
 Command ProjectCommand();
 Command ReportCommand();
 Command ReproduceCommand();
+Command RigCommand();
 Command RunCommand();
 Command SimulateCommand();
 Command SolveCommand();

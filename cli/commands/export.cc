@@ -7,9 +7,11 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/pose_argument.h"
+#include "io/export/export_rig.h"
 #include "io/export/export_transform.h"
 #include "io/output/output_file.h"
 #include "io/output/standard_output.h"
+#include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {
@@ -23,6 +25,7 @@ struct ExportCommandOptions {
   std::string lidar_frame{};
   bool force = false;    ///< Also a result with the verdict NOT USABLE.
   std::string parent{};  ///< "lidar" or "camera"; empty: the LiDAR, if the format has a parent.
+  std::vector<std::string> sensors{};  ///< Two of a rig; empty: all.
 };
 
 std::string FormatsHelp() {
@@ -34,7 +37,8 @@ std::string FormatsHelp() {
 }
 
 void Declare(ExportCommandOptions& options, Arguments& arguments) {
-  arguments.Add("RESULT", options.result_path, kPoseHelp, {.required = true});
+  arguments.Add("RESULT", options.result_path,
+                std::string(kPoseHelp) + ",\nor rig.json of sextant rig", {.required = true});
   DeclarePoseIs(options.pose_is, arguments);
   arguments.Add("--to", options.format, FormatsHelp(), {.required = true});
   arguments.Add("--out", options.out, "File to write; - for standard output",
@@ -48,6 +52,11 @@ void Declare(ExportCommandOptions& options, Arguments& arguments) {
                 "lidar or camera: the frame in which the pose of the other is stated; default:\n"
                 "lidar",
                 {.choices = {"lidar", "camera"}});
+  arguments.Add(
+      "--sensors", options.sensors,
+      "A B of a rig: A_from_B in any of the formats, A in the place of the camera; default:\n"
+      "all sensors, in ros1, ros2, ros2_yaml, urdf or kitti",
+      {.min_values = 2});
   arguments.Add("--force", options.force, "Export also a result with the verdict NOT USABLE");
 }
 
@@ -82,15 +91,24 @@ Expected<void> CheckVerdict(const ExportCommandOptions& options, const Calibrati
                                options.result_path, result.verdict->reason, result.verdict->next));
 }
 
-int Run(const ExportCommandOptions& options) {
-  if (const Expected<void> ok = CheckParent(options); !ok) return Refuse("export", ok.error());
-  const Expected<CalibrationResult> result = ResultOfFile(options.result_path, options.pose_is);
-  if (!result) return Refuse("export", result.error());
-  if (const Expected<void> ok = CheckVerdict(options, *result); !ok) {
-    return Refuse("export", ok.error(), kNotUsable);
+Expected<std::string> ExportedRig(const ExportCommandOptions& options, const std::string& text) {
+  SEXTANT_ASSIGN_OR_RETURN(const RigResult rig, ParseRigResult(text, options.result_path));
+  if (options.sensors.empty()) return ExportRig(options.format, rig);
+  SEXTANT_ASSIGN_OR_RETURN(const CalibrationResult pair,
+                           ResultOfPair(rig, options.sensors[0], options.sensors[1]));
+  return ExportTransform(options.format, pair, FramesOf(options, pair));
+}
+
+Expected<std::string> ExportedPair(const ExportCommandOptions& options,
+                                   const CalibrationResult& result) {
+  if (options.sensors.empty()) {
+    return ExportTransform(options.format, result, FramesOf(options, result));
   }
-  const ExportOptions frames = FramesOf(options, *result);
-  const Expected<std::string> text = ExportTransform(options.format, *result, frames);
+  return MakeError(ErrorCode::kInvalidOption,
+                   "--sensors is for the result of a rig, which this is not");
+}
+
+int Write(const ExportCommandOptions& options, const Expected<std::string>& text) {
   if (!text) {
     return Refuse("export", {text.error().code,
                              fmt::format("{}: {}", options.result_path, text.error().message)});
@@ -107,6 +125,18 @@ int Run(const ExportCommandOptions& options) {
   return kAnswered;
 }
 
+int Run(const ExportCommandOptions& options) {
+  if (const Expected<void> ok = CheckParent(options); !ok) return Refuse("export", ok.error());
+  const Expected<std::string> file = ReadTextFile(options.result_path);
+  if (file && IsRigResult(*file)) return Write(options, ExportedRig(options, *file));
+  const Expected<CalibrationResult> result = ResultOfFile(options.result_path, options.pose_is);
+  if (!result) return Refuse("export", result.error());
+  if (const Expected<void> ok = CheckVerdict(options, *result); !ok) {
+    return Refuse("export", ok.error(), kNotUsable);
+  }
+  return Write(options, ExportedPair(options, *result));
+}
+
 }  // namespace
 
 Command ExportCommand() {
@@ -119,7 +149,9 @@ Command ExportCommand() {
       "Examples:\n"
       "  sextant export result.yaml --to ros2 --lidar-frame velodyne --camera-frame "
       "cam0_optical_frame --out extrinsic.launch.py\n"
-      "  sextant export result.yaml --to kitti --out calib.txt";
+      "  sextant export result.yaml --to kitti --out calib.txt\n"
+      "  sextant export rig.json --to ros2 --out rig.launch.py\n"
+      "  sextant export rig.json --sensors cam_left lidar_top --to matrix --out pose.txt";
   return MakeCommand<ExportCommandOptions>(
       "export", "A result in the format of another program: ROS, URDF, OpenCV, KITTI", kFooter,
       Declare, Run);

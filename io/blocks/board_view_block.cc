@@ -71,15 +71,24 @@ BoardView ReadView(YamlFields& in, const YamlNode& node) {
   view.cam_from_board = ReadPoseBlock(in, in.Require(node, "cam_from_board"), "cam_from_board");
   view.lidar_from_board =
       ReadPoseBlock(in, in.Require(node, "lidar_from_board"), "lidar_from_board");
-  const YamlNode& printed = in.Require(node, "printed");
-  if (in.IsSequence(printed, "printed")) {
-    for (const YamlNode& item : printed.items) view.printed.push_back(ReadPrinted(in, item));
+  in.Require(node, "printed");
+  ReadObservations(in, node, "face_in_lidar", view);
+  return view;
+}
+
+}  // namespace
+
+void ReadObservations(YamlFields& in, const YamlNode& node, const std::string& face_key,
+                      BoardView& view) {
+  const YamlNode* printed = node.Find("printed");
+  if (printed != nullptr && in.IsSequence(*printed, "printed")) {
+    for (const YamlNode& item : printed->items) view.printed.push_back(ReadPrinted(in, item));
   }
-  const YamlNode* face = node.Find("face_in_lidar");
-  if (face != nullptr && in.IsSequence(*face, "face_in_lidar")) {
+  const YamlNode* face = node.Find(face_key);
+  if (face != nullptr && in.IsSequence(*face, face_key)) {
     view.range_sigma_m = in.RealAt(node, "range_sigma_m");
     for (const YamlNode& item : face->items) {
-      view.face_in_lidar.push_back(in.Point(item, "face_in_lidar"));
+      view.face_in_lidar.push_back(in.Point(item, face_key));
     }
   }
   if (const YamlNode* rings = node.Find("face_rings")) {
@@ -96,10 +105,40 @@ BoardView ReadView(YamlFields& in, const YamlNode& node) {
   if (edges != nullptr && in.IsSequence(*edges, "edges")) {
     for (const YamlNode& item : edges->items) view.edges.push_back(ReadEdge(in, item));
   }
-  return view;
 }
 
-}  // namespace
+void WriteObservations(YamlText& out, const std::string& indent, const std::string& face_key,
+                       const BoardView& view) {
+  for (const BoardPoints& printed : view.printed) {
+    const auto numbers = [](const std::vector<Eigen::Vector2d>& points) {
+      std::vector<double> flat;
+      for (const Eigen::Vector2d& point : points) flat.insert(flat.end(), {point.x(), point.y()});
+      return YamlList(flat);
+    };
+    out.Line("{}  - in_board_m: {}", indent, numbers(printed.in_board_m));
+    out.Line("{}    pixels: {}", indent, numbers(printed.pixels));
+    out.Line(
+        "{}    covariance_px2: {}", indent,
+        YamlList(std::span<const double>(printed.covariance_px2.data(),
+                                         static_cast<std::size_t>(printed.covariance_px2.size()))));
+  }
+  if (!view.face_in_lidar.empty()) {
+    out.Line("{}range_sigma_m: {}", indent, view.range_sigma_m);
+    out.Line("{}{}:", indent, face_key);
+    for (const Eigen::Vector3d& point : view.face_in_lidar) {
+      out.Line("{}  - {}", indent, YamlList(point));
+    }
+    if (!view.face_rings.empty()) {
+      const std::vector<double> rings(view.face_rings.begin(), view.face_rings.end());
+      out.Line("{}face_rings: {}", indent, YamlList(rings));
+    }
+  }
+  if (!view.edges.empty()) out.Line("{}edges:", indent);
+  for (const EdgeRay& ray : view.edges) {
+    out.Line("{}  - {{direction: {}, side: {}, sigma_m: {}}}", indent, YamlList(ray.direction),
+             ray.side, ray.sigma_m);
+  }
+}
 
 std::vector<BoardView> ReadBoardViews(YamlFields& in, const YamlNode& list,
                                       std::span<const Board> boards) {
@@ -148,33 +187,7 @@ void WriteBoardView(YamlText& out, const BoardView& view) {
   out.Line("    cam_from_board: {}", YamlPose(view.cam_from_board));
   out.Line("    lidar_from_board: {}", YamlPose(view.lidar_from_board));
   out.Line("    printed:{}", view.printed.empty() ? " []" : "");
-  for (const BoardPoints& printed : view.printed) {
-    const auto numbers = [](const std::vector<Eigen::Vector2d>& points) {
-      std::vector<double> flat;
-      for (const Eigen::Vector2d& point : points) flat.insert(flat.end(), {point.x(), point.y()});
-      return YamlList(flat);
-    };
-    out.Line("      - in_board_m: {}", numbers(printed.in_board_m));
-    out.Line("        pixels: {}", numbers(printed.pixels));
-    out.Line(
-        "        covariance_px2: {}",
-        YamlList(std::span<const double>(printed.covariance_px2.data(),
-                                         static_cast<std::size_t>(printed.covariance_px2.size()))));
-  }
-  if (!view.face_in_lidar.empty()) {
-    out.Line("    range_sigma_m: {}", view.range_sigma_m);
-    out.Line("    face_in_lidar:");
-    for (const Eigen::Vector3d& point : view.face_in_lidar) out.Line("      - {}", YamlList(point));
-    if (!view.face_rings.empty()) {
-      const std::vector<double> rings(view.face_rings.begin(), view.face_rings.end());
-      out.Line("    face_rings: {}", YamlList(rings));
-    }
-  }
-  if (!view.edges.empty()) out.Line("    edges:");
-  for (const EdgeRay& ray : view.edges) {
-    out.Line("      - {{direction: {}, side: {}, sigma_m: {}}}", YamlList(ray.direction), ray.side,
-             ray.sigma_m);
-  }
+  WriteObservations(out, "    ", "face_in_lidar", view);
 }
 
 }  // namespace sextant

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "geometry/board.h"
@@ -20,6 +21,14 @@ std::vector<BoardView> ReadBoardViews(YamlFields& in, const YamlNode& list,
 /// The map `lidar_errors` of a problem file, and back.
 LidarErrorModel ReadLidarErrors(YamlFields& in, const YamlNode& node);
 void WriteLidarErrors(YamlText& out, const LidarErrorModel& errors);
+
+/// What both sensors, or one of them, measured: the keys printed, the face returns by `face_key`
+/// with range_sigma_m and face_rings, and edges. Absent keys leave the view as it is.
+void ReadObservations(YamlFields& in, const YamlNode& node, const std::string& face_key,
+                      BoardView& view);
+/// Writes the lines of these keys after `indent`; the items of printed without their key.
+void WriteObservations(YamlText& out, const std::string& indent, const std::string& face_key,
+                       const BoardView& view);
 
 /// Writes a view as an item of that list; reading it again gives the same bits.
 void WriteBoardView(YamlText& out, const BoardView& view);

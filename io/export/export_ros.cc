@@ -22,10 +22,13 @@ std::string NameOf(const NamedTransform& transform) {
 // The lines of the comment, without comment characters.
 std::string Direction(const NamedTransform& t, const std::string& indent) {
   return fmt::format(
-      "{0}{1}: the pose of {2} in {3}.\n"
-      "{0}point_in_{3} = {1} * point_in_{2}\n"
-      "{0}{4} is the camera's optical frame: x right, y down, z forward.\n",
-      indent, NameOf(t), t.child, t.parent, t.camera_frame);
+             "{0}{1}: the pose of {2} in {3}.\n"
+             "{0}point_in_{3} = {1} * point_in_{2}\n",
+             indent, NameOf(t), t.child, t.parent) +
+         (t.camera_frame.empty()
+              ? std::string()
+              : fmt::format("{}{} is the camera's optical frame: x right, y down, z forward.\n",
+                            indent, t.camera_frame));
 }
 
 std::string Xyz(const Rigid3d& pose) {
@@ -50,30 +53,47 @@ std::string Ros2Arguments(const NamedTransform& t, const char* quote, const char
 
 }  // namespace
 
-std::string Ros1LaunchText(const NamedTransform& t) {
-  const Eigen::Quaterniond& q = t.parent_from_child.rotation;
-  return fmt::format(
-      "<launch>\n  <!--\n{}    args: x y z qx qy qz qw parent child\n  -->\n"
-      "  <node pkg=\"tf2_ros\" type=\"static_transform_publisher\" name=\"{}\"\n"
-      "        args=\"{} {} {} {} {} {} {}\" />\n</launch>\n",
-      Direction(t, "    "), NameOf(t), Xyz(t.parent_from_child), q.x(), q.y(), q.z(), q.w(),
-      t.parent, t.child);
+std::string Ros1LaunchText(std::span<const NamedTransform> tree) {
+  std::string text = "<launch>\n";
+  for (const NamedTransform& t : tree) {
+    const Eigen::Quaterniond& q = t.parent_from_child.rotation;
+    text += fmt::format(
+        "  <!--\n{}    args: x y z qx qy qz qw parent child\n  -->\n"
+        "  <node pkg=\"tf2_ros\" type=\"static_transform_publisher\" name=\"{}\"\n"
+        "        args=\"{} {} {} {} {} {} {}\" />\n",
+        Direction(t, "    "), NameOf(t), Xyz(t.parent_from_child), q.x(), q.y(), q.z(), q.w(),
+        t.parent, t.child);
+  }
+  return text + "</launch>\n";
 }
 
-std::string Ros2LaunchText(const NamedTransform& t) {
-  return fmt::format(
-      "{}from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n\n"
-      "def generate_launch_description():\n    return LaunchDescription([\n        Node(\n"
-      "            package='tf2_ros',\n            executable='static_transform_publisher',\n"
-      "            name='{}',\n            arguments=[{}],\n        ),\n    ])\n",
-      Direction(t, "# "), NameOf(t), Ros2Arguments(t, "'", ", "));
+std::string Ros2LaunchText(std::span<const NamedTransform> tree) {
+  std::string text;
+  for (const NamedTransform& t : tree) text += Direction(t, "# ");
+  text +=
+      "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n\n"
+      "def generate_launch_description():\n    return LaunchDescription([\n";
+  for (const NamedTransform& t : tree) {
+    text += fmt::format(
+        "        Node(\n"
+        "            package='tf2_ros',\n            executable='static_transform_publisher',\n"
+        "            name='{}',\n            arguments=[{}],\n        ),\n",
+        NameOf(t), Ros2Arguments(t, "'", ", "));
+  }
+  return text + "    ])\n";
 }
 
-std::string Ros2YamlText(const NamedTransform& t) {
-  return fmt::format(
-      "{}launch:\n  - node:\n      pkg: tf2_ros\n      exec: static_transform_publisher\n"
-      "      name: {}\n      args: \"{}\"\n",
-      Direction(t, "# "), NameOf(t), Ros2Arguments(t, "", " "));
+std::string Ros2YamlText(std::span<const NamedTransform> tree) {
+  std::string text;
+  for (const NamedTransform& t : tree) text += Direction(t, "# ");
+  text += "launch:\n";
+  for (const NamedTransform& t : tree) {
+    text += fmt::format(
+        "  - node:\n      pkg: tf2_ros\n      exec: static_transform_publisher\n"
+        "      name: {}\n      args: \"{}\"\n",
+        NameOf(t), Ros2Arguments(t, "", " "));
+  }
+  return text;
 }
 
 std::string TfYamlText(const NamedTransform& t) {
@@ -86,15 +106,19 @@ std::string TfYamlText(const NamedTransform& t) {
       Direction(t, "# "), t.parent, t.child, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
 }
 
-std::string UrdfText(const NamedTransform& t) {
-  const EulerZyx euler = ToEulerZyx(t.parent_from_child.rotation);
-  return fmt::format(
-      "<!--\n{}  Insert this joint into the robot's description, which must have both links.\n"
-      "  rpy: R = Rz(yaw) Ry(pitch) Rx(roll)\n-->\n"
-      "<joint name=\"{}\" type=\"fixed\">\n  <parent link=\"{}\" />\n  <child link=\"{}\" />\n"
-      "  <origin xyz=\"{}\" rpy=\"{} {} {}\" />\n</joint>\n",
-      Direction(t, "  "), NameOf(t), t.parent, t.child, Xyz(t.parent_from_child), euler.roll,
-      euler.pitch, euler.yaw);
+std::string UrdfText(std::span<const NamedTransform> tree) {
+  std::string text;
+  for (const NamedTransform& t : tree) {
+    const EulerZyx euler = ToEulerZyx(t.parent_from_child.rotation);
+    text += fmt::format(
+        "<!--\n{}  Insert this joint into the robot's description, which must have both links.\n"
+        "  rpy: R = Rz(yaw) Ry(pitch) Rx(roll)\n-->\n"
+        "<joint name=\"{}\" type=\"fixed\">\n  <parent link=\"{}\" />\n  <child link=\"{}\" />\n"
+        "  <origin xyz=\"{}\" rpy=\"{} {} {}\" />\n</joint>\n",
+        Direction(t, "  "), NameOf(t), t.parent, t.child, Xyz(t.parent_from_child), euler.roll,
+        euler.pitch, euler.yaw);
+  }
+  return text;
 }
 
 }  // namespace sextant

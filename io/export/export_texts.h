@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "geometry/camera.h"
@@ -13,16 +14,16 @@ struct NamedTransform {
   std::string parent;
   std::string child;
   Rigid3d parent_from_child;
-  std::string camera_frame;  ///< The camera's frame: parent or child.
+  std::string camera_frame;  ///< The camera's frame: parent or child; empty: neither.
 };
 
-/// The texts of ExportTransform, which checks the names of the frames; io/export/export_transform.h
-/// documents each format.
-std::string Ros1LaunchText(const NamedTransform& transform);
-std::string Ros2LaunchText(const NamedTransform& transform);
-std::string Ros2YamlText(const NamedTransform& transform);
+/// The texts of ExportTransform and ExportRig, which check the names of the frames;
+/// io/export/export_transform.h documents each format.
+std::string Ros1LaunchText(std::span<const NamedTransform> tree);
+std::string Ros2LaunchText(std::span<const NamedTransform> tree);
+std::string Ros2YamlText(std::span<const NamedTransform> tree);
 std::string TfYamlText(const NamedTransform& transform);
-std::string UrdfText(const NamedTransform& transform);
+std::string UrdfText(std::span<const NamedTransform> tree);
 
 std::string KittiText(const Rigid3d& cam_from_lidar, const Camera& camera);
 /// `camera` may be null.

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <span>
 
 #include "base/nearest_name.h"
 #include "base/text/file_name.h"
@@ -65,12 +66,13 @@ Expected<std::string> ExportTransform(std::string_view format, const Calibration
                                       const ExportOptions& options) {
   SEXTANT_RETURN_IF_ERROR(CheckFrames(options));
   const NamedTransform named = Named(result, options);
+  const std::span<const NamedTransform> tree(&named, 1);
   const Camera* camera = result.camera ? &*result.camera : nullptr;
-  if (format == "ros1") return Ros1LaunchText(named);
-  if (format == "ros2") return Ros2LaunchText(named);
-  if (format == "ros2_yaml") return Ros2YamlText(named);
+  if (format == "ros1") return Ros1LaunchText(tree);
+  if (format == "ros2") return Ros2LaunchText(tree);
+  if (format == "ros2_yaml") return Ros2YamlText(tree);
   if (format == "tf_yaml") return TfYamlText(named);
-  if (format == "urdf") return UrdfText(named);
+  if (format == "urdf") return UrdfText(tree);
   if (format == "opencv") return OpenCvText(result.cam_from_lidar, camera);
   if (format == "matrix") {
     return MatrixText(result.cam_from_lidar, options.camera_frame, options.lidar_frame);

@@ -101,6 +101,11 @@ void ReadProblemHeader(YamlFields& in, const YamlNode& root) {
                              "point_sets",
                              "truth",
                              "initial_cam_from_lidar"};
+  if (root.kind == YamlNode::Kind::kMap && root.Find("sextant_rig") != nullptr) {
+    in.Fail(root.line, {},
+            "expected a problem of one camera and one LiDAR; this is a rig file: run 'sextant rig' "
+            "with it");
+  }
   if (root.kind == YamlNode::Kind::kMap && root.Find("sextant_problem") == nullptr) {
     in.Fail(root.line, {},
             "expected a problem file, with the key sextant_problem: 1; is this another kind of "

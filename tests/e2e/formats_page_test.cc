@@ -12,6 +12,7 @@
 #include "io/boards/polygon_file.h"
 #include "io/problems/pairs_csv.h"
 #include "io/problems/problem_yaml.h"
+#include "io/problems/rig_yaml.h"
 #include "io/results/calibration_result.h"
 #include "io/text/text_file.h"
 #include "simulator/scene/scene_file.h"
@@ -74,6 +75,7 @@ TEST(FormatsPage, ItsExamplesAreAccepted) {
   const std::string name = test::TestPath("example.yaml");
   const std::map<std::string, std::function<std::string(const std::string&)>> readers = {
       {"sextant_problem", [&](const auto& text) { return Refusal(ParseProblemYaml, text, name); }},
+      {"sextant_rig", [&](const auto& text) { return Refusal(ParseRigFile, text, name); }},
       {"boards", [&](const auto& text) { return Refusal(ParseBoards, text, name); }},
       {"sextant_session", [&](const auto& text) { return Refusal(ParseSession, text, name); }},
       {"sextant_scene", [&](const auto& text) { return Refusal(ParseScene, text, name); }},

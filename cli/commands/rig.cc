@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include "calibrate/rig/calibrate_rig.h"
+#include "cli/commands/commands.h"
+#include "cli/rig_output.h"
+#include "io/problems/rig_yaml.h"
+#include "io/problems/transform_list.h"
+#include "io/results/rig_result.h"
+#include "io/text/text_file.h"
+
+namespace sextant::cli {
+namespace {
+
+struct RigCommandOptions {
+  std::string path{};
+  std::string root{};  ///< Empty: the file's.
+  std::string out_path = "rig.json";
+  std::string json_path{};  ///< See Deliver.
+};
+
+void Declare(RigCommandOptions& options, Arguments& arguments) {
+  arguments.Add(
+      "FILE", options.path,
+      "Rig file (YAML): what each sensor measured of the boards; or rts.txt of the original\n"
+      "package, the poses of several cameras and a LiDAR",
+      {.required = true});
+  arguments.Add("--root", options.root,
+                "The sensor in whose frame poses are stated; default: the file's, or the first");
+  arguments.Add("--out", options.out_path, "Result file (JSON), for sextant export",
+                {.shows_default = true, .writes = Writes::kFile});
+  arguments.Add("--json", options.json_path,
+                "Write the same to another file; - for standard output",
+                {.writes = Writes::kFileOrStandardOutput});
+}
+
+Expected<void> ChooseRoot(const std::string& name, RigFile& rig) {
+  if (name.empty()) return {};
+  std::string known;
+  for (std::size_t s = 0; s < rig.problem.sensors.size(); ++s) {
+    if (rig.problem.sensors[s].name == name) {
+      rig.root = s;
+      return {};
+    }
+    known += (known.empty() ? "" : ", ") + rig.problem.sensors[s].name;
+  }
+  return MakeError(ErrorCode::kUnknownName,
+                   fmt::format("--root: no sensor '{}'; there are: {}", name, known));
+}
+
+Expected<RigResult> ResultFrom(const RigCommandOptions& options) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(options.path));
+  if (!IsRigFile(text)) {
+    const auto transforms = ParseTransformList(text, options.path);
+    if (transforms) return RigOfTransforms(*transforms);
+  }
+  SEXTANT_ASSIGN_OR_RETURN(RigFile rig, ParseRigFile(text, options.path));
+  SEXTANT_RETURN_IF_ERROR(ChooseRoot(options.root, rig));
+  return CalibrateRig(rig);
+}
+
+int Run(const RigCommandOptions& options) {
+  return DeliverRig("rig", ResultFrom(options), options.out_path, options.json_path);
+}
+
+}  // namespace
+
+Command RigCommand() {
+  constexpr const char* kFooter =
+      "All sensors are solved together; then every pair alone, as a check. Cameras may have no "
+      "view\n"
+      "in common if others connect them. docs/rigs.md has an example, docs/formats.md the keys.\n"
+      "Examples:\n"
+      "  sextant rig rig.yaml\n"
+      "  sextant rig rig.yaml --root lidar_top --out rig.json\n"
+      "  sextant export rig.json --to ros2 --out rig.launch.py";
+  return MakeCommand<RigCommandOptions>(
+      "rig", "Poses of several cameras and LiDARs, from what they measured of boards", kFooter,
+      Declare, Run);
+}
+
+}  // namespace sextant::cli

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <map>
+
+#include "base/units.h"
+#include "geometry/board_check.h"
+#include "io/blocks/board_block.h"
+#include "io/blocks/board_view_block.h"
+#include "io/blocks/camera_block.h"
+#include "io/blocks/pose_block.h"
+#include "io/cameras/camera_file.h"
+#include "io/problems/rig_yaml.h"
+#include "io/text/max_id.h"
+#include "io/text/text_file.h"
+#include "io/text/yaml_fields.h"
+#include "solvers/core/rig_problem_check.h"
+
+namespace sextant {
+namespace {
+
+using RigKeys = std::vector<std::string>;
+
+constexpr std::size_t kMaxSensors = 100;
+constexpr std::size_t kMaxNumbers = 2000;  // Of the points of one board; two each.
+
+/// A board with the points on it that observations may refer to.
+struct RigBoard {
+  Board board;
+  std::vector<Eigen::Vector2d> points;  ///< Without points_m its four outer corners.
+};
+
+class RigReader {
+ public:
+  explicit RigReader(const std::string& file)
+      : in_(file), folder_(std::filesystem::path(file).parent_path()) {}
+
+  Expected<RigFile> Read(const YamlNode& root) {
+    static const RigKeys kKeys = {"sextant_rig", "comment", "root", "sensors", "boards", "moments"};
+    if (in_.IsMap(root, "sextant_rig", kKeys)) {
+      in_.IntegerAt(root, "sextant_rig", 1, 1);
+      ReadSensors(in_.Require(root, "sensors"));
+      ReadBoards(in_.Require(root, "boards"));
+      if (const YamlNode* name = root.Find("root")) rig_.root = SensorNamed(*name, "root");
+      ReadMoments(in_.Require(root, "moments"));
+    }
+    if (!in_.ok()) return in_.TakeError();
+    if (const Expected<void> ok = CheckRigProblem(rig_.problem); !ok) {
+      return MakeError(ok.error().code, in_.file() + ": " + ok.error().message);
+    }
+    return std::move(rig_);
+  }
+
+ private:
+  void ReadSensors(const YamlNode& list) {
+    static const RigKeys kKeys = {"name", "camera", "camera_file", "lidar_errors",
+                                  "true_rig_from_sensor"};
+    if (!in_.IsSequence(list, "sensors", kMaxSensors)) return;
+    for (const YamlNode& node : list.items) {
+      if (!in_.IsMap(node, "sensors", kKeys)) return;
+      RigSensor sensor{.name = in_.FileName(in_.Require(node, "name"), "name")};
+      if (const YamlNode* camera = node.Find("camera"))
+        sensor.camera = ReadCameraBlock(in_, *camera);
+      if (node.Find("camera_file") != nullptr) sensor.camera = CameraIn(node);
+      if (const YamlNode* errors = node.Find("lidar_errors")) {
+        sensor.lidar_errors = ReadLidarErrors(in_, *errors);
+      }
+      if (const YamlNode* pose = node.Find("true_rig_from_sensor")) {
+        rig_.true_rig_from_sensor.push_back(ReadPoseBlock(in_, *pose, "true_rig_from_sensor"));
+      }
+      rig_.problem.sensors.push_back(std::move(sensor));
+    }
+    const std::size_t truths = rig_.true_rig_from_sensor.size();
+    if (in_.ok() && truths != 0 && truths != rig_.problem.sensors.size()) {
+      in_.Fail(list.line, "true_rig_from_sensor", "expected it for every sensor, or for none");
+    }
+  }
+
+  std::optional<Camera> CameraIn(const YamlNode& node) {
+    const std::string name = in_.TextAt(node, "camera_file");
+    if (!in_.ok()) return std::nullopt;
+    const Expected<Camera> camera = ReadCamera(folder_ / name);
+    if (camera) return *camera;
+    in_.Fail(node.line, "camera_file", camera.error().message);
+    return std::nullopt;
+  }
+
+  void ReadBoards(const YamlNode& list) {
+    static const RigKeys kKeys = {"id", "top_right_m", "right_bottom_m", "hole", "points_m"};
+    if (!in_.IsSequence(list, "boards", kMaxBoards)) return;
+    for (const YamlNode& node : list.items) {
+      if (!in_.IsMap(node, "boards", kKeys)) return;
+      RigBoard board;
+      board.board.id = in_.IntegerAt(node, "id", 0, kMaxId);
+      board.board.top_right_m = in_.RealAt(node, "top_right_m");
+      board.board.right_bottom_m = in_.RealAt(node, "right_bottom_m");
+      if (const YamlNode* hole = node.Find("hole")) board.board.hole = ReadHoleBlock(in_, *hole);
+      if (!in_.ok()) return;
+      if (!(board.board.top_right_m > 0.0 && board.board.right_bottom_m > 0.0)) {
+        return in_.Fail(node.line, "boards", "expected sides longer than 0");
+      }
+      const std::vector<Eigen::Vector2d> corners = CornersInBoard(board.board);
+      board.points.assign(corners.begin(), corners.begin() + kCornersPerBoard);
+      if (node.Find("points_m") != nullptr) board.points = Points2At(node, "points_m");
+      rig_.problem.boards.push_back(board.board);
+      if (!boards_.emplace(board.board.id, std::move(board)).second) {
+        return in_.Fail(node.line, "id", "expected another id: an earlier board has it");
+      }
+    }
+  }
+
+  // x0, y0, x1, y1, ...
+  std::vector<Eigen::Vector2d> Points2At(const YamlNode& map, std::string_view key) {
+    const YamlNode& node = in_.Require(map, key);
+    const std::vector<double> numbers = in_.RealList(node, key, kMaxNumbers);
+    std::vector<Eigen::Vector2d> points;
+    if (numbers.size() % 2 != 0) {
+      in_.Fail(node.line, key,
+               fmt::format("expected two numbers per point, got {} numbers", numbers.size()));
+    }
+    for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) {
+      points.emplace_back(numbers[i], numbers[i + 1]);
+    }
+    return points;
+  }
+
+  std::size_t SensorNamed(const YamlNode& node, std::string_view key) {
+    const std::string name = in_.Text(node, key);
+    const auto& sensors = rig_.problem.sensors;
+    const auto at = std::ranges::find(sensors, name, &RigSensor::name);
+    if (!in_.ok() || at != sensors.end()) return static_cast<std::size_t>(at - sensors.begin());
+    std::string known;
+    for (const RigSensor& sensor : sensors) known += (known.empty() ? "" : ", ") + sensor.name;
+    in_.Fail(node.line, key,
+             fmt::format("expected the name of a sensor ({}), got '{}'", known, name));
+    return 0;
+  }
+
+  void ReadMoments(const YamlNode& list) {
+    static const RigKeys kKeys = {"name", "observations"};
+    if (!in_.IsSequence(list, "moments")) return;
+    int moment = 0;
+    for (const YamlNode& node : list.items) {
+      if (!in_.IsMap(node, "moments", kKeys)) return;
+      const YamlNode* name = node.Find("name");
+      const YamlNode& seen = in_.Require(node, "observations");
+      std::map<int, RigPlacement> placements;
+      if (!in_.IsSequence(seen, "observations")) return;
+      for (const YamlNode& item : seen.items) {
+        const int board = ReadObservation(item);
+        if (!in_.ok()) return;
+        RigPlacement& placement = placements[board];
+        placement.moment = moment;
+        placement.board = board;
+        if (name != nullptr) placement.name = in_.Text(*name, "name");
+        placement.seen.push_back(std::move(observation_));
+      }
+      for (auto& [board, placement] : placements) {
+        rig_.problem.placements.push_back(std::move(placement));
+      }
+      ++moment;
+    }
+  }
+
+  // Fills observation_; returns the board.
+  int ReadObservation(const YamlNode& node) {
+    static const RigKeys kKeys = {
+        "sensor",     "board",         "in_board_m", "pixels",  "sigma_px",
+        "points_m",   "plane",         "sigma_m",    "lines",   "face_m",
+        "face_rings", "range_sigma_m", "edges",      "printed", "sensor_from_board"};
+    observation_ = {};
+    if (!in_.IsMap(node, "observations", kKeys)) return 0;
+    observation_.sensor = SensorNamed(in_.Require(node, "sensor"), "sensor");
+    const int id = in_.IntegerAt(node, "board", 0, kMaxId);
+    const auto board = boards_.find(id);
+    if (in_.ok() && board == boards_.end()) {
+      in_.Fail(node.line, "board", fmt::format("expected the id of one of the boards, got {}", id));
+    }
+    if (!in_.ok()) return 0;
+    std::vector<Eigen::Vector2d> points = board->second.points;
+    if (node.Find("in_board_m") != nullptr) points = Points2At(node, "in_board_m");
+    if (node.Find("pixels") != nullptr) ReadPixels(node, points);
+    if (const YamlNode* list = node.Find("points_m")) ReadPoints(node, *list, points);
+    if (const YamlNode* plane = node.Find("plane")) ReadPlane(*plane);
+    if (const YamlNode* lines = node.Find("lines")) ReadLines(*lines);
+    ReadObservations(in_, node, "face_m", observation_.raw);
+    if (const YamlNode* pose = node.Find("sensor_from_board")) {
+      observation_.sensor_from_board = ReadPoseBlock(in_, *pose, "sensor_from_board");
+    }
+    return id;
+  }
+
+  // Whether there are as many measurements as points of the board.
+  bool IsAsMany(int line, std::string_view key, std::size_t measured, std::size_t points) {
+    if (!in_.ok() || measured == points) return in_.ok();
+    in_.Fail(line, key,
+             fmt::format("expected {} points, as many as the board's points_m or the observation's "
+                         "in_board_m, got {}",
+                         points, measured));
+    return false;
+  }
+
+  void ReadPixels(const YamlNode& node, const std::vector<Eigen::Vector2d>& points) {
+    constexpr double kUsual_px = 0.3;
+    BoardPoints printed{.in_board_m = points, .pixels = Points2At(node, "pixels")};
+    const double sigma = in_.RealAt(node, "sigma_px", kUsual_px);
+    if (!(sigma > 0.0)) in_.Fail(node.line, "sigma_px", "expected a sigma above 0");
+    if (!IsAsMany(node.line, "pixels", printed.pixels.size(), points.size())) return;
+    const auto size = 2 * std::ssize(points);
+    printed.covariance_px2 = sigma * sigma * Eigen::MatrixXd::Identity(size, size);
+    observation_.raw.printed.push_back(std::move(printed));
+  }
+
+  void ReadPoints(const YamlNode& node, const YamlNode& list,
+                  const std::vector<Eigen::Vector2d>& points) {
+    if (!in_.IsSequence(list, "points_m", kMaxNumbers)) return;
+    if (!IsAsMany(list.line, "points_m", list.items.size(), points.size())) return;
+    MeasuredPoint point;
+    point.sigma_m = in_.RealAt(node, "sigma_m", point.sigma_m);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      point.in_board_m << points[i], 0.0;
+      point.in_sensor_m = in_.Point(list.items[i], "points_m");
+      observation_.points.push_back(point);
+    }
+  }
+
+  void ReadPlane(const YamlNode& node) {
+    static const RigKeys kKeys = {"normal", "distance_m", "sigma_m", "sigma_deg"};
+    MeasuredPlane plane;
+    if (!in_.IsMap(node, "plane", kKeys)) return;
+    plane.normal = DirectionAt(node, "normal");
+    plane.distance_m = in_.RealAt(node, "distance_m");
+    plane.sigma_m = in_.RealAt(node, "sigma_m", plane.sigma_m);
+    plane.sigma_rad = kRadPerDeg * in_.RealAt(node, "sigma_deg", plane.sigma_rad * kDegPerRad);
+    observation_.plane = plane;
+  }
+
+  void ReadLines(const YamlNode& list) {
+    static const RigKeys kKeys = {"side", "point_m", "direction", "sigma_m"};
+    if (!in_.IsSequence(list, "lines", 2 * kCornersPerBoard)) return;
+    for (const YamlNode& node : list.items) {
+      if (!in_.IsMap(node, "lines", kKeys)) return;
+      MeasuredLine line;
+      line.side = in_.IntegerAt(node, "side", 0, 2 * kCornersPerBoard - 1);
+      line.point = in_.PointAt(node, "point_m");
+      line.direction = DirectionAt(node, "direction");
+      line.sigma_m = in_.RealAt(node, "sigma_m", line.sigma_m);
+      observation_.lines.push_back(line);
+    }
+  }
+
+  // Of any length, as other programs write it.
+  Eigen::Vector3d DirectionAt(const YamlNode& map, std::string_view key) {
+    const Eigen::Vector3d direction = in_.PointAt(map, key);
+    const double length = direction.norm();
+    if (in_.ok() && !(length > 1e-9)) in_.Fail(map.line, key, "expected a direction, not zeros");
+    return std::abs(length - 1.0) > 1e-12 ? (direction / length).eval() : direction;
+  }
+
+  YamlFields in_;
+  std::filesystem::path folder_;
+  std::map<int, RigBoard> boards_;
+  RigObservation observation_;
+  RigFile rig_;
+};
+
+}  // namespace
+
+Expected<RigFile> ReadRigFile(const std::filesystem::path& path) {
+  return ReadWith(path, ParseRigFile);
+}
+
+Expected<RigFile> ParseRigFile(std::string_view text, const std::string& file) {
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
+  if (root.kind == YamlNode::Kind::kMap && root.Find("sextant_rig") == nullptr) {
+    YamlFields in(file);
+    in.Fail(root.line, {},
+            "expected a rig file, with the key sextant_rig: 1; is this another kind of YAML?");
+    return in.TakeError();
+  }
+  return RigReader(file).Read(root);
+}
+
+bool IsRigFile(std::string_view text) {
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = text.substr(at, end - at);
+    const bool skipped = line.empty() || line[0] == '#' || line[0] == '\r' || line[0] == '%' ||
+                         line.starts_with("---");
+    if (!skipped) return line.starts_with("sextant_rig:");
+    at = end + 1;
+  }
+  return false;
+}
+
+}  // namespace sextant

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/rig/rig_costs.h"
+
+#include <Eigen/Geometry>
+
+#include "geometry/uncertain_pose.h"
+#include "solvers/joint/pose_manifold.h"
+
+namespace sextant {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// The derivative by parameter block `index`, set to zero; none where Ceres does not need it.
+Eigen::Map<RowMajor> DerivativeOf(double** jacobians, std::size_t index, Eigen::Index rows,
+                                  Eigen::Index columns) {
+  const bool needed = jacobians != nullptr && jacobians[index] != nullptr;
+  Eigen::Map<RowMajor> map(needed ? jacobians[index] : nullptr, needed ? rows : 0,
+                           needed ? columns : 0);
+  map.setZero();
+  return map;
+}
+
+// Of the logarithm of a rotation by a perturbation on its left, to the fourth order in the angle,
+// which is small.
+Eigen::Matrix3d LogByTurn(const Eigen::Vector3d& phi) {
+  const Eigen::Matrix3d hat = Hat(phi);
+  return Eigen::Matrix3d::Identity() - 0.5 * hat + (1.0 / 12.0) * hat * hat;
+}
+
+void SetLeadingIdentity(double* jacobian, int rows, int columns) {
+  Eigen::Map<RowMajor>(jacobian, rows, columns).setIdentity();
+}
+
+}  // namespace
+
+int PosesManifold::AmbientSize() const { return kPoseNumbers * poses_; }
+int PosesManifold::TangentSize() const { return 6 * poses_; }
+
+bool PosesManifold::Plus(const double* x, const double* delta, double* x_plus_delta) const {
+  for (int i = 0; i < poses_; ++i) {
+    StorePose(Perturb(PoseIn(x + kPoseNumbers * i), Eigen::Map<const Vector6d>(delta + 6 * i)),
+              x_plus_delta + kPoseNumbers * i);
+  }
+  return true;
+}
+
+bool PosesManifold::PlusJacobian(const double* /*x*/, double* jacobian) const {
+  SetLeadingIdentity(jacobian, AmbientSize(), TangentSize());
+  return true;
+}
+
+bool PosesManifold::Minus(const double* y, const double* x, double* y_minus_x) const {
+  for (int i = 0; i < poses_; ++i) {
+    Eigen::Map<Vector6d>(y_minus_x + 6 * i) =
+        PoseDifference(PoseIn(y + kPoseNumbers * i), PoseIn(x + kPoseNumbers * i));
+  }
+  return true;
+}
+
+bool PosesManifold::MinusJacobian(const double* /*x*/, double* jacobian) const {
+  SetLeadingIdentity(jacobian, TangentSize(), AmbientSize());
+  return true;
+}
+
+RigBlockCost::RigBlockCost(const RigBlock& block, const RigPlacementModel& placement,
+                           const std::vector<double>& weights)
+    : block_(block),
+      shift_(placement.shift_of[block.seen]),
+      poses_(1 + static_cast<int>(placement.shifts.size())),
+      weights_(weights) {
+  // Only returns are shifted: other kinds state all of their error.
+  if (block.kind != RigKind::kFace && block.kind != RigKind::kEdges) shift_ = -1;
+  set_num_residuals(block.rows());
+  mutable_parameter_block_sizes()->push_back(kPoseNumbers);
+  mutable_parameter_block_sizes()->push_back(kPoseNumbers * poses_);
+  mutable_parameter_block_sizes()->insert(mutable_parameter_block_sizes()->end(),
+                                          block.numbers.size(), 1);
+}
+
+bool RigBlockCost::Evaluate(double const* const* parameters, double* residuals,
+                            double** jacobians) const {
+  const Rigid3d sensor_from_root = PoseIn(parameters[0]);
+  const Rigid3d root_from_board = PoseIn(parameters[1]);
+  const int shift_at = shift_ < 0 ? 0 : 1 + shift_;
+  const Rigid3d board_from_seen =
+      shift_ < 0 ? Rigid3d{} : PoseIn(parameters[1] + kPoseNumbers * shift_at);
+  const Rigid3d root_from_seen = root_from_board * board_from_seen;
+  RigResiduals at;
+  if (!block_.residuals(sensor_from_root * root_from_seen, at)) return false;
+  for (std::size_t k = 0; k < block_.numbers.size(); ++k) {
+    at.value += *parameters[2 + k] * block_.numbers[k].by;
+  }
+  Eigen::VectorXd weights(block_.rows());
+  for (int i = 0; i < block_.rows(); ++i) {
+    weights[i] = weights_[static_cast<std::size_t>(i / block_.rows_per_unit)];
+  }
+  Eigen::Map<Eigen::VectorXd>(residuals, block_.rows()) = weights.cwiseProduct(at.value);
+  if (jacobians == nullptr) return true;
+  const Eigen::Matrix<double, Eigen::Dynamic, 6> by_pose = weights.asDiagonal() * at.by_pose;
+  const ProductJacobians outer = JacobiansOfProduct(sensor_from_root, root_from_seen);
+  auto by_sensor = DerivativeOf(jacobians, 0, block_.rows(), kPoseNumbers);
+  if (by_sensor.size() > 0) by_sensor.leftCols<6>() = by_pose * outer.by_left;
+  auto by_placement = DerivativeOf(jacobians, 1, block_.rows(), kPoseNumbers * poses_);
+  if (by_placement.size() > 0) {
+    const ProductJacobians inner = JacobiansOfProduct(root_from_board, board_from_seen);
+    const Eigen::Matrix<double, Eigen::Dynamic, 6> by_seen = by_pose * outer.by_right;
+    by_placement.leftCols<6>() = by_seen * inner.by_left;
+    if (shift_ >= 0) by_placement.middleCols<6>(6 * shift_at) = by_seen * inner.by_right;
+  }
+  for (std::size_t k = 0; k < block_.numbers.size(); ++k) {
+    auto by_number = DerivativeOf(jacobians, 2 + k, block_.rows(), 1);
+    if (by_number.size() > 0) by_number.col(0) = weights.cwiseProduct(block_.numbers[k].by);
+  }
+  return true;
+}
+
+ShiftCost::ShiftCost(const RigPlacementModel& placement, std::size_t shift,
+                     const Vector6d& weights_by_m)
+    : shift_(shift),
+      lever_m_(placement.shifts[shift].lever_m),
+      poses_(1 + static_cast<int>(placement.shifts.size())),
+      weights_by_m_(weights_by_m) {
+  set_num_residuals(6);
+  mutable_parameter_block_sizes()->push_back(kPoseNumbers * poses_);
+}
+
+bool ShiftCost::Evaluate(double const* const* parameters, double* residuals,
+                         double** jacobians) const {
+  const int at = 1 + static_cast<int>(shift_);
+  const Rigid3d shift = PoseIn(parameters[0] + kPoseNumbers * at);
+  const Eigen::Vector3d turn = LogSo3(shift.rotation);
+  Vector6d values;
+  values << lever_m_ * turn, shift.translation;
+  Eigen::Map<Vector6d>(residuals, 6) = weights_by_m_.cwiseProduct(values);
+  auto by = DerivativeOf(jacobians, 0, 6, kPoseNumbers * poses_);
+  if (by.size() == 0) return true;
+  Matrix6d by_shift = Matrix6d::Identity();
+  by_shift.topLeftCorner<3, 3>() = lever_m_ * LogByTurn(turn);
+  by.middleCols<6>(6 * at) = weights_by_m_.asDiagonal() * by_shift;
+  return true;
+}
+
+}  // namespace sextant

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/rig/rig_model.h"
+
+#include <fmt/core.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "solvers/core/board_view_check.h"
+#include "solvers/joint/board_view_residuals.h"
+#include "solvers/rig/rig_terms.h"
+
+namespace sextant {
+namespace {
+
+/// The numbers that one LiDAR's observations share.
+struct SharedOf {
+  std::optional<std::size_t> range;
+  std::optional<std::size_t> growth_along;  ///< The next one is that across.
+  std::map<int, std::size_t> rings;
+};
+
+class RigModelMaker {
+ public:
+  explicit RigModelMaker(const RigProblem& problem) : problem_(problem) {
+    model_.sensors = problem.sensors.size();
+    shared_.resize(model_.sensors);
+    for (const RigSensor& sensor : problem.sensors) {
+      cameras_.push_back(sensor.camera ? std::make_shared<const Camera>(*sensor.camera) : nullptr);
+    }
+  }
+
+  RigModel Make() {
+    for (std::size_t i = 0; i < problem_.placements.size(); ++i) {
+      model_.placements.emplace_back();
+      for (std::size_t k = 0; k < problem_.placements[i].seen.size(); ++k) AddObservation(i, k);
+    }
+    return std::move(model_);
+  }
+
+ private:
+  void AddObservation(std::size_t placement, std::size_t seen) {
+    const RigObservation& of = problem_.placements[placement].seen[seen];
+    const Board& board = *FindBoard(problem_.boards, problem_.placements[placement].board);
+    BoardViewTerms terms = TermsOf(of.raw, board);
+    RigBlock block{.placement = placement, .seen = seen, .sensor = of.sensor};
+    for (PrintedTerm& term : terms.printed) {
+      const int rows = 2 * static_cast<int>(term.pixels.size());
+      Add(block, RigKind::kPrinted, 1, rows,
+          PrintedResiduals(std::move(term), cameras_[of.sensor]));
+    }
+    AddShift(of, board, seen);
+    AddFace(block, of, terms.face);
+    AddEdges(block, of, terms.edges);
+    if (!of.points.empty()) {
+      Add(block, RigKind::kPoints, std::ssize(of.points), 3, PointResiduals(of.points));
+    }
+    if (of.plane) Add(block, RigKind::kPlane, 1, 3, PlaneResiduals(*of.plane));
+    if (!of.lines.empty()) {
+      Add(block, RigKind::kLines, std::ssize(of.lines), 4, LineResiduals(of.lines, board));
+    }
+  }
+
+  void Add(RigBlock block, RigKind kind, std::ptrdiff_t units, int rows_per_unit,
+           RigResidualFunction residuals) {
+    block.kind = kind;
+    block.units = static_cast<int>(units);
+    block.rows_per_unit = rows_per_unit;
+    block.residuals = std::move(residuals);
+    model_.blocks.push_back(std::move(block));
+  }
+
+  void AddShift(const RigObservation& of, const Board& board, std::size_t seen) {
+    RigPlacementModel& placement = model_.placements.back();
+    const bool has_returns = !of.raw.face_in_lidar.empty() || !of.raw.edges.empty();
+    placement.shift_of.push_back(has_returns ? static_cast<int>(placement.shifts.size()) : -1);
+    if (!has_returns) return;
+    const double sigma = problem_.sensors[of.sensor].lidar_errors.view_shift_sigma_m;
+    placement.shifts.push_back({.seen = seen,
+                                .sensor = of.sensor,
+                                .lever_m = 0.25 * (board.top_right_m + board.right_bottom_m),
+                                .sigma_m = std::max(sigma, kMinShift_m)});
+  }
+
+  std::size_t AddNumber(std::size_t sensor, std::string name, double sigma, bool reported) {
+    model_.numbers.push_back({sensor, std::move(name), sigma, reported});
+    return model_.numbers.size() - 1;
+  }
+
+  std::size_t RingNumber(std::size_t sensor, int ring) {
+    auto& rings = shared_[sensor].rings;
+    const auto at = rings.find(ring);
+    if (at != rings.end()) return at->second;
+    const double sigma = problem_.sensors[sensor].lidar_errors.ring_offset_sigma_m;
+    return rings[ring] = AddNumber(sensor, fmt::format("ring_{}_offset_m", ring), sigma, false);
+  }
+
+  // One block for each ring, as the returns of a ring share an offset.
+  void AddFace(const RigBlock& block, const RigObservation& of, const std::vector<FaceTerm>& face) {
+    const LidarErrorModel& errors = problem_.sensors[of.sensor].lidar_errors;
+    const bool by_ring = !of.raw.face_rings.empty() && errors.ring_offset_sigma_m > 0.0;
+    std::map<int, std::vector<FaceTerm>> groups;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      groups[by_ring ? of.raw.face_rings[k] : -1].push_back(face[k]);
+    }
+    std::optional<std::size_t>& range = shared_[of.sensor].range;
+    if (!range && !face.empty() && errors.range_offset_sigma_m > 0.0) {
+      range = AddNumber(of.sensor, "range_bias_m", errors.range_offset_sigma_m, true);
+    }
+    for (auto& [ring, terms] : groups) {
+      Eigen::VectorXd by(std::ssize(terms));
+      for (std::size_t k = 0; k < terms.size(); ++k) {
+        by[static_cast<Eigen::Index>(k)] = -terms[k].inverse_sigma;
+      }
+      Add(block, RigKind::kFace, std::ssize(terms), 1, FaceResiduals(std::move(terms)));
+      auto& numbers = model_.blocks.back().numbers;
+      if (range) numbers.push_back({*range, by});
+      if (ring >= 0) numbers.push_back({RingNumber(of.sensor, ring), by});
+    }
+  }
+
+  // An outline appears too large, along the scan direction and across it.
+  void AddEdges(const RigBlock& block, const RigObservation& of,
+                const std::vector<EdgeTerm>& edges) {
+    if (edges.empty()) return;
+    Add(block, RigKind::kEdges, std::ssize(edges), 1, EdgeResiduals(edges));
+    const double sigma = problem_.sensors[of.sensor].lidar_errors.edge_growth_sigma_m;
+    if (!(sigma > 0.0)) return;
+    std::optional<std::size_t>& first = shared_[of.sensor].growth_along;
+    if (!first) {
+      first = AddNumber(of.sensor, "edge_growth_along_m", sigma, true);
+      AddNumber(of.sensor, "edge_growth_across_m", sigma, true);
+    }
+    const Eigen::Matrix3d axes = of.sensor_from_board->rotation.toRotationMatrix();
+    Eigen::VectorXd by_along(std::ssize(edges));
+    Eigen::VectorXd by_across(std::ssize(edges));
+    for (std::size_t k = 0; k < edges.size(); ++k) {
+      const EdgeTerm& edge = edges[k];
+      const Eigen::Vector3d outward = axes.leftCols<2>() * edge.side.outward;
+      const Eigen::Vector3d along = Eigen::Vector3d::UnitZ().cross(edge.direction).normalized();
+      const Eigen::Vector3d across = edge.direction.cross(along);
+      const auto row = static_cast<Eigen::Index>(k);
+      by_along[row] = edge.inverse_sigma * std::abs(outward.dot(along));
+      by_across[row] = edge.inverse_sigma * std::abs(outward.dot(across));
+    }
+    model_.blocks.back().numbers = {{*first, by_along}, {*first + 1, by_across}};
+  }
+
+  const RigProblem& problem_;
+  std::vector<std::shared_ptr<const Camera>> cameras_;
+  std::vector<SharedOf> shared_;
+  RigModel model_;
+};
+
+}  // namespace
+
+RigModel RigModelOf(const RigProblem& problem) { return RigModelMaker(problem).Make(); }
+
+}  // namespace sextant

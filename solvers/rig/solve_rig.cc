@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/rig/solve_rig.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "solvers/core/board_view_check.h"
+#include "solvers/core/rig_problem_check.h"
+#include "solvers/rig/rig_search.h"
+#include "solvers/rig/rig_start.h"
+
+namespace sextant {
+namespace {
+
+constexpr std::array<std::string_view, kRigKinds> kKindNames = {
+    "printed corners",        "returns",           "edges", "points", "planes", "lines",
+    "shift out of the plane", "shift in the plane"};
+
+std::string NameOfMoment(const RigPlacement& placement) {
+  return placement.name.empty() ? std::to_string(placement.moment) : placement.name;
+}
+
+// Returns and edge rays need a pose for the model; what the closed form gives is enough.
+Expected<RigProblem> WithPoses(RigProblem problem) {
+  for (RigPlacement& placement : problem.placements) {
+    const Board& board = *FindBoard(problem.boards, placement.board);
+    for (RigObservation& seen : placement.seen) {
+      if (seen.sensor_from_board || seen.raw.edges.empty()) continue;
+      const auto poses = PosesAlone(seen, problem.sensors[seen.sensor], board);
+      if (poses.empty()) {
+        return MakeError(ErrorCode::kMissingData,
+                         fmt::format("moment {}, board {}: the returns and edges of {} do not show "
+                                     "how the board lies; state sensor_from_board",
+                                     NameOfMoment(placement), placement.board,
+                                     problem.sensors[seen.sensor].name));
+      }
+      seen.sensor_from_board = poses[0];
+    }
+  }
+  return problem;
+}
+
+/// The connected part of a problem, solved, and how its sensors are numbered in the whole.
+class RigSolution {
+ public:
+  RigSolution(const RigProblem& whole, std::vector<std::size_t> sensors)
+      : whole_(whole), sensors_(std::move(sensors)), part_(Restricted(whole, sensors_)) {}
+
+  Expected<void> Solve(const RigTree& tree, RigOptions options) {
+    std::vector<Rigid3d> start;
+    for (const std::size_t sensor : sensors_) start.push_back(*tree.sensor_from_root[sensor]);
+    options.root =
+        static_cast<std::size_t>(std::ranges::find(sensors_, options.root) - sensors_.begin());
+    model_ = RigModelOf(part_);
+    SEXTANT_ASSIGN_OR_RETURN(answer_, SearchRig(model_, StateOf(part_, model_, start), options));
+    return {};
+  }
+
+  void Report(RigEstimate& estimate) const {
+    const auto poses = 6 * (std::ssize(sensors_) - 1);
+    estimate.covariance = answer_.covariance.topLeftCorner(poses, poses);
+    estimate.iterations = answer_.iterations;
+    for (std::size_t s = 0; s < sensors_.size(); ++s) {
+      estimate.sensor_from_root[sensors_[s]] = answer_.state.sensor_from_root[s];
+    }
+    for (std::size_t k = 0; k < model_.numbers.size(); ++k) {
+      const RigNumber& number = model_.numbers[k];
+      if (!number.reported) continue;
+      const auto at = poses + static_cast<Eigen::Index>(k);
+      estimate.numbers.push_back({sensors_[number.sensor], number.name, answer_.state.numbers[k],
+                                  std::sqrt(answer_.covariance(at, at))});
+    }
+    ReportFits(estimate);
+    ReportNoise(estimate);
+    Warn(estimate);
+  }
+
+ private:
+  // The placements of the part are those of the whole that enough of its sensors see, in order.
+  std::vector<std::size_t> PlacementsInWhole() const {
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < whole_.placements.size(); ++i) {
+      const auto count =
+          std::ranges::count_if(whole_.placements[i].seen, [&](const RigObservation& seen) {
+            return std::ranges::count(sensors_, seen.sensor) > 0;
+          });
+      if (count >= 2) indices.push_back(i);
+    }
+    return indices;
+  }
+
+  void ReportFits(RigEstimate& estimate) const {
+    const std::vector<std::size_t> placements = PlacementsInWhole();
+    std::map<std::pair<std::size_t, std::size_t>, std::size_t> place;
+    std::vector<double> squares;
+    std::vector<int> rows;
+    for (std::size_t k = 0; k < model_.blocks.size(); ++k) {
+      const RigBlock& block = model_.blocks[k];
+      const auto [at, is_new] =
+          place.try_emplace({block.placement, block.seen}, estimate.fits.size());
+      if (is_new) {
+        estimate.fits.push_back(
+            {.placement = placements[block.placement], .sensor = sensors_[block.sensor]});
+        squares.push_back(0.0);
+        rows.push_back(0);
+      }
+      RigObservationFit& fit = estimate.fits[at->second];
+      fit.of += block.units;
+      for (std::size_t i = 0; i < answer_.selection[k].size(); ++i) {
+        if (!answer_.selection[k][i]) continue;
+        ++fit.units;
+        squares[at->second] += block.rows_per_unit * std::pow(answer_.units[k][i], 2);
+        rows[at->second] += block.rows_per_unit;
+      }
+    }
+    for (std::size_t i = 0; i < estimate.fits.size(); ++i) {
+      estimate.fits[i].used = rows[i] > 0;
+      if (rows[i] > 0) estimate.fits[i].rms = std::sqrt(squares[i] / rows[i]);
+    }
+  }
+
+  void ReportNoise(RigEstimate& estimate) const {
+    std::vector<std::array<bool, kRigKinds>> present(sensors_.size());
+    for (const RigBlock& block : model_.blocks) {
+      present[block.sensor][static_cast<std::size_t>(block.kind)] = true;
+    }
+    for (std::size_t s = 0; s < sensors_.size(); ++s) {
+      for (std::size_t kind = 0; kind < kRigKinds; ++kind) {
+        if (!present[s][kind]) continue;
+        estimate.noise.push_back({sensors_[s], static_cast<RigKind>(kind), answer_.noise[s][kind]});
+      }
+    }
+  }
+
+  void Warn(RigEstimate& estimate) const {
+    for (const RigObservationFit& fit : estimate.fits) {
+      if (fit.used) continue;
+      const RigPlacement& placement = whole_.placements[fit.placement];
+      estimate.warnings.push_back(fmt::format(
+          "board {} of moment {} was left out for {}: it contradicts the other sensors; did the "
+          "board stand still, and are its corners in the right order?",
+          placement.board, NameOfMoment(placement), whole_.sensors[fit.sensor].name));
+    }
+    // A ratio of 1.5 is more than an inaccurate estimate of a sigma.
+    constexpr double kMuch = 1.5;
+    for (const RigNoiseLevel& noise : estimate.noise) {
+      if (noise.level < kMuch) continue;
+      estimate.warnings.push_back(fmt::format(
+          "the noise of the {} of {} is {:.1f} times as large as stated, which the covariance "
+          "includes; look for a systematic error (intrinsics, board size)",
+          NameOf(noise.kind), whole_.sensors[noise.sensor].name, noise.level));
+    }
+  }
+
+  const RigProblem& whole_;
+  std::vector<std::size_t> sensors_;
+  RigProblem part_;
+  RigModel model_;
+  RigAnswer answer_;
+};
+
+}  // namespace
+
+std::string_view NameOf(RigKind kind) { return kKindNames[static_cast<std::size_t>(kind)]; }
+
+UncertainPose RigEstimate::Between(std::size_t a, std::size_t b) const {
+  // The derivatives of a_from_root * root_from_b by both factors.
+  const auto column = [&](std::size_t sensor) {
+    Eigen::Index at = 0;
+    for (std::size_t s = 0; s < sensor; ++s) at += sensor_from_root[s] && s != root ? 6 : 0;
+    return at;
+  };
+  const Rigid3d root_from_b = sensor_from_root[b]->Inverse();
+  const ProductJacobians by = JacobiansOfProduct(*sensor_from_root[a], root_from_b);
+  Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(6, covariance.cols());
+  if (a != root) slope.middleCols<6>(column(a)) += by.by_left;
+  if (b != root) {
+    slope.middleCols<6>(column(b)) += by.by_right * JacobianOfInverse(*sensor_from_root[b]);
+  }
+  return {.b_from_a = *sensor_from_root[a] * root_from_b,
+          .covariance = slope * covariance * slope.transpose()};
+}
+
+RigProblem Restricted(const RigProblem& problem, std::span<const std::size_t> sensors) {
+  RigProblem part{.boards = problem.boards};
+  for (const std::size_t sensor : sensors) part.sensors.push_back(problem.sensors[sensor]);
+  for (const RigPlacement& placement : problem.placements) {
+    RigPlacement kept{placement.moment, placement.board, placement.name, {}};
+    for (const RigObservation& seen : placement.seen) {
+      const auto at = std::ranges::find(sensors, seen.sensor);
+      if (at == sensors.end()) continue;
+      kept.seen.push_back(seen);
+      kept.seen.back().sensor = static_cast<std::size_t>(at - sensors.begin());
+    }
+    if (kept.seen.size() >= 2) part.placements.push_back(std::move(kept));
+  }
+  return part;
+}
+
+Expected<RigEstimate> SolveRig(const RigProblem& given, const RigOptions& options) {
+  SEXTANT_RETURN_IF_ERROR(CheckRigProblem(given));
+  SEXTANT_ASSIGN_OR_RETURN(const RigProblem problem, WithPoses(given));
+  const RigTree tree = TreeOf(problem, PairsOf(problem), options.root);
+  std::vector<std::size_t> connected;
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+    if (tree.sensor_from_root[s]) connected.push_back(s);
+  }
+  if (connected.size() < 2) {
+    Error error(ErrorCode::kMissingData, fmt::format("no sensor is connected with '{}'",
+                                                     problem.sensors[options.root].name));
+    for (const std::string& line : tree.unconnected) error.AddLine(line);
+    return tl::unexpected<Error>(std::move(error));
+  }
+  RigEstimate estimate{.root = options.root,
+                       .sensor_from_root = tree.sensor_from_root,
+                       .unconnected = tree.unconnected};
+  RigSolution solution(problem, connected);
+  SEXTANT_RETURN_IF_ERROR(solution.Solve(tree, options));
+  solution.Report(estimate);
+  return estimate;
+}
+
+Expected<Eigen::MatrixXd> RigBound(const RigProblem& given, std::size_t root,
+                                   const std::vector<Rigid3d>& sensor_from_root,
+                                   const std::vector<Rigid3d>& root_from_board) {
+  SEXTANT_ASSIGN_OR_RETURN(const RigProblem problem, WithPoses(given));
+  const RigModel model = RigModelOf(problem);
+  RigState state = StateOf(problem, model, sensor_from_root);
+  state.root_from_board = root_from_board;
+  RigSelection all;
+  for (const RigBlock& block : model.blocks) {
+    all.emplace_back(static_cast<std::size_t>(block.units), true);
+  }
+  RigNoise stated(model.sensors);
+  for (auto& levels : stated) levels.fill(1.0);
+  RigMinimum minimum(model, root, state);
+  minimum.SetWeights(WeightsFor(model, state, UnitsAt(model, state), all, stated,
+                                std::numeric_limits<double>::infinity()));
+  const auto information = RigInformationOf(minimum.Linearise());
+  if (!information) {
+    return MakeError(ErrorCode::kDegenerate, "the views leave a direction undetermined");
+  }
+  const auto poses = 6 * (std::ssize(sensor_from_root) - 1);
+  return Eigen::MatrixXd(information->covariance.topLeftCorner(poses, poses));
+}
+
+}  // namespace sextant

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "e2e/run_sextant.h"
+#include "e2e/shared_session.h"
+#include "support/real_data.h"
+#include "support/run_program.h"
+
+namespace sextant {
+namespace {
+
+using nlohmann::json;
+using test::ProgramRun;
+using test::RunSextant;
+using test::TestPath;
+using testing::HasSubstr;
+
+// Two cameras and a LiDAR; the boards swing slowly, so that they are elsewhere in each scan.
+constexpr const char* kSceneOfRig = R"(sextant_scene: 1
+name: rig
+lidar: {model: vlp16, pose: {position_m: [0, 0, 1]}}
+cameras:
+  - name: left
+    intrinsics: {model: pinhole, width_px: 960, height_px: 600, fx_px: 560, fy_px: 560, cx_px: 479.5, cy_px: 299.5}
+    pose: {position_m: [0.05, 0.2, 0.92], yaw_deg: 2, pitch_deg: 1, roll_deg: -1}
+  - name: right
+    intrinsics: {model: pinhole, width_px: 960, height_px: 600, fx_px: 560, fy_px: 560, cx_px: 479.5, cy_px: 299.5}
+    pose: {position_m: [0.05, -0.2, 0.92], yaw_deg: -2, pitch_deg: 0, roll_deg: 1}
+boards:
+  - board:
+      id: 0
+      top_right_m: 0.468
+      right_bottom_m: 0.484
+      tags: [{family: aruco_original, id: 26, edge_m: 0.205}]
+    pose: {position_m: [1.9, 0.5, 1], yaw_deg: 15, pitch_deg: 5, roll_deg: 45}
+    swing: {axis_in_world: [0, 1, 0], amplitude_deg: 20, period_s: 400}
+  - board:
+      id: 1
+      top_right_m: 0.468
+      right_bottom_m: 0.49
+      tags: [{family: aruco_original, id: 582, edge_m: 0.205}]
+    pose: {position_m: [2.3, -0.55, 1.05], yaw_deg: -20, pitch_deg: -5, roll_deg: 42}
+    swing: {axis_in_world: [0, 1, 0.3], amplitude_deg: 20, period_s: 300, phase_deg: 100}
+walls:
+  - {name: back, width_m: 8, height_m: 4, pose: {position_m: [4.5, 0, 1.5]}}
+)";
+
+std::filesystem::path SessionOfRig() {
+  return test::SharedSession(kSceneOfRig, "--interval 60 --scans 3");
+}
+
+TEST(RigCommand, ASessionOfSeveralCamerasIsSolvedAsOneRig) {
+  const std::string out = TestPath("rig.json");
+  const std::string problem = TestPath("rig.yaml");
+  const ProgramRun run = RunSextant("calibrate " + SessionOfRig().string() + " --out " + out +
+                                    " --problem " + problem);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("left_from_right"));
+  const json rig = json::parse(test::ReadText(out));
+  ASSERT_EQ(rig["sensors"].size(), 3U);
+  for (const json& sensor : rig["sensors"]) {
+    const auto at = sensor["root_from_sensor"]["translation_m"].get<std::vector<double>>();
+    const auto truth = sensor["true_root_from_sensor"]["translation_m"].get<std::vector<double>>();
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(at[k], truth[k], 0.02) << sensor["name"];
+    EXPECT_GE(sensor["views_used"].get<int>(), 4) << sensor["name"];
+  }
+  ASSERT_EQ(rig["pairs"].size(), 3U);
+  for (const json& pair : rig["pairs"]) {
+    EXPECT_LT(pair["alone"]["off_sigmas"].get<double>(), 3.0) << pair["a"] << pair["b"];
+  }
+  // The problem that it wrote has the same answer.
+  const ProgramRun again = RunSextant("rig " + problem + " --out " + TestPath("again.json"));
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const json same = json::parse(test::ReadText(TestPath("again.json")));
+  EXPECT_EQ(same["sensors"], rig["sensors"]);
+}
+
+TEST(RigCommand, ARigIsExportedAsATreeOrAPair) {
+  const std::string out = TestPath("rig.json");
+  ASSERT_EQ(RunSextant("calibrate " + SessionOfRig().string() + " --out " + out).exit_code, 0);
+  const ProgramRun tree = RunSextant("export " + out + " --to ros2");
+  ASSERT_EQ(tree.exit_code, 0) << tree.err;
+  EXPECT_THAT(tree.out, HasSubstr("'--child-frame-id', 'right'"));
+  EXPECT_THAT(tree.out, HasSubstr("'--child-frame-id', 'left'"));
+  const ProgramRun pair = RunSextant("export " + out + " --sensors left lidar --to matrix");
+  ASSERT_EQ(pair.exit_code, 0) << pair.err;
+  EXPECT_THAT(pair.out, HasSubstr("left"));
+  const ProgramRun none = RunSextant("export " + out + " --sensors left top --to matrix");
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("there are: lidar, left, right"));
+}
+
+TEST(RigCommand, OneCameraOfSeveralIsCalibratedAlone) {
+  const std::string out = TestPath("left.yaml");
+  const ProgramRun run = RunSextant("calibrate " + SessionOfRig().string() +
+                                    " --camera-name left --bootstrap 0 --out " + out);
+  EXPECT_THAT(test::ReadText(out), HasSubstr("cam_from_lidar")) << run.err;
+}
+
+TEST(RigCommand, ReadsTheTransformsOfTheOriginalPackage) {
+  SEXTANT_REAL_DATA(path, "dhall/rts.txt");
+  const std::string out = TestPath("rig.json");
+  const ProgramRun run = RunSextant("rig " + path.string() + " --out " + out);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("camera_1_from_camera_2"));
+  const json rig = json::parse(test::ReadText(out));
+  const json& pair = rig["pairs"][2];
+  EXPECT_EQ(pair["a"], "camera_1");
+  // x of -0.14 and 0.257 m.
+  EXPECT_NEAR(pair["a_from_b"]["translation_m"][0].get<double>(), -0.397, 1e-12);
+}
+
+}  // namespace
+}  // namespace sextant

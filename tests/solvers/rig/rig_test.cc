@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "base/random.h"
+#include "eval/synthetic/simulate_rig.h"
+#include "eval/synthetic/simulate_views.h"
+#include "geometry/symmetric.h"
+#include "solvers/builtin_solvers.h"
+#include "solvers/rig/solve_rig.h"
+
+namespace sextant {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr LidarErrorModel kWhite = kWhiteNoiseOnly;
+
+/// Squared errors of every pair of sensors over many rigs.
+struct PairErrors {
+  double nees = 0.0;        ///< Sum of e' C^-1 e / 6.
+  double over_bound = 0.0;  ///< Sum of the squared error over the bound's, per axis.
+  int count = 0;
+};
+
+Matrix6d BoundOf(const RigEstimate& estimate, const Eigen::MatrixXd& bound, std::size_t a,
+                 std::size_t b) {
+  RigEstimate at_truth = estimate;
+  at_truth.covariance = bound;
+  return at_truth.Between(a, b).covariance;
+}
+
+std::vector<Rigid3d> FromFirst(const SimulatedRig& rig) {
+  std::vector<Rigid3d> poses;
+  for (std::size_t s = 0; s < rig.sensor_from_rig.size(); ++s) {
+    poses.push_back(rig.TrueBetween(s, 0));
+  }
+  return poses;
+}
+
+std::vector<Rigid3d> BoardsInFirst(const SimulatedRig& rig) {
+  std::vector<Rigid3d> poses;
+  for (const Rigid3d& board : rig.rig_from_board) poses.push_back(rig.sensor_from_rig[0] * board);
+  return poses;
+}
+
+// Adds the errors of all pairs of one rig.
+void Add(const SimulatedRig& rig, const RigEstimate& estimate, const Eigen::MatrixXd& bound,
+         PairErrors& errors) {
+  for (std::size_t a = 0; a < rig.sensor_from_rig.size(); ++a) {
+    for (std::size_t b = a + 1; b < rig.sensor_from_rig.size(); ++b) {
+      const UncertainPose pose = estimate.Between(a, b);
+      const Vector6d error = PoseDifference(pose.b_from_a, rig.TrueBetween(a, b));
+      errors.nees += SquaredMahalanobis<6>(error, pose.covariance) / 6.0;
+      errors.over_bound += SquaredMahalanobis<6>(error, BoundOf(estimate, bound, a, b)) / 6.0;
+      ++errors.count;
+    }
+  }
+}
+
+PairErrors ErrorsOver(RigSimulation simulation, int rigs) {
+  PairErrors errors;
+  for (int i = 0; i < rigs; ++i) {
+    simulation.seed = static_cast<std::uint64_t>(100 + i);
+    const SimulatedRig rig = SimulateRig(simulation);
+    const auto estimate = SolveRig(rig.problem);
+    EXPECT_TRUE(estimate) << estimate.error().message;
+    if (!estimate) continue;
+    EXPECT_TRUE(estimate->unconnected.empty());
+    const auto bound = RigBound(rig.problem, 0, FromFirst(rig), BoardsInFirst(rig));
+    EXPECT_TRUE(bound);
+    if (bound) Add(rig, *estimate, *bound, errors);
+  }
+  return errors;
+}
+
+TEST(Rig, ExactObservationsOfCamerasAndLidarsGiveTheTruth) {
+  RigSimulation simulation{.cameras = 2, .lidars = 2, .moments = 5};
+  simulation.sensors.exact = true;
+  const SimulatedRig rig = SimulateRig(simulation);
+  const auto estimate = SolveRig(rig.problem);
+  ASSERT_TRUE(estimate) << estimate.error().message;
+  for (std::size_t s = 0; s < rig.sensor_from_rig.size(); ++s) {
+    const auto off = DistanceBetween(*estimate->sensor_from_root[s], rig.TrueBetween(s, 0));
+    EXPECT_LT(off.translation_m, 1e-6) << rig.problem.sensors[s].name;
+    EXPECT_LT(off.rotation_rad, 1e-6) << rig.problem.sensors[s].name;
+  }
+  EXPECT_TRUE(estimate->warnings.empty());
+}
+
+TEST(Rig, ErrorsAreThoseOfTheBoundAndOfTheCovariance) {
+  RigSimulation simulation{.cameras = 2, .lidars = 2, .moments = 8, .takes_part = 0.8};
+  const PairErrors errors = ErrorsOver(simulation, 40);
+  EXPECT_GT(errors.nees / errors.count, 0.8);
+  EXPECT_LT(errors.nees / errors.count, 1.25);
+  EXPECT_LT(std::sqrt(errors.over_bound / errors.count), 1.3);
+}
+
+TEST(Rig, SystematicErrorsOfLidarsAreInTheCovariance) {
+  RigSimulation simulation{.cameras = 1, .lidars = 2, .moments = 8};
+  simulation.sensors.errors = LidarErrorModel{};
+  const PairErrors errors = ErrorsOver(simulation, 40);
+  EXPECT_GT(errors.nees / errors.count, 0.8);
+  EXPECT_LT(errors.nees / errors.count, 1.25);
+}
+
+TEST(Rig, CamerasAloneAndLidarsAloneAreCases) {
+  for (const auto& [cameras, lidars] : {std::pair(3, 0), std::pair(0, 3)}) {
+    RigSimulation simulation{.cameras = cameras, .lidars = lidars, .moments = 8};
+    const PairErrors errors = ErrorsOver(simulation, 25);
+    EXPECT_GT(errors.nees / errors.count, 0.75) << cameras << " cameras";
+    EXPECT_LT(errors.nees / errors.count, 1.3) << cameras << " cameras";
+  }
+}
+
+TEST(Rig, OneCameraAndOneLidarAreTheCaseOfTwoSensors) {
+  const auto joint = *BuiltinSolvers().Make("joint(gnc(kabsch))");
+  for (int seed = 1; seed <= 10; ++seed) {
+    ViewSimulation simulation{.seed = static_cast<std::uint64_t>(seed), .views = 8};
+    simulation.errors = LidarErrorModel{};
+    const auto views = SimulateViews(simulation);
+    ASSERT_TRUE(views);
+    RigProblem rig{.boards = views->problem.boards};
+    rig.sensors.push_back({.name = "cam", .camera = views->problem.camera});
+    rig.sensors.push_back({.name = "lidar", .lidar_errors = views->problem.lidar_errors});
+    for (const BoardView& view : views->problem.board_views) {
+      RigPlacement placement{.moment = view.view, .board = view.board, .name = "", .seen = {}};
+      placement.seen = {{.sensor = 0}, {.sensor = 1, .sensor_from_board = view.lidar_from_board}};
+      placement.seen[0].raw.printed = view.printed;
+      placement.seen[1].raw = view;
+      placement.seen[1].raw.printed.clear();
+      rig.placements.push_back(std::move(placement));
+    }
+    const auto solved = SolveRig(rig);
+    ASSERT_TRUE(solved) << solved.error().message;
+    const auto report = joint->Solve(views->problem);
+    ASSERT_TRUE(report) << report.error().message;
+    const UncertainPose pose = solved->Between(0, 1);
+    const Vector6d off = PoseDifference(pose.b_from_a, report->cam_from_lidar);
+    EXPECT_LT(SquaredMahalanobis<6>(off, *report->covariance) / 6.0, 0.3 * 0.3) << seed;
+    EXPECT_NEAR(std::log(pose.covariance.trace() / report->covariance->trace()), 0.0, 0.5) << seed;
+  }
+}
+
+TEST(Rig, JointIsBetterThanChaining) {
+  // Each sensor misses some moments, so that the chain does not use what the cameras see together.
+  RigSimulation simulation{.cameras = 2, .lidars = 1, .moments = 12, .takes_part = 0.7};
+  simulation.sensors.range_sigma_m = 0.02;
+  double joint = 0.0;
+  double chained = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    simulation.seed = static_cast<std::uint64_t>(i + 1);
+    const SimulatedRig rig = SimulateRig(simulation);
+    const auto all = SolveRig(rig.problem);
+    const std::vector<std::size_t> first = {0, 2};
+    const std::vector<std::size_t> second = {1, 2};
+    const auto a = SolveRig(Restricted(rig.problem, first));
+    const auto b = SolveRig(Restricted(rig.problem, second));
+    ASSERT_TRUE(all && a && b);
+    const Rigid3d truth = rig.TrueBetween(0, 1);
+    const Rigid3d chain = a->Between(0, 1).b_from_a * b->Between(1, 0).b_from_a;
+    joint += std::pow(DistanceBetween(all->Between(0, 1).b_from_a, truth).translation_m, 2);
+    chained += std::pow(DistanceBetween(chain, truth).translation_m, 2);
+  }
+  EXPECT_LT(std::sqrt(joint), std::sqrt(chained) / 1.5);
+}
+
+TEST(Rig, ASensorThatSharesNoViewIsNamedWithWhatWouldConnectIt) {
+  SimulatedRig rig = SimulateRig({.cameras = 2, .lidars = 1, .moments = 6});
+  for (RigPlacement& placement : rig.problem.placements) {
+    std::erase_if(placement.seen, [](const RigObservation& seen) { return seen.sensor == 1; });
+  }
+  const auto estimate = SolveRig(rig.problem);
+  ASSERT_TRUE(estimate) << estimate.error().message;
+  EXPECT_FALSE(estimate->sensor_from_root[1]);
+  ASSERT_EQ(estimate->unconnected.size(), 1U);
+  EXPECT_THAT(estimate->unconnected[0], HasSubstr("'cam_1' shares no view"));
+  EXPECT_THAT(estimate->unconnected[0], HasSubstr("record 3 moments"));
+  const auto off = DistanceBetween(estimate->Between(0, 2).b_from_a, rig.TrueBetween(0, 2));
+  EXPECT_LT(off.translation_m, 0.05);
+}
+
+TEST(Rig, NoConnectedSensorIsAnError) {
+  SimulatedRig rig = SimulateRig({.cameras = 1, .lidars = 1, .moments = 3});
+  for (RigPlacement& placement : rig.problem.placements) placement.seen.resize(1);
+  const auto estimate = SolveRig(rig.problem);
+  ASSERT_FALSE(estimate);
+  EXPECT_EQ(ToString(estimate.error().code), "missing_data");
+  EXPECT_THAT(estimate.error().message, HasSubstr("see a board"));
+}
+
+TEST(Rig, ABoardThatMovedBetweenSensorsIsLeftOutForOneOfThem) {
+  RigSimulation simulation{.cameras = 2, .lidars = 1, .moments = 10};
+  simulation.sensors.errors = LidarErrorModel{};
+  SimulatedRig rig = SimulateRig(simulation);
+  const Rigid3d moved = Perturb(Rigid3d{}, (Vector6d() << 0, 0, 0, 0.1, 0, 0.1).finished());
+  for (RigObservation& seen : rig.problem.placements[4].seen) {
+    if (seen.sensor != 2) continue;
+    for (Eigen::Vector3d& point : seen.raw.face_in_lidar) point = moved * point;
+    for (EdgeRay& ray : seen.raw.edges) {
+      ray.direction = (moved * (2.0 * ray.direction)).normalized();
+    }
+  }
+  const auto estimate = SolveRig(rig.problem);
+  ASSERT_TRUE(estimate) << estimate.error().message;
+  ASSERT_EQ(estimate->warnings.size(), 1U);
+  EXPECT_THAT(estimate->warnings[0], HasSubstr("board 0 of moment 4 was left out for lidar_0"));
+  const UncertainPose pose = estimate->Between(0, 2);
+  const Vector6d error = PoseDifference(pose.b_from_a, rig.TrueBetween(0, 2));
+  EXPECT_LT(SquaredMahalanobis<6>(error, pose.covariance), 22.5);  // 0.1 %
+}
+
+/// The rig's boards as features that someone has extracted.
+RigProblem AsFeatures(const SimulatedRig& rig, bool lines, double sigma_m, std::uint64_t seed) {
+  RigProblem problem{.sensors = rig.problem.sensors, .boards = rig.problem.boards};
+  for (RigSensor& sensor : problem.sensors) sensor.camera.reset();
+  Random random(seed);
+  const auto noise = [&] {
+    Eigen::Vector3d error;
+    for (double& along : error) along = sigma_m * random.Normal();
+    return error;
+  };
+  const double half = 0.5 * problem.boards[0].top_right_m;
+  const Eigen::Vector3d corners[] = {
+      {-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}};
+  for (std::size_t i = 0; i < rig.problem.placements.size(); ++i) {
+    RigPlacement placement{.moment = static_cast<int>(i), .board = problem.boards[0].id};
+    for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+      const Rigid3d pose = rig.sensor_from_rig[s] * rig.rig_from_board[i];
+      RigObservation seen{.sensor = s};
+      if (lines) {
+        const Eigen::Vector3d normal = pose.rotation * Eigen::Vector3d::UnitZ();
+        seen.plane = MeasuredPlane{.normal = -normal, .distance_m = -normal.dot(pose.translation)};
+      }
+      for (int k = 0; k < 4; ++k) {
+        const Eigen::Vector3d from = pose * corners[k] + noise();
+        const Eigen::Vector3d to = pose * corners[(k + 1) % 4] + noise();
+        if (lines) {
+          seen.lines.push_back({.side = k, .point = from, .direction = (to - from).normalized()});
+        } else {
+          seen.points.push_back({.in_board_m = corners[k], .in_sensor_m = from, .sigma_m = 0.01});
+        }
+      }
+      placement.seen.push_back(std::move(seen));
+    }
+    problem.placements.push_back(std::move(placement));
+  }
+  return problem;
+}
+
+TEST(Rig, PointsOrPlanesAndLinesThatSomeoneExtractedAreEnough) {
+  const SimulatedRig rig = SimulateRig({.cameras = 1, .lidars = 2, .moments = 6});
+  for (const bool lines : {false, true}) {
+    const auto exact = SolveRig(AsFeatures(rig, lines, 0.0, 1));
+    ASSERT_TRUE(exact) << exact.error().message;
+    for (std::size_t s = 0; s < 3; ++s) {
+      const auto off = DistanceBetween(*exact->sensor_from_root[s], rig.TrueBetween(s, 0));
+      EXPECT_LT(off.translation_m, 1e-6) << lines;
+    }
+    const auto noisy = SolveRig(AsFeatures(rig, lines, 0.01, 1));
+    ASSERT_TRUE(noisy) << noisy.error().message;
+    const UncertainPose pose = noisy->Between(1, 2);
+    EXPECT_LT((PoseDifference(pose.b_from_a, rig.TrueBetween(1, 2)).tail<3>().norm()), 0.03);
+  }
+}
+
+TEST(Rig, PlanesAloneAreEnough) {
+  const SimulatedRig rig = SimulateRig({.cameras = 0, .lidars = 2, .moments = 8});
+  RigProblem problem = AsFeatures(rig, true, 0.0, 1);
+  for (RigPlacement& placement : problem.placements) {
+    for (RigObservation& seen : placement.seen) seen.lines.clear();
+  }
+  const auto estimate = SolveRig(problem);
+  ASSERT_TRUE(estimate) << estimate.error().message;
+  const auto off = DistanceBetween(estimate->Between(0, 1).b_from_a, rig.TrueBetween(0, 1));
+  EXPECT_LT(off.translation_m, 1e-6);
+}
+
+}  // namespace
+}  // namespace sextant
