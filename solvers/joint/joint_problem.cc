@@ -63,7 +63,7 @@ void JointProblem::AddViews() {
     }
     for (const FaceGroup& group : view.face) {
       std::vector<double*> blocks = {board};
-      for (const std::size_t k : group.offsets) blocks.push_back(state_.shared[k].data());
+      for (const std::size_t k : group.shared) blocks.push_back(state_.shared[k].data());
       Add({JointKind::kFace, i}, new FaceCost(view, group, weights.face), blocks);
     }
     if (!view.terms.edges.empty()) {

@@ -47,11 +47,8 @@ class JointSearch {
     } else {
       noise_ = {.out_of_plane_m = shift_m_, .in_plane_m = shift_m_};
       SEXTANT_RETURN_IF_ERROR(FollowLosses(options_.step_tolerance));
-      if (const auto covariance = JointCovariance::Of(problem_.Linearise())) {
-        answer_.covariance = covariance->shared();
-      }
     }
-    if (answer_.covariance.size() == 0) return Undetermined();
+    SEXTANT_RETURN_IF_ERROR(AddUncertainty());
     answer_.state = problem_.state();
     answer_.noise = noise_;
     return std::move(answer_);
@@ -155,10 +152,15 @@ class JointSearch {
       if (left_out_[i]) answer_.selection[i].Clear();
     }
     if (!HasShift()) noise_.out_of_plane_m = noise_.in_plane_m = kNoShift_m;
-    SEXTANT_RETURN_IF_ERROR(Minimise(Residuals(), {}, options_.step_tolerance));
-    const auto covariance = JointCovariance::Of(problem_.Linearise());
+    return Minimise(Residuals(), {}, options_.step_tolerance);
+  }
+
+  Expected<void> AddUncertainty() {
+    const JointLinearisation at = problem_.Linearise();
+    const auto covariance = JointCovariance::Of(at);
     if (!covariance) return Undetermined();
     answer_.covariance = covariance->shared();
+    answer_.disagreement = Disagreements(SumsOf(at, *covariance));
     return {};
   }
 
