@@ -191,7 +191,8 @@ bool LinkCost::Evaluate(double const* const* parameters, double* residuals,
   return true;
 }
 
-PriorCost::PriorCost(const SharedBlock& block) : block_(block) {
+PriorCost::PriorCost(const SharedBlock& block, const double& weight)
+    : block_(block), weight_(weight) {
   set_num_residuals(static_cast<int>(block.mean.size()));
   mutable_parameter_block_sizes()->push_back(static_cast<int>(block.mean.size()));
 }
@@ -200,9 +201,9 @@ bool PriorCost::Evaluate(double const* const* parameters, double* residuals,
                          double** jacobians) const {
   const Eigen::Map<const Eigen::VectorXd> numbers(parameters[0], num_residuals());
   Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) =
-      (numbers - block_.mean).cwiseQuotient(block_.sigma);
+      weight_ * (numbers - block_.mean).cwiseQuotient(block_.sigma);
   JacobianMap by = JacobianOf(jacobians, 0, num_residuals(), num_residuals());
-  if (by.size() > 0) by.diagonal() = block_.sigma.cwiseInverse();
+  if (by.size() > 0) by.diagonal() = weight_ * block_.sigma.cwiseInverse();
   return true;
 }
 

@@ -128,7 +128,9 @@ class ModelMaker {
     const auto at = rings.find(ring);
     if (at != rings.end()) return at->second;
     const double sigma = problem_.lidar_errors.ring_offset_sigma_m;
-    return rings[ring] = AddOffset(fmt::format("ring_{}_offset_m", ring), sigma, false);
+    rings[ring] = AddOffset(fmt::format("ring_{}_offset_m", ring), sigma, false);
+    model_.shared.back().is_ring = true;
+    return rings[ring];
   }
 
   // By the share of a side's outward direction along the scan, and across it.

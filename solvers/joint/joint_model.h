@@ -19,6 +19,8 @@ struct SharedBlock {
   Eigen::VectorXd mean;
   Eigen::VectorXd sigma;
   bool reported = true;
+  bool is_ring =
+      false;  ///< The offset of one ring, whose sigma is multiplied by JointNoise::rings.
 };
 
 /// Returns from a face to whose ranges the same shared blocks of one number add.

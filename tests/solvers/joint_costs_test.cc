@@ -144,7 +144,9 @@ TEST(JointCosts, LinkOfASensorsPosesOfABoard) {
 TEST(JointCosts, Priors) {
   const CostCase of;
   for (const SharedBlock& block : of.model.shared) {
-    ExpectItsDerivatives(PriorCost(block), {{{block.mean.begin(), block.mean.end()}, nullptr}});
+    const double weight = 0.7;
+    ExpectItsDerivatives(PriorCost(block, weight),
+                         {{{block.mean.begin(), block.mean.end()}, nullptr}});
   }
 }
 
