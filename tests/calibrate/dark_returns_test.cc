@@ -62,8 +62,11 @@ TEST(DarkReturns, AreMovedToTheRangeOfBrightOnes) {
               3.0 * kSigma_m);
   for (std::size_t i = 0; i < before.in_lidar.size(); ++i) {
     const double moved = (before.in_lidar[i] - print.face.in_lidar[i]).norm();
-    if (print.dark[i]) EXPECT_GT(moved, 0.009);
-    if (!print.dark[i]) EXPECT_LT(moved, 0.004);
+    if (print.dark[i]) {
+      EXPECT_GT(moved, 0.009);
+    } else {
+      EXPECT_LT(moved, 0.004);
+    }
   }
 }
 
