@@ -3,10 +3,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/median.h"
 
 namespace sextant {
+namespace {
+
+constexpr double kFamilyLevel = 0.01;
+
+// Of a standard normal variable beyond `quantile`.
+double TailProbability(double quantile) { return 0.5 * std::erfc(quantile / std::numbers::sqrt2); }
+
+bool Disagrees(std::span<const ViewComparison> compared, int view, double level) {
+  bool is_used = false;
+  for (const ViewComparison& board : compared) {
+    if (board.view != view || !board.used) continue;
+    is_used = true;
+    if (TailProbability(board.disagreement) < level) return true;
+  }
+  return !is_used;
+}
+
+}  // namespace
+
+std::vector<bool> DisagreeingViews(std::span<const ViewComparison> compared,
+                                   std::span<const int> views) {
+  const auto count = static_cast<double>(std::max<std::size_t>(compared.size(), 1));
+  std::vector<bool> disagreeing;
+  disagreeing.reserve(views.size());
+  for (const int view : views) {
+    disagreeing.push_back(Disagrees(compared, view, kFamilyLevel / count));
+  }
+  return disagreeing;
+}
 
 std::vector<bool> OutlyingViews(std::span<const double> errors) {
   std::vector<bool> outlying(errors.size(), false);

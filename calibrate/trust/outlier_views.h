@@ -4,10 +4,19 @@
 #include <span>
 #include <vector>
 
+#include "solvers/joint/view_comparison.h"
+
 namespace sextant {
 
-/// Marks errors that are over twice the median and more than four scaled median absolute deviations
-/// (1.4826) above it. Fewer than four views have no clear majority, so none of them is marked.
+/// Of views compared by their raw observations: those that were left out, and those that disagree
+/// with the others beyond chance, each by its own sigma. The probability that any of n views in
+/// accordance with the noise is marked is 1 percent (Bonferroni's bound). A view is as bad as its
+/// worst board; one that was not compared is marked. O(views compared).
+std::vector<bool> DisagreeingViews(std::span<const ViewComparison> compared,
+                                   std::span<const int> views);
+
+/// For views with pairs alone: those whose error is over twice the median and more than four scaled
+/// median absolute deviations above it. None of fewer than four.
 std::vector<bool> OutlyingViews(std::span<const double> errors);
 
 }  // namespace sextant

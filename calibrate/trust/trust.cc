@@ -13,6 +13,7 @@
 #include "calibrate/trust/select_views.h"
 #include "calibrate/trust/stated_covariance.h"
 #include "calibrate/trust/trust_text.h"
+#include "solvers/joint/view_comparison.h"
 
 namespace sextant {
 namespace {
@@ -235,7 +236,7 @@ std::vector<double> ErrorsUnder(const CalibrationProblem& problem, const std::ve
 }
 
 // Solves again without the marked views and tests all views under that pose, until nothing changes.
-std::vector<bool> MarkOutliers(const CalibrationProblem& problem, const Solver& solver,
+std::vector<bool> MarkByErrors(const CalibrationProblem& problem, const Solver& solver,
                                const std::vector<int>& views, const Trust& trust) {
   std::vector<bool> marked = OutlyingViews(HeldOutErrors(trust));
   constexpr int kMaxRounds = 10;
@@ -252,6 +253,16 @@ std::vector<bool> MarkOutliers(const CalibrationProblem& problem, const Solver& 
     marked = std::move(again);
   }
   return marked;
+}
+
+std::vector<bool> MarkOutliers(const CalibrationProblem& problem, const Solver& solver,
+                               const SolveReport& answer, const std::vector<int>& views,
+                               const Trust& trust) {
+  if (!problem.board_views.empty()) {
+    const auto compared = CompareViews(problem, answer.cam_from_lidar);
+    if (compared) return DisagreeingViews(*compared, views);
+  }
+  return MarkByErrors(problem, solver, views, trust);
 }
 
 }  // namespace
@@ -295,7 +306,7 @@ Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& sol
   if (trust.covariance) {
     figures.stated_over_solver = MeanRatio(SigmaOf(*trust.covariance), figures.solver_sigma);
   }
-  const std::vector<bool> marked = MarkOutliers(problem, solver, views, trust);
+  const std::vector<bool> marked = MarkOutliers(problem, solver, answer, views, trust);
   for (std::size_t i = 0; i < views.size(); ++i) {
     trust.views[i].outlier = marked[i];
     if (marked[i]) figures.outlier_views.push_back(views[i]);

@@ -51,9 +51,9 @@ struct Trust {
 /// the scatter of the data; the covariance propagates its stated noise, so the two are independent
 /// checks.
 ///
-/// Outliers: views whose held-out error is over twice the median and more than 4 scaled MAD
-/// (1.4826) above it; the others are then solved again and all views are tested under that pose,
-/// until nothing changes. Requires four views.
+/// Outliers: DisagreeingViews of the raw observations where the problem has these, else
+/// OutlyingViews of the held-out errors; the others are then solved again and all views are tested
+/// under that pose, until nothing changes.
 ///
 /// Runs in parallel; the result does not depend on the number of threads. With a single view only
 /// the covariance's figures are set. Errors: kMissingData where the problem has no view.

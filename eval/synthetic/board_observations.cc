@@ -48,13 +48,21 @@ class RingScan {
             std::sin(elevation)};
   }
 
-  double RangeOf(const Eigen::Vector3d& direction) const {
-    return axes_.col(2).dot(lidar_from_board_.translation) / axes_.col(2).dot(direction);
+  // Where a ring's beams cross the axis.
+  Eigen::Vector3d OriginOf(double elevation) const {
+    return {0.0, 0.0, -simulation_.beam_crossing_m * std::tan(elevation)};
+  }
+
+  double RangeOf(double elevation, const Eigen::Vector3d& direction) const {
+    return axes_.col(2).dot(lidar_from_board_.translation - OriginOf(elevation)) /
+           axes_.col(2).dot(direction);
   }
 
   Eigen::Vector2d InBoard(double elevation, double azimuth) const {
     const Eigen::Vector3d direction = Direction(elevation, azimuth);
-    return (lidar_from_board_.Inverse() * (RangeOf(direction) * direction)).head<2>();
+    return (lidar_from_board_.Inverse() *
+            (OriginOf(elevation) + RangeOf(elevation, direction) * direction))
+        .head<2>();
   }
 
   bool IsOn(double elevation, double azimuth) const {
@@ -67,7 +75,7 @@ class RingScan {
     const Eigen::Vector3d direction = Direction(elevation, azimuth);
     const double error = random.Normal() * (simulation_.exact ? 0.0 : simulation_.range_sigma_m);
     const double offset = unit_.ring_offsets_m[static_cast<std::size_t>(ring)];
-    view.face_in_lidar.push_back((RangeOf(direction) + offset + error) * direction);
+    view.face_in_lidar.push_back((RangeOf(elevation, direction) + offset + error) * direction);
     view.face_rings.push_back(ring);
   }
 
@@ -90,7 +98,7 @@ class RingScan {
     Eigen::Vector3d seen(at.x(), at.y(), 0.0);
     const double outward = share[on_x ? 0 : 1] > 0.0 ? 1.0 : -1.0;
     seen[on_x ? 0 : 1] += error + outward * GrowthOf(elevation, from, on_x);
-    ray.direction = (lidar_from_board_ * seen).normalized();
+    ray.direction = (lidar_from_board_ * seen - OriginOf(elevation)).normalized();
     view.edges.push_back(ray);
   }
 

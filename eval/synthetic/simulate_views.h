@@ -31,6 +31,9 @@ struct ViewSimulation {
   /// Drawn once a session, the view shift once a view, and stated in the problem. Growth is along
   /// and across the scan direction.
   LidarErrorModel errors = kWhiteNoiseOnly;
+  /// Distance before the axis at which the beams cross; the returns are written as if they started
+  /// at the origin (solvers/joint/beam_crossing.h). 0.042 in a VLP-16.
+  double beam_crossing_m = 0.0;
   /// If true, the observations have no errors, but the same sigmas are stated.
   bool exact = false;
 };

@@ -11,6 +11,7 @@
 #include "solvers/core/registry.h"
 #include "solvers/joint/joint_model.h"
 #include "solvers/joint/joint_search.h"
+#include "solvers/joint/joint_start.h"
 
 namespace sextant {
 namespace {
@@ -18,24 +19,6 @@ namespace {
 DataNeeds WithViews(DataNeeds needs) {
   needs.board_views = 1;
   return needs;
-}
-
-// Cauchy's loss of a squared residual, as it limits what an outlier costs.
-double Limited(double squared) {
-  constexpr double kScale = 3.0;
-  return kScale * kScale * std::log1p(squared / (kScale * kScale));
-}
-
-// Of a view's printed points.
-double CostAt(const JointModel& model, const JointState& state, std::size_t view) {
-  double cost = 0.0;
-  for (const double value : ResidualsAt(model, state, view).printed) cost += Limited(value * value);
-  return cost;
-}
-
-double LinkCostAt(const JointState& state, std::size_t view, double lever_m) {
-  constexpr double kUsual_m = 0.02;
-  return Limited((LinkError(state, view, lever_m) / kUsual_m).squaredNorm() / 6.0);
 }
 
 /// argmin of 1/2 sum |r|^2 over cam_from_lidar and the pose of every board, r the whitened
@@ -63,7 +46,7 @@ class JointSolver final : public Solver {
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
     SEXTANT_ASSIGN_OR_RETURN(SolveReport start, inner_->Solve(problem));
     SEXTANT_ASSIGN_OR_RETURN(const JointModel model, ModelOf(problem, options_));
-    const JointState state = StateAt(problem, start.cam_from_lidar, model);
+    const JointState state = StartAt(problem, model, start.cam_from_lidar);
     SEXTANT_ASSIGN_OR_RETURN(
         const JointAnswer answer,
         SearchJointly(model, state, problem.lidar_errors.view_shift_sigma_m, options_));
@@ -73,26 +56,6 @@ class JointSolver final : public Solver {
     estimate.stages.push_back(
         {start.solver, start.cam_from_lidar, start.iterations, start.wall_time_us});
     return estimate;
-  }
-
-  // Each sensor's own pose of a board, or the LiDAR's for both where that fits the image better
-  // than the disagreement of the two.
-  static JointState StateAt(const CalibrationProblem& problem, const Rigid3d& cam_from_lidar,
-                            const JointModel& model) {
-    JointState state{cam_from_lidar, {}, {}};
-    for (const SharedBlock& block : model.shared) state.shared.push_back(block.mean);
-    for (std::size_t i = 0; i < model.views.size(); ++i) {
-      const BoardView& view = problem.board_views[i];
-      const Rigid3d by_lidar = cam_from_lidar * view.lidar_from_board;
-      state.boards.push_back({view.cam_from_board, view.lidar_from_board});
-      const double by_camera_cost =
-          CostAt(model, state, i) + LinkCostAt(state, i, model.views[i].lever_m);
-      state.boards.back().cam_from_board = by_lidar;
-      if (by_camera_cost <= CostAt(model, state, i)) {
-        state.boards.back().cam_from_board = view.cam_from_board;
-      }
-    }
-    return state;
   }
 
   Expected<void> Report(const CalibrationProblem& problem, const JointModel& model,
@@ -217,6 +180,12 @@ class JointSolver final : public Solver {
   // A ratio of 1.5 is more than an inaccurate estimate of a sigma.
   static void WarnOfNoise(const JointNoise& noise, Estimate& estimate) {
     constexpr double kMuch = 1.5;
+    if (getenv("DBG"))
+      fmt::print(stderr,
+                 "DBG noise printed {:.2f} face {:.2f} edges {:.2f} out {:.2f} mm in {:.2f} mm "
+                 "rings {:.2f}\n",
+                 noise.printed, noise.face, noise.edges, 1e3 * noise.out_of_plane_m,
+                 1e3 * noise.in_plane_m, noise.rings);
     const auto warn = [&](double ratio, const char* what) {
       if (ratio <= kMuch) return;
       estimate.warnings.push_back(fmt::format(

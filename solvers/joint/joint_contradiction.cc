@@ -26,6 +26,11 @@ double NormalOfF(double quotient, double freedom, double freedom_of_scale) {
   return ((1.0 - b) * root - (1.0 - a)) / std::sqrt(a + b * root * root);
 }
 
+double ViewsCompared(const std::vector<ViewSums>& sums) {
+  return static_cast<double>(
+      std::ranges::count_if(sums, [](const ViewSums& of) { return of.freedom > 0; }));
+}
+
 }  // namespace
 
 double ContradictionScale(const std::vector<ViewSums>& sums) {
@@ -37,11 +42,21 @@ double ContradictionScale(const std::vector<ViewSums>& sums) {
   return Median(ratios);
 }
 
+std::vector<double> Disagreements(const std::vector<ViewSums>& sums) {
+  const double scale = std::max(ContradictionScale(sums), 1.0);
+  const double freedom_of_scale = kFreedomOfView * ViewsCompared(sums);
+  std::vector<double> sigmas;
+  for (const ViewSums& of : sums) {
+    const double quotient = of.contradiction / (scale * std::max(of.freedom, 1));
+    sigmas.push_back(of.freedom == 0 ? 0.0 : NormalOfF(quotient, of.freedom, freedom_of_scale));
+  }
+  return sigmas;
+}
+
 std::vector<bool> ContradictingViews(const std::vector<ViewSums>& sums,
                                      const std::vector<bool>& before, double sigmas) {
   const double scale = std::max(ContradictionScale(sums), 1e-6);
-  const auto seen = static_cast<double>(
-      std::ranges::count_if(sums, [](const ViewSums& of) { return of.freedom > 0; }));
+  const double seen = ViewsCompared(sums);
   std::vector<double> beyond(sums.size(), 0.0);
   double worst = 0.0;
   for (std::size_t i = 0; i < sums.size(); ++i) {

@@ -84,15 +84,17 @@ FaceCost::FaceCost(const JointView& view, const FaceGroup& group,
   set_num_residuals(static_cast<int>(group.members.size()));
   mutable_parameter_block_sizes()->push_back(kViewNumbers);
   mutable_parameter_block_sizes()->insert(mutable_parameter_block_sizes()->end(),
-                                          group.offsets.size(), 1);
+                                          group.shared.size(), 1);
 }
 
 bool FaceCost::Evaluate(double const* const* parameters, double* residuals,
                         double** jacobians) const {
   const BoardPlane plane(PoseIn(parameters[0] + kPoseNumbers));
   JacobianMap by_view = JacobianOf(jacobians, 0, num_residuals(), kViewNumbers);
-  double offset = 0.0;
-  for (std::size_t k = 1; k <= group_.offsets.size(); ++k) offset += *parameters[k];
+  Eigen::VectorXd offset = Eigen::VectorXd::Zero(num_residuals());
+  for (Eigen::Index k = 0; k < group_.by.cols(); ++k) {
+    offset += group_.by.col(k) * *parameters[k + 1];
+  }
   RayResidual ray;
   for (int i = 0; i < num_residuals(); ++i) {
     const std::size_t member = group_.members[static_cast<std::size_t>(i)];
@@ -101,11 +103,12 @@ bool FaceCost::Evaluate(double const* const* parameters, double* residuals,
     residuals[i] = 0.0;
     if (weight != 0.0) {
       if (!Differentiate(term, plane, ray)) return false;
-      residuals[i] = weight * (ray.value - term.inverse_sigma * offset);
+      residuals[i] = weight * (ray.value - term.inverse_sigma * offset[i]);
       if (by_view.size() > 0) by_view.block<1, 6>(i, kLidarColumns) = weight * ray.by_pose;
     }
-    for (std::size_t k = 1; jacobians != nullptr && k <= group_.offsets.size(); ++k) {
-      if (jacobians[k] != nullptr) jacobians[k][i] = -weight * term.inverse_sigma;
+    for (Eigen::Index k = 0; jacobians != nullptr && k < group_.by.cols(); ++k) {
+      if (jacobians[k + 1] == nullptr) continue;
+      jacobians[k + 1][i] = -weight * term.inverse_sigma * group_.by(i, k);
     }
   }
   return true;
@@ -188,7 +191,8 @@ bool LinkCost::Evaluate(double const* const* parameters, double* residuals,
   return true;
 }
 
-PriorCost::PriorCost(const SharedBlock& block) : block_(block) {
+PriorCost::PriorCost(const SharedBlock& block, const double& weight)
+    : block_(block), weight_(weight) {
   set_num_residuals(static_cast<int>(block.mean.size()));
   mutable_parameter_block_sizes()->push_back(static_cast<int>(block.mean.size()));
 }
@@ -197,9 +201,9 @@ bool PriorCost::Evaluate(double const* const* parameters, double* residuals,
                          double** jacobians) const {
   const Eigen::Map<const Eigen::VectorXd> numbers(parameters[0], num_residuals());
   Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) =
-      (numbers - block_.mean).cwiseQuotient(block_.sigma);
+      weight_ * (numbers - block_.mean).cwiseQuotient(block_.sigma);
   JacobianMap by = JacobianOf(jacobians, 0, num_residuals(), num_residuals());
-  if (by.size() > 0) by.diagonal() = block_.sigma.cwiseInverse();
+  if (by.size() > 0) by.diagonal() = weight_ * block_.sigma.cwiseInverse();
   return true;
 }
 

@@ -68,15 +68,16 @@ class LinkCost final : public ceres::SizedCostFunction<6, 7, 14> {
   const Vector6d& scale_;
 };
 
-/// (number - mean) / sigma of a shared block.
+/// weight (number - mean) / sigma of a shared block.
 class PriorCost final : public ceres::CostFunction {
  public:
-  explicit PriorCost(const SharedBlock& block);
+  PriorCost(const SharedBlock& block, const double& weight);
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
 
  private:
   const SharedBlock& block_;
+  const double& weight_;
 };
 
 }  // namespace sextant

@@ -183,4 +183,20 @@ std::vector<ViewSums> SumsOf(const JointLinearisation& at, const JointCovariance
   return sums;
 }
 
+KindSum RingSumOf(const JointModel& model, const JointState& state,
+                  const JointCovariance& covariance, double ratio) {
+  KindSum sum;
+  Eigen::Index at = 6;
+  for (std::size_t k = 0; k < model.shared.size(); ++k) {
+    const SharedBlock& block = model.shared[k];
+    if (block.is_ring) {
+      const double variance = std::pow(ratio * block.sigma[0], 2);
+      const double off = state.shared[k][0] - block.mean[0];
+      sum += {off * off / variance, std::max(0.0, 1.0 - covariance.shared()(at, at) / variance)};
+    }
+    at += block.mean.size();
+  }
+  return sum;
+}
+
 }  // namespace sextant

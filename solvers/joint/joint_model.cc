@@ -13,13 +13,16 @@
 
 #include "geometry/intrinsics.h"
 #include "solvers/core/board_view_check.h"
+#include "solvers/joint/beam_crossing.h"
 #include "solvers/refine/refine_camera.h"
 
 namespace sextant {
 namespace {
 
 constexpr double kFreeOffset_m = 0.1;  // Prior of a range bias that an option frees.
-constexpr double kFreeShare = 0.05;    // Prior of sizes and intrinsics, in shares of them.
+// Prior of the distance at which the beams cross, 30 mm for a sensor about which nothing is known.
+constexpr double kCrossingOverRing = 3.0;
+constexpr double kFreeShare = 0.05;  // Prior of sizes and intrinsics, in shares of them.
 
 // Largest shift of a printed point's pixel by one unit of an intrinsic.
 double LeverOf(const CalibrationProblem& problem, int intrinsic) {
@@ -54,6 +57,7 @@ class ModelMaker {
 
   Expected<JointModel> Make() {
     AddRanges();
+    AddCrossing();
     AddGrowth();
     if (options_.board_size == JointBoardSize::kScale) AddScale();
     if (options_.board_size == JointBoardSize::kSides) AddSides();
@@ -85,10 +89,32 @@ class ModelMaker {
         groups[RingOf(problem_.board_views[i], k)].members.push_back(k);
       }
       for (auto& [ring, group] : groups) {
-        group.offsets = everywhere;
-        if (ring >= 0) group.offsets.push_back(OffsetOf(ring, rings));
+        group.shared = everywhere;
+        if (ring >= 0) group.shared.push_back(OffsetOf(ring, rings));
+        group.by.setOnes(std::ssize(group.members), std::ssize(group.shared));
         model_.views[i].face.push_back(std::move(group));
       }
+    }
+  }
+
+  // Of the ranges and of the outlines.
+  void AddCrossing() {
+    const double sigma = kCrossingOverRing * problem_.lidar_errors.ring_offset_sigma_m;
+    if (!(sigma > 0.0) || !BeamsStartAtOrigin(problem_)) return;
+    const std::size_t shared = AddOffset("beam_crossing_m", sigma, true);
+    for (std::size_t i = 0; i < model_.views.size(); ++i) {
+      JointView& view = model_.views[i];
+      const BoardPlane plane(problem_.board_views[i].lidar_from_board);
+      const Eigen::VectorXd by_range = RangeByCrossing(view.terms, plane);
+      for (FaceGroup& group : view.face) {
+        group.shared.push_back(shared);
+        group.by.conservativeResize(Eigen::NoChange, group.by.cols() + 1);
+        for (std::size_t k = 0; k < group.members.size(); ++k) {
+          group.by(static_cast<Eigen::Index>(k), group.by.cols() - 1) =
+              by_range[static_cast<Eigen::Index>(group.members[k])];
+        }
+      }
+      view.shifts.push_back({shared, OutwardByCrossing(view.terms, plane)});
     }
   }
 
@@ -102,7 +128,9 @@ class ModelMaker {
     const auto at = rings.find(ring);
     if (at != rings.end()) return at->second;
     const double sigma = problem_.lidar_errors.ring_offset_sigma_m;
-    return rings[ring] = AddOffset(fmt::format("ring_{}_offset_m", ring), sigma, false);
+    rings[ring] = AddOffset(fmt::format("ring_{}_offset_m", ring), sigma, false);
+    model_.shared.back().is_ring = true;
+    return rings[ring];
   }
 
   // By the share of a side's outward direction along the scan, and across it.
@@ -221,12 +249,15 @@ BoardViewResiduals ResidualsAt(const JointModel& model, const JointState& state,
   RayResidual ray;
   residuals.face.assign(view.terms.face.size(), kNone);
   for (const FaceGroup& group : view.face) {
-    double offset = 0.0;
-    for (const std::size_t shared : group.offsets) offset += state.shared[shared][0];
-    for (const std::size_t k : group.members) {
+    Eigen::VectorXd offset = Eigen::VectorXd::Zero(group.by.rows());
+    for (Eigen::Index s = 0; s < group.by.cols(); ++s) {
+      offset += group.by.col(s) * state.shared[group.shared[static_cast<std::size_t>(s)]][0];
+    }
+    for (std::size_t m = 0; m < group.members.size(); ++m) {
+      const std::size_t k = group.members[m];
       const FaceTerm& term = view.terms.face[k];
       if (!Differentiate(term, plane, ray)) continue;
-      residuals.face[k] = ray.value - term.inverse_sigma * offset;
+      residuals.face[k] = ray.value - term.inverse_sigma * offset[static_cast<Eigen::Index>(m)];
     }
   }
   Eigen::VectorXd shift = Eigen::VectorXd::Zero(std::ssize(view.terms.edges));

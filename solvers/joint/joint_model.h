@@ -19,12 +19,15 @@ struct SharedBlock {
   Eigen::VectorXd mean;
   Eigen::VectorXd sigma;
   bool reported = true;
+  bool is_ring =
+      false;  ///< The offset of one ring, whose sigma is multiplied by JointNoise::rings.
 };
 
-/// Returns from a face whose ranges have the same offsets added.
+/// Returns from a face to whose ranges the same shared blocks of one number add.
 struct FaceGroup {
   std::vector<std::size_t> members;  ///< Indices into BoardViewTerms::face.
-  std::vector<std::size_t> offsets;  ///< Shared blocks of one number [m].
+  std::vector<std::size_t> shared;
+  Eigen::MatrixXd by;  ///< One row for each member, one column for each block [m per unit].
 };
 
 /// The distance by which a shared block moves each side outwards, as the LiDAR sees it.

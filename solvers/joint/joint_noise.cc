@@ -15,7 +15,7 @@ constexpr double kNormalMedian = 0.6744897501960817;
 // Ranges are stated with the offsets of rings in them, which may be most of them.
 constexpr double kMinRatio = 0.3;
 constexpr double kPriorResiduals = 10.0;
-constexpr double kPriorShifts = 4.0;
+constexpr double kPriorShifts = 4.0;  // Also of the rings, which are as few.
 
 double RatioOf(std::vector<double> values, double expected) {
   for (double& value : values) value = std::abs(value);
@@ -56,8 +56,8 @@ JointNoise WithMedianShift(const std::vector<ViewSums>& sums, const JointNoise& 
   return noise;
 }
 
-JointNoise EstimateNoise(const std::vector<ViewSums>& sums, const JointNoise& before,
-                         double shift_m) {
+JointNoise EstimateNoise(const std::vector<ViewSums>& sums, const KindSum& rings,
+                         const JointNoise& before, double shift_m) {
   ViewSums all;
   for (const ViewSums& of : sums) {
     all.printed += of.printed;
@@ -68,7 +68,10 @@ JointNoise EstimateNoise(const std::vector<ViewSums>& sums, const JointNoise& be
   }
   JointNoise noise{Updated(before.printed, all.printed, 1.0, kPriorResiduals),
                    Updated(before.face, all.face, 1.0, kPriorResiduals),
-                   Updated(before.edges, all.edges, 1.0, kPriorResiduals), kNoShift_m, kNoShift_m};
+                   Updated(before.edges, all.edges, 1.0, kPriorResiduals),
+                   kNoShift_m,
+                   kNoShift_m,
+                   Updated(before.rings, rings, 1.0, kPriorShifts)};
   if (shift_m > kNoShift_m) {
     noise.out_of_plane_m = Updated(before.out_of_plane_m, all.out_of_plane, shift_m, kPriorShifts);
     noise.in_plane_m = Updated(before.in_plane_m, all.in_plane, shift_m, kPriorShifts);
@@ -80,7 +83,8 @@ bool IsSameNoise(const JointNoise& a, const JointNoise& b) {
   constexpr double kSame = 0.01;
   const auto same = [](double x, double y) { return std::abs(x - y) <= kSame * y; };
   return same(a.printed, b.printed) && same(a.face, b.face) && same(a.edges, b.edges) &&
-         same(a.out_of_plane_m, b.out_of_plane_m) && same(a.in_plane_m, b.in_plane_m);
+         same(a.out_of_plane_m, b.out_of_plane_m) && same(a.in_plane_m, b.in_plane_m) &&
+         same(a.rings, b.rings);
 }
 
 }  // namespace sextant

@@ -15,6 +15,7 @@ struct JointNoise {
   double out_of_plane_m =
       0.0;  ///< Sigma of what shifts all returns of a view together; see LinkError.
   double in_plane_m = 0.0;
+  double rings = 1.0;  ///< Standard deviation of the rings' offsets over that of their prior.
 };
 
 /// Shift of the views where the sensor has none: so small that it does not change an answer.
@@ -29,10 +30,10 @@ JointNoise WithMedianShift(const std::vector<ViewSums>& sums, const JointNoise& 
 
 /// Variance components (Helmert; Foerstner 1979): each kind's variance times the squares of its
 /// residuals over their redundancy, with the stated level as a prior that weighs as ten residuals
-/// (`shift_m`: as four). `before`: the noise of the linearisation. Iterated to its fixed point,
-/// this is the restricted maximum likelihood.
-JointNoise EstimateNoise(const std::vector<ViewSums>& sums, const JointNoise& before,
-                         double shift_m);
+/// (`shift_m` and the offsets of rings: as four). `before`: the noise of the linearisation.
+/// Iterated to its fixed point, this is the restricted maximum likelihood.
+JointNoise EstimateNoise(const std::vector<ViewSums>& sums, const KindSum& rings,
+                         const JointNoise& before, double shift_m);
 
 bool IsSameNoise(const JointNoise& a, const JointNoise& b);
 

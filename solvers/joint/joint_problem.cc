@@ -12,6 +12,8 @@
 namespace sextant {
 namespace {
 
+constexpr double kFullWeight = 1.0;
+
 JointWeights NoWeights(const JointView& view) {
   return {std::vector<double>(view.terms.printed.size(), 0.0),
           std::vector<double>(view.terms.face.size(), 0.0),
@@ -63,7 +65,7 @@ void JointProblem::AddViews() {
     }
     for (const FaceGroup& group : view.face) {
       std::vector<double*> blocks = {board};
-      for (const std::size_t k : group.offsets) blocks.push_back(state_.shared[k].data());
+      for (const std::size_t k : group.shared) blocks.push_back(state_.shared[k].data());
       Add({JointKind::kFace, i}, new FaceCost(view, group, weights.face), blocks);
     }
     if (!view.terms.edges.empty()) {
@@ -78,12 +80,15 @@ void JointProblem::AddViews() {
 
 void JointProblem::AddShared() {
   for (std::size_t k = 0; k < model_.shared.size(); ++k) {
-    residuals_.push_back(problem_.AddResidualBlock(new PriorCost(model_.shared[k]), nullptr,
-                                                   state_.shared[k].data()));
+    const SharedBlock& block = model_.shared[k];
+    const double& weight = block.is_ring ? ring_weight_ : kFullWeight;
+    residuals_.push_back(
+        problem_.AddResidualBlock(new PriorCost(block, weight), nullptr, state_.shared[k].data()));
   }
 }
 
-void JointProblem::SetWeights(std::vector<JointWeights> weights) {
+void JointProblem::SetWeights(const std::vector<JointWeights>& weights, double ring_weight) {
+  ring_weight_ = ring_weight;
   // The costs refer to the numbers, which must stay where they are.
   for (std::size_t i = 0; i < weights.size(); ++i) {
     std::ranges::copy(weights[i].printed, weights_[i].printed.begin());

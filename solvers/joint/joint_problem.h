@@ -58,8 +58,8 @@ class JointProblem {
 
   const JointState& state() const { return state_; }
 
-  /// One for each view.
-  void SetWeights(std::vector<JointWeights> weights);
+  /// One for each view, and that of the priors of the rings' offsets.
+  void SetWeights(const std::vector<JointWeights>& weights, double ring_weight);
 
   JointSteps Solve(int max_iterations, double step_tolerance);
 
@@ -74,6 +74,7 @@ class JointProblem {
   const JointModel& model_;
   JointState state_;
   std::vector<JointWeights> weights_;
+  double ring_weight_ = 1.0;
   std::array<double, kPoseNumbers> cam_from_lidar_{};
   std::vector<std::array<double, 2 * kPoseNumbers>> boards_;
   std::vector<ceres::ResidualBlockId> residuals_;

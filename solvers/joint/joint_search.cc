@@ -47,11 +47,8 @@ class JointSearch {
     } else {
       noise_ = {.out_of_plane_m = shift_m_, .in_plane_m = shift_m_};
       SEXTANT_RETURN_IF_ERROR(FollowLosses(options_.step_tolerance));
-      if (const auto covariance = JointCovariance::Of(problem_.Linearise())) {
-        answer_.covariance = covariance->shared();
-      }
     }
-    if (answer_.covariance.size() == 0) return Undetermined();
+    SEXTANT_RETURN_IF_ERROR(AddUncertainty());
     answer_.state = problem_.state();
     answer_.noise = noise_;
     return std::move(answer_);
@@ -122,8 +119,8 @@ class JointSearch {
       const JointSelection before = answer_.selection;
       answer_.selection = SelectWithin(Residuals(), noise_, options_.cut);
       SEXTANT_RETURN_IF_ERROR(Minimise(Residuals(), {}, RoundTolerance()));
-      SEXTANT_ASSIGN_OR_RETURN(const std::vector<ViewSums> sums, Sums());
-      const std::vector<bool> left_out = LeftOutBy(sums);
+      SEXTANT_ASSIGN_OR_RETURN(const Sums sums, SumsNow());
+      const std::vector<bool> left_out = LeftOutBy(sums.views);
       const JointNoise noise = IsEstimated() ? NoiseOf(sums) : noise_;
       const bool settled =
           before == answer_.selection && left_out == left_out_ && IsSameNoise(noise, noise_);
@@ -138,14 +135,14 @@ class JointSearch {
 
   // The level of the links by their median, and the first views to leave out.
   Expected<void> JudgeLosses() {
-    SEXTANT_ASSIGN_OR_RETURN(const std::vector<ViewSums> sums, Sums());
-    left_out_ = LeftOutBy(sums);
+    SEXTANT_ASSIGN_OR_RETURN(const Sums sums, SumsNow());
+    left_out_ = LeftOutBy(sums.views);
     if (IsEstimated() && HasShift()) {
-      noise_ = WithMedianShift(sums, noise_);
+      noise_ = WithMedianShift(sums.views, noise_);
     } else {
       noise_.out_of_plane_m = noise_.in_plane_m = std::max(shift_m_, kDecisionShift_m);
     }
-    if (!IsEstimated()) noise_.printed = noise_.face = noise_.edges = 1.0;
+    if (!IsEstimated()) noise_.printed = noise_.face = noise_.edges = noise_.rings = 1.0;
     return {};
   }
 
@@ -155,29 +152,40 @@ class JointSearch {
       if (left_out_[i]) answer_.selection[i].Clear();
     }
     if (!HasShift()) noise_.out_of_plane_m = noise_.in_plane_m = kNoShift_m;
-    SEXTANT_RETURN_IF_ERROR(Minimise(Residuals(), {}, options_.step_tolerance));
-    const auto covariance = JointCovariance::Of(problem_.Linearise());
-    if (!covariance) return Undetermined();
-    answer_.covariance = covariance->shared();
+    return Minimise(Residuals(), {}, options_.step_tolerance);
+  }
+
+  Expected<void> AddUncertainty() {
+    SEXTANT_ASSIGN_OR_RETURN(Sums sums, SumsNow());
+    answer_.covariance = std::move(sums.covariance);
+    answer_.disagreement = Disagreements(sums.views);
     return {};
   }
 
-  Expected<std::vector<ViewSums>> Sums() {
+  /// Residuals against their expectation at the current state.
+  struct Sums {
+    Eigen::MatrixXd covariance;  // Of the shared numbers.
+    std::vector<ViewSums> views;
+    KindSum rings;
+  };
+
+  Expected<Sums> SumsNow() {
     const JointLinearisation at = problem_.Linearise();
     const auto covariance = JointCovariance::Of(at);
     if (!covariance) return Undetermined();
-    return SumsOf(at, *covariance);
+    return Sums{covariance->shared(), SumsOf(at, *covariance),
+                RingSumOf(model_, problem_.state(), *covariance, noise_.rings)};
   }
 
   std::vector<bool> LeftOutBy(const std::vector<ViewSums>& sums) const {
     return ContradictingViews(sums, left_out_, options_.cut);
   }
 
-  JointNoise NoiseOf(std::vector<ViewSums> sums) const {
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-      if (left_out_[i]) sums[i] = {};
+  JointNoise NoiseOf(Sums sums) const {
+    for (std::size_t i = 0; i < left_out_.size(); ++i) {
+      if (left_out_[i]) sums.views[i] = {};
     }
-    JointNoise noise = EstimateNoise(sums, noise_, shift_m_);
+    JointNoise noise = EstimateNoise(sums.views, sums.rings, noise_, shift_m_);
     noise.out_of_plane_m = std::max(noise.out_of_plane_m, kDecisionShift_m);
     noise.in_plane_m = std::max(noise.in_plane_m, kDecisionShift_m);
     return noise;
@@ -196,7 +204,7 @@ class JointSearch {
     for (std::size_t i = 0; i < weights.size(); ++i) {
       if (left_out_[i]) Unlink(weights[i]);
     }
-    problem_.SetWeights(std::move(weights));
+    problem_.SetWeights(weights, 1.0 / noise_.rings);
     const JointSteps steps = problem_.Solve(options_.max_iterations, step_tolerance);
     answer_.iterations += steps.count;
     if (steps.converged) return {};

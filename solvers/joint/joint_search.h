@@ -13,7 +13,8 @@ struct JointAnswer {
   Eigen::MatrixXd covariance;  ///< For (dphi, dt), then the shared numbers.
   JointSelection selection;    ///< One entry per view.
   JointNoise noise;
-  int iterations = 0;  ///< Total over all rounds.
+  std::vector<double> disagreement;  ///< Disagreements of the views; 0 of those left out.
+  int iterations = 0;                ///< Total over all rounds.
 };
 
 /// First minimises with the robust losses, scaled by the noise, and with views that may be shifted;

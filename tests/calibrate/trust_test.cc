@@ -184,6 +184,14 @@ TEST(Trust, OutliersAreNamedAmongTheWarnings) {
   EXPECT_THAT(result.warnings[0], HasSubstr("pose7 disagrees with the other views: under their"));
 }
 
+TEST(DisagreeingViews, AreBeyondChanceByTheirOwnSigmas) {
+  const std::vector<int> views = {3, 5, 8, 9};
+  const std::vector<ViewComparison> compared = {
+      {3, true, 2.5}, {5, true, 3.2}, {8, true, 0.1}, {8, true, 4.0}};
+  // Of four boards each may exceed 2.8 sigma; view 9 was left out.
+  EXPECT_THAT(DisagreeingViews(compared, views), ElementsAre(false, true, true, true));
+}
+
 TEST(OutlyingViews, NeedsAMajorityAndAClearDistance) {
   EXPECT_THAT(OutlyingViews(std::vector<double>{1.0, 1.1, 9.0}), ElementsAre(false, false, false));
   EXPECT_THAT(OutlyingViews(std::vector<double>{1.0, 1.1, 0.9, 9.0}),

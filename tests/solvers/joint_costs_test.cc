@@ -119,8 +119,8 @@ TEST(JointCosts, FaceReturns) {
   const JointView& view = of.model.views[0];
   const std::vector<double> weights(view.terms.face.size(), 0.7);
   for (const FaceGroup& group : view.face) {
-    ASSERT_EQ(group.offsets.size(), 2U);
-    ExpectItsDerivatives(FaceCost(view, group, weights), {of.board, {{0.01}}, {{-0.02}}});
+    ASSERT_EQ(group.shared.size(), 3U);
+    ExpectItsDerivatives(FaceCost(view, group, weights), {of.board, {{0.01}}, {{-0.02}}, {{0.03}}});
   }
 }
 
@@ -130,7 +130,7 @@ TEST(JointCosts, EdgeRays) {
   const std::vector<double> weights(view.terms.edges.size(), 0.7);
   std::vector<CostBlock> blocks = {of.board};
   for (const EdgeShift& by : view.shifts) blocks.push_back(of.Shared(by.shared));
-  ASSERT_EQ(blocks.size(), 3U);
+  ASSERT_EQ(blocks.size(), 4U);
   ExpectItsDerivatives(EdgeCost(of.model, view, weights), blocks);
 }
 
@@ -144,7 +144,9 @@ TEST(JointCosts, LinkOfASensorsPosesOfABoard) {
 TEST(JointCosts, Priors) {
   const CostCase of;
   for (const SharedBlock& block : of.model.shared) {
-    ExpectItsDerivatives(PriorCost(block), {{{block.mean.begin(), block.mean.end()}, nullptr}});
+    const double weight = 0.7;
+    ExpectItsDerivatives(PriorCost(block, weight),
+                         {{{block.mean.begin(), block.mean.end()}, nullptr}});
   }
 }
 

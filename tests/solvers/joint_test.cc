@@ -361,6 +361,29 @@ TEST(Joint, CovarianceIncludesTheSystematicErrorsOfTheLidar) {
   EXPECT_LT(mean_nees, 1.15);
 }
 
+// Returns that are written as if all beams started at the origin make boards too tall and tilt
+// them; the crossing distance is found, and the pose as accurate as the covariance states.
+TEST(Joint, FindsWhereTheBeamsOfTheLidarCross) {
+  constexpr int kSessions = 60;
+  ViewSimulation simulation{.views = 15, .beam_crossing_m = 0.042};
+  simulation.errors = {0.01, 0.01, 0.003, 0.001};
+  double found = 0.0;
+  for (int i = 1; i <= kSessions; ++i) {
+    simulation.seed = static_cast<std::uint64_t>(i);
+    const auto report = Solve(Views(simulation).problem, "joint(kabsch)");
+    ASSERT_TRUE(report) << report.error().message;
+    for (const EstimatedNumber& number : report->extras) {
+      if (number.name == "beam_crossing_m") found += number.value / kSessions;
+    }
+  }
+  // The prior of 30 mm about 0 draws it nearer.
+  EXPECT_GT(found, 0.025);
+  EXPECT_LT(found, 0.046);
+  const ErrorStatistics joint = StatisticsOf(simulation, kSessions, "joint(kabsch)");
+  EXPECT_GT(joint.nees, 0.7);
+  EXPECT_LT(joint.nees, 1.35);
+}
+
 TEST(Joint, NamesTheViewThatItLeavesOut) {
   SimulatedViews session = Views({.seed = 13, .views = 4});
   session.problem.board_views[1].printed.clear();
