@@ -68,7 +68,7 @@ class BoardFinder {
   BoardFinder() = default;
   SeenBoards Assemble(const cv::Mat& grey, Detections found) const;
   SeenBoard Assign(std::size_t index, const cv::Mat& grey, Detections& found) const;
-  void AddPoints(SeenBoard& seen) const;
+  void AddPoints(const cv::Mat& grey, SeenBoard& seen) const;
   void AddPose(SeenBoard& seen) const;
 
   std::vector<Board> boards_;
