@@ -238,7 +238,8 @@ void BoardFinder::AddPoints(const cv::Mat& grey, SeenBoard& seen) const {
   if (board.checker && board.checker->holds_tags) {
     BoardPoints corners = FindMarkedCorners(grey, *board.checker, seen.printed);
     seen.is_checker_missing = corners.pixels.empty();
-    if (!seen.is_checker_missing) seen.printed.push_back(std::move(corners));
+    // Far more accurate than the tags, which are small.
+    if (!seen.is_checker_missing) seen.printed = {std::move(corners)};
   }
   if (seen.checker) seen.printed.push_back(PointsOf(*board.checker, *seen.checker));
 }

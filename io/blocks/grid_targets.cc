@@ -7,7 +7,7 @@ namespace sextant {
 namespace {
 
 // OpenCV numbers the corners of AprilTag's tags from another one than Kalibr does.
-constexpr double kUpright_rad = 0.0;
+constexpr double kUpright_rad = std::numbers::pi;
 
 // The centre of a cell of a centred grid.
 Eigen::Vector2d CellCenter(int column, int row, int columns, int rows, double pitch_m) {
