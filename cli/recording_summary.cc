@@ -69,7 +69,8 @@ std::string PairingText(const Bag& bag, const BagStreams& all, const BagPairing&
 
 std::string PairingsText(const Bag& bag, const BagStreams& all, double tolerance_s) {
   if (all.pairings.empty()) {
-    return "No pairs: it takes a topic of scans (PointCloud2) and one of images (Image, "
+    return "No pairs: it takes a topic of scans (PointCloud2, Livox CustomMsg) and one of images "
+           "(Image, "
            "CompressedImage)\n";
   }
   std::string text;

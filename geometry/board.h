@@ -24,6 +24,10 @@ struct BoardChecker {
   int inner_rows = 0;     ///< Inner corners along y.
   double square_m = 0.0;
   Eigen::Vector2d center_in_board_m = Eigen::Vector2d::Zero();
+  bool starts_white = false;  ///< Whether the square at the top left is white instead of black.
+  /// Whether tags of the board are in the white squares (ChArUco). The corners are then found from
+  /// the tags, and need not all be in the image.
+  bool holds_tags = false;
 };
 
 /// The opening of a hollow board, its sides parallel to the board's.
@@ -32,6 +36,17 @@ struct BoardHole {
   double height_m = 0.0;  ///< Along y.
   Eigen::Vector2d center_in_board_m = Eigen::Vector2d::Zero();
 };
+
+/// A round opening through a board (FAST-Calib, velo2cam).
+struct RoundHole {
+  double radius_m = 0.0;
+  Eigen::Vector2d center_in_board_m = Eigen::Vector2d::Zero();
+};
+
+/// The number of the rim of Board::round_holes[0] among the sides of a board; 0 to 3 are its outer
+/// sides, 4 to 7 those of its rectangular opening.
+inline constexpr int kFirstRim = 8;
+inline constexpr int kMaxRoundHoles = 32;
 
 /// A rectangular board, in any orientation.
 ///
@@ -46,8 +61,15 @@ struct Board {
   std::string name{};
   double thickness_m = 0.0;
   std::optional<BoardHole> hole{};  ///< Its corners are 4 to 7, in the same order.
+  std::vector<RoundHole> round_holes{};
   std::vector<BoardTag> tags{};
   std::optional<BoardChecker> checker{};
+
+  /// Whether the board has a side, or a rim, of that number.
+  bool HasSide(int side) const {
+    if (side >= kFirstRim) return side - kFirstRim < static_cast<int>(round_holes.size());
+    return side >= 0 && (side < 4 || hole.has_value());
+  }
 
   /// Length of the edge from corner i to corner i + 1 (mod 4).
   std::array<double, 4> EdgeLengths() const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace sextant {
 namespace {
@@ -57,6 +58,23 @@ bool IsOnBoard(const Board& board, const Quad& part) {
   });
 }
 
+double DistanceFromQuad(const Quad& quad, const Eigen::Vector2d& point) {
+  double nearest = std::numeric_limits<double>::infinity();
+  bool inside = true;
+  for (std::size_t i = 0; i < quad.size(); ++i) {
+    const Eigen::Vector2d side = quad[(i + 1) % quad.size()] - quad[i];
+    const Eigen::Vector2d arm = point - quad[i];
+    const double share = std::clamp(arm.dot(side) / side.squaredNorm(), 0.0, 1.0);
+    nearest = std::min(nearest, (arm - share * side).norm());
+    inside = inside && side.x() * arm.y() - side.y() * arm.x() >= 0.0;
+  }
+  return inside ? 0.0 : nearest;
+}
+
+bool Overlap(const Quad& quad, const RoundHole& hole) {
+  return DistanceFromQuad(quad, hole.center_in_board_m) < hole.radius_m - kTouch_m;
+}
+
 bool IsPositive(double size) { return size > 0.0 && std::isfinite(size); }
 
 std::optional<BoardFault> BadSize(Part part, int tag, const char* field, double size) {
@@ -86,6 +104,29 @@ std::optional<BoardFault> FindHoleFault(const Board& board) {
   return std::nullopt;
 }
 
+std::optional<BoardFault> FindRoundHoleFault(const Board& board, int index) {
+  const auto i = static_cast<std::size_t>(index);
+  const RoundHole& hole = board.round_holes[i];
+  if (auto bad = BadSize(Part::kRoundHole, index, "radius_m", hole.radius_m)) return bad;
+  const Eigen::Vector2d room = 0.5 * Eigen::Vector2d(board.top_right_m, board.right_bottom_m) -
+                               hole.center_in_board_m.cwiseAbs();
+  if (!(room.minCoeff() > hole.radius_m)) {
+    return BoardFault{Part::kRoundHole, index, "", "expected the hole to lie within the board"};
+  }
+  if (board.hole && Overlap(HoleCorners(*board.hole), hole)) {
+    return BoardFault{Part::kRoundHole, index, "", "it overlaps the board's opening"};
+  }
+  for (std::size_t k = 0; k < i; ++k) {
+    const RoundHole& other = board.round_holes[k];
+    const double apart = (other.center_in_board_m - hole.center_in_board_m).norm();
+    if (apart < other.radius_m + hole.radius_m - kTouch_m) {
+      return BoardFault{Part::kRoundHole, index, "",
+                        "it overlaps the round hole " + std::to_string(k)};
+    }
+  }
+  return std::nullopt;
+}
+
 // Fault of the position of a print that covers `quad`.
 std::optional<BoardFault> FindPlaceFault(const Board& board, Part part, int tag, const Quad& quad) {
   if (!IsOnBoard(board, quad)) {
@@ -94,7 +135,29 @@ std::optional<BoardFault> FindPlaceFault(const Board& board, Part part, int tag,
   if (board.hole && Overlap(quad, HoleCorners(*board.hole))) {
     return BoardFault{part, tag, "center_in_board_m", "it reaches into the board's hole"};
   }
+  if (std::ranges::any_of(board.round_holes,
+                          [&](const RoundHole& hole) { return Overlap(quad, hole); })) {
+    return BoardFault{part, tag, "center_in_board_m", "it reaches into a round hole of the board"};
+  }
   return std::nullopt;
+}
+
+// Whether a tag lies within one white square of the checkerboard.
+bool IsInWhiteSquare(const BoardChecker& checker, const Quad& tag) {
+  const Eigen::Vector2i count(checker.inner_columns + 1, checker.inner_rows + 1);
+  const Eigen::Vector2d middle = 0.25 * (tag[0] + tag[1] + tag[2] + tag[3]);
+  const Eigen::Vector2d at =
+      (middle - checker.center_in_board_m) / checker.square_m + 0.5 * count.cast<double>();
+  const Eigen::Vector2i cell = at.array().floor().cast<int>();
+  if ((cell.array() < 0).any() || (cell.array() >= count.array()).any()) return false;
+  if ((cell.sum() % 2 == 0) != checker.starts_white) return false;
+  const Eigen::Vector2d center =
+      checker.center_in_board_m +
+      checker.square_m *
+          (cell.cast<double>() + Eigen::Vector2d(0.5, 0.5) - 0.5 * count.cast<double>());
+  return std::ranges::all_of(tag, [&](const Eigen::Vector2d& corner) {
+    return (corner - center).cwiseAbs().maxCoeff() <= 0.5 * checker.square_m + kTouch_m;
+  });
 }
 
 std::optional<BoardFault> FindCheckerFault(const Board& board) {
@@ -108,6 +171,9 @@ std::optional<BoardFault> FindCheckerFault(const Board& board) {
     return BoardFault{Part::kChecker, 0, "inner_rows", "expected 2 to 1000 inner corners"};
   }
   if (auto bad = BadSize(Part::kChecker, 0, "square_m", checker.square_m)) return bad;
+  if (checker.holds_tags && board.tags.empty()) {
+    return BoardFault{Part::kChecker, 0, "holds_tags", "expected tags in the white squares"};
+  }
   return FindPlaceFault(board, Part::kChecker, 0, CheckerCorners(checker));
 }
 
@@ -123,8 +189,12 @@ std::optional<BoardFault> FindTagFault(const Board& board, int index) {
   }
   const Quad quad = TagCorners(tag);
   if (auto bad = FindPlaceFault(board, Part::kTag, index, quad)) return bad;
-  if (board.checker && Overlap(quad, CheckerCorners(*board.checker))) {
-    return BoardFault{Part::kTag, index, "center_in_board_m", "it overlaps the checkerboard"};
+  if (board.checker && Overlap(quad, CheckerCorners(*board.checker)) &&
+      !(board.checker->holds_tags && IsInWhiteSquare(*board.checker, quad))) {
+    return BoardFault{Part::kTag, index, "center_in_board_m",
+                      board.checker->holds_tags
+                          ? "it is not within a white square of the checkerboard"
+                          : "it overlaps the checkerboard"};
   }
   for (int other = 0; other < index; ++other) {
     const BoardTag& before = board.tags[static_cast<std::size_t>(other)];
@@ -163,10 +233,35 @@ std::vector<Eigen::Vector2d> CornersInBoard(const Board& board) {
   return corners;
 }
 
+int SideAfterTurn(const Board& board, int side, int quarter_turns) {
+  constexpr double kSamePlace_m = 1e-3;
+  if (side < 0) return side;
+  if (side < kFirstRim) return side / 4 * 4 + ((side - quarter_turns) % 4 + 4) % 4;
+  const RoundHole& hole = board.round_holes[static_cast<std::size_t>(side - kFirstRim)];
+  Eigen::Vector2d at = hole.center_in_board_m;
+  for (int i = 0; i < (quarter_turns % 4 + 4) % 4; ++i) at = Eigen::Vector2d(at.y(), -at.x());
+  const auto there = std::ranges::find_if(board.round_holes, [&](const RoundHole& other) {
+    return (other.center_in_board_m - at).norm() < kSamePlace_m &&
+           std::abs(other.radius_m - hole.radius_m) < kSamePlace_m;
+  });
+  if (there == board.round_holes.end()) return -1;
+  return kFirstRim + static_cast<int>(there - board.round_holes.begin());
+}
+
+bool HolesAllowHalfTurn(const Board& board) {
+  for (int i = 0; i < static_cast<int>(board.round_holes.size()); ++i) {
+    if (SideAfterTurn(board, kFirstRim + i, 2) < 0) return false;
+  }
+  return true;
+}
+
 std::optional<BoardFault> FindBoardFault(const Board& board) {
   if (auto fault = FindSizeFault(board)) return fault;
   if (board.hole) {
     if (auto fault = FindHoleFault(board)) return fault;
+  }
+  for (int i = 0; i < static_cast<int>(board.round_holes.size()); ++i) {
+    if (auto fault = FindRoundHoleFault(board, i)) return fault;
   }
   if (board.checker) {
     if (auto fault = FindCheckerFault(board)) return fault;

@@ -11,16 +11,17 @@ namespace sextant {
 
 /// A contradiction in a board's description: its part and field, and the reason.
 struct BoardFault {
-  enum class Part { kBoard, kHole, kTag, kChecker };
+  enum class Part { kBoard, kHole, kRoundHole, kTag, kChecker };
 
   Part part = Part::kBoard;
-  int tag = 0;          ///< Index into Board::tags, where the part is a tag.
+  int index = 0;        ///< Index into Board::round_holes or Board::tags, for these parts.
   std::string field{};  ///< "edge_m", as the board file names it; empty: the part as a whole.
   std::string message{};
 };
 
 /// The first fault of a board: sizes that are not positive and finite, a hole or print that is not
-/// entirely on the board, prints that overlap each other or the hole, an id of one family twice.
+/// entirely on the board, prints and holes that overlap each other, an id of one family twice. Tags
+/// of a checkerboard that holds tags must lie within its white squares.
 /// Touching is not an overlap. Whether a family has an id is checked in features/camera.
 std::optional<BoardFault> FindBoardFault(const Board& board);
 
@@ -29,5 +30,12 @@ std::array<Eigen::Vector2d, 4> TagCorners(const BoardTag& tag);
 
 /// Corners of a board in its own frame [m]: the 4 outer ones, then the 4 of its hole, if any.
 std::vector<Eigen::Vector2d> CornersInBoard(const Board& board);
+
+/// The number that a side or rim gets when the board's frame is turned by quarter turns clockwise,
+/// as seen, on the same board; -1 for a rim where the turned board has no hole.
+int SideAfterTurn(const Board& board, int side, int quarter_turns);
+
+/// Whether the round holes are at the same places after half a turn; true without any.
+bool HolesAllowHalfTurn(const Board& board);
 
 }  // namespace sextant

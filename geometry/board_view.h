@@ -20,7 +20,9 @@ struct BoardPoints {
 /// A ray of the LiDAR that intersects the board's plane on one of its sides.
 struct EdgeRay {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< Unit, in the LiDAR frame.
-  int side = 0;  ///< 0 from corner 0 to 1, clockwise; 4 to 7 for the opening.
+  /// 0 from corner 0 to 1, clockwise; 4 to 7 for the opening; from kFirstRim on the rims of the
+  /// round holes.
+  int side = 0;
   /// Standard deviation of the intersection, across the side, in the plane: from half a step
   /// between samples (uniform) and the beam's spot.
   double sigma_m = 0.0;

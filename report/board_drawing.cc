@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "base/text/printable.h"
 #include "features/camera/tags/tag_pattern.h"
@@ -60,7 +61,7 @@ void DrawChecker(cairo_t* cr, const BoardChecker& checker) {
   const int columns = checker.inner_columns + 1;
   const int rows = checker.inner_rows + 1;
   for (int row = 0; row < rows; ++row) {
-    for (int column = row % 2; column < columns; column += 2) {
+    for (int column = (row + (checker.starts_white ? 1 : 0)) % 2; column < columns; column += 2) {
       cairo_rectangle(cr,
                       checker.center_in_board_m.x() + (column - 0.5 * columns) * checker.square_m,
                       checker.center_in_board_m.y() + (row - 0.5 * rows) * checker.square_m,
@@ -111,6 +112,12 @@ Expected<void> DrawBoard(cairo_t* cr, const Board& board, const std::string& sou
   StrokeRectangle(cr, Eigen::Vector2d::Zero(), board.top_right_m, board.right_bottom_m);
   if (board.hole) {
     StrokeRectangle(cr, board.hole->center_in_board_m, board.hole->width_m, board.hole->height_m);
+  }
+  for (const RoundHole& hole : board.round_holes) {
+    cairo_new_path(cr);
+    cairo_arc(cr, hole.center_in_board_m.x(), hole.center_in_board_m.y(), hole.radius_m, 0.0,
+              2.0 * std::numbers::pi);
+    cairo_stroke(cr);
   }
   DrawLegend(cr, board, source);
   cairo_restore(cr);

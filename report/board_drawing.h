@@ -11,7 +11,7 @@ namespace sextant {
 
 enum class DrawingFormat { kPdf, kSvg, kPng };
 
-/// Boards to print at true scale: outline and hole as cut lines, tags and checkerboard, a ruler of
+/// Boards to print at true scale: outline and holes as cut lines, tags and checkerboard, a ruler of
 /// 100 mm to check the printer, and `source` with the id of the board. The page is the board with a
 /// margin of 20 mm. A PDF has a page for each board, the other formats hold one board.
 /// Errors: kInvalidInput for a PNG of more than 200 million pixels and for several boards in a

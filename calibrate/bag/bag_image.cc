@@ -21,6 +21,7 @@ struct Encoding {
   std::string_view name;
   int type = CV_8UC1;
   int to_bgr = kAsItIs;
+  int rows_of_two = 2;  // Rows of samples for two rows of pixels.
 };
 
 // sensor_msgs/image_encodings. OpenCV names a mosaic by its second row's second and third pixel.
@@ -38,6 +39,14 @@ constexpr std::array kEncodings = {
     Encoding{"bayer_bggr8", CV_8UC1, cv::COLOR_BayerRG2BGR},
     Encoding{"bayer_gbrg8", CV_8UC1, cv::COLOR_BayerGR2BGR},
     Encoding{"bayer_grbg8", CV_8UC1, cv::COLOR_BayerGB2BGR},
+    Encoding{"bayer_rggb16", CV_16UC1, cv::COLOR_BayerBG2BGR},
+    Encoding{"bayer_bggr16", CV_16UC1, cv::COLOR_BayerRG2BGR},
+    Encoding{"bayer_gbrg16", CV_16UC1, cv::COLOR_BayerGR2BGR},
+    Encoding{"bayer_grbg16", CV_16UC1, cv::COLOR_BayerGB2BGR},
+    Encoding{"bgr16", CV_16UC3},
+    Encoding{"rgb16", CV_16UC3, cv::COLOR_RGB2BGR},
+    Encoding{"nv12", CV_8UC1, cv::COLOR_YUV2BGR_NV12, 3},
+    Encoding{"nv21", CV_8UC1, cv::COLOR_YUV2BGR_NV21, 3},
     Encoding{"yuv422", CV_8UC2, cv::COLOR_YUV2BGR_UYVY},
     Encoding{"yuv422_yuy2", CV_8UC2, cv::COLOR_YUV2BGR_YUY2},
 };
@@ -57,7 +66,7 @@ std::string KnownNames() {
 void SwapBytes(cv::Mat& image) {
   for (int row = 0; row < image.rows; ++row) {
     auto* pixel = image.ptr<std::uint16_t>(row);
-    for (int i = 0; i < image.cols; ++i) {
+    for (int i = 0; i < image.cols * image.channels(); ++i) {
       pixel[i] = static_cast<std::uint16_t>((pixel[i] << 8U) | (pixel[i] >> 8U));
     }
   }
@@ -82,8 +91,9 @@ Expected<cv::Mat> ToMat(const ImageMessage& image) {
   }
   try {
     std::string data = image.data;  // OpenCV takes a pointer to writable data only.
+    const int rows = image.height_px * found->rows_of_two / 2;
     cv::Mat pixels =
-        cv::Mat(image.height_px, image.width_px, found->type, data.data(), image.row_bytes).clone();
+        cv::Mat(rows, image.width_px, found->type, data.data(), image.row_bytes).clone();
     if (CV_MAT_DEPTH(found->type) == CV_16U &&
         image.big_endian != (std::endian::native == std::endian::big)) {
       SwapBytes(pixels);

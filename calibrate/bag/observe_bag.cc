@@ -46,7 +46,7 @@ Expected<const BagPairing*> ChoosePairing(const Bag& bag, const BagStreams& all)
   if (known.empty()) {
     return MakeError(ErrorCode::kMissingData,
                      "the recording has no topic of images (Image, CompressedImage) beside one of "
-                     "scans (PointCloud2)");
+                     "scans (PointCloud2, Livox CustomMsg)");
   }
   if (all.pairings.size() == 1) return &all.pairings.front();
   return MakeError(ErrorCode::kMissingData,

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "geometry/board_check.h"
+
 namespace sextant {
 namespace {
 
@@ -24,8 +26,11 @@ double ChiSquare(const RectangleFit& fit) {
 }
 
 // Converts a corner or side number (in groups of four) of the board turned by `turns` quarter turns
-// into the number on the board itself.
-int BoardNumber(int number, int turns) { return number / 4 * 4 + (number + 4 - turns) % 4; }
+// into the number on the board itself. Rims of round holes keep their numbers (Turned).
+int BoardNumber(int number, int turns) {
+  if (number < 0 || number >= kFirstRim) return number;
+  return number / 4 * 4 + (number + 4 - turns) % 4;
+}
 
 LidarCorners InBoardOrder(const LidarCorners& turned, int turns) {
   LidarCorners own = turned;
@@ -51,7 +56,7 @@ LidarCorners InBoardOrder(const LidarCorners& turned, int turns) {
 BoardPlacement Place(const LidarPlane& plane, const RectangleFit& turned, int board, int turns) {
   BoardPlacement placement{.board = board, .turn = turns, .fit = turned};
   placement.fit.angle_rad += turns * 0.5 * std::numbers::pi;
-  for (int& side : placement.fit.sides) side = side < 0 ? side : BoardNumber(side, turns);
+  for (int& side : placement.fit.sides) side = BoardNumber(side, turns);
   Eigen::Matrix3d lidar_from_plane;
   lidar_from_plane << plane.x_axis, plane.y_axis, plane.normal;
   const Eigen::AngleAxisd in_plane(placement.fit.angle_rad, Eigen::Vector3d::UnitZ());
@@ -59,6 +64,24 @@ BoardPlacement Place(const LidarPlane& plane, const RectangleFit& turned, int bo
       Eigen::Quaterniond(lidar_from_plane * in_plane.toRotationMatrix()).normalized(),
       plane.At(placement.fit.center)};
   return placement;
+}
+
+// The fit of a board to the patch, which may have been found as another board.
+std::optional<RectangleFit> UprightFit(const BoardPatch& patch, int index, const Board& board) {
+  if (index == patch.board) return patch.fit;
+  const Eigen::Vector3d placed(patch.fit.center.x(), patch.fit.center.y(), patch.fit.angle_rad);
+  return FitRectangle(patch.edges, board, {&placed, 1});
+}
+
+// Quarter turns that need a fit of their own. The same after half a turn, unless the round holes
+// are not; after a quarter turn, the sides are exchanged.
+int TurnsToFit(const Board& board) { return HolesAllowHalfTurn(board) ? 2 : 4; }
+
+// Rim numbers after half a turn.
+void RenumberRims(const Board& board, std::vector<int>& sides) {
+  for (int& side : sides) {
+    if (side >= kFirstRim) side = SideAfterTurn(board, side, 2);
+  }
 }
 
 // The outline as it appears in the scan.
@@ -81,6 +104,10 @@ Board Turned(const Board& board, int quarter_turns) {
   turned.checker.reset();
   for (int i = 0; i < quarter_turns; ++i) {
     std::swap(turned.top_right_m, turned.right_bottom_m);
+    for (RoundHole& hole : turned.round_holes) {
+      hole.center_in_board_m =
+          Eigen::Vector2d(-hole.center_in_board_m.y(), hole.center_in_board_m.x());
+    }
     if (!turned.hole) continue;
     std::swap(turned.hole->width_m, turned.hole->height_m);
     const Eigen::Vector2d center = turned.hole->center_in_board_m;
@@ -94,10 +121,8 @@ Expected<std::vector<BoardPlacement>> PlaceBoards(const BoardPatch& patch,
                                                   const std::string& extractor, std::string& why) {
   std::vector<BoardPlacement> placements;
   for (std::size_t b = 0; b < boards.size(); ++b) {
-    std::optional<RectangleFit> upright = patch.fit;
-    if (static_cast<int>(b) != patch.board) upright = FitRectangle(patch.edges, boards[b]);
-    // The same after half a turn; after a quarter turn, the sides are exchanged.
-    for (int turns = 0; upright && turns < 2; ++turns) {
+    const std::optional<RectangleFit> upright = UprightFit(patch, static_cast<int>(b), boards[b]);
+    for (int turns = 0; upright && turns < TurnsToFit(boards[b]); ++turns) {
       const Board turned = Turned(boards[b], turns);
       const std::optional<RectangleFit> fit =
           turns == 0 ? upright
@@ -114,8 +139,9 @@ Expected<std::vector<BoardPlacement>> PlaceBoards(const BoardPatch& patch,
         why = corners.error().message;
         continue;
       }
-      for (const int turn : {turns, turns + 2}) {
+      for (int turn = turns; turn < 4; turn += TurnsToFit(boards[b])) {
         placements.push_back(Place(patch.plane, *fit, fitted.board, turn));
+        if (turn != turns) RenumberRims(boards[b], placements.back().fit.sides);
         placements.back().corners = InBoardOrder(*corners, turn);
         placements.back().misfit = ChiSquare(*fit);
       }

@@ -27,6 +27,10 @@ std::string WhyUnseen(const Board& board, const SeenBoard& seen) {
     return fmt::format("its tag {} appears more than once in the image, so it is not used",
                        board.tags[seen.duplicate_tags.front()].id);
   }
+  if (board.tags.size() > 1) {
+    return fmt::format("none of its {} tags of {} was found", board.tags.size(),
+                       board.tags.front().family);
+  }
   if (!board.tags.empty()) {
     return fmt::format("tag {} of {} was not found", board.tags.front().id,
                        board.tags.front().family);

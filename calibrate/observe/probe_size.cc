@@ -24,6 +24,10 @@ Board Scaled(const Board& board, double factor) {
                             .height_m = factor * board.hole->height_m,
                             .center_in_board_m = factor * board.hole->center_in_board_m};
   }
+  for (const RoundHole& hole : board.round_holes) {
+    scaled.round_holes.push_back(
+        {.radius_m = factor * hole.radius_m, .center_in_board_m = factor * hole.center_in_board_m});
+  }
   return scaled;
 }
 

@@ -7,6 +7,7 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "io/boards/board_file.h"
+#include "io/boards/board_templates.h"
 #include "io/output/output_file.h"
 #include "report/board_drawing.h"
 
@@ -15,15 +16,19 @@ namespace {
 
 struct PrintBoardOptions {
   std::string board_path{};
+  std::string board_template{};
   std::string out{};
   std::optional<int> id{};  ///< None: every board of the file.
   double dpi = 150.0;       ///< Resolution of a PNG.
 };
 
 void Declare(PrintBoardOptions& options, Arguments& arguments) {
-  arguments.Add("FILE", options.board_path, "Board YAML or marker_coordinates.txt",
-                {.required = true});
-  arguments.Add("--out", options.out, "Written by its extension: .pdf, .svg or .png",
+  arguments.Add("FILE", options.board_path, "Board YAML, Kalibr's target or marker_coordinates.txt",
+                {.excludes = "--template"});
+  arguments.Add("--template", options.board_template, "A board of another program instead of FILE",
+                {.choices = BoardTemplateNames()});
+  arguments.Add("--out", options.out,
+                "Written by its extension: .pdf, .svg or .png; .yaml: the board file",
                 {.required = true, .writes = Writes::kFile});
   arguments.Add("--id", options.id, "One board of the file; a .pdf holds all",
                 {.range = {{0, 1e9}}});
@@ -37,13 +42,31 @@ Expected<DrawingFormat> FormatOf(const std::string& out) {
   if (extension == ".svg") return DrawingFormat::kSvg;
   if (extension == ".png") return DrawingFormat::kPng;
   return MakeError(ErrorCode::kInvalidOption,
-                   out + ": expected a target that ends in .pdf, .svg or .png");
+                   out + ": expected a target that ends in .pdf, .svg, .png or .yaml");
+}
+
+Expected<std::vector<Board>> BoardsOf(const PrintBoardOptions& options) {
+  if (!options.board_template.empty()) {
+    SEXTANT_ASSIGN_OR_RETURN(Board board, FindBoardTemplate(options.board_template));
+    return std::vector<Board>{std::move(board)};
+  }
+  if (!options.board_path.empty()) return ReadBoards(options.board_path);
+  return MakeError(ErrorCode::kInvalidOption,
+                   "expected a board file, or a board of another program with --template");
+}
+
+// The boards as a file, or drawn.
+Expected<std::string> Content(const PrintBoardOptions& options, const std::vector<Board>& boards) {
+  if (std::filesystem::path(options.out).extension() == ".yaml") return FormatBoards(boards);
+  SEXTANT_ASSIGN_OR_RETURN(const DrawingFormat format, FormatOf(options.out));
+  const std::string source = options.board_template.empty()
+                                 ? std::filesystem::path(options.board_path).filename().string()
+                                 : options.board_template;
+  return DrawBoards(boards, source, format, options.dpi);
 }
 
 int Run(const PrintBoardOptions& options) {
-  const Expected<DrawingFormat> format = FormatOf(options.out);
-  if (!format) return Refuse("print-board", format.error());
-  Expected<std::vector<Board>> boards = ReadBoards(options.board_path);
+  Expected<std::vector<Board>> boards = BoardsOf(options);
   if (!boards) return Refuse("print-board", boards.error());
   if (options.id) {
     std::erase_if(*boards, [&](const Board& board) { return board.id != *options.id; });
@@ -53,10 +76,9 @@ int Run(const PrintBoardOptions& options) {
                      fmt::format("{}: there is no board {}", options.board_path, *options.id)});
     }
   }
-  const std::string source = std::filesystem::path(options.board_path).filename().string();
-  const Expected<std::string> drawn = DrawBoards(*boards, source, *format, options.dpi);
-  if (!drawn) return Refuse("print-board", drawn.error());
-  if (const Expected<void> ok = WriteFileAtomically(options.out, *drawn); !ok) {
+  const Expected<std::string> content = Content(options, *boards);
+  if (!content) return Refuse("print-board", content.error());
+  if (const Expected<void> ok = WriteFileAtomically(options.out, *content); !ok) {
     return Refuse("print-board", ok.error());
   }
   return kAnswered;
@@ -67,7 +89,8 @@ int Run(const PrintBoardOptions& options) {
 Command PrintBoardCommand() {
   constexpr const char* kFooter =
       "Print at 100 %, without fitting to the page, and measure the ruler.\n"
-      "Example:\n  sextant print-board board.yaml --out target.pdf";
+      "Examples:\n  sextant print-board board.yaml --out target.pdf\n"
+      "  sextant print-board --template fast_calib --out board.yaml";
   return MakeCommand<PrintBoardOptions>("print-board",
                                         "Boards to print at true scale, with a ruler and cut lines",
                                         kFooter, Declare, Run);

@@ -32,20 +32,18 @@ OptionSet<AprilTagOptions> Options() {
       .Choice("refine_edges", &AprilTagOptions::refine_edges, {"false", "true"},
               "snap the edges to gradients of the full image")
       .Count("hamming", &AprilTagOptions::hamming, -1, 2,
-             "wrong bits that are corrected; -1: as many up to 2 as take less than 32 MB")
+             "wrong bits that are corrected; -1: one, where its table takes less than 32 MB")
       .Real("min_margin", &AprilTagOptions::min_margin, "grey levels", 0.0, 255.0,
             "minimum decision margin of a tag");
   return options;
 }
 
-// The largest number of corrected bits, up to 2, whose table takes less than 32 MB. The library
-// makes a table with three slots of 16 bytes for each code with each set of wrong bits.
+// One corrected bit, if its table takes less than 32 MB: with two, real photos have false tags. The
+// library makes a table with three slots of 16 bytes for each code with each set of wrong bits.
 int AffordableHamming(const apriltag_family_t& family) {
   constexpr double kMaxBytes = 32e6;
-  const double bits = family.nbits;
   const double bytes_per_set = 48.0 * family.ncodes;
-  if (bytes_per_set * (1.0 + bits + 0.5 * bits * (bits - 1.0)) < kMaxBytes) return 2;
-  return bytes_per_set * (1.0 + bits) < kMaxBytes ? 1 : 0;
+  return bytes_per_set * (1.0 + family.nbits) < kMaxBytes ? 1 : 0;
 }
 
 // The library's detector, which processes one image at a time.

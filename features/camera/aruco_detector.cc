@@ -90,6 +90,7 @@ class ArucoDetector final : public TagDetector {
     parameters_.cornerRefinementWinSize = options.window_px;
     parameters_.minMarkerPerimeterRate = options.min_perimeter;
     parameters_.errorCorrectionRate = options.error_correction;
+    parameters_.markerBorderBits = ArucoBorderCells(family_);
   }
 
  private:
@@ -136,7 +137,8 @@ class ArucoDetector final : public TagDetector {
     for (Eigen::Vector2d& corner : corners) {
       corner = corner * decimate_ + Eigen::Vector2d::Constant(0.5 * (decimate_ - 1));
     }
-    const TagReading reading = ReadTag(grey, corners, MakeArucoPattern(dictionary_, id));
+    const TagReading reading =
+        ReadTag(grey, corners, MakeArucoPattern(dictionary_, id, parameters_.markerBorderBits));
     return {.family = family_,
             .id = id,
             .corners_px = corners,

@@ -9,6 +9,7 @@
 
 #include "base/spec.h"
 #include "features/camera/grey_image.h"
+#include "features/camera/marked_corners.h"
 #include "features/camera/tags/tag_pattern.h"
 #include "geometry/board_check.h"
 
@@ -153,7 +154,7 @@ Expected<BoardFinder> BoardFinder::Make(std::vector<Board> boards, std::optional
         SEXTANT_RETURN_IF_ERROR(Add(tag.family, *quick, finder.quick_));
       }
     }
-    if (!board.checker) continue;
+    if (!board.checker || board.checker->holds_tags) continue;
     SEXTANT_RETURN_IF_ERROR(
         Add(CheckerKey(*board.checker),
             fmt::format("checkerboard(columns={},rows={})", board.checker->inner_columns,
@@ -189,7 +190,7 @@ SeenBoards BoardFinder::Assemble(const cv::Mat& grey, Detections found) const {
   SeenBoards seen;
   for (std::size_t i = 0; i < boards_.size(); ++i) {
     seen.boards.push_back(Assign(i, grey, found));
-    AddPoints(seen.boards.back());
+    AddPoints(grey, seen.boards.back());
     if (camera_) AddPose(seen.boards.back());
   }
   seen.other_tags = std::move(found.tags);
@@ -217,7 +218,7 @@ SeenBoard BoardFinder::Assign(std::size_t index, const cv::Mat& grey, Detections
                          .detection = here[0],
                          .refined = RefineTag(grey, here[0].corners_px, pattern, undistortion)});
   }
-  if (board.checker) {
+  if (board.checker && !board.checker->holds_tags) {
     const auto match = std::ranges::find_if(found.checkers, [&](const CheckerDetection& c) {
       return c.inner_columns == board.checker->inner_columns &&
              c.inner_rows == board.checker->inner_rows;
@@ -231,9 +232,15 @@ SeenBoard BoardFinder::Assign(std::size_t index, const cv::Mat& grey, Detections
   return seen;
 }
 
-void BoardFinder::AddPoints(SeenBoard& seen) const {
+void BoardFinder::AddPoints(const cv::Mat& grey, SeenBoard& seen) const {
   const Board& board = boards_[seen.index];
   for (const SeenTag& tag : seen.tags) seen.printed.push_back(PointsOf(board.tags[tag.index], tag));
+  if (board.checker && board.checker->holds_tags) {
+    BoardPoints corners = FindMarkedCorners(grey, *board.checker, seen.printed);
+    seen.is_checker_missing = corners.pixels.empty();
+    // Far more accurate than the tags, which are small.
+    if (!seen.is_checker_missing) seen.printed = {std::move(corners)};
+  }
   if (seen.checker) seen.printed.push_back(PointsOf(*board.checker, *seen.checker));
 }
 

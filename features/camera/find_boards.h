@@ -32,7 +32,9 @@ struct SeenBoard {
   std::vector<std::size_t> missing_tags{};  ///< Indices into Board::tags.
   bool is_checker_missing = false;
   std::vector<std::size_t> duplicate_tags{};  ///< Tags seen more than once, which are not used.
-  std::vector<BoardPoints> printed{};  ///< Input of the pose: a group for each tag or checkerboard.
+  /// Input of the pose: a group for each tag or checkerboard; of a checkerboard that holds tags
+  /// only its own corners, where they were found.
+  std::vector<BoardPoints> printed{};
   std::optional<Expected<BoardPose>> pose{};  ///< None without a camera or without any detection.
   PointsInCam corners{};                      ///< Those of BoardCorners; empty without a pose.
 };
@@ -68,7 +70,7 @@ class BoardFinder {
   BoardFinder() = default;
   SeenBoards Assemble(const cv::Mat& grey, Detections found) const;
   SeenBoard Assign(std::size_t index, const cv::Mat& grey, Detections& found) const;
-  void AddPoints(SeenBoard& seen) const;
+  void AddPoints(const cv::Mat& grey, SeenBoard& seen) const;
   void AddPose(SeenBoard& seen) const;
 
   std::vector<Board> boards_;

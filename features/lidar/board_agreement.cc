@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace sextant {
@@ -34,6 +35,8 @@ constexpr int kMinEdgePointsOnMinRings = 12;  // With kMinRings, furniture has u
 constexpr int kMinPointsOfBoard = 16;
 constexpr double kThroughCost = 4.0;
 constexpr double kBeyondCost = 2.0;
+constexpr int kMinRims = 3;
+constexpr double kMaxInHoles = 0.02;  // Returns in round holes relative to those on the board.
 
 // Distance of a point beyond the rectangle's nearest side; negative inside.
 double Beyond(const Eigen::Vector2d& point, double width, double height) {
@@ -64,8 +67,20 @@ class Outline {
 
   bool IsInside(const Eigen::Vector2d& q) const {
     if (Beyond(q, board_.top_right_m, board_.right_bottom_m) >= -margin_) return false;
+    if (std::ranges::any_of(board_.round_holes, [&](const RoundHole& hole) {
+          return (q - hole.center_in_board_m).norm() < hole.radius_m + margin_;
+        })) {
+      return false;
+    }
     return !board_.hole || Beyond(q - board_.hole->center_in_board_m, board_.hole->width_m,
                                   board_.hole->height_m) >= margin_;
+  }
+
+  // Whether a point lies in a round hole, not at its rim.
+  bool IsInHole(const Eigen::Vector2d& q) const {
+    return std::ranges::any_of(board_.round_holes, [&](const RoundHole& hole) {
+      return (q - hole.center_in_board_m).norm() < kHoleShare * hole.radius_m - margin_;
+    });
   }
 
   // A quarter of a side, and whether a point lies in the band beyond it.
@@ -95,7 +110,8 @@ class Outline {
   double margin() const { return margin_; }
 
  private:
-  static constexpr double kCrossing = 0.3;  // Sine at which rings cross a side well.
+  static constexpr double kCrossing = 0.3;    // Sine at which rings cross a side well.
+  static constexpr double kHoleShare = 0.85;  // Spots at a hole's rim make it smaller.
 
   static Eigen::Vector2d Normal(int side) {
     return side % 2 == 0 ? Eigen::Vector2d::UnitY() : Eigen::Vector2d::UnitX();
@@ -138,6 +154,9 @@ double DensityOf(const ScanRings& scan, const BoardPatch& patch, const Board& bo
   const Eigen::Vector3d center = patch.plane.At(patch.fit.center);
   double solid = board.top_right_m * board.right_bottom_m;
   if (board.hole) solid -= board.hole->width_m * board.hole->height_m;
+  for (const RoundHole& hole : board.round_holes) {
+    solid -= std::numbers::pi * hole.radius_m * hole.radius_m;
+  }
   const Eigen::Vector3d toward = center.normalized();
   const double level = std::sqrt(std::max(1e-6, 1.0 - std::pow(scan.axis().dot(toward), 2)));
   const double solid_angle =
@@ -157,6 +176,9 @@ bool IsBounded(const BoardAgreement& agreement) {
   if ((mostly(0) && mostly(2)) || (mostly(1) && mostly(3))) return true;
   return std::ranges::count(open, 0.0) <= 1 && OpenSum(agreement) >= kThreeSides;
 }
+
+// Round holes at their known places identify a board, however little of its outline is seen.
+bool IsKnownByHoles(const BoardPatch& patch) { return patch.fit.rims_seen >= kMinRims; }
 
 double MinShare(const BoardAgreement& agreement) {
   const double free = (OpenSum(agreement) - kPartlyFree) / (kFree - kPartlyFree);
@@ -189,6 +211,8 @@ BoardAgreement AgreementOf(const ScanRings& scan, const PlaneRays& rays, const B
       } else {
         ++(ray.end == RayEnd::kBehind ? through : hidden);
       }
+    } else if (outline.IsInHole(q)) {
+      agreement.in_holes += ray.end == RayEnd::kOnPlane ? 1 : 0;
     } else if (const auto part = outline.BeyondSide(q); part && ray.end != RayEnd::kInFront) {
       auto& sides = ray.end == RayEnd::kBehind ? counts.passing : counts.ending;
       ++sides[part->side][part->part];
@@ -222,6 +246,8 @@ double RayCost(const PlaneRays& rays, const RectangleFit& fit, const Board& boar
     const bool on_plane = ray.end == RayEnd::kOnPlane;
     if (outline.IsInside(q)) {
       cost += on_plane ? -1.0 : kThroughCost;
+    } else if (on_plane && outline.IsInHole(q)) {
+      cost += kThroughCost;
     } else if (on_plane && outline.BeyondSide(q)) {
       cost += kBeyondCost;
     }
@@ -257,7 +283,10 @@ std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board&
         board.top_right_m, board.right_bottom_m, 100.0 * patch.fit.share, patch.fit.rms,
         100.0 * (patch.fit.size_ratio - 1.0));
   }
-  if (!IsBounded(agreement)) {
+  if (agreement.in_holes > kMaxInHoles * agreement.points) {
+    return fmt::format("{} returns are where the board has round holes", agreement.in_holes);
+  }
+  if (!IsBounded(agreement) && !IsKnownByHoles(patch)) {
     const auto open = std::ranges::count_if(agreement.open, [](double part) { return part > 0.0; });
     return fmt::format(
         "its ends are visible at {} of its sides only, not far enough along two opposite ones or "
@@ -271,7 +300,7 @@ std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board&
     return fmt::format("a nearer object hides {:.0f} % of it", 100.0 * (1.0 - agreement.visible));
   }
   const double most_closed = *std::ranges::max_element(agreement.closed);
-  if (agreement.continued > kMaxContinued || most_closed > kMaxClosed) {
+  if (!IsKnownByHoles(patch) && (agreement.continued > kMaxContinued || most_closed > kMaxClosed)) {
     return fmt::format(
         "its plane continues beyond {:.0f} % of its outline, as that of a wall or of furniture "
         "does",

@@ -77,7 +77,8 @@ class Assignment {
     const Board& second = boards_[static_cast<std::size_t>(b)];
     return std::abs(first.top_right_m - second.top_right_m) < kSameSize_m &&
            std::abs(first.right_bottom_m - second.right_bottom_m) < kSameSize_m &&
-           first.hole.has_value() == second.hole.has_value();
+           first.hole.has_value() == second.hole.has_value() &&
+           first.round_holes.size() == second.round_holes.size();
   }
 
   // Refits patches whose board changes.
@@ -100,7 +101,8 @@ class Assignment {
 
   void Refit(BoardPatch& patch) const {
     const Board& board = boards_[static_cast<std::size_t>(patch.board)];
-    const std::optional<RectangleFit> fit = FitRectangle(patch.edges, board);
+    const Eigen::Vector3d placed(patch.fit.center.x(), patch.fit.center.y(), patch.fit.angle_rad);
+    const std::optional<RectangleFit> fit = FitRectangle(patch.edges, board, {&placed, 1});
     if (!fit) return;
     patch.fit = *fit;
     patch.agreement = AgreementOf(scan_, patch, board);

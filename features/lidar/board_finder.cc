@@ -14,6 +14,7 @@
 #include "features/lidar/board_assignment.h"
 #include "features/lidar/plane_rays.h"
 #include "features/lidar/ring_clusters.h"
+#include "features/lidar/round_holes.h"
 #include "features/lidar/scan_limits.h"
 
 namespace sextant {
@@ -171,8 +172,10 @@ class Finder {
   std::optional<BoardPatch> Place(std::size_t board, const LidarPlane& plane,
                                   const std::vector<std::size_t>& on_plane, const PlaneRays& rays) {
     BoardPatch patch{.board = static_cast<int>(board), .plane = plane, .on_plane = on_plane};
-    patch.edges = FindEdgePoints(scan_, plane, on_plane, EdgeOptionsOf(boards_[board]));
-    std::vector<RectangleFit> fits = FitRectangles(patch.edges, boards_[board], kPlacements);
+    HoledEdges edges = EdgesOf(boards_[board], plane, on_plane);
+    patch.edges = std::move(edges.edges);
+    std::vector<RectangleFit> fits =
+        FitRectangles(patch.edges, boards_[board], kPlacements, edges.starts);
     if (fits.empty()) return std::nullopt;
     for (RectangleFit& fit : fits) fit.cost += RayCost(rays, fit, boards_[board]);
     patch.fit = fits[MostUpright(fits, boards_[board])];
@@ -202,7 +205,7 @@ class Finder {
       for (const int i : found->inliers) {
         patch.on_plane.push_back(near[static_cast<std::size_t>(i)]);
       }
-      patch.edges = FindEdgePoints(scan_, patch.plane, patch.on_plane, EdgeOptionsOf(board));
+      patch.edges = EdgesOf(board, patch.plane, patch.on_plane).edges;
       const auto center = patch.plane.Meet(first.plane.At(first.fit.center));
       const Eigen::Vector2d x_axis(std::cos(first.fit.angle_rad), std::sin(first.fit.angle_rad));
       const Eigen::Vector3d along =
@@ -229,9 +232,15 @@ class Finder {
             .smallest_share = 0.25};
   }
 
-  EdgeOptions EdgeOptionsOf(const Board& board) const {
-    return {
-        .hollow = board.hole.has_value(), .correct = options_.correct_edges, .beam = options_.beam};
+  HoledEdges EdgesOf(const Board& board, const LidarPlane& plane,
+                     const std::vector<std::size_t>& on_plane) const {
+    const EdgeOptions options{.hollow = board.hole || !board.round_holes.empty(),
+                              .correct = options_.correct_edges,
+                              .beam = options_.beam};
+    if (!board.round_holes.empty()) {
+      return FindHoledEdges(scan_, plane, on_plane, board, options);
+    }
+    return {.edges = FindEdgePoints(scan_, plane, on_plane, options)};
   }
 
   int RingsOf(const std::vector<std::size_t>& places) const {

@@ -35,6 +35,7 @@ struct BoardSearchOptions {
 struct BoardAgreement {
   int rings = 0;
   int points = 0;        ///< Returns on the board.
+  int in_holes = 0;      ///< Returns of its plane where it has round holes.
   double density = 0.0;  ///< Returns on it relative to those expected from the sensor's steps.
   double filled = 0.0;   ///< Fraction of the rays onto the board that end on it, not behind it.
   double visible = 0.0;  ///< Fraction of them not blocked by a nearer object.

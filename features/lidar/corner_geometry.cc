@@ -19,7 +19,8 @@ Expected<std::vector<std::vector<int>>> GroupBySide(const BoardPatch& patch, con
   constexpr std::size_t kNeeded = 2;
   std::vector<std::vector<int>> groups(static_cast<std::size_t>(SidesOf(board)));
   for (std::size_t i = 0; i < patch.edges.size(); ++i) {
-    if (patch.fit.sides[i] < 0 || patch.edges[i].across) continue;
+    if (patch.fit.sides[i] < 0 || patch.fit.sides[i] >= SidesOf(board)) continue;
+    if (patch.edges[i].across) continue;
     groups[static_cast<std::size_t>(patch.fit.sides[i])].push_back(static_cast<int>(i));
   }
   for (std::size_t side = 0; side < groups.size(); ++side) {
@@ -52,7 +53,8 @@ CornerChecks ChecksOf(const BoardPatch& patch, const Board& board,
   checks.line_gaps_m.assign(sides, 0.0);
   checks.plane_sigma_m = patch.plane.sigma_m;
   for (const int side : patch.fit.sides) {
-    if (side >= 0) ++checks.points_per_edge[static_cast<std::size_t>(side)];
+    if (side >= 0 && side < SidesOf(board))
+      ++checks.points_per_edge[static_cast<std::size_t>(side)];
   }
   for (std::size_t i = 0; i < sides; ++i) {
     const std::size_t next = i / 4 * 4 + (i + 1) % 4;

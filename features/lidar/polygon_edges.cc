@@ -13,6 +13,7 @@
 
 #include "features/lidar/board_agreement.h"
 #include "features/lidar/scan_limits.h"
+#include "geometry/board_check.h"
 
 namespace sextant {
 namespace {
@@ -170,8 +171,9 @@ class MarkedPatch {
 
   // Adds edge points for which no area is drawn: ends between rings, and the opening.
   void AddOthers(BoardPatch& patch) const {
-    for (const EdgePoint& edge : FindEdgePoints(scan_, patch.plane, patch.on_plane,
-                                                EdgeOptionsFor(board_.hole.has_value()))) {
+    const bool hollow = board_.hole || !board_.round_holes.empty();
+    for (const EdgePoint& edge :
+         FindEdgePoints(scan_, patch.plane, patch.on_plane, EdgeOptionsFor(hollow))) {
       if (edge.across || edge.inner) patch.edges.push_back(edge);
     }
   }
@@ -187,7 +189,7 @@ class MarkedPatch {
     patch.fit = *fit;
     const int turns = TurnsTo(sides, patch.fit.sides);
     const bool square = std::abs(board_.top_right_m - board_.right_bottom_m) < kSquare_m;
-    if (turns % 2 != 0 && (!square || board_.hole)) {
+    if (turns % 2 != 0 && (!square || board_.hole || !board_.round_holes.empty())) {
       return Fail(
           ErrorCode::kInvalidInput,
           fmt::format("its sides of {} and {} m fit in exchanged order: mark the edge from corner "
@@ -197,7 +199,7 @@ class MarkedPatch {
     patch.fit.angle_rad += turns * 0.5 * std::numbers::pi;
     for (std::size_t i = 0; i < patch.fit.sides.size(); ++i) {
       int& side = patch.fit.sides[i];
-      if (side >= 0 && turns != 0) side = side / 4 * 4 + (side % 4 + 4 - turns) % 4;
+      side = SideAfterTurn(board_, side, turns);
       if (i < sides.size()) side = sides[i];
     }
     patch.agreement = AgreementOf(scan_, patch, board_);

@@ -8,9 +8,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "features/lidar/rectangle_starts.h"
+#include "geometry/board_check.h"
 #include "geometry/symmetric.h"
 
 namespace sextant {
@@ -32,10 +34,19 @@ constexpr double kMaxSigma = 0.15;  // Of the position, relative to half the dia
 constexpr int kMinEdges = 4;
 constexpr int kMinCrossing = 3;  // Ends of rings on the sides of an axis that determine it.
 constexpr double kMinCrossingSine =
-    0.12;                                 // Of the angle between a ring and a side that it crosses.
-constexpr double kMinVariance_m2 = 1e-6;  // Of a position within an interval.
-constexpr std::size_t kMaxSides = 8;      // For a hollow board.
-constexpr double kSameSides = 1e-6;       // Relative; the sides of a square.
+    0.12;                             // Of the angle between a ring and a side that it crosses.
+constexpr int kMinCrossingOfFew = 2;  // A single end may be that of another side.
+// Standard deviation of the growth, in spots, at a side that rings meet slantwise or not at all:
+// successive returns then have ever less of their spot on the board, and mix with what is behind,
+// so that the side appears further in instead of further out.
+constexpr double kSlantGrowthSigma = 0.4;
+constexpr double kSlantSine = 0.3;
+constexpr double kMinVariance_m2 = 1e-6;      // Of a position within an interval.
+constexpr std::size_t kMaxSides = kFirstRim;  // Straight ones.
+constexpr std::size_t kRimParts = 4;          // Of a rim, to tell how much of it is seen.
+constexpr std::size_t kMinRimParts = 3;
+constexpr int kMinRimPoints = 6;
+constexpr double kSameSides = 1e-6;  // Relative; the sides of a square.
 // Prior sigma of the distance of all sides beyond where the board's size has them, relative to half
 // the mean side: boards are measured to that, and ranges are off by as much.
 constexpr double kExcessSigma = 0.01;
@@ -53,8 +64,9 @@ struct SidePlace {
   Eigen::Vector2d grown = Eigen::Vector2d::Zero();  // Displacement of the edge by the beam [m].
   double sigma = 1.0;                               // [m].
   double half_step = 0.0;                           // Across the side [m].
-  double along = 0.0;                               // Position along the side, from its middle [m].
-  double excess = 0.0;                              // Subtracted from the distance [m].
+  // Position along the side, from its middle [m]; on a rim, the direction from its centre [rad].
+  double along = 0.0;
+  double excess = 0.0;        // Subtracted from the distance [m].
   double growth_sigma = 0.0;  // Signed as the distance, common to all edges [m].
   Eigen::Vector4d by_pose = Eigen::Vector4d::Zero();  // Derivative by the placement.
 };
@@ -68,6 +80,7 @@ struct Sums {
   std::array<Eigen::Vector3d, kMaxSides> by_side{};   // For an offset of all points of a side.
   std::array<Eigen::Vector3d, kMaxSides> by_slope{};  // For a slope of them.
   std::array<int, kMaxSides> of_side{};
+  std::vector<std::array<int, kRimParts>> rims{};
   double by_size = 0.0;
   double size_weight = 0.0;
   double chi2 = 0.0;
@@ -85,6 +98,8 @@ struct Sums {
     const Eigen::Vector3d j = of_all.head<3>();
     information += of_all * of_all.transpose();
     by_growth += j * place.growth_sigma / place.sigma;
+    chi2 += place.distance * place.distance / (place.sigma * place.sigma);
+    if (side >= kMaxSides) return;
     shared[side].Add(place.distance, place.half_step);
     slopes[side].Add(place.along, place.distance, place.half_step);
     by_side[side] += j / place.sigma;
@@ -94,14 +109,32 @@ struct Sums {
       by_size += arm * (place.distance + place.excess) / place.sigma;
       size_weight += arm * arm;
     }
-    chi2 += place.distance * place.distance / (place.sigma * place.sigma);
   }
 
   // Counts an edge point, whether or not it determines the position.
   void Count(const SidePlace& place) {
-    ++of_side[static_cast<std::size_t>(place.side)];
+    if (place.side < kFirstRim) {
+      ++of_side[static_cast<std::size_t>(place.side)];
+    } else {
+      CountOnRim(place);
+    }
     squares += place.distance * place.distance;
     ++used;
+  }
+
+  void CountOnRim(const SidePlace& place) {
+    const auto rim = static_cast<std::size_t>(place.side - kFirstRim);
+    if (rim >= rims.size()) rims.resize(rim + 1);
+    const double turn = 0.5 * (place.along / std::numbers::pi + 1.0);
+    ++rims[rim][static_cast<std::size_t>(turn * kRimParts) % kRimParts];
+  }
+
+  int RimsSeen() const {
+    return static_cast<int>(std::ranges::count_if(rims, [](const auto& parts) {
+      const auto empty = static_cast<std::size_t>(std::ranges::count(parts, 0));
+      return kRimParts - empty >= kMinRimParts &&
+             std::accumulate(parts.begin(), parts.end(), 0) >= kMinRimPoints;
+    }));
   }
 
   // A prior of four residuals of one sigma keeps the scale from vanishing for few residuals. A
@@ -142,6 +175,15 @@ struct AxisInterval {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 
+  // Spots at the ends before the rings beyond, in both directions [m].
+  std::array<double, 2> end_spots{};
+
+  // The growth at two opposite ends cancels.
+  double GrowthVariance() const {
+    const double spot = end_spots[0] - end_spots[1];
+    return kSlantGrowthSigma * kSlantGrowthSigma * spot * spot;
+  }
+
   double Middle() const { return 0.5 * (low + high); }
   double Variance() const {
     const double length = std::max(high - low, 0.0);
@@ -162,6 +204,10 @@ class Fitter {
     const Eigen::Vector2d in_board = turn.transpose() * (edge.in_plane - pose.head<2>());
     const Eigen::Vector2d out = turn.transpose() * edge.outward;
     const bool inner = edge.inner && board_.hole;
+    if (edge.inner && !board_.round_holes.empty()) {
+      const SidePlace place = PlaceOnRim(edge, in_board, out, turn, pose(3));
+      if (!board_.hole || std::abs(place.distance) < kOutlier * place.sigma) return place;
+    }
     const Eigen::Vector2d offset =
         inner ? board_.hole->center_in_board_m : Eigen::Vector2d(Eigen::Vector2d::Zero());
     const Eigen::Vector2d half =
@@ -180,9 +226,37 @@ class Fitter {
     place.sigma = std::sqrt(edge.VarianceAcross(normal_in_plane) + 1e-12);
     place.along = normal.x() * q.y() - normal.y() * q.x();
     place.half_step = 0.5 * std::abs(normal.dot(out)) * edge.step_m;
-    place.growth_sigma = outward * edge.beam.growth_sigma * edge.SpotAcross(normal_in_plane);
+    const bool slant = edge.across || std::abs(normal.dot(out)) < kSlantSine;
+    place.growth_sigma = outward * edge.SpotAcross(normal_in_plane) *
+                         (slant ? kSlantGrowthSigma : edge.beam.growth_sigma);
     place.by_pose << -normal_in_plane, normal.x() * in_board.y() - normal.y() * in_board.x(),
         inner ? 0.0 : -1.0;
+    return place;
+  }
+
+  // On the nearest rim.
+  SidePlace PlaceOnRim(const EdgePoint& edge, const Eigen::Vector2d& in_board,
+                       const Eigen::Vector2d& out, const Eigen::Matrix2d& turn,
+                       double excess) const {
+    const auto distance = [&](const RoundHole& hole) {
+      return std::abs((in_board - hole.center_in_board_m).norm() - hole.radius_m);
+    };
+    const auto nearest = std::ranges::min_element(board_.round_holes, {}, distance);
+    const Eigen::Vector2d arm = in_board - nearest->center_in_board_m;
+    const double from = std::max(arm.norm(), 1e-9);
+    const Eigen::Vector2d normal = -arm / from;  // Off the material: towards the centre.
+    const Eigen::Vector2d normal_in_plane = turn * normal;
+    const double growth = edge.Growth(normal_in_plane);
+    SidePlace place;
+    place.side = kFirstRim + static_cast<int>(nearest - board_.round_holes.begin());
+    place.excess = excess;
+    place.grown = growth * normal_in_plane;
+    place.distance = nearest->radius_m - from - growth - excess;
+    place.sigma = std::sqrt(edge.VarianceAcross(normal_in_plane) + 1e-12);
+    place.along = std::atan2(arm.y(), arm.x());
+    place.half_step = 0.5 * std::abs(normal.dot(out)) * edge.step_m;
+    place.growth_sigma = edge.beam.growth_sigma * edge.SpotAcross(normal_in_plane);
+    place.by_pose << -normal_in_plane, normal.x() * in_board.y() - normal.y() * in_board.x(), -1.0;
     return place;
   }
 
@@ -229,11 +303,15 @@ class Fitter {
       const AxisInterval interval = IntervalAlong(axis, pose, turn);
       if (!std::isfinite(interval.Variance())) continue;
       const CrossedSides crossed = CrossedAlong(axis, pose, turn);
-      if (crossed.ends >= kMinCrossing || crossed.information * interval.Variance() > 1.0) continue;
+      if (crossed.ends >= kMinCrossing) continue;
+      if (crossed.ends >= kMinCrossingOfFew && crossed.information * interval.Variance() > 1.0) {
+        continue;
+      }
       bracketed[static_cast<std::size_t>(axis)] = true;
       pose.head<2>() += turn.col(axis) * interval.Middle();
       const Eigen::Vector3d along(turn(0, axis), turn(1, axis), 0.0);
-      of_intervals += along * along.transpose() / (interval.Variance() + kMinVariance_m2);
+      of_intervals += along * along.transpose() /
+                      (interval.Variance() + interval.GrowthVariance() + kMinVariance_m2);
     }
     Sums sums;
     for (const EdgePoint& edge : edges_) {
@@ -244,7 +322,7 @@ class Fitter {
       fit.on_edge.push_back(edge.in_plane - place.grown);
       if (!belongs) continue;
       sums.Count(place);
-      if (!bracketed[AxisOf(place.side)]) sums.Add(place, half_);
+      if (place.side >= kFirstRim || !bracketed[AxisOf(place.side)]) sums.Add(place, half_);
     }
     if (sums.used < kMinEdges) return std::nullopt;
     // Angles are scaled by the board's half diagonal, to make both kinds of unknowns comparable.
@@ -256,20 +334,26 @@ class Fitter {
     if (least * std::pow(kMaxSigma * half_.norm(), 2) < 1.0) return std::nullopt;
     fit.center = pose.head<2>();
     fit.angle_rad = UprightAngle(pose.z());
-    fit.sides = InNumberingOf(fit.angle_rad - pose.z(), std::move(fit.sides));
+    const double turned = (fit.angle_rad - pose.z()) / (0.5 * std::numbers::pi);
+    for (int& side : fit.sides) {
+      side = SideAfterTurn(board_, side, static_cast<int>(std::lround(turned)));
+    }
     fit.covariance = sums.Covariance(of_intervals, excess_sigma_);
     fit.rms = std::sqrt(sums.chi2 / sums.used);
     fit.rms_m = std::sqrt(sums.squares / sums.used);
     fit.share = static_cast<double>(sums.used) / static_cast<double>(edges_.size());
     fit.sides_seen = sums.SidesSeen();
+    fit.rims_seen = sums.RimsSeen();
     fit.size_ratio = 1.0 + sums.by_size / std::max(sums.size_weight, 1e-12);
     return fit;
   }
 
   // Of the angles at which the outline looks the same, the one with corner 0 highest.
   double UprightAngle(double angle) const {
-    const bool square = std::abs(half_.x() - half_.y()) < kSameSides * half_.x() && !board_.hole;
-    const double period = square ? 0.5 * std::numbers::pi : std::numbers::pi;
+    const bool square = std::abs(half_.x() - half_.y()) < kSameSides * half_.x() && !board_.hole &&
+                        board_.round_holes.empty();
+    const double half_turn = HolesAllowHalfTurn(board_) ? 1.0 : 2.0;
+    const double period = (square ? 0.5 : half_turn) * std::numbers::pi;
     const double corner_up = CornerUp();
     return corner_up + std::remainder(angle - corner_up, period);
   }
@@ -279,15 +363,6 @@ class Fitter {
 
  private:
   static std::size_t AxisOf(int side) { return side % 2 == 0 ? 1 : 0; }
-
-  // Side numbers of the board turned by `turn_rad`, a multiple of a quarter turn.
-  static std::vector<int> InNumberingOf(double turn_rad, std::vector<int> sides) {
-    const auto turns = static_cast<int>(std::lround(turn_rad / (0.5 * std::numbers::pi)));
-    for (int& side : sides) {
-      if (side >= 0) side = side / 4 * 4 + (((side - turns) % 4) + 4) % 4;
-    }
-    return sides;
-  }
 
   // The rings that cross the sides of an axis, and the information on the position along it.
   struct CrossedSides {
@@ -300,11 +375,15 @@ class Fitter {
     CrossedSides crossed;
     for (const EdgePoint& edge : edges_) {
       const SidePlace place = Place(edge, pose, turn);
-      if (edge.across || AxisOf(place.side) != static_cast<std::size_t>(axis)) continue;
+      const bool on_rim = place.side >= kFirstRim;
+      if (edge.across) continue;
+      if (!on_rim && AxisOf(place.side) != static_cast<std::size_t>(axis)) continue;
       if (std::abs(turn.col(axis).dot(edge.outward)) < kMinCrossingSine) continue;
       if (std::abs(place.distance) > kOutlier * place.sigma) continue;
+      // A rim crosses every axis, at an angle.
+      const double share = on_rim ? turn.col(axis).dot(place.by_pose.head<2>()) : 1.0;
       ++crossed.ends;
-      crossed.information += 1.0 / (place.sigma * place.sigma);
+      crossed.information += share * share / (place.sigma * place.sigma);
     }
     return crossed;
   }
@@ -324,6 +403,7 @@ class Fitter {
       interval.high = std::min(interval.high, on + half_(axis) + growth);
       if (!edge.across || AxisOf(place.side) != static_cast<std::size_t>(axis)) continue;
       const double off = middle + 0.5 * step;
+      interval.end_spots[step > 0.0 ? 0 : 1] = edge.SpotAcross(normal);
       if (step > 0.0) interval.high = std::min(interval.high, off - half_(axis) - growth);
       if (step < 0.0) interval.low = std::max(interval.low, off + half_(axis) + growth);
     }
@@ -398,16 +478,31 @@ bool IsSamePlacement(const RectangleFit& a, const RectangleFit& b) {
          (a.center - b.center).norm() < kSamePlace_m;
 }
 
+// Those by the outline, both ways round where the holes tell them apart, and the given ones.
+std::vector<Eigen::Vector3d> AllStarts(std::span<const EdgePoint> edges, const Board& board,
+                                       const Eigen::Vector2d& half,
+                                       std::span<const Eigen::Vector3d> given) {
+  std::vector<Eigen::Vector3d> starts = RectangleStarts(edges, half, kStarts);
+  if (!HolesAllowHalfTurn(board)) {
+    for (std::size_t i = starts.size(); i-- > 0;) {
+      starts.push_back(starts[i] + Eigen::Vector3d(0.0, 0.0, std::numbers::pi));
+    }
+  }
+  starts.insert(starts.end(), given.begin(), given.end());
+  return starts;
+}
+
 }  // namespace
 
 std::vector<RectangleFit> FitRectangles(std::span<const EdgePoint> edges, const Board& board,
-                                        std::size_t max_count) {
+                                        std::size_t max_count,
+                                        std::span<const Eigen::Vector3d> starts) {
   std::vector<RectangleFit> fits;
   if (static_cast<int>(edges.size()) < kMinEdges) return fits;
   const Fitter fitter(edges, board);
   const Eigen::Vector2d half(0.5 * board.top_right_m, 0.5 * board.right_bottom_m);
   std::vector<Candidate> candidates;
-  for (const Eigen::Vector3d& start : RectangleStarts(edges, half, kStarts)) {
+  for (const Eigen::Vector3d& start : AllStarts(edges, board, half, starts)) {
     candidates.push_back({Placement(start.x(), start.y(), start.z(), 0.0), 0.0});
     Improve(fitter, kFirstIterations, kFirstReach, candidates.back());
   }
@@ -438,9 +533,10 @@ std::size_t MostUpright(std::span<const RectangleFit> fits, const Board& board) 
   return static_cast<std::size_t>(chosen - fits.begin());
 }
 
-std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const Board& board) {
+std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const Board& board,
+                                         std::span<const Eigen::Vector3d> starts) {
   constexpr std::size_t kCompared = 4;
-  std::vector<RectangleFit> fits = FitRectangles(edges, board, kCompared);
+  std::vector<RectangleFit> fits = FitRectangles(edges, board, kCompared, starts);
   if (fits.empty()) return std::nullopt;
   return fits[MostUpright(fits, board)];
 }

@@ -17,7 +17,7 @@ struct RectangleFit {
   double angle_rad = 0.0;                                ///< Angle of the board's x axis.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Order: center, angle.
   /// For each edge point the side that it lies on: 0 between the corners 0 and 1, then clockwise, 4
-  /// to 7 for the opening; -1 if it lies on none.
+  /// to 7 for the opening, from kFirstRim on the rims of round holes; -1 if it lies on none.
   std::vector<int> sides;
   std::vector<double> sigmas_m;          ///< For each edge point, across its nearest side.
   std::vector<Eigen::Vector2d> on_edge;  ///< Each edge point without the growth by the beam [m].
@@ -26,6 +26,7 @@ struct RectangleFit {
   double rms_m = 0.0;  ///< The same in metres, across the edge.
   double share = 0.0;  ///< Fraction of the edge points that lie on a side.
   int sides_seen = 0;  ///< Number of outer sides with edge points.
+  int rims_seen = 0;   ///< Number of round holes with edge points on three quarters of their rim.
   /// Size of the outline relative to the board's. A significant deviation from 1 means that ranges
   /// are too long (above) or too short, or that it is another board.
   double size_ratio = 1.0;
@@ -42,19 +43,24 @@ struct RectangleFit {
 /// interval in which the board contains all of its edge points' returns and ends before the rings
 /// beyond it, with the variance of a uniform error over that interval.
 ///
+/// The points of round holes' rims are treated alike: the excess makes a hole smaller.
+///
 /// Returns distinct fits by ascending cost, at most `max_count`. A rectangle looks the same after
-/// half a turn and a square after a quarter; of these angles, the one is stated at which corner 0
-/// is highest. Empty for fewer than four edge points and where they leave a direction undetermined
-/// by more than 15 % of half the board's diagonal (1 sigma).
+/// half a turn, unless its round holes do not, and a square after a quarter; of these angles, the
+/// one is stated at which corner 0 is highest. `starts`: further placements to start from. Empty
+/// for fewer than four edge points and where they leave a direction undetermined by more than 15 %
+/// of half the board's diagonal (1 sigma).
 std::vector<RectangleFit> FitRectangles(std::span<const EdgePoint> edges, const Board& board,
-                                        std::size_t max_count);
+                                        std::size_t max_count,
+                                        std::span<const Eigen::Vector3d> starts = {});
 
 /// Index of the placement to state: of those that fit as well as the best (likelihood ratio over
 /// 1 %), as the two of a board that is nearly square, the one with corner 0 highest. Requires one.
 std::size_t MostUpright(std::span<const RectangleFit> fits, const Board& board);
 
 /// That placement of FitRectangles.
-std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const Board& board);
+std::optional<RectangleFit> FitRectangle(std::span<const EdgePoint> edges, const Board& board,
+                                         std::span<const Eigen::Vector3d> starts = {});
 
 /// The fit nearest to a known placement.
 std::optional<RectangleFit> RefineRectangle(std::span<const EdgePoint> edges, const Board& board,

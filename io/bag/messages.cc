@@ -107,6 +107,32 @@ PointCloud BuildCloud(const CloudLayout& layout, MessageReader& in) {
   return std::move(builder).Finish();
 }
 
+// livox_ros_driver/CustomMsg without its header. Its lines are lasers that scan a rosette, no
+// rings.
+PointCloud ReadLivoxPoints(MessageReader& in) {
+  constexpr std::size_t kPointSize = 19;
+  in.Take<std::uint64_t>("timebase");
+  in.Take<std::uint32_t>("point_num");
+  in.Take<std::uint8_t>("lidar_id");
+  for (int i = 0; i < 3; ++i) in.Take<std::uint8_t>("rsvd");
+  const std::size_t count = in.Length(kPointSize, "points");
+  PointCloud cloud;
+  for (std::size_t i = 0; i < count && in.ok(); ++i) {
+    cloud.time_s.push_back(1e-9 * in.Take<std::uint32_t>("points.offset_time"));
+    Eigen::Vector3d point;
+    for (double& value : point) value = static_cast<double>(in.Take<float>("points.xyz"));
+    cloud.points.push_back(point);
+    cloud.intensity.push_back(in.Take<std::uint8_t>("points.reflectivity"));
+    in.Take<std::uint8_t>("points.tag");
+    in.Take<std::uint8_t>("points.line");
+  }
+  return cloud;
+}
+
+bool IsLivox(std::string_view type) {
+  return type.starts_with("livox") && type.ends_with("/CustomMsg");
+}
+
 template <class Message>
 Expected<Message> Finished(MessageReader& in, Message& message) {
   if (!in.ok()) return in.TakeError();
@@ -116,7 +142,7 @@ Expected<Message> Finished(MessageReader& in, Message& message) {
 }  // namespace
 
 MessageKind MessageKindOf(std::string_view type) {
-  if (type == "sensor_msgs/PointCloud2") return MessageKind::kPointCloud;
+  if (type == "sensor_msgs/PointCloud2" || IsLivox(type)) return MessageKind::kPointCloud;
   if (type == "sensor_msgs/Image") return MessageKind::kImage;
   if (type == "sensor_msgs/CompressedImage") return MessageKind::kEncodedImage;
   if (type == "sensor_msgs/CameraInfo") return MessageKind::kCameraInfo;
@@ -133,6 +159,10 @@ Expected<CloudMessage> DecodePointCloud(const BagMessage& message) {
   MessageReader in(message);
   CloudMessage decoded;
   decoded.header = in.Header();
+  if (IsLivox(message.topic->type)) {
+    decoded.cloud = ReadLivoxPoints(in);
+    return Finished(in, decoded);
+  }
   const CloudLayout layout = ReadLayout(in);
   if (in.ok()) CheckLayout(layout, in);
   if (in.ok()) decoded.cloud = BuildCloud(layout, in);
@@ -150,11 +180,14 @@ Expected<ImageMessage> DecodeImage(const BagMessage& message) {
   decoded.big_endian = in.Take<std::uint8_t>("is_bigendian") != 0;
   decoded.row_bytes = in.Take<std::uint32_t>("step");
   const std::string_view data = in.ByteSequence("data");
+  // Planes of half the resolution follow: two samples of colour for each four of brightness.
+  const bool has_planes = decoded.encoding == "nv12" || decoded.encoding == "nv21";
+  const std::size_t rows = has_planes ? height + height / 2 : height;
   if (in.ok() && (width > kMaxSide || height > kMaxSide || decoded.row_bytes < width ||
-                  height * decoded.row_bytes != data.size())) {
+                  rows * decoded.row_bytes != data.size())) {
     in.Fail(ErrorCode::kParse, "data",
             fmt::format("has {} bytes, expected {} rows of {} bytes for {} pixels each",
-                        data.size(), height, decoded.row_bytes, width));
+                        data.size(), rows, decoded.row_bytes, width));
   }
   if (in.ok()) {
     decoded.width_px = static_cast<int>(width);

@@ -18,7 +18,7 @@ struct MessageHeader {
   std::string frame;
 };
 
-/// sensor_msgs/PointCloud2.
+/// sensor_msgs/PointCloud2, or CustomMsg of Livox' drivers: position, reflectivity and time.
 struct CloudMessage {
   MessageHeader header{};
   PointCloud cloud{};
@@ -29,10 +29,10 @@ struct ImageMessage {
   MessageHeader header{};
   int width_px = 0;
   int height_px = 0;
-  std::string encoding{};     ///< "mono8", "bgr8", "rgb8", "mono16", "bayer_rggb8" and so on.
+  std::string encoding{};     ///< "mono8", "bgr8", "rgb8", "mono16", "bayer_rggb16" and so on.
   bool big_endian = false;    ///< Byte order of samples of more than one byte.
   std::size_t row_bytes = 0;  ///< Bytes from one row to the next.
-  std::string data{};         ///< height_px * row_bytes bytes.
+  std::string data{};         ///< height_px * row_bytes bytes; half as many again for nv12, nv21.
 };
 
 /// sensor_msgs/CompressedImage: a JPEG or PNG file.

@@ -19,6 +19,11 @@ BoardHole ReadHoleBlock(YamlFields& in, const YamlNode& node);
 /// "{width_m: .., height_m: .., center_in_board_m: [..]}".
 std::string YamlHole(const BoardHole& hole);
 
+/// Reads the list of a board's round holes; does not check them.
+std::vector<RoundHole> ReadRoundHoles(YamlFields& in, const YamlNode& list);
+/// "{radius_m: .., center_in_board_m: [..]}".
+std::string YamlRoundHole(const RoundHole& hole);
+
 /// Reports an error if two boards have the same id, or a tag of the same family and id appears on
 /// two boards. `nodes`: those that the boards were read from.
 void RequireDistinctBoards(YamlFields& in, const std::vector<const YamlNode*>& nodes,

@@ -54,7 +54,7 @@ EdgeRay ReadEdge(YamlFields& in, const YamlNode& node) {
   EdgeRay ray;
   if (!in.IsMap(node, "edges", kKeys)) return ray;
   ray.direction = in.PointAt(node, "direction");
-  ray.side = in.IntegerAt(node, "side", 0, 2 * kCornersPerBoard - 1);
+  ray.side = in.IntegerAt(node, "side", 0, kFirstRim + kMaxRoundHoles - 1);
   ray.sigma_m = in.RealAt(node, "sigma_m");
   return ray;
 }

@@ -71,12 +71,18 @@ Json BoardJson(const Board& board) {
                     {"height_m", board.hole->height_m},
                     {"center_in_board_m", Center(board.hole->center_in_board_m)}};
   }
+  for (const RoundHole& hole : board.round_holes) {
+    json["round_holes"].push_back(
+        {{"radius_m", hole.radius_m}, {"center_in_board_m", Center(hole.center_in_board_m)}});
+  }
   for (const BoardTag& tag : board.tags) json["tags"].push_back(TagJson(tag));
   if (board.checker) {
     json["checker"] = {{"inner_columns", board.checker->inner_columns},
                        {"inner_rows", board.checker->inner_rows},
                        {"square_m", board.checker->square_m},
                        {"center_in_board_m", Center(board.checker->center_in_board_m)}};
+    if (board.checker->starts_white) json["checker"]["starts_white"] = true;
+    if (board.checker->holds_tags) json["checker"]["holds_tags"] = true;
   }
   return json;
 }

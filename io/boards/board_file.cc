@@ -9,6 +9,7 @@
 
 #include "geometry/board_check.h"
 #include "io/blocks/board_block.h"
+#include "io/boards/kalibr_target.h"
 #include "io/text/line_reader.h"
 #include "io/text/max_id.h"
 #include "io/text/text_file.h"
@@ -33,7 +34,8 @@ bool HasAny(const YamlNode& map, std::initializer_list<std::string_view> keys) {
 
 // A file of one board alone; its wrong keys are then compared with those of a board.
 bool IsSingleBoard(const YamlNode& root) {
-  return HasAny(root, {"top_right_m", "right_bottom_m", "thickness_m", "tags", "checker"});
+  return HasAny(root, {"top_right_m", "right_bottom_m", "thickness_m", "round_holes", "tags",
+                       "checker", "aprilgrid", "charuco"});
 }
 
 bool IsCamera(const YamlNode& root) {
@@ -46,6 +48,11 @@ Expected<std::vector<Board>> ParseBoardYaml(std::string_view text, const std::st
   SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   YamlFields in(file);
   std::vector<const YamlNode*> nodes;
+  if (IsKalibrTarget(root)) {
+    const Board board = ReadKalibrTarget(in, root);
+    if (!in.ok()) return in.TakeError();
+    return std::vector<Board>{board};
+  }
   const YamlNode* list = root.Find("boards");
   if (list == nullptr && IsSingleBoard(root)) {
     nodes.push_back(&root);

@@ -14,8 +14,9 @@
 namespace sextant {
 
 /// Reads boards with their tags and checkerboards: a YAML file with the list `boards`, or with one
-/// board as the document itself (docs/formats.md). A `marker_coordinates.txt` of the original
-/// package is accepted too, with the tags that BoardsWithTags adds by default.
+/// board as the document itself (docs/formats.md), or the target file of Kalibr. A
+/// `marker_coordinates.txt` of the original package is accepted too, with the tags that
+/// BoardsWithTags adds by default.
 ///
 /// Errors: kIo; kParse and kNonFinite with file, line and field: unknown keys, sizes that are not
 /// positive, prints that reach off the board, into its hole or over each other, repeated ids of

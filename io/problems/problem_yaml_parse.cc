@@ -74,7 +74,7 @@ std::vector<Eigen::Vector3d> ReadPointList(YamlFields& in, const YamlNode& list,
 }
 
 void ReadProblemBoards(YamlFields& in, const YamlNode& list, std::vector<Board>& boards) {
-  static const Keys kKeys = {"id", "top_right_m", "right_bottom_m", "hole"};
+  static const Keys kKeys = {"id", "top_right_m", "right_bottom_m", "hole", "round_holes"};
   if (!in.IsSequence(list, "boards", kMaxBoards)) return;
   for (const YamlNode& node : list.items) {
     if (!in.IsMap(node, "boards", kKeys)) return;
@@ -85,6 +85,9 @@ void ReadProblemBoards(YamlFields& in, const YamlNode& list, std::vector<Board>&
     board.top_right_m = in.NonNegativeAt(node, "top_right_m", 0.0);
     board.right_bottom_m = in.NonNegativeAt(node, "right_bottom_m", 0.0);
     if (const YamlNode* hole = node.Find("hole")) board.hole = ReadHoleBlock(in, *hole);
+    if (const YamlNode* holes = node.Find("round_holes")) {
+      board.round_holes = ReadRoundHoles(in, *holes);
+    }
     boards.push_back(board);
   }
 }

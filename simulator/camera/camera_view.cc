@@ -91,6 +91,7 @@ std::optional<ViewRectangle> BoardFace(const ViewFrame& frame, const SceneBoard&
               board.white.albedo, board.black.albedo);
   if (!face) return std::nullopt;
   face->hole = board.board.hole;
+  face->round_holes = board.board.round_holes;
   const Eigen::Vector3d into_board =
       frame.cam_from_world.rotation * (world_from_board.rotation * Eigen::Vector3d::UnitZ());
   if (face->normal_in_cam.dot(into_board) < 0.0) face->print = std::move(print);

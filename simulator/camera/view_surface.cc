@@ -45,6 +45,12 @@ std::optional<ViewHit> ViewRectangle::HitAt(const Eigen::Vector3d& scaled) const
       std::abs(hit.v_m - hole->center_in_board_m.y()) < 0.5 * hole->height_m) {
     return std::nullopt;
   }
+  const Eigen::Vector2d at(hit.u_m, hit.v_m);
+  for (const RoundHole& round : round_holes) {
+    if ((at - round.center_in_board_m).squaredNorm() < round.radius_m * round.radius_m) {
+      return std::nullopt;
+    }
+  }
   return hit;
 }
 

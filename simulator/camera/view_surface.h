@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "geometry/rigid3d.h"
 #include "simulator/camera/lighting.h"
@@ -36,6 +37,7 @@ struct ViewRectangle {
   double half_width_m = 0.0;
   double half_height_m = 0.0;
   std::optional<BoardHole> hole{};
+  std::vector<RoundHole> round_holes{};
   std::optional<BoardPrint> print{};  ///< If none, the face is plain, or tiled if tile_m > 0.
   double tile_m = 0.0;
   int tile_columns = 1;   ///< For tile_m > 0.

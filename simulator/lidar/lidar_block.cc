@@ -46,6 +46,40 @@ Span Within(const LidarRay& ray, const Eigen::Vector3d& low, const Eigen::Vector
   return span;
 }
 
+// The range at which a ray leaves the cylinder of a round hole, where it is inside of it at
+// `range`.
+std::optional<double> LeaveHole(const LidarRay& ray, const RoundHole& hole, double range) {
+  const Eigen::Vector2d from =
+      (ray.origin + range * ray.direction).head<2>() - hole.center_in_board_m;
+  const Eigen::Vector2d along = ray.direction.head<2>();
+  const double inside = hole.radius_m * hole.radius_m - from.squaredNorm();
+  if (inside <= 0.0) return std::nullopt;
+  const double a = along.squaredNorm();
+  if (a == 0.0) return std::numeric_limits<double>::infinity();
+  const double b = from.dot(along);
+  return range + (std::sqrt(b * b + a * inside) - b) / a;
+}
+
+// Where a ray that meets the front at `span` ends in a round hole: passed, or met its wall. None if
+// it meets no hole.
+struct HolePassage {
+  std::optional<LidarEntry> entry{};
+};
+
+std::optional<HolePassage> PassHoles(const LidarRay& ray, const std::vector<RoundHole>& holes,
+                                     const Span& span) {
+  if (span.axis != 2) return std::nullopt;
+  for (const RoundHole& hole : holes) {
+    const std::optional<double> leave = LeaveHole(ray, hole, span.first);
+    if (!leave) continue;
+    if (*leave >= span.last) return HolePassage{};
+    const Eigen::Vector2d wall =
+        ((ray.origin + *leave * ray.direction).head<2>() - hole.center_in_board_m).cwiseAbs();
+    return HolePassage{LidarEntry{.range_m = *leave, .face = wall.x() > wall.y() ? 0 : 1}};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<LidarEntry> LidarBlock::Enter(const LidarRay& ray) const {
@@ -65,6 +99,7 @@ std::optional<LidarEntry> LidarBlock::Enter(const LidarRay& ray) const {
       return LidarEntry{.range_m = hole.last, .face = across_x ? 0 : 1};
     }
   }
+  if (const auto passage = PassHoles(ray, round_holes, span)) return passage->entry;
   return LidarEntry{.range_m = span.first, .face = span.axis};
 }
 
@@ -75,6 +110,10 @@ bool LidarBlock::AllEnter(const LidarRay& ray, const LidarEntry& entry, double r
   for (int axis = 0; axis < 3; ++axis) {
     if (axis == entry.face) continue;
     if (point[axis] - low[axis] < reach || high[axis] - point[axis] < reach) return false;
+  }
+  for (const RoundHole& hole : round_holes) {
+    const double from = (point.head<2>() - hole.center_in_board_m).norm();
+    if (entry.face != 2 || from < hole.radius_m + reach) return false;
   }
   if (!has_hole) return true;
   return entry.face == 2 &&

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "geometry/board.h"
 
@@ -22,15 +23,17 @@ struct LidarEntry {
 };
 
 /// An axis-aligned rectangular block for boards, walls and boxes. It may have no thickness along z
-/// and a rectangular opening through it along z. Bounds in its own frame [m].
+/// and openings through it along z, one rectangular and any number of round ones. Bounds in its own
+/// frame [m].
 struct LidarBlock {
   Eigen::Vector3d low = Eigen::Vector3d::Zero();
   Eigen::Vector3d high = Eigen::Vector3d::Zero();
   bool has_hole = false;
   Eigen::Vector2d hole_low = Eigen::Vector2d::Zero();
   Eigen::Vector2d hole_high = Eigen::Vector2d::Zero();
+  std::vector<RoundHole> round_holes{};
 
-  /// None for a ray that misses, starts inside, or passes through the opening.
+  /// None for a ray that misses, starts inside, or passes through an opening.
   std::optional<LidarEntry> Enter(const LidarRay& ray) const;
 
   /// Whether all parallel rays within `radius_m` of this one enter through the same face.

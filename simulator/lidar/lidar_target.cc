@@ -18,6 +18,7 @@ Expected<LidarTarget> FromBoard(const SceneBoard& board, const Rigid3d& lidar_fr
     target.block.hole_low = shape.hole->center_in_board_m - half;
     target.block.hole_high = shape.hole->center_in_board_m + half;
   }
+  target.block.round_holes = shape.round_holes;
   target.white_reflectivity = board.white.reflectivity;
   target.black_reflectivity = board.black.reflectivity;
   if (!shape.tags.empty() || shape.checker) {

@@ -63,7 +63,8 @@ PrintCell BoardPrint::At(const Eigen::Vector2d& point_in_board_m) const {
     const auto column = CellAlong(offset.x(), checker_.square_m, columns);
     const auto row = CellAlong(offset.y(), checker_.square_m, checker_.inner_rows + 1);
     if (column && row) {
-      return {layer + 1, *row * columns + *column, (*row + *column) % 2 == 1};
+      return {layer + 1, *row * columns + *column,
+              ((*row + *column) % 2 == 1) != checker_.starts_white};
     }
   }
   return {};

@@ -22,7 +22,7 @@ struct PrintCell {
 ///
 /// A tag's cells are those of its detector library, scaled so that the square whose corners the
 /// detector reports has sides of `edge_m`; some families extend beyond it. The checkerboard has
-/// (inner_columns + 1) x (inner_rows + 1) squares; the top-left one is black.
+/// (inner_columns + 1) x (inner_rows + 1) squares.
 class BoardPrint {
  public:
   /// Errors: kUnknownName for an unknown tag family; kInvalidInput for an id that the family does

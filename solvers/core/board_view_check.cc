@@ -99,9 +99,11 @@ class ViewCheck {
     if (std::abs(ray.direction.norm() - 1.0) > kUnit) {
       return Invalid("an edge ray whose direction is not a unit vector");
     }
-    const int sides = board_.hole ? 2 * kCornersPerBoard : kCornersPerBoard;
-    if (ray.side < 0 || ray.side >= sides) {
-      return Invalid(fmt::format("an edge ray of side {}, expected 0 to {}", ray.side, sides - 1));
+    if (!board_.HasSide(ray.side)) {
+      return Invalid(
+          fmt::format("an edge ray of side {}, which board {} does not have: expected 0 "
+                      "to 3, 4 to 7 for its hole, 8 and more for its round holes",
+                      ray.side, board_.id));
     }
     if (!IsPositive(ray.sigma_m)) {
       return Invalid(fmt::format("an edge ray of sigma {} m, expected more than 0", ray.sigma_m));

@@ -31,6 +31,17 @@ bool Intersect(const Eigen::Vector3d& direction, const BoardPlane& plane, Inters
   return out.distance > 0.0 && std::isfinite(out.distance);
 }
 
+// The intersection in the board's axes; the origin if there is none.
+Eigen::Vector2d InBoard(const Eigen::Vector3d& direction, const BoardPlane& plane) {
+  Intersection at;
+  if (!Intersect(direction, plane, at)) return Eigen::Vector2d::Zero();
+  return plane.axes.leftCols<2>().transpose() * at.from_origin;
+}
+
+const RoundHole& RimOf(const Board& board, int side) {
+  return board.round_holes[static_cast<std::size_t>(side - kFirstRim)];
+}
+
 Eigen::Matrix<double, 1, 6> DistanceByPose(const Intersection& at, const BoardPlane& plane) {
   const Eigen::Vector3d normal = plane.axes.col(2);
   Eigen::Matrix<double, 1, 6> by_pose;
@@ -55,8 +66,17 @@ BoardSide SideOf(const Board& board, int side) {
           Eigen::Vector2d::Zero()};
 }
 
+BoardSide TangentOf(const RoundHole& hole, const Eigen::Vector2d& in_board) {
+  const Eigen::Vector2d arm = in_board - hole.center_in_board_m;
+  const double length = arm.norm();
+  const Eigen::Vector2d outward =
+      length > 0.0 ? Eigen::Vector2d(-arm / length) : Eigen::Vector2d(Eigen::Vector2d::UnitX());
+  return {outward, outward.dot(hole.center_in_board_m) - hole.radius_m, Eigen::Vector2d::Zero()};
+}
+
 BoardViewTerms TermsOf(const BoardView& view, const Board& board) {
   BoardViewTerms terms;
+  const BoardPlane plane(view.lidar_from_board);
   for (const BoardPoints& points : view.printed) {
     terms.printed.push_back({points.in_board_m, points.pixels, WhitenerOf(points.covariance_px2)});
   }
@@ -67,7 +87,10 @@ BoardViewTerms TermsOf(const BoardView& view, const Board& board) {
   }
   terms.edges.reserve(view.edges.size());
   for (const EdgeRay& ray : view.edges) {
-    terms.edges.push_back({ray.direction, SideOf(board, ray.side), 1.0 / ray.sigma_m});
+    const BoardSide side = ray.side < kFirstRim
+                               ? SideOf(board, ray.side)
+                               : TangentOf(RimOf(board, ray.side), InBoard(ray.direction, plane));
+    terms.edges.push_back({ray.direction, side, 1.0 / ray.sigma_m});
   }
   return terms;
 }

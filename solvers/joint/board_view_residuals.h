@@ -25,8 +25,12 @@ struct BoardSide {
   Eigen::Vector2d offset_by_size = Eigen::Vector2d::Zero();
 };
 
-/// As numbered in EdgeRay::side. Requires a side that the board has.
+/// As numbered in EdgeRay::side. Requires a side that the board has; `side` below kFirstRim.
 BoardSide SideOf(const Board& board, int side);
+
+/// The tangent of a round hole's rim nearest to a point in the board. It replaces the rim for edge
+/// rays there: a tangent shift of d moves the rim by d^2 / (2 radius), 0.1 mm for 5 mm.
+BoardSide TangentOf(const RoundHole& hole, const Eigen::Vector2d& in_board);
 
 struct PrintedTerm {
   std::vector<Eigen::Vector2d> in_board_m;

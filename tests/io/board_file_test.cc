@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "geometry/board_check.h"
+#include "io/boards/board_templates.h"
 #include "support/bad_text.h"
 #include "support/real_data.h"
 
@@ -57,6 +58,136 @@ TEST(BoardFile, ReadsEveryField) {
   EXPECT_EQ(boards->back().checker->inner_columns, 7);
   EXPECT_EQ(boards->back().checker->inner_rows, 5);
   EXPECT_EQ(boards->back().checker->square_m, 0.095);
+}
+
+constexpr const char* kRoundHoles = R"(id: 0
+top_right_m: 1.4
+right_bottom_m: 1.0
+round_holes:
+  - {radius_m: 0.12, center_in_board_m: [-0.25, -0.2]}
+  - {radius_m: 0.1, center_in_board_m: [0.25, 0.2]}
+tags:
+  - {family: aruco_4x4_50, id: 0, edge_m: 0.2, center_in_board_m: [-0.55, -0.35]}
+)";
+
+TEST(BoardFile, ReadsRoundHoles) {
+  const auto boards = ParseBoards(kRoundHoles, "b.yaml");
+  ASSERT_TRUE(boards) << boards.error().message;
+  const Board& board = boards->front();
+  ASSERT_EQ(board.round_holes.size(), 2U);
+  EXPECT_EQ(board.round_holes[0].radius_m, 0.12);
+  EXPECT_EQ(board.round_holes[1].center_in_board_m, Eigen::Vector2d(0.25, 0.2));
+  EXPECT_TRUE(board.HasSide(kFirstRim + 1));
+  EXPECT_FALSE(board.HasSide(kFirstRim + 2));
+  const std::string text = FormatBoards(*boards);
+  EXPECT_EQ(FormatBoards(*ParseBoards(text, "again.yaml")), text);
+}
+
+TEST(BoardFile, RefusesRoundHolesOffTheBoardAndOverPrints) {
+  const auto error = [](const std::string& hole) {
+    const auto boards = ParseBoards("id: 0\ntop_right_m: 1\nright_bottom_m: 1\nround_holes:\n  - " +
+                                        hole +
+                                        "\n  - {radius_m: 0.1, center_in_board_m: [0.3, 0.3]}\n"
+                                        "tags:\n  - {family: tag36h11, id: 1, edge_m: 0.2}\n",
+                                    "b.yaml");
+    return boards ? std::string() : boards.error().message;
+  };
+  EXPECT_EQ(error("{radius_m: 0.1, center_in_board_m: [-0.3, -0.3]}"), "");
+  EXPECT_THAT(error("{radius_m: 0, center_in_board_m: [-0.3, -0.3]}"),
+              HasSubstr("b.yaml:5: round_holes 0: radius_m: expected more than zero"));
+  EXPECT_THAT(error("{radius_m: 0.1, center_in_board_m: [-0.45, 0]}"), HasSubstr("lie within"));
+  EXPECT_THAT(error("{radius_m: 0.1, center_in_board_m: [0.3, 0.15]}"),
+              HasSubstr("overlaps the round hole 0"));
+  EXPECT_THAT(error("{radius_m: 0.15, center_in_board_m: [-0.15, 0.15]}"),
+              HasSubstr("reaches into a round hole"));
+}
+
+TEST(BoardFile, ReadsAnAprilGridInItsOwnAndInKalibrsForm) {
+  const auto kalibr = ParseBoards(
+      "target_type: 'aprilgrid' #gridtype\ntagCols: 6\ntagRows: 5\ntagSize: 0.088\n"
+      "tagSpacing: 0.3\n",
+      "april.yaml");
+  ASSERT_TRUE(kalibr) << kalibr.error().message;
+  const auto own = ParseBoards(
+      "id: 0\ntop_right_m: 0.8\nright_bottom_m: 0.7\naprilgrid: {columns: 6, rows: 5, tag_m: "
+      "0.088, spacing: 0.3}\n",
+      "own.yaml");
+  ASSERT_TRUE(own) << own.error().message;
+  const Board& board = kalibr->front();
+  EXPECT_NEAR(board.top_right_m, 6 * 0.1144 + 0.0264, 1e-12);
+  EXPECT_NEAR(board.right_bottom_m, 5 * 0.1144 + 0.0264, 1e-12);
+  ASSERT_EQ(board.tags.size(), 30U);
+  ASSERT_EQ(own->front().tags.size(), 30U);
+  for (std::size_t i = 0; i < board.tags.size(); ++i) {
+    EXPECT_EQ(board.tags[i].id, static_cast<int>(i));
+    EXPECT_EQ(board.tags[i].family, "aruco_tag36h11_border2");
+    EXPECT_EQ(board.tags[i].center_in_board_m, own->front().tags[i].center_in_board_m);
+  }
+  // Tag 0 is at the bottom left, tag 29 at the top right.
+  EXPECT_NEAR(board.tags[0].center_in_board_m.x(), -0.286, 1e-12);
+  EXPECT_NEAR(board.tags[0].center_in_board_m.y(), 0.2288, 1e-12);
+  EXPECT_NEAR(board.tags[29].center_in_board_m.x(), 0.286, 1e-12);
+  EXPECT_NEAR(board.tags[29].center_in_board_m.y(), -0.2288, 1e-12);
+}
+
+TEST(BoardFile, TakesThePlatesSizeInKalibrsForm) {
+  const auto boards = ParseBoards(
+      "target_type: checkerboard\ntargetCols: 6\ntargetRows: 7\nrowSpacingMeters: 0.06\n"
+      "colSpacingMeters: 0.06\ntop_right_m: 0.5\nright_bottom_m: 0.6\n",
+      "checker.yaml");
+  ASSERT_TRUE(boards) << boards.error().message;
+  EXPECT_EQ(boards->front().top_right_m, 0.5);
+  EXPECT_EQ(boards->front().checker->inner_rows, 7);
+  EXPECT_THAT(ParseBoards("target_type: circlegrid\n", "c.yaml").error().message,
+              HasSubstr("c.yaml:1: target_type: expected aprilgrid or checkerboard"));
+}
+
+TEST(BoardFile, ReadsACharucoBoard) {
+  const auto text = [](int rows, const char* more) {
+    return "id: 0\ntop_right_m: 0.4\nright_bottom_m: 0.5\ncharuco: {columns: 5, rows: " +
+           std::to_string(rows) + ", square_m: 0.04, marker_m: 0.03, family: aruco_6x6_250" + more +
+           "}\n";
+  };
+  const auto boards = ParseBoards(text(7, ""), "b.yaml");
+  ASSERT_TRUE(boards) << boards.error().message;
+  const Board& board = boards->front();
+  ASSERT_TRUE(board.checker);
+  EXPECT_TRUE(board.checker->holds_tags);
+  EXPECT_FALSE(board.checker->starts_white);
+  EXPECT_EQ(board.checker->inner_columns, 4);
+  EXPECT_EQ(board.checker->inner_rows, 6);
+  ASSERT_EQ(board.tags.size(), 17U);
+  EXPECT_NEAR((board.tags[0].center_in_board_m - Eigen::Vector2d(-0.04, -0.12)).norm(), 0.0, 1e-12);
+  const std::string written = FormatBoards(*boards);
+  const auto again = ParseBoards(written, "again.yaml");
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(FormatBoards(*again), written);
+  const auto legacy = ParseBoards(text(8, ", legacy: true"), "b.yaml");
+  ASSERT_TRUE(legacy) << legacy.error().message;
+  EXPECT_TRUE(legacy->front().checker->starts_white);
+  EXPECT_NEAR((legacy->front().tags[0].center_in_board_m - Eigen::Vector2d(-0.08, -0.14)).norm(),
+              0.0, 1e-12);
+  EXPECT_THAT(ParseBoards(text(7, ", first_id: 240"), "b.yaml")->front().tags.back().id, 256);
+}
+
+TEST(BoardFile, ACheckerboardThatHoldsTagsHasThemInItsWhiteSquares) {
+  const char* text =
+      "id: 0\ntop_right_m: 0.4\nright_bottom_m: 0.5\n"
+      "checker: {inner_columns: 4, inner_rows: 6, square_m: 0.04, holds_tags: true}\n"
+      "tags:\n  - {family: aruco_6x6_250, id: 1, edge_m: 0.03}\n";
+  EXPECT_THAT(ParseBoards(text, "b.yaml").error().message, HasSubstr("within a white square"));
+}
+
+TEST(BoardTemplates, AreBoardsWithoutFault) {
+  for (const std::string& name : BoardTemplateNames()) {
+    const Expected<Board> board = FindBoardTemplate(name);
+    ASSERT_TRUE(board) << name;
+    EXPECT_FALSE(FindBoardFault(*board)) << name;
+    const std::vector<Board> boards = {*board};
+    const auto again = ParseBoards(FormatBoards(boards), name);
+    ASSERT_TRUE(again) << again.error().message;
+  }
+  EXPECT_THAT(FindBoardTemplate("fast_calip").error().message, HasSubstr("fast_calib"));
 }
 
 TEST(BoardFile, ADocumentMayBeOneBoard) {

@@ -104,6 +104,19 @@ TEST(RenderImage, BoardsOccludeExceptThroughHoles) {
   EXPECT_EQ(LevelAt(*RenderImage(scene, 0, EvenLight()), 79, 59 + 22), 150);
 }
 
+TEST(RenderImage, RoundHolesAreRound) {
+  sextant::Scene scene = OneBoardScene(kCamera,
+                                       {.top_right_m = 0.6,
+                                        .right_bottom_m = 0.6,
+                                        .round_holes = {{.radius_m = 0.1}}},
+                                       At(0.0, 0.0, 1.0));
+  const cv::Mat image = *RenderImage(scene, 0, EvenLight());
+  const int background = LevelAt(image, 79, 59);
+  EXPECT_NE(background, LevelAt(image, 79, 59 + 22));
+  EXPECT_EQ(LevelAt(image, 79, 59 + 12), background) << "15 px is the hole's radius";
+  EXPECT_EQ(LevelAt(image, 79 + 12, 59 + 12), LevelAt(image, 79, 59 + 22)) << "17 px off";
+}
+
 TEST(RenderImage, ShowsAPlainBack) {
   const Eigen::Quaterniond about(Eigen::AngleAxisd(std::acos(-1.0), Eigen::Vector3d::UnitY()));
   const sextant::Scene scene = OneBoardScene(kCamera, TagBoard(), {about, {0.0, 0.0, 1.0}});

@@ -40,6 +40,10 @@ double SurfaceDistance(const Scene& scene, const Eigen::Vector3d& point_in_lidar
                                  0.5 * board.board.thickness_m);
       p.z() -= half.z();
       const double outer = BlockDistance(p, half);
+      for (const RoundHole& round : board.board.round_holes) {
+        const double inside = round.radius_m - (p.head<2>() - round.center_in_board_m).norm();
+        if (inside > 1e-9) return inside;
+      }
       if (!board.board.hole) return outer;
       const BoardHole& hole = *board.board.hole;
       const Eigen::Vector2d from_hole = (p.head<2>() - hole.center_in_board_m).cwiseAbs() -
@@ -171,6 +175,26 @@ TEST(ScanGeometry, AMovingBoardIsDistorted) {
     off_at_rest = std::max(off_at_rest, std::abs((then.Inverse() * scan.cloud.points[i]).z()));
   }
   EXPECT_GT(off_at_rest, 0.05);
+}
+
+TEST(ScanGeometry, BoardsOccludeExceptThroughRoundHoles) {
+  Scene scene;
+  scene.boards = {test::PlainBoard(test::Facing({2.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), 1.0, 1.0)};
+  scene.boards[0].board.round_holes = {{.radius_m = 0.2}};
+  scene.walls = {test::Wall("behind", test::Facing({4.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), 8.0, 4.0)};
+  const SimulatedScan scan = Scan(scene, Model("os1_64"), Noiseless());
+  int through = 0;
+  for (std::size_t i = 0; i < scan.cloud.points.size(); ++i) {
+    const Eigen::Vector3d& p = scan.cloud.points[i];
+    const Eigen::Vector2d at_board = p.tail<2>() * (2.0 / p.x());
+    if (scan.truth[i].object == SceneObject::kBoard) {
+      ASSERT_GT(at_board.norm(), 0.2 - 0.01);
+    } else if (at_board.cwiseAbs().maxCoeff() < 0.49) {
+      ASSERT_LT(at_board.norm(), 0.2 + 0.01);
+      ++through;
+    }
+  }
+  EXPECT_GT(through, 100);
 }
 
 TEST(ScanGeometry, BoardsOccludeExceptThroughHoles) {

@@ -48,6 +48,10 @@ void Enlarge(double scale, Board& board) {
     board.hole->height_m *= scale;
     board.hole->center_in_board_m *= scale;
   }
+  for (RoundHole& hole : board.round_holes) {
+    hole.radius_m *= scale;
+    hole.center_in_board_m *= scale;
+  }
   if (board.checker) {
     board.checker->square_m *= scale;
     board.checker->center_in_board_m *= scale;

@@ -16,6 +16,7 @@ namespace {
 struct DictionaryEntry {
   const char* name;
   int type;
+  int border_cells = 1;
 };
 
 constexpr std::array kDictionaries = {
@@ -40,6 +41,7 @@ constexpr std::array kDictionaries = {
     DictionaryEntry{"aruco_tag25h9", cv::aruco::DICT_APRILTAG_25h9},
     DictionaryEntry{"aruco_tag36h10", cv::aruco::DICT_APRILTAG_36h10},
     DictionaryEntry{"aruco_tag36h11", cv::aruco::DICT_APRILTAG_36h11},
+    DictionaryEntry{"aruco_tag36h11_border2", cv::aruco::DICT_APRILTAG_36h11, 2},
 };
 
 // OpenCV's parser calls itself for each level and would exhaust the stack. A line without many of
@@ -77,6 +79,11 @@ std::optional<cv::aruco::Dictionary> FindArucoDictionary(std::string_view name) 
     if (name == entry.name) return PredefinedArucoDictionary(entry.type);
   }
   return std::nullopt;
+}
+
+int ArucoBorderCells(std::string_view name) {
+  const auto* entry = std::ranges::find(kDictionaries, name, &DictionaryEntry::name);
+  return entry == kDictionaries.end() ? 1 : entry->border_cells;
 }
 
 Expected<cv::aruco::Dictionary> ReadArucoDictionary(const std::string& path) {
@@ -122,16 +129,17 @@ Expected<cv::aruco::Dictionary> ReadArucoDictionary(const std::string& path) {
   return dictionary;
 }
 
-TagPattern MakeArucoPattern(const cv::aruco::Dictionary& dictionary, int id) {
+TagPattern MakeArucoPattern(const cv::aruco::Dictionary& dictionary, int id, int border_cells) {
   const int bits = dictionary.markerSize;
   const cv::Mat inner =
       cv::aruco::Dictionary::getBitsFromByteList(dictionary.bytesList.rowRange(id, id + 1), bits);
-  TagPattern pattern{.cells = bits + 2, .edge_first = 0, .edge_cells = bits + 2, .white = {}};
+  const int cells = bits + 2 * border_cells;
+  TagPattern pattern{.cells = cells, .edge_first = 0, .edge_cells = cells, .white = {}};
   pattern.white.assign(static_cast<std::size_t>(pattern.cells * pattern.cells), 0);
   for (int row = 0; row < bits; ++row) {
     for (int column = 0; column < bits; ++column) {
-      pattern.white[static_cast<std::size_t>((row + 1) * pattern.cells + column + 1)] =
-          inner.at<std::uint8_t>(row, column);
+      const int cell = (row + border_cells) * cells + column + border_cells;
+      pattern.white[static_cast<std::size_t>(cell)] = inner.at<std::uint8_t>(row, column);
     }
   }
   return pattern;

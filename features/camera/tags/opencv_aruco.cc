@@ -21,8 +21,10 @@ void Detect(const cv::Mat& image, const cv::aruco::Dictionary& dictionary,
                            cv::makePtr<cv::aruco::DetectorParameters>(parameters));
 }
 
-void Draw(const cv::aruco::Dictionary& dictionary, int id, int side_px, cv::Mat& image) {
-  cv::aruco::drawMarker(cv::makePtr<cv::aruco::Dictionary>(dictionary), id, side_px, image, 1);
+void Draw(const cv::aruco::Dictionary& dictionary, int id, int side_px, int border_cells,
+          cv::Mat& image) {
+  cv::aruco::drawMarker(cv::makePtr<cv::aruco::Dictionary>(dictionary), id, side_px, image,
+                        border_cells);
 }
 
 #else
@@ -40,8 +42,9 @@ void Detect(const cv::Mat& image, const cv::aruco::Dictionary& dictionary,
   cv::aruco::ArucoDetector(dictionary, parameters).detectMarkers(image, corners, ids);
 }
 
-void Draw(const cv::aruco::Dictionary& dictionary, int id, int side_px, cv::Mat& image) {
-  dictionary.generateImageMarker(id, side_px, image, 1);
+void Draw(const cv::aruco::Dictionary& dictionary, int id, int side_px, int border_cells,
+          cv::Mat& image) {
+  dictionary.generateImageMarker(id, side_px, image, border_cells);
 }
 
 #endif
@@ -71,9 +74,9 @@ std::vector<OpenCvTag> DetectAruco(const cv::Mat& image, const cv::aruco::Dictio
   return tags;
 }
 
-cv::Mat DrawArucoCells(const cv::aruco::Dictionary& dictionary, int id) {
+cv::Mat DrawArucoCells(const cv::aruco::Dictionary& dictionary, int id, int border_cells) {
   cv::Mat image;
-  Draw(dictionary, id, dictionary.markerSize + 2, image);
+  Draw(dictionary, id, dictionary.markerSize + 2 * border_cells, border_cells, image);
   return image;
 }
 

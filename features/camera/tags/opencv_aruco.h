@@ -34,7 +34,7 @@ cv::aruco::DetectorParameters ArucoParameters();
 std::vector<OpenCvTag> DetectAruco(const cv::Mat& image, const cv::aruco::Dictionary& dictionary,
                                    const cv::aruco::DetectorParameters& parameters);
 
-/// The tag as it is printed, with a border of one cell and one pixel per cell.
-cv::Mat DrawArucoCells(const cv::aruco::Dictionary& dictionary, int id);
+/// The tag as it is printed, with a black border and one pixel per cell.
+cv::Mat DrawArucoCells(const cv::aruco::Dictionary& dictionary, int id, int border_cells = 1);
 
 }  // namespace sextant

@@ -59,7 +59,9 @@ Expected<TagPattern> MakeTagPattern(std::string_view family, int id) {
         ErrorCode::kInvalidInput,
         fmt::format("tag family {} has the ids 0 to {}, not {}", family, count - 1, id));
   }
-  if (const auto dictionary = FindArucoDictionary(family)) return MakeArucoPattern(*dictionary, id);
+  if (const auto dictionary = FindArucoDictionary(family)) {
+    return MakeArucoPattern(*dictionary, id, ArucoBorderCells(family));
+  }
   return AprilTagPattern(*MakeAprilTagFamily(family), id);
 }
 

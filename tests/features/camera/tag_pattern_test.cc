@@ -15,8 +15,9 @@
 namespace sextant::test {
 namespace {
 
-std::vector<std::uint8_t> ArucoCells(const cv::aruco::Dictionary& dictionary, int id) {
-  const cv::Mat marker = DrawArucoCells(dictionary, id);
+std::vector<std::uint8_t> ArucoCells(const std::string& family, int id) {
+  const cv::Mat marker =
+      DrawArucoCells(*FindArucoDictionary(family), id, ArucoBorderCells(family));
   std::vector<std::uint8_t> white;
   for (const std::uint8_t level : cv::Mat_<std::uint8_t>(marker)) white.push_back(level > 127);
   return white;
@@ -39,8 +40,8 @@ TEST_P(TagPatternTest, IsWhatTheLibraryDraws) {
   for (const int id : {0, *count / 2, *count - 1}) {
     const Expected<TagPattern> pattern = MakeTagPattern(GetParam(), id);
     ASSERT_TRUE(pattern);
-    const auto aruco = FindArucoDictionary(GetParam());
-    EXPECT_EQ(pattern->white, aruco ? ArucoCells(*aruco, id)
+    const bool aruco = FindArucoDictionary(GetParam()).has_value();
+    EXPECT_EQ(pattern->white, aruco ? ArucoCells(GetParam(), id)
                                     : AprilTagCells(MakeAprilTagFamily(GetParam()).get(), id));
     EXPECT_EQ(pattern->white.size(), static_cast<std::size_t>(pattern->cells * pattern->cells));
   }

@@ -218,5 +218,43 @@ TEST(Ros2, ADatabaseOfSomethingElseIsNamed) {
       HasSubstr("expected a recording of ROS 2 (SQLite with the tables topics and messages)"));
 }
 
+// livox_ros_driver2's message, aligned as CDR: a point takes 19 bytes and one of padding.
+TEST(LivoxMessage, OfRos2IsReadWithItsPadding) {
+  std::string data("\x00\x01\x00\x00", 4);
+  const auto put = [&data](auto value) {
+    while ((data.size() - 4) % sizeof(value) != 0) data.push_back('\0');
+    data.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  put(std::int32_t{5});
+  put(std::uint32_t{7});
+  put(std::uint32_t{6});
+  data.append("lidar\0", 6);
+  put(std::uint64_t{5'000'000'007});
+  put(std::uint32_t{2});
+  put(std::uint8_t{1});
+  for (int i = 0; i < 3; ++i) put(std::uint8_t{0});
+  put(std::uint32_t{2});
+  for (int i = 0; i < 2; ++i) {
+    put(static_cast<std::uint32_t>(1000 * i));
+    for (const float value : {1.0F, 2.0F, 3.0F + static_cast<float>(i)}) put(value);
+    put(static_cast<std::uint8_t>(40 + i));
+    put(std::uint8_t{16});
+    put(std::uint8_t{3});
+  }
+  BagTopic topic{.name = "/livox/lidar", .type = "livox_ros_driver2/CustomMsg"};
+  topic.kind = MessageKindOf(topic.type);
+  topic.encoding = MessageEncoding::kCdr;
+  EXPECT_EQ(topic.kind, MessageKind::kPointCloud);
+  BagMessage message{.topic = &topic, .topic_index = 0, .time_ns = 0, .data = data};
+  const Expected<CloudMessage> scan = DecodePointCloud(message);
+  ASSERT_TRUE(scan) << scan.error().message;
+  EXPECT_EQ(scan->header.frame, "lidar");
+  EXPECT_THAT(scan->cloud.points, ElementsAre(Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(1, 2, 4)));
+  EXPECT_THAT(scan->cloud.intensity, ElementsAre(40.0F, 41.0F));
+  EXPECT_THAT(scan->cloud.time_s, ElementsAre(0.0, 1e-6));
+  message.data = std::string_view(data).substr(0, data.size() - 12);
+  EXPECT_THAT(DecodePointCloud(message).error().message, HasSubstr("points"));
+}
+
 }  // namespace
 }  // namespace sextant

@@ -362,5 +362,30 @@ TEST(Rosbag1, ReadsARealRecording) {
   EXPECT_TRUE(read);
 }
 
+TEST(Rosbag1, ReadsLivoxCustomMessagesOfARealRecording) {
+  SEXTANT_REAL_DATA(path, "field/bags/livox_custom.bag");
+  const Expected<std::unique_ptr<Bag>> bag = OpenBag(path);
+  ASSERT_TRUE(bag) << bag.error().message;
+  std::size_t clouds = 0;
+  const Expected<void> read =
+      (*bag)->Read(AllTopics(**bag), [&](const BagMessage& message) -> Expected<void> {
+        if (message.topic->kind != MessageKind::kPointCloud) return {};
+        EXPECT_THAT(message.topic->type, HasSubstr("CustomMsg"));
+        const Expected<CloudMessage> scan = DecodePointCloud(message);
+        EXPECT_TRUE(scan) << scan.error().message;
+        EXPECT_GT(scan->cloud.points.size(), 100U);
+        EXPECT_EQ(scan->cloud.time_s.size(), scan->cloud.points.size());
+        EXPECT_EQ(scan->cloud.intensity.size(), scan->cloud.points.size());
+        for (std::size_t i = 0; i < scan->cloud.points.size(); ++i) {
+          EXPECT_LT(scan->cloud.points[i].norm(), 500.0);
+          EXPECT_LT(scan->cloud.time_s[i], 1.0);
+        }
+        ++clouds;
+        return {};
+      });
+  EXPECT_TRUE(read) << read.error().message;
+  EXPECT_GT(clouds, 0U);
+}
+
 }  // namespace
 }  // namespace sextant

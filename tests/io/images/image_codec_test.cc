@@ -79,6 +79,24 @@ TEST(ImageCodec, AnEndMarkerWithinASegmentIsNotTheEnd) {
   EXPECT_FALSE(DecodeImage(with_thumbnail.substr(0, bytes.size() - 10), DecodedColor::kGrey));
 }
 
+// A camera that was held sideways states it in an Exif segment; pixels are those of the upright
+// image, as every viewer shows it.
+TEST(ImageCodec, TheExifOrientationIsApplied) {
+  const std::string bytes = EncodeImage(".jpg", Gradient(CV_8UC1)).value();
+  const std::string exif(
+      "\xff\xe1\x00\x22"
+      "Exif\0\0II\x2a\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0",
+      36);
+  const std::string turned = bytes.substr(0, 2) + exif + bytes.substr(2);
+  for (const DecodedColor color :
+       {DecodedColor::kUnchanged, DecodedColor::kBgr, DecodedColor::kGrey}) {
+    const cv::Mat plain = DecodeImage(bytes, color).value();
+    const cv::Mat upright = DecodeImage(turned, color).value();
+    EXPECT_EQ(upright.cols, plain.rows);
+    EXPECT_EQ(upright.rows, plain.cols);
+  }
+}
+
 TEST(ImageCodec, FewBytesThatStateManyPixelsAreRefused) {
   std::string bytes = EncodeImage(".png", Gradient(CV_8UC1)).value();
   bytes[16] = '\x01';  // The width becomes 2^24 + 30.
