@@ -59,7 +59,7 @@ std::string SolverFor(const CalibrationProblem& problem, const SolverRegistry& r
 }
 
 int Run(const SolveOptions& options) {
-  const SolverRegistry registry = AllSolvers();
+  const SolverRegistry registry = AllSolvers(Commands::kAllowed);
   Expected<SolverPtr> solver = registry.Make(options.solver.empty() ? "kabsch" : options.solver);
   if (!solver) return Refuse("solve", solver.error());
   const Expected<LoadedProblem> input = LoadProblem(options.input);
