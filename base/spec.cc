@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
+
+#include "base/spec_text.h"
 
 namespace sextant {
 namespace {
@@ -13,6 +16,12 @@ constexpr int kMaxDepth = 32;
 
 // A longer name or value has no use and would make every message about it as long.
 constexpr std::size_t kMaxWord = 100;
+constexpr std::size_t kMaxText = 1000;
+
+bool IsWordCharacter(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '-' ||
+         c == '+' || c == '/';
+}
 
 // The text for a message: of a long one, the part around the position.
 std::string Excerpt(std::string_view text, std::size_t position) {
@@ -54,10 +63,15 @@ class SpecParser {
   }
 
   Expected<void> ParseArgument(int depth, SpecNode& node) {
+    if (Accept('"')) {
+      SEXTANT_ASSIGN_OR_RETURN(std::string text, RestOfText());
+      node.options.emplace_back(kSpecText, std::move(text));
+      return {};
+    }
     const std::size_t start = position_;
     SEXTANT_ASSIGN_OR_RETURN(const std::string key, Word());
     if (!key.empty() && Accept('=')) {
-      SEXTANT_ASSIGN_OR_RETURN(std::string value, Word());
+      SEXTANT_ASSIGN_OR_RETURN(std::string value, Accept('"') ? RestOfText() : Word());
       if (value.empty()) return Fail(fmt::format("a value for '{}'", key));
       node.options.emplace_back(key, std::move(value));
       return {};
@@ -87,16 +101,26 @@ class SpecParser {
     SkipBlanks();
     const std::size_t start = position_;
     while (position_ < text_.size()) {
-      const char c = text_[position_];
-      const bool is_word = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' ||
-                           c == '.' || c == '-' || c == '+' || c == '/';
-      if (!is_word) break;
+      if (!IsWordCharacter(text_[position_])) break;
       if (position_ - start == kMaxWord) {
         return Fail(fmt::format("a name or value of at most {} characters", kMaxWord));
       }
       ++position_;
     }
     return std::string(text_.substr(start, position_ - start));
+  }
+
+  // After the opening quote.
+  Expected<std::string> RestOfText() {
+    const std::size_t end = text_.find('"', position_);
+    if (end == std::string_view::npos) return Fail("a closing double quote");
+    const std::string_view text = text_.substr(position_, end - position_);
+    if (text.size() > kMaxText || text.find_first_not_of(' ') == std::string_view::npos ||
+        std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20; })) {
+      return Fail(fmt::format("a text of 1 to {} printable characters", kMaxText));
+    }
+    position_ = end + 1;
+    return std::string(text);
   }
 
   tl::unexpected<Error> Fail(const std::string& expected) const {
@@ -127,7 +151,11 @@ Expected<SpecNode> ParseSpec(std::string_view text) {
 std::string FormatSpec(const SpecNode& node) {
   std::vector<std::string> arguments;
   for (const SpecNode& inner : node.inner) arguments.push_back(FormatSpec(inner));
-  for (const auto& [key, value] : node.options) arguments.push_back(key + "=" + value);
+  for (const auto& [key, value] : node.options) {
+    const bool is_word = std::all_of(value.begin(), value.end(), IsWordCharacter);
+    const std::string quoted = is_word && key != kSpecText ? value : '"' + value + '"';
+    arguments.push_back(key == kSpecText ? quoted : key + "=" + quoted);
+  }
   if (arguments.empty()) return node.name;
   return fmt::format("{}({})", node.name, fmt::join(arguments, ","));
 }

@@ -19,20 +19,31 @@ constexpr const char* kTimingJson = "timing.json";
 constexpr const char* kTimingPage = "timing.md";
 
 ReportSettings ReportSettingsOf(const ExperimentOptions& options) {
-  return {.csv = !options.no_csv, .plots = true};
+  return {.csv = !options.no_csv, .plots = true, .timing = {}};
 }
 
-Expected<void> WriteTiming(const Experiment& experiment, const std::filesystem::path& folder) {
-  if (experiment.timed_trials == 0) return {};
+Expected<std::vector<TimingRow>> WriteTiming(const Experiment& experiment,
+                                             const std::filesystem::path& folder) {
+  if (experiment.timed_trials == 0) return std::vector<TimingRow>();
   Progress progress;
   ProgressCounter counter(progress.Callback(), "timing",
                           experiment.timed_trials * experiment.conditions.size());
-  const std::vector<TimingRow> rows = TimeSubjects(experiment, [&counter] { counter.Step(); });
+  std::vector<TimingRow> rows = TimeSubjects(experiment, [&counter] { counter.Step(); });
   counter.Finish();
-  if (Expected<void> ok = WriteFileAtomically(folder / kTimingJson, FormatTimingJson(rows)); !ok) {
-    return ok;
-  }
-  return WriteFileAtomically(folder / kTimingPage, FormatTimingMarkdown(experiment, rows));
+  SEXTANT_RETURN_IF_ERROR(WriteFileAtomically(folder / kTimingJson, FormatTimingJson(rows)));
+  SEXTANT_RETURN_IF_ERROR(
+      WriteFileAtomically(folder / kTimingPage, FormatTimingMarkdown(experiment, rows)));
+  return rows;
+}
+
+int WriteTablesWith(const char* command, const ReportSettings& settings,
+                    const Experiment& experiment, const std::filesystem::path& folder) {
+  const Expected<std::string> tables =
+      WriteReport(experiment, folder / "rows.sxtrows", folder, settings);
+  if (!tables) return Refuse(command, tables.error());
+  Print("{}{}{}", *tables, tables->empty() ? "" : "\n",
+        WroteLine(folder, "rows, tables and plots of " + experiment.name));
+  return kAnswered;
 }
 
 }  // namespace
@@ -50,6 +61,8 @@ void DeclareExperiment(ExperimentOptions& options, Arguments& arguments) {
   arguments.Add("--trials", options.trials, "Instead of the file's", {.range = {{1, 1e9}}});
   arguments.Add("--seed", options.seed, "Instead of the file's");
   arguments.Add("--quick", options.quick, "The file's quick_trials instead of its trials");
+  arguments.Add("--allow-commands", options.allow_commands,
+                "Let the file's command(...) solvers run the programs that they name");
   arguments.Add("--no-csv", options.no_csv, "Without rows.csv, which is large for many trials");
 }
 
@@ -63,7 +76,9 @@ void DeclareRun(ExperimentOptions& options, Arguments& arguments) {
 
 Expected<Experiment> LoadExperiment(const ExperimentOptions& options) {
   Expected<Experiment> experiment =
-      ReadExperiment(options.experiment_path, BuiltinKinds(), AllSolvers(), options.solvers);
+      ReadExperiment(options.experiment_path, BuiltinKinds(),
+                     AllSolvers(options.allow_commands ? Commands::kAllowed : Commands::kRefused),
+                     options.solvers);
   if (!experiment) return experiment;
   if (options.quick) experiment->trials = experiment->quick_trials;
   if (options.trials > 0) experiment->trials = options.trials;
@@ -93,18 +108,16 @@ Expected<RunOutcome> RunWithProgress(const Experiment& experiment, RunSettings s
 
 int WriteAll(const char* command, const ExperimentOptions& options, const Experiment& experiment,
              const std::filesystem::path& folder) {
-  if (Expected<void> ok = WriteTiming(experiment, folder); !ok) return Refuse(command, ok.error());
-  return WriteTables(command, options, experiment, folder);
+  Expected<std::vector<TimingRow>> timing = WriteTiming(experiment, folder);
+  if (!timing) return Refuse(command, timing.error());
+  ReportSettings settings = ReportSettingsOf(options);
+  settings.timing = std::move(*timing);
+  return WriteTablesWith(command, settings, experiment, folder);
 }
 
 int WriteTables(const char* command, const ExperimentOptions& options, const Experiment& experiment,
                 const std::filesystem::path& folder) {
-  const Expected<std::string> tables =
-      WriteReport(experiment, folder / "rows.sxtrows", folder, ReportSettingsOf(options));
-  if (!tables) return Refuse(command, tables.error());
-  Print("{}{}{}", *tables, tables->empty() ? "" : "\n",
-        WroteLine(folder, "rows, tables and plots of " + experiment.name));
-  return kAnswered;
+  return WriteTablesWith(command, ReportSettingsOf(options), experiment, folder);
 }
 
 }  // namespace sextant::cli

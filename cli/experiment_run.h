@@ -22,6 +22,7 @@ struct ExperimentOptions {
   bool quick = false;
   bool fresh = false;
   bool no_csv = false;
+  bool allow_commands = false;
 };
 
 /// Which experiment is run or merged, and the folder of its results.

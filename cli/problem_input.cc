@@ -132,9 +132,14 @@ int DeliverAnswers(const char* command, const ProblemInputOptions& options,
                    const LoadedProblem& input, const std::vector<ComparisonRow>& rows,
                    const std::string& text, bool answered) {
   const std::string diagnostics = DiagnosticsText(input, rows, options.reorder);
-  if (options.json_path == "-") PrintError("{}", diagnostics);
-  return Deliver(command, options.json_path, text + diagnostics, ResultsJson(input, rows),
-                 answered ? kAnswered : kNoAnswer);
+  const bool refuted = answered && RefutesPoses(input.diagnostics, options.reorder);
+  const std::string verdict =
+      refuted ? "NOT USABLE: the data diagnostics below name a fault that no solver corrects\n"
+              : "";
+  if (options.json_path == "-") PrintError("{}{}", verdict, diagnostics);
+  const int answer = refuted ? kNotUsable : kAnswered;
+  return Deliver(command, options.json_path, verdict + text + diagnostics, ResultsJson(input, rows),
+                 answered ? answer : kNoAnswer);
 }
 
 }  // namespace sextant::cli

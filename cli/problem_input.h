@@ -52,8 +52,9 @@ Expected<std::vector<SolverPtr>> MakeSolvers(const SolverRegistry& registry,
 void PrintNoAnswer(const char* command, const ProblemInputOptions& options,
                    const LoadedProblem& input, const ComparisonRow& row);
 
-/// Delivers the text followed by the diagnostics of the data, and of the outliers of a single row.
-/// Returns the exit code.
+/// Delivers the text followed by the diagnostics of the data, and of the outliers of a single row;
+/// before it the verdict NOT USABLE, with its exit code, where these refute every pose. Returns the
+/// exit code.
 int DeliverAnswers(const char* command, const ProblemInputOptions& options,
                    const LoadedProblem& input, const std::vector<ComparisonRow>& rows,
                    const std::string& text, bool answered);

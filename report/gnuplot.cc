@@ -12,9 +12,15 @@ namespace sextant {
 namespace {
 
 const char* TerminalOf(PlotFormat format) {
-  return format == PlotFormat::kSvg
-             ? "set terminal svg size 960,480 background 'white' font 'sans,13'\n"
-             : "set terminal pngcairo size 960,480 font 'sans,11'\n";
+  switch (format) {
+    case PlotFormat::kSvg:
+      return "set terminal svg size 960,480 background 'white' font 'sans,13'\n";
+    case PlotFormat::kPng:
+      return "set terminal pngcairo size 960,480 font 'sans,11'\n";
+    case PlotFormat::kPdf:
+      return "set terminal pdfcairo size 8in,4in font 'sans,11'\n";
+  }
+  return "";
 }
 
 // Warnings come first; the reason of a failure is last.
@@ -34,6 +40,10 @@ bool IsWhole(std::string_view picture, PlotFormat format) {
     const std::size_t end = picture.find_last_not_of('\n');
     return picture.starts_with("<?xml") && picture.substr(0, end + 1).ends_with("</svg>");
   }
+  if (format == PlotFormat::kPdf) {
+    const std::size_t end = picture.find_last_not_of('\n');
+    return picture.starts_with("%PDF-") && picture.substr(0, end + 1).ends_with("%%EOF");
+  }
   return picture.starts_with("\x89PNG\r\n\x1a\n"sv) && picture.ends_with("IEND\xae\x42\x60\x82"sv);
 }
 
@@ -42,6 +52,15 @@ void EscapeSectionEnds(std::string& svg) {
   constexpr std::string_view kEnd = "]]>";
   for (std::size_t at = svg.find(kEnd); at != std::string::npos; at = svg.find(kEnd, at)) {
     svg.replace(at, kEnd.size(), "]]&gt;");
+  }
+}
+
+// The date of the drawing, in as many digits, so that all offsets in the file stay right.
+void RemoveDates(std::string& pdf) {
+  constexpr std::string_view kDate = "/CreationDate (D:";
+  for (std::size_t at = pdf.find(kDate); at != std::string::npos; at = pdf.find(kDate, at)) {
+    at += kDate.size();
+    for (; at < pdf.size() && pdf[at] >= '0' && pdf[at] <= '9'; ++at) pdf[at] = '0';
   }
 }
 
@@ -62,6 +81,7 @@ Expected<std::string> RunGnuplot(const std::string& commands, PlotFormat format)
                                  end->exit_code, end->out.size(), LastLine(end->err)));
   }
   if (format == PlotFormat::kSvg) EscapeSectionEnds(end->out);
+  if (format == PlotFormat::kPdf) RemoveDates(end->out);
   return std::move(end->out);
 }
 

@@ -7,7 +7,7 @@
 
 namespace sextant {
 
-enum class PlotFormat { kSvg, kPng };
+enum class PlotFormat { kSvg, kPng, kPdf };
 
 /// The picture that gnuplot draws by the commands, which need not name a terminal or an output. The
 /// program is started without a shell and without the user's initialisation files, reads the
@@ -15,6 +15,7 @@ enum class PlotFormat { kSvg, kPng };
 /// file is part of a command. Texts within the commands must come from GnuplotText (base/text), as
 /// gnuplot can start programs.
 ///
+/// The same commands give the same bytes; a PDF has no date.
 /// Errors: kMissingData (gnuplot is not installed), kIo (gnuplot's own message; 60 s passed; the
 /// picture is incomplete).
 Expected<std::string> RunGnuplot(const std::string& commands, PlotFormat format);

@@ -14,8 +14,10 @@ Expected<PlotFormat> FormatOf(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
   if (extension == ".svg") return PlotFormat::kSvg;
   if (extension == ".png") return PlotFormat::kPng;
-  return MakeError(ErrorCode::kInvalidOption,
-                   fmt::format("{}: expected a plot that ends in .svg or .png", path.string()));
+  if (extension == ".pdf") return PlotFormat::kPdf;
+  return MakeError(
+      ErrorCode::kInvalidOption,
+      fmt::format("{}: expected a plot that ends in .svg, .png or .pdf", path.string()));
 }
 
 struct Residuals {

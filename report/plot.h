@@ -10,9 +10,9 @@
 
 namespace sextant {
 
-/// Writes the picture that gnuplot draws by the commands, .svg or .png by the file's extension.
-/// Errors: kInvalidOption (another extension), kIo, those of RunGnuplot, whose header says what the
-/// commands may contain.
+/// Writes the picture that gnuplot draws by the commands, .svg, .png or .pdf by the file's
+/// extension. Errors: kInvalidOption (another extension), kIo, those of RunGnuplot, whose header
+/// says what the commands may contain.
 Expected<void> DrawPlot(const std::string& commands, const std::filesystem::path& path);
 
 /// Commands that plot the residual of every pair for every solver with an answer: of the 3D-3D

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <string_view>
 
 #include "base/units.h"
 #include "eval/statistics/text_table.h"
@@ -130,12 +132,24 @@ std::string DescribeResiduals(const std::vector<Pair>& pairs, const std::vector<
   return table.Plain();
 }
 
-std::string Milli(const std::optional<double>& metres) {
-  return metres ? fmt::format("{:.2f}", *metres * kMmPerM) : "-";
-}
-
-std::string Pixels(const std::optional<double>& pixels) {
-  return pixels ? fmt::format("{:.3f}", *pixels) : "-";
+// The RMSE over the pairs of one kind that the answer is based on, or over all where it is based on
+// the other kind or on none.
+std::string RmseText(const std::vector<double>& residuals, const std::vector<int>* used,
+                     double scale, int decimals) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  const auto add = [&](double residual) {
+    if (!std::isfinite(residual)) return;
+    sum += residual * residual;
+    ++count;
+  };
+  if (used != nullptr && !used->empty()) {
+    for (const int i : *used) add(residuals[static_cast<std::size_t>(i)]);
+  } else {
+    for (const double residual : residuals) add(residual);
+  }
+  if (count == 0) return "-";
+  return fmt::format("{:.{}f}", scale * std::sqrt(sum / static_cast<double>(count)), decimals);
 }
 
 std::string TranslationText(const std::optional<PoseDistance>& distance) {
@@ -146,8 +160,102 @@ std::string RotationText(const std::optional<PoseDistance>& distance) {
   return distance ? Fixed(distance->rotation_rad * kDegPerRad, 4) : "-";
 }
 
-bool Any(const std::vector<ComparisonRow>& rows, bool (*has)(const ComparisonRow&)) {
+bool Any(const std::vector<ScoredRow>& rows, bool (*has)(const ScoredRow&)) {
   return std::any_of(rows.begin(), rows.end(), has);
+}
+
+constexpr std::size_t kMaxWidth = 100;
+
+std::size_t LongestLine(std::string_view text) {
+  std::size_t longest = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    longest = std::max(longest, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return longest;
+}
+
+enum class PoseColumns { kAll, kTranslation, kNone };
+
+bool HasRmse(const ScoredRow& of, std::optional<double> Evaluation::*rmse) {
+  return of.row.report && (of.row.report->evaluation.*rmse).has_value();
+}
+
+/// The columns of a comparison that depend on its rows.
+struct ComparisonColumns {
+  explicit ComparisonColumns(const std::vector<ScoredRow>& rows)
+      : metres(Any(rows, [](const auto& r) { return HasRmse(r, &Evaluation::rmse_m); })),
+        pixels(Any(rows, [](const auto& r) { return HasRmse(r, &Evaluation::rmse_px); })),
+        truth(Any(rows, [](const auto& r) { return r.row.from_truth.has_value(); })),
+        score(Any(rows, [](const auto& r) { return r.score.has_value(); })) {}
+
+  bool metres;
+  bool pixels;
+  bool truth;
+  bool score;
+};
+
+std::vector<std::string> HeaderOf(const ComparisonColumns& columns, PoseColumns pose) {
+  std::vector<std::string> header = {"solver"};
+  const auto add = [&](bool wanted, std::initializer_list<const char*> names) {
+    if (wanted) header.insert(header.end(), names.begin(), names.end());
+  };
+  add(columns.score, {"score"});
+  add(columns.metres, {"RMSE [mm]"});
+  add(columns.pixels, {"RMSE [px]"});
+  add(true, {"used"});
+  add(pose != PoseColumns::kNone, {"x [m]", "y [m]", "z [m]"});
+  add(pose == PoseColumns::kAll, {"yaw [deg]", "pitch", "roll"});
+  add(true, {"to first [mm]", "[deg]"});
+  add(columns.truth, {"error [mm]", "[deg]"});
+  add(true, {"time [us]"});
+  return header;
+}
+
+std::vector<std::string> CellsOf(const ScoredRow& scored, const ComparisonColumns& columns,
+                                 PoseColumns pose) {
+  const ComparisonRow& row = scored.row;
+  const SolveReport& report = *row.report;
+  const Evaluation& evaluation = report.evaluation;
+  const bool of_points = scored.spec.needs.pairs_3d3d > 0;
+  const bool of_pixels = !of_points && scored.spec.needs.pairs_2d3d > 0;
+  std::vector<std::string> cells = {report.solver};
+  const auto add = [&](bool wanted, std::string cell) {
+    if (wanted) cells.push_back(std::move(cell));
+  };
+  add(columns.score, scored.score ? Fixed(*scored.score, 3) : "-");
+  add(columns.metres,
+      RmseText(evaluation.per_pair_m, of_points ? &report.inliers : nullptr, kMmPerM, 2));
+  add(columns.pixels,
+      RmseText(evaluation.per_pair_px, of_pixels ? &report.inliers : nullptr, 1.0, 3));
+  const std::size_t of = (of_points ? evaluation.per_pair_m : evaluation.per_pair_px).size();
+  const bool knows_kind = of_points || of_pixels;
+  add(true, report.inliers.empty() ? "-"
+            : knows_kind           ? fmt::format("{}/{}", report.inliers.size(), of)
+                                   : std::to_string(report.inliers.size()));
+  for (const double v : report.cam_from_lidar.translation) {
+    add(pose != PoseColumns::kNone, Fixed(v, 4));
+  }
+  const EulerZyx euler = ToEulerZyx(report.cam_from_lidar.rotation);
+  for (const double v : {euler.yaw, euler.pitch, euler.roll}) {
+    add(pose == PoseColumns::kAll, Fixed(v * kDegPerRad, 3));
+  }
+  add(true, TranslationText(row.from_first));
+  add(true, RotationText(row.from_first));
+  add(columns.truth, TranslationText(row.from_truth));
+  add(columns.truth, RotationText(row.from_truth));
+  add(true, fmt::format("{:.1f}", report.wall_time_us));
+  return cells;
+}
+
+std::string ComparisonTable(const std::vector<ScoredRow>& rows, PoseColumns pose) {
+  const ComparisonColumns columns(rows);
+  TextTable table(HeaderOf(columns, pose));
+  for (const ScoredRow& scored : rows) {
+    if (scored.row.report) table.AddRow(CellsOf(scored, columns, pose));
+  }
+  return table.Plain();
 }
 
 }  // namespace
@@ -201,48 +309,28 @@ std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& 
   return text;
 }
 
-std::string DescribeComparison(const std::vector<ComparisonRow>& rows) {
-  const bool metres =
-      Any(rows, [](const auto& r) { return r.report && r.report->evaluation.rmse_m; });
-  const bool pixels =
-      Any(rows, [](const auto& r) { return r.report && r.report->evaluation.rmse_px; });
-  const bool truth = Any(rows, [](const auto& r) { return r.from_truth.has_value(); });
-  std::vector<std::string> header = {"solver",    "x [m]", "y [m]", "z [m]",
-                                     "yaw [deg]", "pitch", "roll"};
-  if (metres) header.emplace_back("RMSE [mm]");
-  if (pixels) header.emplace_back("RMSE [px]");
-  header.insert(header.end(), {"used", "to first [mm]", "[deg]"});
-  if (truth) header.insert(header.end(), {"error [mm]", "[deg]"});
-  header.emplace_back("time [us]");
-
-  TextTable table(header);
-  std::string failures;
-  for (const ComparisonRow& row : rows) {
-    if (!row.report) {
-      failures += fmt::format("no answer of {}: {}\n", row.solver, row.report.error().message);
-      continue;
-    }
-    const SolveReport& report = *row.report;
-    const Eigen::Vector3d& t = report.cam_from_lidar.translation;
-    const EulerZyx euler = ToEulerZyx(report.cam_from_lidar.rotation);
-    std::vector<std::string> cells = {report.solver};
-    for (const double v : {t.x(), t.y(), t.z()}) cells.push_back(Fixed(v, 4));
-    for (const double v : {euler.yaw, euler.pitch, euler.roll}) {
-      cells.push_back(Fixed(v * kDegPerRad, 3));
-    }
-    if (metres) cells.push_back(Milli(report.evaluation.rmse_m));
-    if (pixels) cells.push_back(Pixels(report.evaluation.rmse_px));
-    cells.push_back(report.inliers.empty() ? "-" : std::to_string(report.inliers.size()));
-    cells.push_back(TranslationText(row.from_first));
-    cells.push_back(RotationText(row.from_first));
-    if (truth) {
-      cells.push_back(TranslationText(row.from_truth));
-      cells.push_back(RotationText(row.from_truth));
-    }
-    cells.push_back(fmt::format("{:.1f}", report.wall_time_us));
-    table.AddRow(std::move(cells));
+std::string DescribeComparison(const std::vector<ScoredRow>& rows) {
+  // The most of the pose that leaves lines short enough for a terminal; --json has all of it.
+  std::string table;
+  for (const PoseColumns pose :
+       {PoseColumns::kAll, PoseColumns::kTranslation, PoseColumns::kNone}) {
+    table = ComparisonTable(rows, pose);
+    if (LongestLine(table) <= kMaxWidth) break;
   }
-  return table.Plain() + failures;
+  TextTable failures({"no answer of", "because"}, TextTable::Columns::kWords);
+  bool any_failure = false;
+  for (const ScoredRow& scored : rows) {
+    if (scored.row.report) continue;
+    failures.AddRow({scored.row.solver, scored.row.report.error().message});
+    any_failure = true;
+  }
+  return any_failure ? table + "\n" + failures.Plain(kMaxWidth) : table;
+}
+
+std::string DescribeComparison(const std::vector<ComparisonRow>& rows) {
+  std::vector<ScoredRow> unscored;
+  for (const ComparisonRow& row : rows) unscored.push_back({.row = row});
+  return DescribeComparison(unscored);
 }
 
 }  // namespace sextant

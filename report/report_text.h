@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "eval/metrics/compare.h"
+#include "eval/metrics/score.h"
 #include "solvers/core/solver.h"
 
 namespace sextant {
@@ -17,7 +18,11 @@ std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& 
                            const SolveReport& report);
 
 /// The table of `sextant compare`, one row per solver, and the reasons of solvers without an
-/// answer.
+/// answer. The RMSE is over the pairs that the answer is based on. Lines have at most 100
+/// characters as long as a name has at most 24: the angles of the pose are left out first, then all
+/// of it.
+std::string DescribeComparison(const std::vector<ScoredRow>& rows);
+/// The same in the order given, without scores, and with the RMSE over all pairs.
 std::string DescribeComparison(const std::vector<ComparisonRow>& rows);
 
 }  // namespace sextant

@@ -153,7 +153,7 @@ Expected<std::vector<SolverPtr>> SolversFrom(const std::string& list) {
   std::vector<SolverPtr> solvers;
   if (list.empty()) return solvers;
   SEXTANT_ASSIGN_OR_RETURN(const std::vector<SpecNode> specs, ParseSpecList(list));
-  const SolverRegistry registry = AllSolvers();
+  const SolverRegistry registry = AllSolvers(Commands::kAllowed);
   for (const SpecNode& spec : specs) {
     SEXTANT_ASSIGN_OR_RETURN(SolverPtr solver, registry.Make(spec));
     solvers.push_back(std::move(solver));

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/metrics/compare.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "cli/commands/commands.h"
 #include "cli/output.h"
@@ -11,6 +10,8 @@
 #include "cli/problem_input.h"
 #include "cli/progress.h"
 #include "eval/metrics/default_specs.h"
+#include "eval/metrics/score.h"
+#include "io/results/imported_poses.h"
 #include "report/plot.h"
 #include "report/report_text.h"
 #include "solvers/all/all_solvers.h"
@@ -20,18 +21,23 @@ namespace {
 
 struct CompareOptions {
   ProblemInputOptions input{};
-  std::string truth_path{};  ///< Empty: the truth of the problem, if it has one.
+  std::string solvers{};             ///< Empty: every one whose needs the input meets.
+  std::string plot_path{};           ///< Empty: none.
+  std::string import_path{};         ///< See ReadImportedPoses; empty: none.
+  std::vector<std::string> truth{};  ///< See PoseFromArgument; empty: that of the file, if any.
   std::string pose_is{};
-  std::string solvers{};    ///< Empty: every one whose needs the input meets.
-  std::string plot_path{};  ///< Empty: none.
 };
 
 void Declare(CompareOptions& options, Arguments& arguments) {
   DeclareProblemInput(options.input, arguments);
   arguments.Add("--solvers", options.solvers,
                 "Solvers, separated by commas; default: every one whose needs the file meets");
-  arguments.Add("--truth", options.truth_path,
-                std::string("The true pose, for the distances: ") + kPoseHelp);
+  arguments.Add("--import", options.import_path,
+                "poses.csv: poses of other programs as further rows; columns solver, x, y, z (m),\n"
+                "qw, qx, qy, qz, and optionally time_us");
+  arguments.Add("--truth", options.truth,
+                std::string("The true pose, which adds the error of every answer: ") + kPoseHelp,
+                {.min_values = 1, .max_values = 7});
   DeclarePoseIs(options.pose_is, arguments);
   arguments.Add("--plot", options.plot_path,
                 "Draw the residuals of every pair under every solver (.svg or .png)",
@@ -40,24 +46,50 @@ void Declare(CompareOptions& options, Arguments& arguments) {
 
 // Whether a solver that finds the whole pose without a start has an answer; if there is none among
 // them, whether any solver has one. The number of a mere baseline is no answer.
-bool IsAnswered(const std::vector<SolverPtr>& solvers, const std::vector<ComparisonRow>& rows) {
-  const auto is_full = [](const SolverPtr& solver) { return FindsWholePose(solver->spec()); };
-  const bool any_full = std::any_of(solvers.begin(), solvers.end(), is_full);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].report && (is_full(solvers[i]) || !any_full)) return true;
+bool IsAnswered(const std::vector<ScoredRow>& rows) {
+  const auto is_full = [](const ScoredRow& of) { return FindsWholePose(of.spec); };
+  const bool any_full = std::any_of(rows.begin(), rows.end(), is_full);
+  return std::any_of(rows.begin(), rows.end(), [&](const ScoredRow& of) {
+    return of.row.report && (is_full(of) || !any_full);
+  });
+}
+
+Expected<std::optional<Rigid3d>> TruthOf(const CompareOptions& options,
+                                         const LoadedProblem& input) {
+  if (options.truth.empty()) return input.file.true_cam_from_lidar;
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d truth,
+                           PoseFromArgument("--truth", options.truth, options.pose_is));
+  return truth;
+}
+
+ComparisonRow RowOf(const ImportedPose& imported, const CalibrationProblem& problem,
+                    const std::optional<Rigid3d>& truth) {
+  ComparisonRow row{imported.solver, SolveReport{}, {}, {}};
+  row.report->solver = imported.solver;
+  row.report->cam_from_lidar = imported.cam_from_lidar;
+  row.report->wall_time_us = imported.time_us.value_or(0.0);
+  row.report->evaluation = Evaluate(problem, imported.cam_from_lidar);
+  if (truth) row.from_truth = DistanceBetween(imported.cam_from_lidar, *truth);
+  return row;
+}
+
+/// All rows, best first: those of the solvers and those of other programs.
+std::vector<ScoredRow> ScoredRows(std::vector<ComparisonRow> rows,
+                                  const std::vector<SolverPtr>& solvers,
+                                  const std::vector<ComparisonRow>& imported) {
+  std::vector<SolverSpec> specs;
+  for (const SolverPtr& solver : solvers) specs.push_back(solver->spec());
+  for (const ComparisonRow& row : imported) {
+    rows.push_back(row);
+    specs.push_back({.name = row.solver});
   }
-  return false;
+  return SortByScore(std::move(rows), specs);
 }
 
 int Run(const CompareOptions& options) {
-  const SolverRegistry registry = AllSolvers();
-  Expected<LoadedProblem> input = LoadProblem(options.input);
+  const SolverRegistry registry = AllSolvers(Commands::kAllowed);
+  const Expected<LoadedProblem> input = LoadProblem(options.input);
   if (!input) return Refuse("compare", input.error());
-  if (!options.truth_path.empty()) {
-    const Expected<Rigid3d> truth = PoseOfFile(options.truth_path, options.pose_is);
-    if (!truth) return Refuse("compare", truth.error());
-    input->file.true_cam_from_lidar = *truth;
-  }
   const CalibrationProblem& problem = input->file.problem;
   std::string list = options.solvers;
   if (list.empty()) list = fmt::format("{}", fmt::join(DefaultSpecs(registry, problem), ","));
@@ -73,20 +105,29 @@ int Run(const CompareOptions& options) {
   const Expected<std::vector<SolverPtr>> solvers =
       ParseSpecList(list).and_then([&](const auto& specs) { return MakeSolvers(registry, specs); });
   if (!solvers) return Refuse("compare", solvers.error());
+  const Expected<std::optional<Rigid3d>> truth = TruthOf(options, *input);
+  if (!truth) return Refuse("compare", truth.error());
+  Expected<std::vector<ImportedPose>> imported = std::vector<ImportedPose>();
+  if (!options.import_path.empty()) imported = ReadImportedPoses(options.import_path);
+  if (!imported) return Refuse("compare", imported.error());
   Progress progress;
-  const std::vector<ComparisonRow> rows =
-      Compare(problem, *solvers, input->file.true_cam_from_lidar, progress.Callback());
+  std::vector<ComparisonRow> others;
+  for (const ImportedPose& pose : *imported) others.push_back(RowOf(pose, problem, *truth));
+  const std::vector<ScoredRow> scored =
+      ScoredRows(Compare(problem, *solvers, *truth, progress.Callback()), *solvers, others);
+  std::vector<ComparisonRow> rows;
+  for (const ScoredRow& of : scored) rows.push_back(of.row);
   if (!options.plot_path.empty()) {
     const Expected<void> drawn = DrawPlot(ResidualPlot(problem, rows), options.plot_path);
     if (!drawn) return Refuse("compare", drawn.error());
   }
-  const bool answered = IsAnswered(*solvers, rows);
+  const bool answered = IsAnswered(scored);
   if (!answered) {
     const auto failed = std::find_if(rows.begin(), rows.end(),
                                      [](const ComparisonRow& row) { return !row.report; });
     PrintNoAnswer("compare", options.input, *input, *failed);
   }
-  const std::string text = answered ? DescribeComparison(rows) : std::string();
+  const std::string text = answered ? DescribeComparison(scored) : std::string();
   return DeliverAnswers("compare", options.input, *input, rows, text, answered);
 }
 
@@ -94,8 +135,9 @@ int Run(const CompareOptions& options) {
 
 Command CompareCommand() {
   constexpr const char* kFooter =
-      "The table has the distance of each answer to the first one, and to the truth if the file "
-      "holds it.\n"
+      "The best answer comes first, by a score that holds all answers to the same pairs: the root\n"
+      "mean square of all residuals in robust standard deviations of the best, each at most 3.\n"
+      "RMSE is over the pairs that an answer uses; `to first` is the distance to the best answer.\n"
       "Examples:\n"
       "  sextant compare points.txt\n"
       "  sextant compare points.txt --solvers "

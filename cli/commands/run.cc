@@ -8,6 +8,7 @@
 #include "cli/commands/commands.h"
 #include "cli/experiment_run.h"
 #include "cli/output.h"
+#include "eval/experiment/run/export_problems.h"
 #include "eval/experiment/run/part_files.h"
 #include "io/output/output_folder.h"
 #include "io/output/standard_output.h"
@@ -17,13 +18,19 @@ namespace {
 
 struct RunOptions {
   ExperimentOptions experiment{};
-  std::string shard{};  ///< "2/8"; empty: all.
+  std::string shard{};          ///< "2/8"; empty: all.
+  std::string export_folder{};  ///< Folder for the problems, instead of a run; empty: none.
 };
 
 void Declare(RunOptions& options, Arguments& arguments) {
   DeclareRun(options.experiment, arguments);
   arguments.Add("--shard", options.shard,
                 "I/N: only the I-th of N parts, each for one machine; sextant merge joins them");
+  arguments.Add(
+      "--export-problems", options.export_folder,
+      "Instead of a run, write the problem of each trial for other programs, whose poses\n"
+      "come back as the solver imported(\"poses.csv\")",
+      {.writes = Writes::kFolder});
 }
 
 Expected<Shard> ParseShard(const std::string& text) {
@@ -57,6 +64,12 @@ int Run(const RunOptions& all) {
   const ExperimentOptions& options = all.experiment;
   const Expected<Experiment> experiment = LoadExperiment(options);
   if (!experiment) return Refuse("run", experiment.error());
+  if (!all.export_folder.empty()) {
+    const Expected<void> written = ExportProblems(*experiment, all.export_folder);
+    if (!written) return Refuse("run", written.error());
+    Print("{}", WroteLine(all.export_folder, "problems of " + experiment->name));
+    return kAnswered;
+  }
   const Expected<Shard> shard = ParseShard(all.shard);
   if (!shard) return Refuse("run", shard.error());
   const std::filesystem::path folder = FolderOf(options, *experiment);

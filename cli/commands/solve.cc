@@ -44,7 +44,7 @@ std::string TextOf(const CalibrationProblem& problem, const Solver& solver,
 }
 
 int Run(const SolveOptions& options) {
-  const SolverRegistry registry = AllSolvers();
+  const SolverRegistry registry = AllSolvers(Commands::kAllowed);
   Expected<SolverPtr> solver = registry.Make(options.solver.empty() ? "kabsch" : options.solver);
   if (!solver) return Refuse("solve", solver.error());
   const Expected<LoadedProblem> input = LoadProblem(options.input);

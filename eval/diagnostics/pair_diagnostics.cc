@@ -163,9 +163,11 @@ void Append(const std::vector<std::string>& lines, std::vector<std::string>& all
 PairDiagnostics DiagnosePairs(const CalibrationProblem& problem) {
   PairDiagnostics diagnostics;
   diagnostics.causes = CausesInCamera(problem);
-  Append(CausesInPixels(problem), diagnostics.causes);
+  const std::vector<std::string> in_pixels = CausesInPixels(problem);
   const std::vector<std::string> in_points = CausesInPoints(problem);
+  Append(in_pixels, diagnostics.causes);
   Append(in_points, diagnostics.causes);
+  diagnostics.misread = !in_pixels.empty() || !in_points.empty();
   if (!in_points.empty()) return diagnostics;
   diagnostics.order = DiagnoseOrder(problem);
   if (problem.pairs_3d3d.size() < 3) return diagnostics;
@@ -189,6 +191,13 @@ PairDiagnostics DiagnosePairs(const CalibrationProblem& problem) {
     diagnostics.weak_translation = Weakest(covariance->bottomRightCorner<3, 3>(), false);
   }
   return diagnostics;
+}
+
+bool RefutesPoses(const PairDiagnostics& diagnostics, bool reordered) {
+  const OrderDiagnosis& order = diagnostics.order;
+  if (diagnostics.misread || diagnostics.mirrored_rmse_m) return true;
+  if (reordered && order.better) return false;
+  return order.faces_as_given || order.better || !order.rivals.empty();
 }
 
 }  // namespace sextant

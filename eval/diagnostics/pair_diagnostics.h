@@ -41,6 +41,7 @@ struct BoardContradiction {
 /// Data diagnostics: properties of the pairs that make a pose from them unreliable.
 struct PairDiagnostics {
   std::vector<std::string> causes;  ///< See causes.h; one sentence each.
+  bool misread = false;  ///< One of them is in the points or pixels: they are not what they seem.
   OrderDiagnosis order;
   std::optional<BoardContradiction> contradiction;
   std::vector<EdgeFinding> edges;
@@ -62,6 +63,11 @@ struct PairDiagnostics {
 /// (if the noise is stated). Weak direction: its standard deviation is more than five times that of
 /// the best determined direction.
 PairDiagnostics DiagnosePairs(const CalibrationProblem& problem);
+
+/// Whether no pose of these pairs, in the order that is used, can be right: they are not what they
+/// are taken for, mirrored, or in an order that puts the sensors on opposite sides of the boards or
+/// fits far worse than another. `reordered`: the better order is used.
+bool RefutesPoses(const PairDiagnostics& diagnostics, bool reordered);
 
 /// One line of text per finding, with the figures and advice.
 std::vector<std::string> Describe(const PairDiagnostics& diagnostics);

@@ -5,6 +5,7 @@
 #include <boost/math/special_functions/beta.hpp>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "base/random.h"
@@ -52,6 +53,25 @@ Interval WilsonInterval(std::uint64_t successes, std::uint64_t trials) {
       kNormalQuantile975 / (1.0 + z2 / n) * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n));
   // With no or only successes the bound is exactly 0 or 1; the formula gives it up to rounding.
   return {successes == 0 ? 0.0 : centre - half, successes == trials ? 1.0 : centre + half};
+}
+
+double SignTest(std::uint64_t wins, std::uint64_t losses) {
+  constexpr std::uint64_t kMaxExact = 1000;
+  const std::uint64_t trials = wins + losses;
+  if (trials == 0) return 1.0;
+  const std::uint64_t fewer = std::min(wins, losses);
+  const auto n = static_cast<double>(trials);
+  if (trials > kMaxExact) {
+    const double difference = std::abs(static_cast<double>(wins) - static_cast<double>(losses));
+    return std::erfc(std::max(0.0, difference - 1.0) / std::sqrt(2.0 * n));
+  }
+  double tail = 0.0;
+  for (std::uint64_t k = 0; k <= fewer; ++k) {
+    const auto x = static_cast<double>(k);
+    tail += std::exp(std::lgamma(n + 1.0) - std::lgamma(x + 1.0) - std::lgamma(n - x + 1.0) -
+                     n * std::numbers::ln2);
+  }
+  return std::min(1.0, 2.0 * tail);
 }
 
 QuantilePlace PlaceOfQuantile(std::uint64_t count, double q) {

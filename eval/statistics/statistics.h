@@ -16,6 +16,11 @@ struct Interval {
 /// not reject. Its width is positive even for 0 and for `trials` successes. Requires trials > 0.
 Interval WilsonInterval(std::uint64_t successes, std::uint64_t trials);
 
+/// Two-sided p of the sign test: how probable a difference of wins and losses as large as this is,
+/// or a larger one, if both are equally probable. Exact up to 1000 of them, then by the normal
+/// distribution. 1 without any.
+double SignTest(std::uint64_t wins, std::uint64_t losses);
+
 /// Position of the q-quantile among `count` ascending values, counted from 0 (type 7 of Hyndman and
 /// Fan: position q (n - 1)).
 struct QuantilePlace {

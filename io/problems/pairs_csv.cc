@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "base/nearest_name.h"
+#include "io/problems/csv_header.h"
 #include "io/text/line_reader.h"
 #include "io/text/max_id.h"
 #include "io/text/text_file.h"
@@ -14,25 +14,13 @@
 namespace sextant {
 namespace {
 
-using Names = std::vector<std::string>;
-
-const Names& KnownColumns() {
-  static const Names kNames = {"u",       "v",    "x",      "y",      "z",      "camx",
-                               "camy",    "camz", "lidarx", "lidary", "lidarz", "sigma_px",
-                               "sigma_m", "id",   "view",   "board",  "corner"};
-  return kNames;
-}
-
 // Access to the fields of a row by the names of the columns.
 class Columns {
  public:
-  explicit Columns(LineReader& in) : in_(in) {
-    if (!in.Require("a header line with the names of the columns")) return;
-    for (std::size_t i = 0; i < in.field_count(); ++i) Add(std::string(in.Field(i)));
-  }
+  Columns(LineReader& in, CsvHeader header) : in_(in), header_(std::move(header)) {}
 
-  bool Has(std::string_view name) const { return Index(name) < names_.size(); }
-  void Require(const Names& needed) {
+  bool Has(std::string_view name) const { return Index(name) < names().size(); }
+  void Require(const std::vector<std::string>& needed) {
     for (const std::string& name : needed) {
       if (Has(name)) continue;
       in_.Fail(ErrorCode::kParse,
@@ -40,9 +28,9 @@ class Columns {
     }
   }
   std::string RowForm() const {
-    return fmt::format("{} values ({})", names_.size(), fmt::join(names_, ","));
+    return fmt::format("{} values ({})", names().size(), fmt::join(names(), ","));
   }
-  std::size_t size() const { return names_.size(); }
+  const std::vector<std::string>& names() const { return header_.columns; }
 
   std::string_view Text(std::string_view name) const { return in_.Field(Index(name)); }
   double Real(std::string_view name) { return in_.Real(Index(name), name); }
@@ -64,26 +52,22 @@ class Columns {
 
  private:
   std::size_t Index(std::string_view name) const {
-    return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
-  }
-  void Add(std::string name) {
-    const Names& known = KnownColumns();
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      in_.Fail(ErrorCode::kParse,
-               fmt::format("unknown column {}; {}", Quoted(name), SuggestName(name, known)));
-    }
-    if (Has(name)) {
-      in_.Fail(ErrorCode::kParse, fmt::format("the column {} appears twice", Quoted(name)));
-    }
-    names_.push_back(std::move(name));
+    return static_cast<std::size_t>(std::find(names().begin(), names().end(), name) -
+                                    names().begin());
   }
 
   LineReader& in_;
-  Names names_;
+  CsvHeader header_;
 };
 
+// Whether the ids are names, such as p2, which say nothing of boards.
+bool IsNameOfPoint(std::string_view id) {
+  return !id.empty() && id.find(':') == std::string_view::npos && (id[0] < '0' || id[0] > '9') &&
+         id[0] != '-' && id[0] != '+';
+}
+
 PairId ReadId(Columns& row, std::size_t index) {
-  if (!row.Has("id")) {
+  if (!row.Has("id") || IsNameOfPoint(row.Text("id"))) {
     const bool named = row.Has("board");
     return {.view = row.IntegerOr("view", 0),
             .board = named ? row.IntegerOr("board", 0) : static_cast<int>(index),
@@ -117,8 +101,9 @@ void CheckHeader(LineReader& in, Columns& columns, bool is_2d3d) {
   } else {
     columns.Require({"camx", "camy", "camz", "lidarx", "lidary", "lidarz"});
   }
-  const Names others =
-      is_2d3d ? Names{"camx", "lidarx", "sigma_m"} : Names{"x", "y", "z", "sigma_px"};
+  const std::vector<std::string> others =
+      is_2d3d ? std::vector<std::string>{"camx", "lidarx", "sigma_m"}
+              : std::vector<std::string>{"x", "y", "z", "sigma_px"};
   for (const std::string& other : others) {
     if (columns.Has(other)) {
       in.Fail(ErrorCode::kParse, fmt::format("the column {} belongs to the other kind of pairs; "
@@ -134,6 +119,37 @@ void CheckHeader(LineReader& in, Columns& columns, bool is_2d3d) {
   }
 }
 
+// Whether the row has a value for each column.
+bool IsRow(LineReader& in, const Columns& row, const std::string& form) {
+  const std::size_t wanted = row.names().size();
+  if (in.field_count() == 2 * wanted) {
+    in.Fail(ErrorCode::kParse,
+            fmt::format("expected {}, got {} fields; if the numbers have decimal commas, separate "
+                        "the columns by semicolons",
+                        form, in.field_count()));
+  }
+  return in.HasFields(wanted, form);
+}
+
+void ReadRow(LineReader& in, Columns& row, bool is_2d3d, CalibrationProblem& problem) {
+  if (is_2d3d) {
+    const std::size_t index = problem.pairs_2d3d.size();
+    Pair2d3d& pair = problem.pairs_2d3d.emplace_back();
+    pair.pixel.x() = row.Real("u");
+    pair.pixel.y() = row.Real("v");
+    pair.point_in_lidar = row.Point("x", "y", "z");
+    pair.sigma_px = ReadSigma(in, row, "sigma_px");
+    pair.id = ReadId(row, index);
+    return;
+  }
+  const std::size_t index = problem.pairs_3d3d.size();
+  Pair3d3d& pair = problem.pairs_3d3d.emplace_back();
+  pair.point_in_cam = row.Point("camx", "camy", "camz");
+  pair.point_in_lidar = row.Point("lidarx", "lidary", "lidarz");
+  pair.sigma_m = ReadSigma(in, row, "sigma_m");
+  pair.id = ReadId(row, index);
+}
+
 }  // namespace
 
 Expected<CalibrationProblem> ReadPairsCsv(const std::filesystem::path& path) {
@@ -141,27 +157,26 @@ Expected<CalibrationProblem> ReadPairsCsv(const std::filesystem::path& path) {
 }
 
 Expected<CalibrationProblem> ParsePairsCsv(std::string_view text, const std::string& file) {
-  LineReader in(file, text, LineReader::Separator::kCommas);
-  Columns row(in);
+  std::vector<std::string> notes;
+  return ParsePairsCsvWithNotes(text, file, notes);
+}
+
+Expected<CalibrationProblem> ParsePairsCsvWithNotes(std::string_view text, const std::string& file,
+                                                    std::vector<std::string>& notes) {
+  const CsvText csv(text);
+  LineReader in(file, csv.text(), csv.separator());
+  if (!in.Require("a header line with the names of the columns")) return in.TakeError();
+  CsvHeader header = ReadCsvHeader(in);
+  const bool has_names = header.has_names;
+  notes = header.notes;
+  Columns row(in, std::move(header));
   const bool is_2d3d = row.Has("u") || row.Has("v");
   CheckHeader(in, row, is_2d3d);
   const std::string form = row.RowForm();
   CalibrationProblem problem;
-  for (std::size_t i = 0; in.Next() && in.HasFields(row.size(), form); ++i) {
-    if (is_2d3d) {
-      Pair2d3d& pair = problem.pairs_2d3d.emplace_back();
-      pair.pixel.x() = row.Real("u");
-      pair.pixel.y() = row.Real("v");
-      pair.point_in_lidar = row.Point("x", "y", "z");
-      pair.sigma_px = ReadSigma(in, row, "sigma_px");
-      pair.id = ReadId(row, i);
-    } else {
-      Pair3d3d& pair = problem.pairs_3d3d.emplace_back();
-      pair.point_in_cam = row.Point("camx", "camy", "camz");
-      pair.point_in_lidar = row.Point("lidarx", "lidary", "lidarz");
-      pair.sigma_m = ReadSigma(in, row, "sigma_m");
-      pair.id = ReadId(row, i);
-    }
+  for (bool any = !has_names || in.Next(); any && in.ok() && IsRow(in, row, form);
+       any = in.Next()) {
+    ReadRow(in, row, is_2d3d, problem);
   }
   if (in.ok() && problem.pairs_2d3d.empty() && problem.pairs_3d3d.empty()) {
     in.Fail(ErrorCode::kParse, fmt::format("expected rows of {} after the header", form));

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "io/problems/acfr_poses.h"
+#include "io/problems/csv_header.h"
 #include "io/problems/pairs_csv.h"
 #include "io/problems/points_file.h"
 #include "io/problems/problem_range.h"
@@ -28,19 +29,28 @@ bool IsAverageLog(std::string_view text, const std::string& file) {
   return true;
 }
 
+// A pixel and a point.
+constexpr std::size_t kMinColumns = 5;
+
 std::optional<ProblemFormat> Detect(std::string_view text, const std::string& file) {
   const std::string extension = std::filesystem::path(file).extension().string();
   if (extension == ".yaml" || extension == ".yml") return ProblemFormat::kYaml;
-  LineReader in(file, text);
+  const CsvText csv(text);
+  LineReader in(file, csv.text(), csv.separator());
   if (!in.Next()) return std::nullopt;
-  LineReader commas(file, text, LineReader::Separator::kCommas);
-  commas.Next();
-  if (commas.field_count() >= 3) {
-    if (!IsNumber(commas.Field(0))) return ProblemFormat::kPairsCsv;
-    if (commas.field_count() == 3) return ProblemFormat::kAcfrPoses;
+  const bool has_marks = csv.separator() != LineReader::Separator::kBlanks;
+  const std::size_t count = in.field_count();
+  if (!IsNumber(in.Field(0))) {
+    if (in.Field(0).ends_with(':')) return ProblemFormat::kYaml;
+    if (count >= kMinColumns || (has_marks && count >= 3)) return ProblemFormat::kPairsCsv;
+    return std::nullopt;
   }
-  if (in.field_count() == 1 && IsNumber(in.Field(0))) return ProblemFormat::kPoints;
-  if (in.Field(0).ends_with(':')) return ProblemFormat::kYaml;
+  if (count == 1) {
+    const bool has_rows = in.Next() && in.field_count() >= kMinColumns;
+    return has_rows ? ProblemFormat::kPairsCsv : ProblemFormat::kPoints;
+  }
+  if (count == 3 && has_marks) return ProblemFormat::kAcfrPoses;
+  if (count == kMinColumns || count == kMinColumns + 1) return ProblemFormat::kPairsCsv;
   return std::nullopt;
 }
 
@@ -110,7 +120,7 @@ Expected<DetectedProblem> ParseProblem(std::string_view text, const std::string&
       ok = ParsePoints(text, file).map(keep_problem);
       break;
     case ProblemFormat::kPairsCsv:
-      ok = ParsePairsCsv(text, file).map(keep_problem);
+      ok = ParsePairsCsvWithNotes(text, file, detected.notes).map(keep_problem);
       break;
     case ProblemFormat::kAcfrPoses:
       ok = ParseAcfrPoses(text, file)

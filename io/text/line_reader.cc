@@ -18,6 +18,13 @@ std::string_view Trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
+// The end of a field in double quotes, within which marks are text; none for another field.
+std::size_t ClosingQuote(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(kBlank);
+  if (first == std::string_view::npos || line[first] != '"') return std::string_view::npos;
+  return line.find('"', first + 1);
+}
+
 }  // namespace
 
 LineReader::LineReader(std::string file, std::string_view text, Separator separator)
@@ -54,8 +61,12 @@ void LineReader::Split(std::string_view line) {
   const bool blanks = separator_ == Separator::kBlanks;
   const char mark = separator_ == Separator::kSemicolons ? ';' : ',';
   while (true) {
-    const std::size_t end = blanks ? line.find_first_of(kBlank) : line.find(mark);
-    fields_.push_back(Trim(line.substr(0, end)));
+    std::size_t end = blanks ? line.find_first_of(kBlank) : line.find(mark);
+    const std::size_t closing = blanks ? std::string_view::npos : ClosingQuote(line);
+    if (closing != std::string_view::npos) end = line.find(mark, closing);
+    const std::string_view field = Trim(line.substr(0, end));
+    const bool is_quoted = closing != std::string_view::npos && field.back() == '"';
+    fields_.push_back(is_quoted ? field.substr(1, field.size() - 2) : field);
     if (end == std::string_view::npos) return;
     if (fields_.size() == kMaxFields) {
       return Fail(ErrorCode::kParse,

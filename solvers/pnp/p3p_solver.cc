@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -102,27 +103,35 @@ TriplePoses SolveTriple(const CalibrationProblem& problem, const Indices& indice
   return found;
 }
 
-// The triple whose pixel noise perturbs the projections of all pairs the least, at a pose near the
-// solution. The choice does not use residuals, so that the covariance of the solution stays
-// unbiased.
-Triple SteadiestTriple(const CalibrationProblem& problem, const std::vector<Triple>& triples,
-                       const Rigid3d& near_answer) {
+// The triples by how little their pixel noise perturbs the projections of all pairs, at a pose near
+// the solution; those that determine no pose there last. The order does not use residuals, so that
+// the covariance of the solution stays unbiased.
+std::vector<Triple> SteadiestFirst(const CalibrationProblem& problem, std::vector<Triple> triples,
+                                   const Rigid3d& near_answer) {
   const Camera& camera = *problem.camera;
   const std::vector<Pair2d3d>& pairs = problem.pairs_2d3d;
-  Triple best = triples.front();
   const auto information = ProjectionInformation(camera, pairs, near_answer);
-  if (!information) return best;
-  double least = std::numeric_limits<double>::infinity();
+  if (!information) return triples;
+  std::vector<std::pair<double, Triple>> rated;
   for (const Triple& triple : triples) {
     const auto covariance = RelativeTripleCovariance(camera, pairs, triple, near_answer);
-    if (!covariance) continue;
-    const double variance = covariance->cwiseProduct(*information).sum();
-    if (variance < least) {
-      least = variance;
-      best = triple;
-    }
+    const double variance = covariance ? covariance->cwiseProduct(*information).sum()
+                                       : std::numeric_limits<double>::infinity();
+    rated.emplace_back(std::isnan(variance) ? std::numeric_limits<double>::infinity() : variance,
+                       triple);
   }
-  return best;
+  std::ranges::stable_sort(rated, {}, [](const auto& r) { return r.first; });
+  std::ranges::transform(rated, triples.begin(), [](const auto& r) { return r.second; });
+  return triples;
+}
+
+// Whether a pose leaves far more than another. Where noise makes two solutions of a triple complex,
+// its others, at which the triple fits as exactly, are elsewhere.
+bool IsFarWorse(const Misfit& misfit, const Misfit& least, std::size_t pairs) {
+  constexpr double kFarWorse = 400.0;  // Twenty times the RMSE.
+  constexpr double kRounding_px2 = 1e-12;
+  if (misfit.first != least.first) return misfit.first > least.first;
+  return misfit.second > kFarWorse * least.second + kRounding_px2 * static_cast<double>(pairs);
 }
 
 /// Solves the three of the outermost pairs that determine the pose best; the others only select one
@@ -140,10 +149,9 @@ class P3pSolver final : public Solver {
     if (poses.empty()) return Refusal(problem, triples);
     Triple triple = triples.front();
     if (triples.size() > 1) {
-      triple = SteadiestTriple(problem, triples, Best(problem, poses));
-      std::vector<Rigid3d> steady;
-      Append(SolveTriple(problem, triple), steady);
-      if (!steady.empty()) poses = {Best(problem, steady)};
+      const Steady steady = SteadyPose(problem, triples, Best(problem, poses));
+      triple = steady.triple;
+      poses = {steady.pose};
     }
     if (Expected<void> ok = CheckExplained(*problem.camera, problem.pairs_2d3d, poses.front());
         !ok) {
@@ -157,6 +165,29 @@ class P3pSolver final : public Solver {
     estimate.covariance =
         TripleCovariance(*problem.camera, problem.pairs_2d3d, triple, estimate.cam_from_lidar);
     return estimate;
+  }
+
+  struct Steady {
+    Rigid3d pose;
+    Triple triple;
+  };
+
+  // The pose of the steadiest triple that has one near the best.
+  static Steady SteadyPose(const CalibrationProblem& problem, const std::vector<Triple>& triples,
+                           const Rigid3d& best) {
+    constexpr Misfit kNone{std::numeric_limits<int>::max(), 0.0};
+    const Misfit least = MisfitOf(problem, best, kNone);
+    const std::vector<Triple> sorted = SteadiestFirst(problem, triples, best);
+    for (const Triple& triple : sorted) {
+      std::vector<Rigid3d> poses;
+      Append(SolveTriple(problem, triple), poses);
+      if (poses.empty()) continue;
+      const Rigid3d pose = Best(problem, poses);
+      if (!IsFarWorse(MisfitOf(problem, pose, kNone), least, problem.pairs_2d3d.size())) {
+        return {pose, triple};
+      }
+    }
+    return {best, sorted.front()};
   }
 
   static void Append(const TriplePoses& found, std::vector<Rigid3d>& poses) {
@@ -206,6 +237,8 @@ bool IsP3pOfPinhole(const Solver& solver, const CalibrationProblem& problem) {
   return problem.camera && problem.camera->model == CameraModel::kPinhole &&
          dynamic_cast<const P3pSolver*>(&solver) != nullptr;
 }
+
+SolverPtr MakeP3p() { return std::make_shared<P3pSolver>("p3p"); }
 
 SolverEntry P3pEntry() {
   return {

@@ -9,4 +9,7 @@ namespace sextant {
 /// replace `solver`: it is p3p, and the camera has no distortion.
 bool IsP3pOfPinhole(const Solver& solver, const CalibrationProblem& problem);
 
+/// The solver `p3p`.
+SolverPtr MakeP3p();
+
 }  // namespace sextant

@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <string>
 
+#include "solvers/core/unseen_pairs.h"
+#include "solvers/kernels/pair_terms.h"
+#include "solvers/least_squares/refine_pose.h"
 #include "solvers/pnp/explained.h"
 #include "solvers/pnp/moment_covariance.h"
 #include "solvers/pnp/object_space_covariance.h"
+#include "solvers/pnp/p3p_solver.h"
 #include "solvers/pnp/plane_frame.h"
 #include "solvers/pnp/pnp_view.h"
 #include "solvers/pnp/reprojection_covariance.h"
@@ -109,22 +114,70 @@ std::optional<Matrix6d> KernelCovariance(const PnpKernel& kernel, PnpCovariance 
   return Matrix6d(turn * *in_view * turn.transpose());
 }
 
+// The answer to pixels that no image plane holds: least squares of the pixels by the camera's own
+// model, from the poses of p3p, which needs rays only.
+Expected<Estimate> SolveWideView(const CalibrationProblem& problem, const std::string& solver) {
+  constexpr RefineLimits kLimits = {.max_iterations = 100, .step_tolerance = 1e-10};
+  SEXTANT_ASSIGN_OR_RETURN(const SolveReport start, MakeP3p()->Solve(problem));
+  std::vector<Rigid3d> starts = {start.cam_from_lidar};
+  starts.insert(starts.end(), start.alternatives.begin(), start.alternatives.end());
+  const PairTerms terms = MakeTerms(problem, PairKind::k2d3d);
+  std::optional<RefinedPose> best;
+  for (const Rigid3d& pose : starts) {
+    const RefinedPose refined = RefinePose(terms.View(), pose, kLimits);
+    if (!refined.cam_from_lidar.IsFinite() || refined.outcome == RefineOutcome::kNotProjected)
+      continue;
+    if (!best || refined.cost < best->cost) best = refined;
+  }
+  if (!best) {
+    return MakeError(ErrorCode::kNoConsensus,
+                     solver +
+                         ": a pixel used has no residual at the poses of p3p; check the "
+                         "camera and which pixel belongs to which point");
+  }
+  Estimate estimate;
+  estimate.cam_from_lidar = best->cam_from_lidar;
+  estimate.termination = best->outcome == RefineOutcome::kMaxIterations
+                             ? Termination::kMaxIterations
+                             : Termination::kConverged;
+  estimate.iterations = best->iterations;
+  estimate.inliers.resize(problem.pairs_2d3d.size());
+  std::iota(estimate.inliers.begin(), estimate.inliers.end(), 0);
+  estimate.covariance =
+      ReprojectionCovariance(*problem.camera, problem.pairs_2d3d, estimate.cam_from_lidar);
+  estimate.warnings.push_back(solver +
+                              ": the pixels span more than 168 deg of view, which no image plane "
+                              "holds; the answer is least squares of the pixels from p3p's poses");
+  return estimate;
+}
+
 }  // namespace
 
-PnpSolver::PnpSolver(SolverSpec spec, PnpKernel kernel, PnpCovariance covariance)
-    : Solver(std::move(spec)), kernel_(std::move(kernel)), covariance_(covariance) {}
+PnpSolver::PnpSolver(SolverSpec spec, PnpKernel kernel, PnpCovariance covariance,
+                     WideViews wide_views)
+    : Solver(std::move(spec)),
+      kernel_(std::move(kernel)),
+      covariance_(covariance),
+      wide_views_(wide_views) {}
 
 PnpSolver::PnpSolver(SolverSpec spec, PnpKernel kernel, MomentsKernel of_moments)
     : Solver(std::move(spec)),
       kernel_(std::move(kernel)),
       covariance_(PnpCovariance::kMoments),
+      wide_views_(WideViews::kLeastSquares),
       of_moments_(std::move(of_moments)) {}
 
 Expected<Estimate> PnpSolver::DoSolve(const CalibrationProblem& problem) const {
   const Camera& camera = *problem.camera;
   const std::vector<Pair2d3d>& pairs = problem.pairs_2d3d;
   Expected<PnpView> view = MakeView(camera, pairs);
-  if (!view) return tl::unexpected<Error>(Named(view.error()));
+  if (!view) {
+    const bool is_wide = PairsWithRay(problem).size() == pairs.size();
+    if (is_wide && wide_views_ == WideViews::kLeastSquares) {
+      return SolveWideView(problem, spec().name);
+    }
+    return tl::unexpected<Error>(Named(view.error()));
+  }
   Expected<PnpPoses> found = kernel_({view->image_points, view->points, FocalLengthPx(camera)});
   if (!found) return tl::unexpected<Error>(Named(found.error()));
   if (found->inliers.empty()) {

@@ -42,13 +42,21 @@ enum class PnpCovariance {
   kLeastSquares,  ///< Minimum of the reprojection error over the inliers: ReprojectionCovariance.
 };
 
+/// What to do with pixels that span more than 168 deg, which no image plane holds.
+enum class WideViews {
+  kRefused,       ///< kInvalidInput.
+  kLeastSquares,  ///< Least squares of the pixels from the poses of p3p, with a warning.
+};
+
 /// Makes a Solver of any kernel: the camera's own model converts pixels to image points. Where
 /// pixels of a wide lens are near or beyond 90 deg from the optical axis, the kernel gets the image
 /// points of a camera rotated onto the mean ray.
 class PnpSolver final : public Solver {
  public:
-  PnpSolver(SolverSpec spec, PnpKernel kernel, PnpCovariance covariance);
-  /// With covariance kMoments, for a kernel that takes displaced moments.
+  PnpSolver(SolverSpec spec, PnpKernel kernel, PnpCovariance covariance,
+            WideViews wide_views = WideViews::kRefused);
+  /// With covariance kMoments, for a kernel that takes displaced moments; wide views by least
+  /// squares.
   PnpSolver(SolverSpec spec, PnpKernel kernel, MomentsKernel of_moments);
 
  private:
@@ -59,6 +67,7 @@ class PnpSolver final : public Solver {
 
   PnpKernel kernel_;
   PnpCovariance covariance_;
+  WideViews wide_views_;
   MomentsKernel of_moments_ = {};
 };
 

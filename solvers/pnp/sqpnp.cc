@@ -214,7 +214,7 @@ SolverEntry SqpnpEntry() {
                                        SolveSqpnp(input.image_points, input.points, input.choice));
               return PnpPoses{.poses = fit.cam_from_lidar, .count = fit.count};
             },
-            PnpCovariance::kObjectSpace);
+            PnpCovariance::kObjectSpace, WideViews::kLeastSquares);
       },
   };
 }

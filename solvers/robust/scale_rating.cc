@@ -14,6 +14,10 @@ namespace {
 
 // Of the extent of the measurements: noise below this is rounding.
 constexpr double kMinShare = 1e-7;
+// No measurement is finer than this share of the extent: a few pairs that agree even better,
+// because one was computed from the other, are no stronger evidence than many that agree as well as
+// measurements do.
+constexpr double kFinestShare = 1e-5;
 // Exponent and the two leading bits of the mantissa: four bins per factor of two.
 constexpr int kBinShift = 50;
 
@@ -52,7 +56,8 @@ ScaleRater::ScaleRater(const PairScorer& scorer, double extent, int absorbed)
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     const auto next = static_cast<std::uint64_t>(first_ + static_cast<std::int64_t>(bin) + 1);
     upper_[bin] = std::bit_cast<double>(next << kBinShift);
-    chance_[bin] = std::log(scorer.RandomAgreementProbability(upper_[bin]));
+    const double finest = kFinestShare * kFinestShare * extent * extent;
+    chance_[bin] = std::log(scorer.RandomAgreementProbability(std::max(finest, upper_[bin])));
   }
   std::vector<double> log_factorial(size_ + 1, 0.0);
   for (std::size_t i = 1; i <= size_; ++i) {

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
+
+#include "base/spec_text.h"
 
 namespace sextant {
 namespace {
@@ -27,6 +30,23 @@ TEST(Spec, NamesAndValuesHaveABoundedLength) {
     ASSERT_FALSE(spec);
     EXPECT_THAT(spec.error().message,
                 HasSubstr("expected a name or value of at most 100 characters"));
+  }
+}
+
+TEST(Spec, TextInQuotesIsAnOptionOfItsOwn) {
+  const std::string text = "ransac(command(\"python3 'my solver.py' a,b=c(\",timeout_s=2),seed=7)";
+  const Expected<SpecNode> spec = ParseSpec(text);
+  ASSERT_TRUE(spec) << spec.error().message;
+  const SpecNode& command = spec->inner.at(0);
+  EXPECT_EQ(command.options.at(0),
+            std::pair(std::string(kSpecText), std::string("python3 'my solver.py' a,b=c(")));
+  EXPECT_EQ(FormatSpec(*spec), text);
+  EXPECT_EQ(FormatSpec(ParseSpec("a(b=\"c d\")").value()), "a(b=\"c d\")");
+  EXPECT_EQ(FormatSpec(ParseSpec("a(b=\"c\")").value()), "a(b=c)");
+  for (const std::string& bad :
+       {std::string("a(\"b)"), std::string("a(\"\")"), "a(\"" + std::string(1001, 'b') + "\")",
+        std::string("a(\"b\nc\")")}) {
+    EXPECT_FALSE(ParseSpec(bad)) << bad.substr(0, 20);
   }
 }
 

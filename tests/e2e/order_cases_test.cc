@@ -14,15 +14,19 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-std::string Solve(const std::filesystem::path& file, const std::string& options) {
+constexpr int kNotUsable = 3;
+
+std::string Solve(const std::filesystem::path& file, const std::string& options,
+                  int exit_code = 0) {
   const ProgramRun run = RunSextant("solve " + file.string() + " " + options);
-  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.exit_code, exit_code) << run.err;
+  EXPECT_EQ(run.out.starts_with("NOT USABLE: "), exit_code == kNotUsable);
   return run.out;
 }
 
 TEST(OrderCases, ElevenPointsInAWrongOrder) {
   SEXTANT_REAL_DATA(pairs, "../cases/eleven_in_wrong_order/pairs.csv");
-  EXPECT_THAT(Solve(pairs, "--solver kabsch"), HasSubstr("[0,6,8,2,9,4,5,7,10,3,1]"));
+  EXPECT_THAT(Solve(pairs, "--solver kabsch", kNotUsable), HasSubstr("[0,6,8,2,9,4,5,7,10,3,1]"));
   EXPECT_THAT(Solve(pairs, "--solver kabsch --reorder"), HasSubstr("order above was taken"));
 }
 
@@ -36,14 +40,14 @@ TEST(OrderCases, BoardsThatContradictEachOtherInTheBestOrder) {
 TEST(OrderCases, RowsOfABoardMirrored) {
   SEXTANT_REAL_DATA(pairs, "../cases/mirrored_rows/pairs.csv");
   const std::string camera = " --camera " + (pairs.parent_path() / "camera.yaml").string();
-  const std::string text = Solve(pairs, "--solver 'refine(sqpnp)' --reorder" + camera);
+  const std::string text = Solve(pairs, "--solver 'refine(sqpnp)' --reorder" + camera, kNotUsable);
   EXPECT_THAT(text, HasSubstr("facing each other"));
   EXPECT_THAT(text, HasSubstr("3.192 px"));
 }
 
 TEST(OrderCases, ABoardWhoseCornersRunTheOtherWay) {
   SEXTANT_REAL_DATA(points, "../cases/points_txt_variants/one_board_reversed.txt");
-  EXPECT_THAT(Solve(points, "--solver kabsch"), HasSubstr("facing each other"));
+  EXPECT_THAT(Solve(points, "--solver kabsch", kNotUsable), HasSubstr("facing each other"));
   const auto good = points.parent_path() / "good.txt";
   EXPECT_THAT(Solve(good, "--solver kabsch"), Not(HasSubstr("facing each other")));
   EXPECT_THAT(Solve(good, "--solver kabsch --reorder"),
@@ -62,6 +66,20 @@ TEST(OrderCases, TooManyPointsWithoutBoardsAreSaid) {
 std::string Sigmas(const std::string& text) {
   const std::size_t begin = text.find("sigma");
   return begin == std::string::npos ? text : text.substr(begin, 120);
+}
+
+TEST(OrderCases, DataThatIsNotWhatItSeemsIsNotUsable) {
+  SEXTANT_REAL_DATA(wide, "../cases/wrong_focal_length/pairs_m.csv");
+  const std::string camera = " --camera " + (wide.parent_path() / "camera.yaml").string();
+  for (const char* spec : {"'refine(sqpnp)'", "'ransac(p3p)'", "'refine(ransac(p3p))'"}) {
+    EXPECT_THAT(Solve(wide, std::string("--solver ") + spec + camera, kNotUsable),
+                HasSubstr("focal length is about 946.8 px"));
+  }
+  const auto units = wide.parent_path().parent_path() / "units_and_roles";
+  Solve(units / "v_good.csv", "");
+  for (const char* file : {"v_lidar_mm.csv", "v_feet.csv", "v_swapped_roles.csv"}) {
+    Solve(units / file, "", kNotUsable);
+  }
 }
 
 TEST(OrderCases, RepeatedPairsDoNotLowerTheSigma) {

@@ -31,10 +31,23 @@ struct TableSpec {
   std::vector<Statistic> columns;
   bool intervals = true;  ///< Show each figure with its 95 percent interval.
   std::string across;     ///< Axis whose values are the columns (of one statistic); empty: none.
+  int ranked = -1;        ///< A metric by which the subjects are ranked, instead of columns.
+};
+
+/// What a plot shows of each subject.
+enum class PlotType {
+  kLines,     ///< A statistic along an axis of the grid, with its 95 percent intervals.
+  kCdf,       ///< Share of all trials whose metric is at most x; those without one never are.
+  kCoverage,  ///< Share of the trials within the region of each nominal level; the metric is NEES.
+  kTime,      ///< A statistic against the median time; needs timed_trials.
 };
 
 /// A plot of the report with one line per subject.
 struct PlotSpec {
+  PlotType type = PlotType::kLines;
+  int metric = -1;        ///< Of kCdf and kCoverage.
+  double max = 0.0;       ///< Of kCdf: end of the axis, and threshold of the area; 0: by the data.
+  std::string condition;  ///< The only one that is shown; empty: all.
   std::string title;
   std::string name;  ///< File name without extension.
   std::string x;     ///< An axis of the grid, or "index" for the steps of a sequence.
@@ -59,7 +72,8 @@ struct Experiment {
   bool same_seeds = false;  ///< All conditions use the same seeds, so their trials are paired.
   std::vector<std::string> axes;  ///< Names of the grid's axes.
   std::vector<Condition> conditions;
-  std::vector<Metric> metrics;  ///< All metrics of the kind.
+  std::vector<std::string> absent;  ///< Conditions without their data, and which data that is.
+  std::vector<Metric> metrics;      ///< All metrics of the kind.
   std::bitset<kMaxMetrics> wanted;
   std::vector<TableSpec> tables;
   std::vector<PlotSpec> plots;

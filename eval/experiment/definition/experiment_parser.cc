@@ -142,8 +142,12 @@ void ExperimentParser::ParseMetrics(const YamlNode& root, Experiment& experiment
   };
   for (const TableSpec& table : experiment.tables) {
     for (const Statistic& column : table.columns) want(column);
+    if (table.ranked >= 0) experiment.wanted.set(static_cast<std::size_t>(table.ranked));
   }
-  for (const PlotSpec& plot : experiment.plots) want(plot.y);
+  for (const PlotSpec& plot : experiment.plots) {
+    if (plot.metric < 0) want(plot.y);
+    if (plot.metric >= 0) experiment.wanted.set(static_cast<std::size_t>(plot.metric));
+  }
 }
 
 std::string ExperimentParser::ParseValue(const YamlNode& node, std::string_view name) {
@@ -248,7 +252,12 @@ void ExperimentParser::MakeTrials(std::vector<Draft> drafts, Experiment& experim
     Expected<TrialsPtr> trials =
         kind_->make({.parameters = condition.parameters,
                      .solvers = draft.solvers,
-                     .folder = std::filesystem::path(fields_.file()).parent_path()});
+                     .folder = std::filesystem::path(fields_.file()).parent_path(),
+                     .condition = condition.name});
+    if (!trials && kind_->skips_absent_data && trials.error().code == ErrorCode::kMissingData) {
+      experiment.absent.push_back(what + ": " + trials.error().message);
+      continue;
+    }
     if (!trials && !instead_.empty() && trials.error().code == ErrorCode::kMissingData) continue;
     if (!trials) {
       fields_.Fail(
@@ -260,6 +269,9 @@ void ExperimentParser::MakeTrials(std::vector<Draft> drafts, Experiment& experim
     }
     condition.trials = std::move(*trials);
     experiment.conditions.push_back(std::move(condition));
+  }
+  if (fields_.ok() && experiment.conditions.empty() && !experiment.absent.empty()) {
+    fields_.Fail({ErrorCode::kMissingData, experiment.absent.front()});
   }
   if (fields_.ok() && experiment.conditions.empty()) {
     fields_.Fail(0, "solvers", "no condition has the data that these solvers need");

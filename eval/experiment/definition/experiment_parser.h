@@ -44,6 +44,8 @@ class ExperimentParser {
   Statistic ParseStatisticOf(const YamlNode& node, const Experiment& experiment);
   void ParseTables(const YamlNode& root, Experiment& experiment);
   void ParsePlots(const YamlNode& root, Experiment& experiment);
+  int ParseMetric(const YamlNode& map, std::string_view key, const Experiment& experiment);
+  void ParsePlotData(const YamlNode& node, const Experiment& experiment, PlotSpec& plot);
   std::string ParseAxis(const YamlNode& map, std::string_view key, const Experiment& experiment,
                         bool may_be_index);
   std::string OptionalText(const YamlNode& map, std::string_view key, std::string otherwise);

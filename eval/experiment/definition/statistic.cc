@@ -44,6 +44,8 @@ Expected<void> SetKind(const std::string& name, Statistic& statistic) {
     statistic.kind = Kind::kRate;
   } else if (name == "efficiency") {
     statistic.kind = Kind::kEfficiency;
+  } else if (name == "auc") {
+    statistic.kind = Kind::kArea;
   } else if (name == "min") {
     quantile(0.0);
   } else if (name == "median") {
@@ -54,8 +56,8 @@ Expected<void> SetKind(const std::string& name, Statistic& statistic) {
              name[1] <= '9' && name[2] >= '0' && name[2] <= '9') {
     quantile(((name[1] - '0') * 10 + (name[2] - '0')) / 100.0);
   } else {
-    const std::vector<std::string> known = {"mean", "rms",  "sd",         "min", "median",
-                                            "max",  "rate", "efficiency", "p05", "p95"};
+    const std::vector<std::string> known = {"mean", "rms",        "sd",  "min", "median", "max",
+                                            "rate", "efficiency", "auc", "p05", "p95"};
     return MakeError(ErrorCode::kUnknownName,
                      fmt::format("unknown statistic '{}'; {}", name, SuggestName(name, known)));
   }
@@ -72,7 +74,10 @@ Expected<void> SetOption(const std::string& key, const std::string& value,
       statistic.decimals = static_cast<int>(decimals);
     });
   }
-  const std::vector<std::string> known = {"where", "decimals"};
+  if (key == "limit" && statistic.kind == Statistic::Kind::kArea) {
+    return ParseReal(key, value, 1e-12, 1e12).map([&](double limit) { statistic.limit = limit; });
+  }
+  const std::vector<std::string> known = {"where", "decimals", "limit"};
   return MakeError(ErrorCode::kUnknownName,
                    fmt::format("unknown option '{}'; {}", key, SuggestName(key, known)));
 }
@@ -94,6 +99,9 @@ Expected<void> Fill(const SpecNode& node, const std::vector<Metric>& metrics,
   }
   for (const auto& [key, value] : node.options) {
     SEXTANT_RETURN_IF_ERROR(SetOption(key, value, metrics, statistic));
+  }
+  if (statistic.kind == Statistic::Kind::kArea && statistic.limit == 0.0) {
+    return MakeError(ErrorCode::kParse, "expected limit=X, where the area ends");
   }
   return {};
 }

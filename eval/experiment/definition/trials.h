@@ -66,6 +66,10 @@ class Trials {
   virtual const std::vector<std::string>& subjects() const = 0;
   /// Runs one trial. If it fails for a subject, its row says so (answered = 0, or NaN).
   virtual void Run(const TrialId& id, TrialRows& rows) const = 0;
+  /// The problem of a trial as solvers see it. Error: kInvalidInput for trials that have none.
+  virtual Expected<CalibrationProblem> ProblemOf(const TrialId& /*id*/) const {
+    return MakeError(ErrorCode::kInvalidInput, "the trials of this kind are no problems of pairs");
+  }
 };
 using TrialsPtr = std::shared_ptr<const Trials>;
 
@@ -74,6 +78,7 @@ struct KindArguments {
   OptionValues parameters;
   std::vector<SolverPtr> solvers;
   std::filesystem::path folder;  ///< Folder of the experiment file, to which relative paths refer.
+  std::string condition = {};    ///< Its name, by which imported poses are found.
 };
 
 /// A kind of experiment, selected by `kind:` in an experiment file.
@@ -81,6 +86,8 @@ struct TrialKind {
   std::string name;
   std::string summary;  ///< Describes one trial in one line.
   bool takes_solvers = true;
+  /// A condition whose data is absent (kMissingData) is left out; Experiment::absent says so.
+  bool skips_absent_data = false;
   std::vector<OptionDoc> parameters = {};
   std::vector<Metric> metrics = {};  ///< At most kMaxMetrics.
   /// Number of trials per stored block. A killed run loses its unfinished blocks, so slow trials

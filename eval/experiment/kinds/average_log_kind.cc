@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdlib>
 #include <filesystem>
 
 #include "base/units.h"
 #include "eval/experiment/definition/parameter_set.h"
 #include "eval/experiment/definition/trials.h"
+#include "eval/experiment/kinds/real_data.h"
 #include "eval/metrics/running_average.h"
 #include "io/original/average_log.h"
 #include "solvers/averaging/average.h"
@@ -37,17 +37,6 @@ const ParameterSet<AverageLogSettings>& AverageLogParameters() {
       "log", &AverageLogSettings::log, "path",
       "avg_values.txt of the original package, relative to the folder of the real data");
   return set;
-}
-
-// Finds the real data in the same way as the tests.
-Expected<fs::path> RealFile(const std::string& name, const fs::path& experiments) {
-  const char* set = std::getenv("SEXTANT_DATA");  // NOLINT(concurrency-mt-unsafe): read only.
-  const fs::path folder =
-      set != nullptr ? fs::path(set) : experiments / ".." / ".." / "shared" / "data";
-  std::error_code error;
-  if (fs::exists(folder / name, error)) return folder / name;
-  return MakeError(ErrorCode::kMissingData,
-                   "the real data is absent: set SEXTANT_DATA to the folder that has " + name);
 }
 
 class AverageLogTrials final : public Trials {

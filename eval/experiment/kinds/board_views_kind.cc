@@ -89,7 +89,7 @@ Expected<TrialsPtr> MakeBoardViewsTrials(const KindArguments& arguments) {
   }
   return MakeProblemTrials(
       {[s = settings](const TrialId& id) { return MakeBoardViewsProblem(s, id); }, settings},
-      arguments.solvers);
+      arguments.solvers, arguments.condition);
 }
 
 }  // namespace

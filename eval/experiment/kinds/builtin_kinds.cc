@@ -11,7 +11,9 @@
   X(AverageLog)          \
   X(BoardScan)           \
   X(BoardImage)          \
-  X(Fusion)
+  X(Fusion)              \
+  X(RealPairs)           \
+  X(RealViews)
 
 namespace sextant {
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "eval/metrics/bounds.h"
+#include "solvers/external/imported_solver.h"
 
 namespace sextant {
 namespace {
@@ -57,12 +58,16 @@ void MeasureBound(const KnownProblem& known, DataKinds kinds, MetricValues& valu
 
 class ProblemTrials final : public Trials {
  public:
-  ProblemTrials(ProblemMaker maker, std::vector<SolverPtr> solvers)
-      : maker_(std::move(maker)), solvers_(std::move(solvers)) {
+  ProblemTrials(ProblemMaker maker, std::vector<SolverPtr> solvers, std::string condition)
+      : maker_(std::move(maker)), solvers_(std::move(solvers)), condition_(std::move(condition)) {
     for (const SolverPtr& solver : solvers_) names_.push_back(solver->spec().name);
   }
 
   const std::vector<std::string>& subjects() const override { return names_; }
+
+  Expected<CalibrationProblem> ProblemOf(const TrialId& id) const override {
+    return maker_.make(id).map([](KnownProblem&& known) { return std::move(known.problem); });
+  }
 
   void Run(const TrialId& id, TrialRows& rows) const override {
     const Expected<KnownProblem> known = maker_.make(id);
@@ -81,7 +86,7 @@ class ProblemTrials final : public Trials {
       if (spec.needs.initial_pose && !view.initial_cam_from_lidar) {
         view.initial_cam_from_lidar = known->cam_from_lidar;
       }
-      const Expected<SolveReport> report = solvers_[k]->Solve(view);
+      const Expected<SolveReport> report = SolveTrial(*solvers_[k], view, condition_, id.trial);
       MeasurePose(*known, report, maker_.limits, values);
       if (maker_.measure_more) maker_.measure_more(*known, report, values);
       if (values.Wants(kBoundRotationDeg) || values.Wants(kBoundTranslationMm)) {
@@ -93,12 +98,14 @@ class ProblemTrials final : public Trials {
  private:
   ProblemMaker maker_;
   std::vector<SolverPtr> solvers_;
+  std::string condition_;
   std::vector<std::string> names_;
 };
 
 }  // namespace
 
-Expected<TrialsPtr> MakeProblemTrials(ProblemMaker maker, std::vector<SolverPtr> solvers) {
+Expected<TrialsPtr> MakeProblemTrials(ProblemMaker maker, std::vector<SolverPtr> solvers,
+                                      const std::string& condition) {
   SEXTANT_ASSIGN_OR_RETURN(const KnownProblem sample, maker.make({.trial = 0, .seed = 1}));
   CalibrationProblem problem = sample.problem;
   if (!problem.initial_cam_from_lidar) problem.initial_cam_from_lidar = sample.cam_from_lidar;
@@ -116,7 +123,7 @@ Expected<TrialsPtr> MakeProblemTrials(ProblemMaker maker, std::vector<SolverPtr>
     return MakeError(ErrorCode::kMissingData,
                      "none of the solvers can use this condition's data" + reasons);
   }
-  return std::make_shared<ProblemTrials>(std::move(maker), std::move(solvers));
+  return std::make_shared<ProblemTrials>(std::move(maker), std::move(solvers), condition);
 }
 
 }  // namespace sextant

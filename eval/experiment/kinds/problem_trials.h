@@ -33,8 +33,9 @@ Set& AddPoseLimits(Set& set) {
 }
 
 /// Makes the trials. Solvers that cannot use the data of a sample problem are left out, so one list
-/// of solvers serves conditions with different data. Errors: kMissingData if no solver is left;
-/// those of `make` for the sample.
-Expected<TrialsPtr> MakeProblemTrials(ProblemMaker maker, std::vector<SolverPtr> solvers);
+/// of solvers serves conditions with different data. `condition`: the name by which imported poses
+/// are found. Errors: kMissingData if no solver is left; those of `make` for the sample.
+Expected<TrialsPtr> MakeProblemTrials(ProblemMaker maker, std::vector<SolverPtr> solvers,
+                                      const std::string& condition);
 
 }  // namespace sextant

@@ -148,7 +148,7 @@ Expected<TrialsPtr> MakeRandomSceneTrialTrials(const KindArguments& arguments) {
                               return MakeRandomSceneTrialProblem(s, id);
                             },
                             settings},
-                           arguments.solvers);
+                           arguments.solvers, arguments.condition);
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ Expected<TrialsPtr> MakeSceneViewsTrials(const KindArguments& arguments) {
              MeasureExtras(report, values);
              MeasureDistances(known, report, values);
            }},
-      arguments.solvers);
+      arguments.solvers, arguments.condition);
 }
 
 }  // namespace

@@ -25,11 +25,14 @@ FigureGatherer::FigureGatherer(const Statistic& statistic, std::uint64_t seed)
 
 bool FigureGatherer::Counts(double value, double reference, double where) const {
   if (statistic_.where >= 0 && !IsNeither0NorNan(where)) return false;
-  if (statistic_.kind == StatisticKind::kRate) return true;
+  const bool counts_all =
+      statistic_.kind == StatisticKind::kRate || statistic_.kind == StatisticKind::kArea;
+  if (counts_all) return true;
   return !std::isnan(value) && !(statistic_.reference >= 0 && std::isnan(reference));
 }
 
 void FigureGatherer::Add(double value, double reference, double where) {
+  if (stage_ == Stage::kCount) ++figure_.all_trials;
   if (!Counts(value, reference, where)) return;
   switch (stage_) {
     case Stage::kCount:
@@ -37,7 +40,9 @@ void FigureGatherer::Add(double value, double reference, double where) {
       successes_ += IsNeither0NorNan(value) ? 1U : 0U;
       break;
     case Stage::kSums:
-      if (statistic_.kind == StatisticKind::kMean || statistic_.kind == StatisticKind::kSd) {
+      if (statistic_.kind == StatisticKind::kArea) {
+        sums_->Add(std::isnan(value) ? 0.0 : std::max(0.0, 1.0 - value / statistic_.limit), 1.0);
+      } else if (statistic_.kind == StatisticKind::kMean || statistic_.kind == StatisticKind::kSd) {
         sums_->Add(value, 1.0);
       } else {
         sums_->Add(Square(value), statistic_.kind == StatisticKind::kRms ? 1.0 : Square(reference));
@@ -95,7 +100,7 @@ void FigureGatherer::EndSums() {
   }
   figure_.value = sums_->ratio();
   figure_.interval = sums_->BootstrapInterval(seed_);
-  if (statistic_.kind != StatisticKind::kMean) {
+  if (statistic_.kind != StatisticKind::kMean && statistic_.kind != StatisticKind::kArea) {
     figure_.value = std::sqrt(figure_.value);
     figure_.interval = {std::sqrt(figure_.interval->low), std::sqrt(figure_.interval->high)};
   }

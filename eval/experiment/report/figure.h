@@ -18,6 +18,7 @@ struct Figure {
   double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN if no trial counts.
   std::optional<Interval> interval;  ///< 95 percent; Wilson's for rates, else bootstrap.
   std::uint64_t trials = 0;          ///< Number of trials that count.
+  std::uint64_t all_trials = 0;      ///< With those without the value, or without an answer.
 };
 
 /// Computes a figure in several passes over the trials, which must be the same in the same order

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "eval/experiment/definition/experiment.h"
+#include "eval/experiment/definition/timing.h"
 #include "eval/experiment/report/figure.h"
 #include "eval/experiment/run/row_file.h"
 #include "eval/statistics/text_table.h"
@@ -25,10 +26,19 @@ class ReportData {
   const std::vector<Figure>& figures(std::size_t condition, const Statistic& statistic) const {
     return figures_[condition].at(statistic.text);
   }
+  /// See TrialValuesOf. Requires a metric of a plot or a ranking of the experiment's report.
+  const std::vector<std::vector<double>>& values(std::size_t condition, int metric) const {
+    return values_[condition].at(metric);
+  }
+  /// What TimeSubjects measured; empty if nothing.
+  const std::vector<TimingRow>& timing() const { return timing_; }
+  void SetTiming(std::vector<TimingRow> rows) { timing_ = std::move(rows); }
 
  private:
   std::vector<std::vector<CellKey>> cells_;
   std::vector<std::map<std::string, std::vector<Figure>>> figures_;
+  std::vector<std::map<int, std::vector<std::vector<double>>>> values_;
+  std::vector<TimingRow> timing_;
 };
 
 /// One table of a report; the title names its conditions.
@@ -46,9 +56,13 @@ std::string FormatMarkdown(const Experiment& experiment, const ReportData& data)
 std::string FormatPlain(const Experiment& experiment, const ReportData& data);
 std::string FormatLatex(const Experiment& experiment, const ReportData& data);
 
-/// Gnuplot commands for a plot of the report; empty if none of its figures is finite.
+/// Gnuplot commands for a plot of the report; empty if none of its figures is finite. CurveCommands
+/// are those of the types but kLines.
 std::string PlotCommands(const Experiment& experiment, const PlotSpec& plot,
                          const ReportData& data);
+
+std::string CurveCommands(const Experiment& experiment, const PlotSpec& plot,
+                          const ReportData& data);
 
 /// JSON with every metric of every cell (count, mean, RMS, standard deviation, quantiles, and the
 /// median with its interval) and the figures of tables and plots.

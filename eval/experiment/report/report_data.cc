@@ -2,7 +2,10 @@
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
+#include <set>
+
 #include "eval/experiment/report/report.h"
+#include "eval/experiment/report/trial_values.h"
 #include "eval/experiment/run/run_trials.h"
 
 namespace sextant {
@@ -14,10 +17,21 @@ std::vector<Statistic> StatisticsOf(const Experiment& experiment) {
   for (const TableSpec& table : experiment.tables) {
     for (const Statistic& column : table.columns) by_text.emplace(column.text, column);
   }
-  for (const PlotSpec& plot : experiment.plots) by_text.emplace(plot.y.text, plot.y);
+  for (const PlotSpec& plot : experiment.plots) {
+    if (plot.metric < 0) by_text.emplace(plot.y.text, plot.y);
+  }
   std::vector<Statistic> statistics;
   for (auto& [text, statistic] : by_text) statistics.push_back(std::move(statistic));
   return statistics;
+}
+
+// All metrics of which the report shows single trials.
+std::set<int> MetricsOfTrials(const Experiment& experiment) {
+  std::set<int> metrics;
+  for (const PlotSpec& plot : experiment.plots) metrics.insert(plot.metric);
+  for (const TableSpec& table : experiment.tables) metrics.insert(table.ranked);
+  metrics.erase(-1);
+  return metrics;
 }
 
 }  // namespace
@@ -41,6 +55,11 @@ Expected<ReportData> ReportData::Compute(const Experiment& experiment,
       if (!computed[i]) return tl::unexpected<Error>(std::move(computed[i].error()));
       figures.emplace(statistics[i].text, std::move(*computed[i]));
     }
+    std::map<int, std::vector<std::vector<double>>> values;
+    for (const int metric : MetricsOfTrials(experiment)) {
+      SEXTANT_ASSIGN_OR_RETURN(values[metric], TrialValuesOf(rows, metric));
+    }
+    data.values_.push_back(std::move(values));
     data.cells_.push_back(rows.cells());
     data.figures_.push_back(std::move(figures));
   }

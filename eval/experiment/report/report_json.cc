@@ -22,6 +22,7 @@ Json ToJson(const Figure& figure) {
   Json json = {{"value", NumberOrNull(figure.value)}};
   if (figure.interval) json["interval"] = {figure.interval->low, figure.interval->high};
   json["trials"] = figure.trials;
+  json["all_trials"] = figure.all_trials;
   return json;
 }
 
@@ -81,7 +82,9 @@ Json ReportFigures(const Experiment& experiment, const ReportData& data, std::si
   for (const TableSpec& table : experiment.tables) {
     for (const Statistic& column : table.columns) add(column);
   }
-  for (const PlotSpec& plot : experiment.plots) add(plot.y);
+  for (const PlotSpec& plot : experiment.plots) {
+    if (plot.metric < 0) add(plot.y);
+  }
   return figures;
 }
 

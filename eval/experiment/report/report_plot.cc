@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/text/escape.h"
+#include "eval/experiment/report/plot_style.h"
 #include "eval/experiment/report/report.h"
 
 namespace sextant {
@@ -50,6 +51,7 @@ Lines CollectLines(const Experiment& experiment, const PlotSpec& plot, const Rep
   Lines lines;
   for (std::size_t c = 0; c < experiment.conditions.size(); ++c) {
     const Condition& condition = experiment.conditions[c];
+    if (!plot.condition.empty() && condition.name != plot.condition) continue;
     const std::string place = PlaceWithout(experiment, condition, plot.x);
     const std::vector<Figure>& figures = data.figures(c, plot.y);
     for (std::size_t cell = 0; cell < figures.size(); ++cell) {
@@ -107,27 +109,25 @@ bool BeginsAtZero(const Lines& lines) {
 
 std::string PlotCommands(const Experiment& experiment, const PlotSpec& plot,
                          const ReportData& data) {
+  if (plot.type != PlotType::kLines) return CurveCommands(experiment, plot, data);
   std::map<std::string, double> named;
   const Lines lines = CollectLines(experiment, plot, data, named);
   if (lines.empty()) return {};
   std::vector<std::string> series;
+  std::size_t longest = 0;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    series.push_back(
-        fmt::format("$line{} using 1:2:3:4 with yerrorlines pt 7 ps 0.5 lw 1.5 lc {} title {}", i,
-                    i + 1, GnuplotText(lines[i].first)));
+    longest = std::max(longest, lines[i].first.size());
+    series.push_back(fmt::format("$line{} using 1:2:3:4 with yerrorlines {} title {}", i,
+                                 LineStyle(i), GnuplotText(lines[i].first)));
   }
   std::string ticks;
   for (const auto& [name, x] : named)
     ticks += fmt::format("{}{} {}", ticks.empty() ? "" : ", ", TickText(name), x);
-  std::string y_axis = BeginsAtZero(lines) ? "set yrange [0:*]\n" : "";
-  if (plot.log_y) y_axis = "set logscale y\n";
-  return fmt::format(
-      "{}set key outside right noenhanced\nset grid\nset title {} noenhanced\nset xlabel {} "
-      "noenhanced\nset ylabel {} noenhanced\n{}{}{}set offsets graph 0.03, graph 0.03, 0, 0\nplot "
-      "{}\n",
-      DataOf(lines, plot.log_y), GnuplotText(plot.title), GnuplotText(plot.x_label),
-      GnuplotText(plot.y_label), plot.log_x ? "set logscale x\n" : "", y_axis,
-      ticks.empty() ? "" : "set xtics noenhanced (" + ticks + ")\n", fmt::join(series, ", \\\n  "));
+  const char* y_axis = !plot.log_y && BeginsAtZero(lines) ? "set yrange [0:*]\n" : "";
+  return fmt::format("{}{}{}{}set offsets graph 0.03, graph 0.03, 0, 0\nplot {}\n",
+                     DataOf(lines, plot.log_y), PlotFrame(plot, longest), y_axis,
+                     ticks.empty() ? "" : "set xtics noenhanced (" + ticks + ")\n",
+                     fmt::join(series, ", \\\n  "));
 }
 
 }  // namespace sextant

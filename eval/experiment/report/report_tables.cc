@@ -7,21 +7,27 @@
 
 #include "base/text/escape.h"
 #include "base/text/printable.h"
+#include "eval/experiment/report/rank_table.h"
 #include "eval/experiment/report/report.h"
 
 namespace sextant {
 namespace {
 
 std::string FigureText(const Statistic& statistic, const Figure& figure, bool with_interval) {
-  if (!std::isfinite(figure.value)) return "-";
+  // A figure over the answered trials alone says how many these are: who answers only the easy ones
+  // looks better.
+  const std::string share = figure.trials < figure.all_trials
+                                ? fmt::format(" ({}/{})", figure.trials, figure.all_trials)
+                                : std::string();
+  if (!std::isfinite(figure.value)) return "-" + share;
   const bool is_rate = statistic.kind == Statistic::Kind::kRate;
   const double scale = is_rate ? 100.0 : 1.0;
   const int decimals = is_rate ? std::min(statistic.decimals, 1) : statistic.decimals;
   std::string text = Fixed(scale * figure.value, decimals);
   if (is_rate) text += " %";
-  if (!with_interval || !figure.interval) return text;
-  return text + fmt::format(" [{}, {}]", Fixed(scale * figure.interval->low, decimals),
-                            Fixed(scale * figure.interval->high, decimals));
+  if (!with_interval || !figure.interval) return text + share;
+  return text + fmt::format(" [{}, {}]{}", Fixed(scale * figure.interval->low, decimals),
+                            Fixed(scale * figure.interval->high, decimals), share);
 }
 
 std::string TitleOf(const TableSpec& spec, const std::string& place) {
@@ -64,6 +70,18 @@ void AddPlainTables(const Experiment& experiment, const TableSpec& spec, const R
       table.AddRow(RowOf(spec, data, c, cell, SubjectText(condition, data.cells(c)[cell])));
     }
     tables.push_back({TitleOf(spec, PlaceWithout(experiment, condition, "")), std::move(table)});
+  }
+}
+
+// One table per condition: the subjects by their ranks.
+void AddRankTables(const Experiment& experiment, const TableSpec& spec, const ReportData& data,
+                   std::vector<ReportTable>& tables) {
+  for (std::size_t c = 0; c < experiment.conditions.size(); ++c) {
+    const Condition& condition = experiment.conditions[c];
+    std::vector<std::string> names;
+    for (const CellKey& cell : data.cells(c)) names.push_back(SubjectText(condition, cell));
+    tables.push_back({TitleOf(spec, PlaceWithout(experiment, condition, "")),
+                      RankTable(names, data.values(c, spec.ranked))});
   }
 }
 
@@ -116,7 +134,9 @@ void AddTablesAcross(const Experiment& experiment, const TableSpec& spec, const 
 std::vector<ReportTable> MakeTables(const Experiment& experiment, const ReportData& data) {
   std::vector<ReportTable> tables;
   for (const TableSpec& spec : experiment.tables) {
-    if (spec.across.empty()) {
+    if (spec.ranked >= 0) {
+      AddRankTables(experiment, spec, data, tables);
+    } else if (spec.across.empty()) {
       AddPlainTables(experiment, spec, data, tables);
     } else {
       AddTablesAcross(experiment, spec, data, tables);
@@ -144,8 +164,12 @@ std::string ReportOrigin(const Experiment& experiment) {
 std::string FormatMarkdown(const Experiment& experiment, const ReportData& data) {
   std::string text = fmt::format("# {}\n\n", MarkdownText(experiment.title));
   if (!experiment.text.empty()) text += MarkdownLines(experiment.text) + "\n";
-  text += fmt::format("{} {} trials per condition, seed {}. In brackets: 95 percent intervals.\n",
-                      ReportOrigin(experiment), experiment.trials, experiment.seed);
+  text += fmt::format(
+      "{} {} trials per condition, seed {}. In brackets: 95 percent "
+      "intervals; (n/N): only n of N trials have the figure.\n",
+      ReportOrigin(experiment), experiment.trials, experiment.seed);
+  if (!experiment.absent.empty()) text += "\nNot run, because data is absent:\n\n";
+  for (const std::string& line : experiment.absent) text += "- " + MarkdownText(line) + "\n";
   for (const ReportTable& table : MakeTables(experiment, data)) {
     if (!table.title.empty()) text += fmt::format("\n## {}\n", MarkdownText(table.title));
     text += "\n" + table.table.Markdown();
@@ -164,6 +188,9 @@ std::string FormatPlain(const Experiment& experiment, const ReportData& data) {
     if (!text.empty()) text += "\n";
     if (!table.title.empty()) text += PrintableLine(table.title) + "\n";
     text += table.table.Plain();
+  }
+  for (const std::string& line : experiment.absent) {
+    text += "not run: " + PrintableLine(line) + "\n";
   }
   return text;
 }

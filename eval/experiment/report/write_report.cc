@@ -13,7 +13,7 @@ Expected<void> DrawPlots(const Experiment& experiment, const ReportData& data,
   for (const PlotSpec& plot : experiment.plots) {
     const std::string commands = PlotCommands(experiment, plot, data);
     if (commands.empty()) continue;
-    for (const char* extension : {".svg", ".png"}) {
+    for (const char* extension : {".svg", ".png", ".pdf"}) {
       SEXTANT_RETURN_IF_ERROR(DrawPlot(commands, folder / (plot.name + extension)));
     }
   }
@@ -28,7 +28,7 @@ Expected<void> ClaimReportFiles(const Experiment& experiment, const std::filesys
   std::vector<std::string> names = {"summary.json", "report.md", "tables.tex"};
   if (settings.csv) names.emplace_back("rows.csv");
   for (const PlotSpec& plot : experiment.plots) {
-    for (const char* extension : {".svg", ".png"}) {
+    for (const char* extension : {".svg", ".png", ".pdf"}) {
       if (settings.plots) names.push_back(plot.name + extension);
     }
   }
@@ -43,7 +43,8 @@ Expected<std::string> WriteReport(const Experiment& experiment,
                                   const std::filesystem::path& folder,
                                   const ReportSettings& settings) {
   SEXTANT_ASSIGN_OR_RETURN(const RowFileReader reader, RowFileReader::Open(rows_path));
-  SEXTANT_ASSIGN_OR_RETURN(const ReportData data, ReportData::Compute(experiment, reader));
+  SEXTANT_ASSIGN_OR_RETURN(ReportData data, ReportData::Compute(experiment, reader));
+  data.SetTiming(settings.timing);
   SEXTANT_ASSIGN_OR_RETURN(const std::string summary, FormatSummary(experiment, reader, data));
   if (settings.csv) SEXTANT_RETURN_IF_ERROR(WriteRowsCsv(experiment, reader, folder / "rows.csv"));
   SEXTANT_RETURN_IF_ERROR(WriteFileAtomically(folder / "summary.json", summary));

@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "eval/experiment/definition/experiment.h"
+#include "eval/experiment/definition/timing.h"
 
 namespace sextant {
 
 struct ReportSettings {
   bool csv = true;
   bool plots = true;
+  std::vector<TimingRow> timing{};  ///< For plots against time; those without it are left out.
 };
 
 /// Claims the files that WriteReport may write into the folder, and those named `more` there,
@@ -22,7 +24,8 @@ Expected<void> ClaimReportFiles(const Experiment& experiment, const std::filesys
                                 const std::vector<std::string>& more = {});
 
 /// Reads the finished rows of the experiment and writes into the folder: rows.csv, summary.json,
-/// report.md, tables.tex, and NAME.svg and NAME.png for every plot. Returns the tables as plain
+/// report.md, tables.tex, and NAME.svg, NAME.png and NAME.pdf for
+/// every plot. Returns the tables as plain
 /// text. The bytes of all files except the PNGs depend only on the rows. Errors: kIo, kParse,
 /// kInvalidInput (rows of another configuration); those of OutputFile.
 Expected<std::string> WriteReport(const Experiment& experiment,

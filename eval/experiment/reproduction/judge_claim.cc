@@ -15,6 +15,8 @@ namespace {
 // The range of 39 trials contains a further one with a probability of 95 percent; with fewer
 // trials, a value outside of their central 95 percent proves nothing.
 constexpr std::uint64_t kMinDraws = 39;
+// The bootstrap of fewer trials gives no interval.
+constexpr std::uint64_t kMinTrials = 8;
 
 // One of our figures.
 struct OurFigure {
@@ -156,21 +158,23 @@ Expected<JudgedClaim> JudgeClaim(const Claim& claim, const std::map<std::string,
   if (!ours) return MakeError(ours.error().code, claim.id + ": " + ours.error().message);
   judged.ours = TextOf(*ours, claim.unit);
   std::optional<Interval> than;
+  bool are_enough = ours->trials >= kMinTrials || find(*claim.ours)->second.is_recording;
   if (claim.than) {
     const Expected<OurFigure> larger = Compute(*claim.than, false, find(*claim.than)->second);
     if (!larger) return MakeError(larger.error().code, claim.id + ": " + larger.error().message);
     judged.ours += " against " + TextOf(*larger, claim.unit);
     than = larger->interval;
+    are_enough =
+        are_enough && (larger->trials >= kMinTrials || find(*claim.than)->second.is_recording);
   }
   if (!std::isfinite(ours->value)) {
     judged.remark = "no trial gave a figure; " + claim.why;
     return judged;
   }
   judged.verdict = VerdictOf(claim, ours->interval, than);
-  if (claim.rule == ClaimRule::kDraw && judged.verdict == Verdict::kRefuted &&
-      ours->trials < kMinDraws) {
-    judged.verdict = Verdict::kUndecided;
-  }
+  const bool is_tail = claim.rule == ClaimRule::kDraw && judged.verdict == Verdict::kRefuted &&
+                       ours->trials < kMinDraws;
+  if (is_tail || !are_enough) judged.verdict = Verdict::kUndecided;
   return judged;
 }
 

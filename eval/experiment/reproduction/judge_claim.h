@@ -29,11 +29,13 @@ struct JudgedClaim {
 struct RowsOf {
   const Experiment* experiment = nullptr;
   const RowFileReader* reader = nullptr;
+  bool is_recording = false;  ///< Its one trial is a recording, not a random draw.
 };
 
 /// Tests the claim by its rule; see ClaimRule. `rows` by name of the experiment. Not testable if
-/// the experiment was not run (real data absent). Errors: kUnknownName for a condition, subject,
-/// step or statistic that the experiment does not have; those of reading rows.
+/// the experiment was not run (real data absent); undecided from fewer trials than give an
+/// interval. Errors: kUnknownName for a condition, subject, step or statistic that the experiment
+/// does not have; those of reading rows.
 Expected<JudgedClaim> JudgeClaim(const Claim& claim, const std::map<std::string, RowsOf>& rows);
 
 /// Applies the claim's rule to intervals; for kDraw, `ours` is the central 95 percent of the

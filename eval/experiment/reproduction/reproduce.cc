@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 struct Done {
   Experiment experiment;
   RowFileReader reader;
+  bool is_recording;
 };
 
 Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const std::string& name,
@@ -28,11 +29,12 @@ Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const 
   SEXTANT_ASSIGN_OR_RETURN(
       Experiment experiment,
       ReadExperiment(settings.experiments / (name + ".yaml"), BuiltinKinds(), registry));
+  const bool is_recording = experiment.trials == 1;
   if (settings.quick) experiment.trials = experiment.quick_trials;
   const fs::path folder = settings.out / name;
   SEXTANT_RETURN_IF_ERROR(MakeSubfolder(folder));
   SEXTANT_ASSIGN_OR_RETURN(const OutputFolder locked, OutputFolder::Open(folder));
-  const ReportSettings report{.csv = false, .plots = true};
+  const ReportSettings report{.csv = false, .plots = true, .timing = {}};
   SEXTANT_RETURN_IF_ERROR(ClaimReportFiles(experiment, folder, report));
   const fs::path rows = folder / "rows.sxtrows";
   SEXTANT_RETURN_IF_ERROR(
@@ -43,7 +45,7 @@ Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const 
                              }}));
   SEXTANT_RETURN_IF_ERROR(WriteReport(experiment, rows, folder, report));
   SEXTANT_ASSIGN_OR_RETURN(RowFileReader reader, RowFileReader::Open(rows));
-  return std::make_unique<Done>(Done{std::move(experiment), std::move(reader)});
+  return std::make_unique<Done>(Done{std::move(experiment), std::move(reader), is_recording});
 }
 
 }  // namespace
@@ -66,7 +68,7 @@ Expected<Reproduction> Reproduce(const ReproduceSettings& settings,
       continue;
     }
     if (!one) return tl::unexpected<Error>(one.error());
-    rows[name] = {&(*one)->experiment, &(*one)->reader};
+    rows[name] = {&(*one)->experiment, &(*one)->reader, (*one)->is_recording};
     done[name] = std::move(*one);
   }
   for (const Claim& claim : file.claims) {
