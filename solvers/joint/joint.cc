@@ -180,12 +180,6 @@ class JointSolver final : public Solver {
   // A ratio of 1.5 is more than an inaccurate estimate of a sigma.
   static void WarnOfNoise(const JointNoise& noise, Estimate& estimate) {
     constexpr double kMuch = 1.5;
-    if (getenv("DBG"))
-      fmt::print(stderr,
-                 "DBG noise printed {:.2f} face {:.2f} edges {:.2f} out {:.2f} mm in {:.2f} mm "
-                 "rings {:.2f}\n",
-                 noise.printed, noise.face, noise.edges, 1e3 * noise.out_of_plane_m,
-                 1e3 * noise.in_plane_m, noise.rings);
     const auto warn = [&](double ratio, const char* what) {
       if (ratio <= kMuch) return;
       estimate.warnings.push_back(fmt::format(

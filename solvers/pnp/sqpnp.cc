@@ -10,7 +10,6 @@
 
 #include "solvers/core/registry.h"
 #include "solvers/kernels/max_trace_rotation.h"
-#include "solvers/kernels/mirror_image.h"
 #include "solvers/pnp/correspondences.h"
 #include "solvers/pnp/pnp_solver.h"
 #include "solvers/pnp/rotation_cost.h"
@@ -147,8 +146,10 @@ void SearchFromEigenvectors(const RotationCost& cost, Minima& minima) {
 void SearchFromMirrorImage(Minima& minima) {
   if (minima.found().empty()) return;
   const Minimum& best = minima.found()[0];
-  minima.SearchFrom(
-      MirroredRotation(best.rotation, best.centroid.normalized(), Eigen::Vector3d::UnitZ()));
+  const Eigen::Vector3d sight = best.centroid.normalized();
+  const Eigen::Matrix3d reflection = Eigen::Matrix3d::Identity() - 2.0 * sight * sight.transpose();
+  const Eigen::Vector3d flip(1.0, 1.0, -1.0);
+  minima.SearchFrom(reflection * best.rotation * flip.asDiagonal());
 }
 
 }  // namespace
