@@ -149,5 +149,5 @@ def test_other_threads_run_while_a_solver_computes():
     end = time.perf_counter()
     running.clear()
     thread.join()
-    # With the GIL held, the thread would tick between the calls alone.
-    assert sum(start < t < end for t in ticks) > 200
+    # With the GIL held, the thread would tick between the calls alone, if at all.
+    assert sum(start < t < end for t in ticks) > 60
