@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "base/random.h"
+#include "base/units.h"
 #include "eval/extractors/board_scenes.h"
 #include "eval/statistics/text_table.h"
 #include "features/lidar/corner_extractor.h"
@@ -24,6 +25,9 @@ namespace {
 constexpr const char* kRollExperiment = "rolls";
 constexpr double kMinDistance_m = 1.5;
 constexpr double kMaxDistance_m = 4.0;
+constexpr double kMaxAzimuth_deg = 20.0;
+constexpr double kReaches = 2.0;         // Least distance, in half diagonals of the board,
+constexpr double kRosetteReaches = 3.0;  // and for a field of view of 38 degrees.
 constexpr double kMaxCornerOff = 1.0 / 6.0;  // Relative to the shorter side.
 
 struct RollOutcome {
@@ -107,8 +111,10 @@ class RollStudy {
     const double reach = 0.5 * std::hypot(board.top_right_m, board.right_bottom_m);
     // The simulated scanners are a metre above the floor, on which no board may touch.
     RoomPlacement placement{.turn_deg = 180.0 * roll / kRolls};
-    placement.distance_m = random.Uniform(std::max(kMinDistance_m, 2.0 * reach), kMaxDistance_m);
-    placement.azimuth_deg = random.Uniform(-20.0, 20.0);
+    const double nearest = (model_.rosette ? kRosetteReaches : kReaches) * reach;
+    placement.distance_m = random.Uniform(std::max(kMinDistance_m, nearest), kMaxDistance_m);
+    const double aside_deg = MaxAzimuth(reach / placement.distance_m);
+    placement.azimuth_deg = random.Uniform(-aside_deg, aside_deg);
     const double lowest = std::min(0.0, reach - 0.9);
     placement.height_m = FieldOf(model_, placement.distance_m).height_m;
     placement.height_m = std::max(placement.height_m + random.Uniform(-0.1, 0.1), lowest);
@@ -120,6 +126,14 @@ class RollStudy {
     if (options_.holding == BoardHolding::kOnStand) AddStand(placed, scene);
     if (options_.holding == BoardHolding::kInHands) AddHolder(placed, random, scene);
     return scene;
+  }
+
+  // A rosette sees a circle, in which the board must lie: what is outside is not due.
+  double MaxAzimuth(double tangent_of_reach) const {
+    if (!model_.rosette) return kMaxAzimuth_deg;
+    const double half_view_rad = 2.0 * model_.rosette->deflection_rad;
+    const double room_deg = (half_view_rad - std::atan(tangent_of_reach)) / kRadPerDeg;
+    return std::clamp(room_deg, 0.0, kMaxAzimuth_deg);
   }
 
   const RollStudyOptions& options_;
