@@ -24,9 +24,9 @@ file(WRITE "${OUT}" "// Written by cmake/EmbedText.cmake.
 namespace sextant {
 
 std::string_view ${FUNCTION}() {
-  static constexpr std::string_view kText =
+  static constexpr char kText[] =
 ${literals};
-  return kText;
+  return {kText, sizeof kText - 1};
 }
 
 }  // namespace sextant
