@@ -17,7 +17,6 @@ FaceOfBoard FaceReturns(const ScanRings& scan, const BoardPatch& patch,
     const std::optional<Eigen::Vector2d> in_plane = patch.plane.Meet(point);
     if (!in_plane || BeyondBoard(patch.fit, board, *in_plane) >= 0.0) continue;
     face.in_lidar.push_back(point);
-    face.in_cloud.push_back(scan.points()[place].index);
     if (scan.has_rings()) face.rings.push_back(scan.number(scan.RingOf(place)));
   }
   return face;

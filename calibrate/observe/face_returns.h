@@ -13,7 +13,6 @@ namespace sextant {
 struct FaceOfBoard {
   std::vector<Eigen::Vector3d> in_lidar{};  ///< [m].
   std::vector<int> rings{};                 ///< One for each; empty where the sensor has no rings.
-  std::vector<int> in_cloud{};              ///< Index of each in the cloud.
 };
 
 /// The patch's returns inside the fitted outline.

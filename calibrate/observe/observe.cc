@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "base/median.h"
-#include "calibrate/observe/dark_returns.h"
 #include "calibrate/observe/face_returns.h"
 #include "features/camera/explain_missing.h"
 #include "features/camera/grey_image.h"
@@ -92,16 +91,6 @@ LidarPattern PatternOf(const ScanRings& rings, const LidarBeam& beam) {
   }
   std::ranges::sort(pattern.elevations_rad);
   return pattern;
-}
-
-// Empty where the scan has no intensities.
-std::vector<float> IntensityOf(const FaceOfBoard& face, const PointCloud& cloud) {
-  std::vector<float> intensity;
-  if (cloud.intensity.empty()) return intensity;
-  for (const int index : face.in_cloud) {
-    intensity.push_back(cloud.intensity[static_cast<std::size_t>(index)]);
-  }
-  return intensity;
 }
 
 // Lengths of the placement's sides by lines through its edge points; empty where these are too few.
@@ -227,7 +216,6 @@ Expected<void> Observer::ObserveScan(const PointCloud& cloud, Observation& obser
       continue;
     }
     FaceOfBoard face = FaceReturns(rings, patch, boards());
-    CorrectDarkReturns(IntensityOf(face, cloud), patch.plane, face);
     LidarSighting sighting{.placements = std::move(placements),
                            .plane = patch.plane,
                            .edges = patch.edges,

@@ -105,10 +105,10 @@ TEST(AcfrPairs, TheBoardOfEveryPairIsMatchedAndThePoseIsThePublishedOne) {
     const Expected<SolveReport> report = (*BuiltinSolvers().Make(spec))->Solve(assembly->problem);
     ASSERT_TRUE(report) << report.error().message;
     const PoseDistance off = DistanceBetween(report->cam_from_lidar.Inverse(), published.Inverse());
-    // The published mean is 0.6 deg from a fit of the published corners. Joint is 1.29 deg off it;
-    // its growth of edges by 12 mm is more than the sensor's, and is what remains to be explained.
+    // The published mean is 0.6 deg from a fit of the published corners. Joint is 1.24 deg off it,
+    // and finds ranges that are 19 mm too short, which the published poses do not consider.
     const bool is_joint = std::string_view(spec).starts_with("joint");
-    EXPECT_LT(off.rotation_rad * kDegPerRad, is_joint ? 1.4 : 1.2) << spec;
+    EXPECT_LT(off.rotation_rad * kDegPerRad, is_joint ? 1.3 : 1.2) << spec;
     EXPECT_LT(off.translation_m, 0.06) << spec;
     const double held_out_m = HeldOutRmse(assembly->problem, spec);
     EXPECT_LT(held_out_m, 0.025) << spec;

@@ -123,9 +123,10 @@ TEST(FieldSessions, RoadWithAPlateOnTheGroundAndInHands) {
     EXPECT_EQ(KeptIn(*calibration), 10U) << RowsOf(*calibration);
     ASSERT_TRUE(calibration->result) << calibration->result.error().message;
     const Eigen::Vector3d t = calibration->result->cam_from_lidar.translation;
-    // The data hold it to 30 to 50 mm. Joint is 72 mm off, of which it states 18 mm as one sigma;
-    // kabsch is 66 mm off, joint(noise=stated) 44 mm.
-    EXPECT_LT((t - Eigen::Vector3d(0.01, -0.13, -0.22)).norm(), 0.08) << t.transpose();
+    // The data hold it to 30 to 50 mm. Joint is 69 mm off, of which it states 26 mm as one sigma
+    // with the views' scatter: the photos' tilts of single boards are up to 3 deg off. Kabsch is 66
+    // mm off, joint(noise=stated) 43 mm.
+    EXPECT_LT((t - Eigen::Vector3d(0.01, -0.13, -0.22)).norm(), 0.075) << t.transpose();
   }
 }
 
