@@ -174,7 +174,7 @@ TEST(BoardFile, ACheckerboardThatHoldsTagsHasThemInItsWhiteSquares) {
   const char* text =
       "id: 0\ntop_right_m: 0.4\nright_bottom_m: 0.5\n"
       "checker: {inner_columns: 4, inner_rows: 6, square_m: 0.04, holds_tags: true}\n"
-      "tags:\n  - {family: aruco_6x6_250, id: 1, edge_m: 0.03}\n";
+      "tags:\n  - {family: aruco_6x6_250, id: 1, edge_m: 0.03, center_in_board_m: [0.04, 0]}\n";
   EXPECT_THAT(ParseBoards(text, "b.yaml").error().message, HasSubstr("within a white square"));
 }
 
