@@ -23,10 +23,10 @@ struct PrintBoardOptions {
 };
 
 void Declare(PrintBoardOptions& options, Arguments& arguments) {
-  arguments.Add("FILE", options.board_path, "Board YAML, Kalibr's target or marker_coordinates.txt",
-                {.excludes = "--template"});
   arguments.Add("--template", options.board_template, "A board of another program instead of FILE",
                 {.choices = BoardTemplateNames()});
+  arguments.Add("FILE", options.board_path, "Board YAML, Kalibr's target or marker_coordinates.txt",
+                {.excludes = "--template"});
   arguments.Add("--out", options.out,
                 "Written by its extension: .pdf, .svg or .png; .yaml: the board file",
                 {.required = true, .writes = Writes::kFile});

@@ -26,8 +26,8 @@ constexpr const char* kRollExperiment = "rolls";
 constexpr double kMinDistance_m = 1.5;
 constexpr double kMaxDistance_m = 4.0;
 constexpr double kMaxAzimuth_deg = 20.0;
-constexpr double kReaches = 2.0;         // Least distance, in half diagonals of the board,
-constexpr double kRosetteReaches = 3.0;  // and for a field of view of 38 degrees.
+constexpr double kReaches = 2.0;             // Least distance, in half diagonals of the board,
+constexpr double kRosetteReaches = 3.0;      // and for a field of view of 38 degrees.
 constexpr double kMaxCornerOff = 1.0 / 6.0;  // Relative to the shorter side.
 
 struct RollOutcome {

@@ -286,6 +286,11 @@ std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board&
   if (agreement.in_holes > kMaxInHoles * agreement.points) {
     return fmt::format("{} returns are where the board has round holes", agreement.in_holes);
   }
+  const auto holes = static_cast<int>(board.round_holes.size());
+  if (2 * patch.fit.rims_seen < holes) {
+    return fmt::format("{} of its {} round holes are seen, half of them are needed",
+                       patch.fit.rims_seen, holes);
+  }
   if (!IsBounded(agreement) && !IsKnownByHoles(patch)) {
     const auto open = std::ranges::count_if(agreement.open, [](double part) { return part > 0.0; });
     return fmt::format(

@@ -45,7 +45,7 @@ constexpr double kMinVariance_m2 = 1e-6;      // Of a position within an interva
 constexpr std::size_t kMaxSides = kFirstRim;  // Straight ones.
 constexpr std::size_t kRimParts = 4;          // Of a rim, to tell how much of it is seen.
 constexpr std::size_t kMinRimParts = 3;
-constexpr int kMinRimPoints = 6;
+constexpr int kMinRimPoints = 4;
 constexpr double kSameSides = 1e-6;  // Relative; the sides of a square.
 // Prior sigma of the distance of all sides beyond where the board's size has them, relative to half
 // the mean side: boards are measured to that, and ranges are off by as much.

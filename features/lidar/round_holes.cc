@@ -15,10 +15,11 @@ namespace sextant {
 namespace {
 
 // All lengths relative to the radius of a hole.
-constexpr double kCell = 0.1;
-constexpr double kEmptyDisc = 0.75;
+constexpr double kCell = 0.2;
+constexpr double kEmptyDisc = 0.65;
 constexpr double kAroundFrom = 1.15;
 constexpr double kAroundTo = 1.9;
+constexpr double kSharp = 0.1;  // Points of a rim further from the circle count less.
 constexpr double kRimFrom = 0.5;
 constexpr double kRimTo = 1.5;
 constexpr double kOtherRadius = 0.25;
@@ -69,11 +70,13 @@ class CellCounts {
       const Eigen::Vector2d offset = (one.at - low_) / cell_;
       ++counts_[Index(static_cast<long>(offset.x()), static_cast<long>(offset.y()))];
     }
+    densest_ = *std::ranges::max_element(counts_);
   }
 
   bool IsAffordable() const {
     return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) <= kMaxCells;
   }
+  int densest() const { return densest_; }
   long columns() const { return columns_; }
   long rows() const { return rows_; }
   int Count(long column, long row) const {
@@ -94,6 +97,7 @@ class CellCounts {
   Eigen::Vector2d low_;
   long columns_ = 0;
   long rows_ = 0;
+  int densest_ = 0;
   std::vector<int> counts_;
 };
 
@@ -123,6 +127,10 @@ struct HoleMask {
   }
 
   bool Fits(const CellCounts& counts, long column, long row) const {
+    int in_disc = 0;
+    for (const Cell& cell : disc) in_disc += counts.Count(column + cell.column, row + cell.row);
+    // The cheap test first: as many returns as the densest cells would allow around the hole.
+    if (in_disc > kMaxFilled * counts.densest() * static_cast<double>(disc.size())) return false;
     std::array<int, kSectors> sectors{};
     int around_count = 0;
     for (const Cell& cell : around) {
@@ -135,8 +143,6 @@ struct HoleMask {
     }
     const double expected = static_cast<double>(around_count) * static_cast<double>(disc.size()) /
                             static_cast<double>(around.size());
-    int in_disc = 0;
-    for (const Cell& cell : disc) in_disc += counts.Count(column + cell.column, row + cell.row);
     return in_disc <= kMaxFilled * expected;
   }
 };
@@ -236,7 +242,7 @@ Circle FitCircle(std::span<const PlaneReturn> rim, Circle circle) {
       const double from = arm.norm();
       if (from <= 0.0) continue;
       const double residual = from - circle.radius;
-      const double limit = kCell * circle.radius;
+      const double limit = kSharp * circle.radius;
       const double weight = std::abs(residual) <= limit ? 1.0 : limit / std::abs(residual);
       const Eigen::Vector3d j(-arm.x() / from, -arm.y() / from, -1.0);
       normal += weight * j * j.transpose();
@@ -368,8 +374,12 @@ HoledEdges FindHoledEdges(const ScanRings& scan, const LidarPlane& plane,
                           std::span<const std::size_t> on_plane, const Board& board,
                           const EdgeOptions& options) {
   constexpr std::size_t kMaxStarts = 6;
+  constexpr std::ptrdiff_t kMinGapEnds = 6;  // Three crossings of holes, on one or more rings.
   HoledEdges found;
   found.edges = FindEdgePoints(scan, plane, on_plane, options);
+  if (scan.has_rings() && std::ranges::count(found.edges, true, &EdgePoint::inner) < kMinGapEnds) {
+    return found;
+  }
   const double radius_m = board.round_holes.front().radius_m;
   const std::vector<SeenHole> seen = FindRoundHoles(scan, plane, on_plane, radius_m, options);
   found.starts = PlacementsByHoles(seen, board, kMaxStarts);

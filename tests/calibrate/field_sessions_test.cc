@@ -169,6 +169,29 @@ TEST(FieldSessions, YardWithACameraThatLooksBackwards) {
   }
 }
 
+// One view of a board with four round holes and four tags, the scan of a rosette cropped so that
+// two sides are missing. Half a turn looks the same to the LiDAR; a rough rotation tells the two
+// apart.
+TEST(FieldSessions, RoundHolesInACroppedScan) {
+  SEXTANT_REAL_DATA(folder, "field/mid360_circles");
+  const Camera camera = *ReadCamera(folder / "camera.yaml");
+  Board board = (*ReadBoards(folder / "board.yaml"))[0];
+  for (const double x : {-0.25, 0.25}) {
+    for (const double y : {-0.2, 0.2}) board.round_holes.push_back({0.12, {x, y}});
+  }
+  Eigen::Matrix3d rows;
+  rows << .0069, -.9992, .0391, .0113, -.0390, -.9992, .9999, .0073, .0110;
+  const Rigid3d expected = Pose(rows, {0.021, -0.087, 0.003});
+  const Session session = SessionIn(folder / "image.png", folder / "filtered_cloud.ply");
+  CalibrateOptions options = OptionsFor(board, camera);
+  options.match.initial = expected;
+  const Expected<Calibration> calibration = Calibrate(session, options);
+  ASSERT_TRUE(calibration) << calibration.error().message;
+  EXPECT_EQ(KeptIn(*calibration), 1U) << RowsOf(*calibration);
+  // The published pose is from centres that are 7 mm higher on average than those of the rims.
+  ExpectPose(*calibration, expected, {.translation_m = 0.02, .rotation_deg = 0.5});
+}
+
 // The photos of one session with the scans of another: both show such a board, but not the same.
 TEST(FieldSessions, PhotosAndScansOfDifferentMomentsGiveNoPose) {
   SEXTANT_REAL_DATA(folder, "field/vlp16_road");

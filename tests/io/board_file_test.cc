@@ -85,11 +85,11 @@ TEST(BoardFile, ReadsRoundHoles) {
 
 TEST(BoardFile, RefusesRoundHolesOffTheBoardAndOverPrints) {
   const auto error = [](const std::string& hole) {
-    const auto boards = ParseBoards("id: 0\ntop_right_m: 1\nright_bottom_m: 1\nround_holes:\n  - " +
-                                        hole +
-                                        "\n  - {radius_m: 0.1, center_in_board_m: [0.3, 0.3]}\n"
-                                        "tags:\n  - {family: tag36h11, id: 1, edge_m: 0.2}\n",
-                                    "b.yaml");
+    const auto boards =
+        ParseBoards("id: 0\ntop_right_m: 1\nright_bottom_m: 1\nround_holes:\n  - " + hole +
+                        "\n  - {radius_m: 0.1, center_in_board_m: [0.3, 0.3]}\n"
+                        "tags:\n  - {family: tag36h11, id: 1, edge_m: 0.2}\n",
+                    "b.yaml");
     return boards ? std::string() : boards.error().message;
   };
   EXPECT_EQ(error("{radius_m: 0.1, center_in_board_m: [-0.3, -0.3]}"), "");
@@ -174,7 +174,7 @@ TEST(BoardFile, ACheckerboardThatHoldsTagsHasThemInItsWhiteSquares) {
   const char* text =
       "id: 0\ntop_right_m: 0.4\nright_bottom_m: 0.5\n"
       "checker: {inner_columns: 4, inner_rows: 6, square_m: 0.04, holds_tags: true}\n"
-      "tags:\n  - {family: aruco_6x6_250, id: 1, edge_m: 0.03}\n";
+      "tags:\n  - {family: aruco_6x6_250, id: 1, edge_m: 0.03, center_in_board_m: [0.04, 0]}\n";
   EXPECT_THAT(ParseBoards(text, "b.yaml").error().message, HasSubstr("within a white square"));
 }
 

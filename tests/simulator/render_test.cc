@@ -105,11 +105,9 @@ TEST(RenderImage, BoardsOccludeExceptThroughHoles) {
 }
 
 TEST(RenderImage, RoundHolesAreRound) {
-  sextant::Scene scene = OneBoardScene(kCamera,
-                                       {.top_right_m = 0.6,
-                                        .right_bottom_m = 0.6,
-                                        .round_holes = {{.radius_m = 0.1}}},
-                                       At(0.0, 0.0, 1.0));
+  sextant::Scene scene = OneBoardScene(
+      kCamera, {.top_right_m = 0.6, .right_bottom_m = 0.6, .round_holes = {{.radius_m = 0.1}}},
+      At(0.0, 0.0, 1.0));
   const cv::Mat image = *RenderImage(scene, 0, EvenLight());
   const int background = LevelAt(image, 79, 59);
   EXPECT_NE(background, LevelAt(image, 79, 59 + 22));

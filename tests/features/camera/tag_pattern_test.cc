@@ -16,8 +16,7 @@ namespace sextant::test {
 namespace {
 
 std::vector<std::uint8_t> ArucoCells(const std::string& family, int id) {
-  const cv::Mat marker =
-      DrawArucoCells(*FindArucoDictionary(family), id, ArucoBorderCells(family));
+  const cv::Mat marker = DrawArucoCells(*FindArucoDictionary(family), id, ArucoBorderCells(family));
   std::vector<std::uint8_t> white;
   for (const std::uint8_t level : cv::Mat_<std::uint8_t>(marker)) white.push_back(level > 127);
   return white;

@@ -156,6 +156,30 @@ TEST(RoundHoles, APlateWithoutThemIsNotTheBoard) {
   }
 }
 
+TEST(RoundHoles, AreInNoRealScanWithoutSuchABoard) {
+  SEXTANT_REAL_DATA(folder, "");
+  for (const char* file :
+       {"field/ouster64_garage/pointcloud9.pcd", "ouster64/lidar_data/pointcloud24.pcd"}) {
+    const Expected<PointCloud> cloud = ReadCloud(folder / file);
+    ASSERT_TRUE(cloud) << cloud.error().message;
+    const ScanRings rings = *ScanRings::Build(*cloud);
+    for (const char* name : {"fast_calib", "multisensor_calibration"}) {
+      for (const double scale : {1.0, 0.6}) {
+        Board board = *FindBoardTemplate(name);
+        board.top_right_m *= scale;
+        board.right_bottom_m *= scale;
+        for (RoundHole& hole : board.round_holes) {
+          hole.radius_m *= scale;
+          hole.center_in_board_m *= scale;
+        }
+        const Expected<BoardSearch> search = FindBoards(rings, std::vector<Board>{board}, {});
+        ASSERT_TRUE(search);
+        EXPECT_TRUE(search->found.empty()) << file << " " << name << " " << scale;
+      }
+    }
+  }
+}
+
 // A real accumulated scan of a Livox Mid-360, two sides of the board cropped. The centres are those
 // of FAST-Calib, whose distances deviate from those of the board by up to 12 mm.
 TEST(RoundHoles, OfARealCroppedScan) {
