@@ -11,6 +11,7 @@ Command AverageCommand();
 Command BagCommand();
 Command BoardsCommand();
 Command CalibrateCommand();
+Command CheckCommand();
 Command CompareCommand();
 Command ConvertCommand();
 Command DetectCommand();
@@ -21,6 +22,7 @@ Command MarkCommand();  ///< In cli/mark.
 Command MergeCommand();
 Command PrintBoardCommand();
 Command ProjectCommand();
+Command RefineSceneCommand();
 Command ReproduceCommand();
 Command RunCommand();
 Command SimulateCommand();
