@@ -12,7 +12,7 @@
 namespace sextant {
 namespace {
 
-constexpr double kLimit = 3.0;        // A change of so many sigmas is seen.
+constexpr double kLimit = 2.33;       // Sigmas; 98 % of a normal distribution.
 constexpr double kMinContrast = 5.0;  // Over what coincides by chance, in its sigmas.
 // On scenes of known truth the pose itself had at least 0.8 of the contrast of the best one, where
 // that was clear.
