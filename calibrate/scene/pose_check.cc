@@ -45,6 +45,8 @@ std::string DescribeChange(const Vector6d& change, const Matrix6d& covariance) {
                      1e3 * std::sqrt(covariance(3 + along, 3 + along)), kAxes[along]);
 }
 
+double ContrastOf(const SceneFit& fit) { return (fit.score - fit.chance_mean) / fit.chance_sigma; }
+
 std::string MoreNeeded(double ratio, int samples, std::string_view what) {
   const double more = std::ceil(samples * (ratio * ratio - 1.0));
   if (more > kMaxStatedMore) return fmt::format("take {} with more structure, near and far", what);
@@ -89,32 +91,32 @@ PoseCheck JudgeChange(const Vector6d& change, const Matrix6d& covariance, const 
   return check;
 }
 
-PoseCheck CheckScenes(const SceneFit& fit, const Rigid3d& given, const CheckLimits& limits) {
-  PoseCheck check{.change = PoseDifference(fit.cam_from_lidar, given),
-                  .covariance = fit.covariance};
-  const double contrast = (fit.score - fit.chance_mean) / fit.chance_sigma;
+std::string WhyUnclear(const SceneFit& fit) {
   if (fit.edges < kMinEdges) {
-    check.reason = fmt::format(
+    return fmt::format(
         "too little structure: {} depth edges in the images, expected {} or more; take scenes with "
         "objects near and far",
         fit.edges, kMinEdges);
-    return check;
   }
-  if (contrast < kMinContrast) {
-    check.reason = fmt::format(
-        "the edges of the scans and of the images coincide only {:.1f} sigmas better than by "
-        "chance, "
-        "expected {:.0f}; is the pose off by more than 2 deg or 10 cm, or are the pairs not of one "
-        "moment?",
-        contrast, kMinContrast);
-    return check;
-  }
+  if (ContrastOf(fit) >= kMinContrast) return {};
+  return fmt::format(
+      "the edges of the scans and of the images coincide only {:.1f} sigmas better than by chance, "
+      "expected {:.0f}; is the pose off by more than 2 deg or 10 cm, or are the pairs not of one "
+      "moment?",
+      ContrastOf(fit), kMinContrast);
+}
+
+PoseCheck CheckScenes(const SceneFit& fit, const Rigid3d& given, const CheckLimits& limits) {
+  PoseCheck check{.reason = WhyUnclear(fit),
+                  .change = PoseDifference(fit.cam_from_lidar, given),
+                  .covariance = fit.covariance};
+  if (!check.reason.empty()) return check;
   // A covariance from few tiles is uncertain itself (Hotelling's distribution, approximated).
   const double few = 1.0 + 9.0 / std::max(2.0, fit.tiles - 6.0);
   const bool is_far =
       SquaredMahalanobis<6>(check.change, fit.own_covariance) > kMovedDistance * few;
   const double share = (fit.start_score - fit.chance_mean) / (fit.score - fit.chance_mean);
-  const bool is_worse = contrast > kClearContrast && share < kMinShare;
+  const bool is_worse = ContrastOf(fit) > kClearContrast && share < kMinShare;
   if (is_far || is_worse) {
     check.state = PoseState::kMoved;
     check.covariance = fit.own_covariance;

@@ -39,6 +39,10 @@ inline constexpr double kMovedDistance = 15.03;
 PoseCheck JudgeChange(const Vector6d& change, const Matrix6d& covariance, const CheckLimits& limits,
                       int samples, std::string_view what);
 
+/// Why nothing is known by this fit: too few edges, or edges that coincide hardly better than by
+/// chance. Empty if something is.
+std::string WhyUnclear(const SceneFit& fit);
+
 /// The same for a fit that was started at the given pose. The threshold grows where few tiles show
 /// the spread. A pose has moved, too, if its own edges coincide far worse than those of the fit,
 /// and nothing is known where even those coincide hardly better than by chance.

@@ -48,32 +48,28 @@ double WorstSigma(const SquareMatrix<3>& covariance) {
 
 // A fit whose edges coincide by chance is not usable whatever its covariance. Scenes are never
 // GOOD: no independent measurement, as a board is, confirms them.
-ResultVerdict VerdictOf(const SceneFit& fit, const PoseCheck& check,
-                        const RefineSceneOptions& options) {
+ResultVerdict VerdictOf(const SceneFit& fit, const RefineSceneOptions& options) {
   const double rotation_deg = WorstSigma(fit.covariance.topLeftCorner<3, 3>()) / kRadPerDeg;
   const double translation_mm = 1e3 * WorstSigma(fit.covariance.bottomRightCorner<3, 3>());
   const std::string accuracy = fmt::format(
       "1 sigma of the least certain direction is {:.0f} mm and {:.2f} deg, needed are "
       "{:.0f} mm and {:.2f} deg",
       translation_mm, rotation_deg, options.need[0], options.need[1]);
-  const bool is_found = check.state != PoseState::kUnknown || check.change.squaredNorm() == 0.0;
+  const std::string unclear = WhyUnclear(fit);
   const bool is_enough = translation_mm <= options.need[0] && rotation_deg <= options.need[1];
-  if (is_found && is_enough) {
+  if (unclear.empty() && is_enough) {
     return {.usability = Usability::kUsableWithCare,
             .reason = accuracy,
             .next = "Look at it with sextant project; a board gives a better one"};
   }
   return {.usability = Usability::kNotUsable,
-          .reason = is_found ? accuracy : check.reason,
+          .reason = unclear.empty() ? accuracy : unclear,
           .next = "Add pairs of scenes that differ, with objects near and far"};
 }
 
 CalibrationResult ResultOf(const SceneInput& input, const SceneFit& fit,
                            const RefineSceneOptions& options) {
-  // The fit against itself: whether its edges coincide better than by chance.
-  const CheckLimits any = {.rotation_rad = 10.0, .translation_m = 1e3};
-  const PoseCheck self = CheckScenes(fit, fit.cam_from_lidar, any);
-  const ResultVerdict verdict = VerdictOf(fit, self, options);
+  const ResultVerdict verdict = VerdictOf(fit, options);
   CalibrationResult result;
   result.version = std::string(Version());
   result.solver = "scene_edges";
