@@ -26,8 +26,8 @@ constexpr const char* kFooter =
     "'sextant COMMAND --help' has the options of a command and examples.\n"
     "An existing file is replaced only if sextant wrote it; --overwrite replaces any.\n"
     "Exit codes: 0 answered, 1 no answer (with the reason), 2 wrong usage or unreadable input,\n"
-    "3 answered, with the verdict NOT USABLE, 4 an output could not be written,\n"
-    "70 out of memory or an error in sextant.";
+    "3 answered, with the verdict NOT USABLE (check: moved), 4 an output could not be written,\n"
+    "5 check: cannot tell, 70 out of memory or an error in sextant.";
 
 }  // namespace
 
@@ -37,8 +37,8 @@ Program SextantProgram() {
           .introduction = kIntroduction,
           .footer = kFooter,
           .groups = {{"Calibrate",
-                      {CalibrateCommand(), RigCommand(), AdviseCommand(), ProjectCommand(),
-                       ReportCommand(), ExportCommand()}},
+                      {CalibrateCommand(), RigCommand(), AdviseCommand(), CheckCommand(),
+                       RefineSceneCommand(), ProjectCommand(), ReportCommand(), ExportCommand()}},
                      {"Look at images, scans and recordings",
                       {DetectCommand(), BoardsCommand(), MarkCommand(), BagCommand()}},
                      {"Make and convert data",

@@ -11,6 +11,7 @@ Command AverageCommand();
 Command BagCommand();
 Command BoardsCommand();
 Command CalibrateCommand();
+Command CheckCommand();
 Command CompareCommand();
 Command CompletionCommand();
 Command ConvertCommand();
@@ -23,6 +24,7 @@ Command MarkCommand();  ///< In cli/mark.
 Command MergeCommand();
 Command PrintBoardCommand();
 Command ProjectCommand();
+Command RefineSceneCommand();
 Command ReportCommand();
 Command ReproduceCommand();
 Command RigCommand();

@@ -21,6 +21,7 @@ namespace sextant {
 ///   FAST-LIVO (cam_fx, cam_d0), ORB-SLAM (Camera.fx) and others (f_x, k_1), and within other maps.
 /// - Kalibr's camchain: camera_model, intrinsics, distortion_model, distortion_coeffs, resolution.
 /// - camodocal: model_type PINHOLE | MEI | KANNALA_BRANDT with its groups of parameters.
+/// - any of these with K as fx, fy, cx, cy.
 /// - SensorsCalibration (OpenCalib) JSON: cam_K, cam_dist, img_dist_w, img_dist_h.
 /// - KITTI's calibration: P0 to P3 or P_rect_00 to P_rect_03 (K alone; their offset is ignored).
 /// - a problem file of this project: its map `camera`.

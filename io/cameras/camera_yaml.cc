@@ -82,6 +82,10 @@ void ReadFocals(YamlFields& in, const YamlNode& camera, CameraParts& parts) {
 void ReadMatrix(YamlFields& in, const YamlNode& matrix, CameraParts& parts) {
   constexpr std::string_view kName = "camera matrix";
   const std::vector<double> k = CameraNumbers(in, matrix, kName, kMaxCoefficients);
+  if (in.ok() && k.size() == 4) {
+    parts.matrix = {k[0], 0, k[2], 0, k[1], k[3], 0, 0, 1};
+    return;
+  }
   if (in.ok() && k.size() != parts.matrix.size()) {
     in.Fail(matrix.line, kName, fmt::format("expected 9 numbers, got {}", k.size()));
   }

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 #include <tinyxml2.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <map>

@@ -98,8 +98,9 @@ TEST(Fuse, RealScansAgreeUnderTheirPublishedPose) {
     double rms_mm = 0.0;
   };
   const auto fuse = [&](const std::string& to) {
-    const ProgramRun run = RunSextant(clouds + " --from " + TestPath("same.txt") + " --to " + to +
-                                      " --out " + TestPath("out.ply"));
+    const ProgramRun run =
+        RunSextant(clouds + " --pose-is cam_from_lidar --from " + TestPath("same.txt") + " --to " +
+                   to + " --out " + TestPath("out.ply"));
     EXPECT_EQ(run.exit_code, 0) << run.err;
     const auto number_after = [&run](const std::string& text) {
       const std::size_t at = run.out.find(text);

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/scene/pose_check.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "geometry/symmetric.h"
+
+namespace sextant {
+namespace {
+
+constexpr double kLimit = 2.33;       // Sigmas; 98 % of a normal distribution.
+constexpr double kMinContrast = 5.0;  // Over what coincides by chance, in its sigmas.
+// On scenes of known truth the pose itself had at least 0.8 of the contrast of the best one, where
+// that was clear.
+constexpr double kClearContrast = 9.0;
+constexpr double kMinShare = 0.7;
+constexpr int kMinEdges = 150;
+constexpr int kMaxStatedMore = 100;
+
+struct WorstSigma {
+  double rotation_rad;
+  double translation_m;
+};
+
+WorstSigma WorstOf(const Matrix6d& covariance) {
+  const SquareMatrix<3> rotation = covariance.topLeftCorner<3, 3>();
+  const SquareMatrix<3> translation = covariance.bottomRightCorner<3, 3>();
+  return {std::sqrt(EigenOf<3>(rotation).values(2)), std::sqrt(EigenOf<3>(translation).values(2))};
+}
+
+// "0.90 +- 0.20 deg about the camera's y, 31 +- 12 mm along x", of the largest components.
+std::string DescribeChange(const Vector6d& change, const Matrix6d& covariance) {
+  Eigen::Index about = 0;
+  Eigen::Index along = 0;
+  change.head<3>().cwiseAbs().maxCoeff(&about);
+  change.tail<3>().cwiseAbs().maxCoeff(&along);
+  constexpr const char* kAxes = "xyz";
+  return fmt::format("{:.2f} +- {:.2f} deg about the camera's {}, {:.0f} +- {:.0f} mm along {}",
+                     change(about) / kRadPerDeg, std::sqrt(covariance(about, about)) / kRadPerDeg,
+                     kAxes[about], 1e3 * change(3 + along),
+                     1e3 * std::sqrt(covariance(3 + along, 3 + along)), kAxes[along]);
+}
+
+double ContrastOf(const SceneFit& fit) { return (fit.score - fit.chance_mean) / fit.chance_sigma; }
+
+std::string MoreNeeded(double ratio, int samples, std::string_view what) {
+  const double more = std::ceil(samples * (ratio * ratio - 1.0));
+  if (more > kMaxStatedMore) return fmt::format("take {} with more structure, near and far", what);
+  return fmt::format("about {:.0f} more {} are needed", std::max(1.0, more), what);
+}
+
+}  // namespace
+
+std::string_view ToString(PoseState state) {
+  switch (state) {
+    case PoseState::kValid:
+      return "still valid";
+    case PoseState::kMoved:
+      return "moved";
+    case PoseState::kUnknown:
+      break;
+  }
+  return "cannot tell";
+}
+
+PoseCheck JudgeChange(const Vector6d& change, const Matrix6d& covariance, const CheckLimits& limits,
+                      int samples, std::string_view what) {
+  PoseCheck check{.change = change, .covariance = covariance};
+  const WorstSigma worst = WorstOf(covariance);
+  const double ratio = kLimit * std::max(worst.rotation_rad / limits.rotation_rad,
+                                         worst.translation_m / limits.translation_m);
+  if (SquaredMahalanobis<6>(change, covariance) > kMovedDistance) {
+    check.state = PoseState::kMoved;
+    check.reason = DescribeChange(change, covariance);
+  } else if (ratio <= 1.0) {
+    check.state = PoseState::kValid;
+    check.reason =
+        fmt::format("known to {:.2f} deg and {:.0f} mm in every direction (98 %); measured {}",
+                    kLimit * worst.rotation_rad / kRadPerDeg, 1e3 * kLimit * worst.translation_m,
+                    DescribeChange(change, covariance));
+  } else {
+    check.reason =
+        fmt::format("known only to {:.2f} deg and {:.0f} mm (98 %) by these {} {}; {}",
+                    kLimit * worst.rotation_rad / kRadPerDeg, 1e3 * kLimit * worst.translation_m,
+                    samples, what, MoreNeeded(ratio, samples, what));
+  }
+  return check;
+}
+
+std::string WhyUnclear(const SceneFit& fit) {
+  if (fit.edges < kMinEdges) {
+    return fmt::format(
+        "too little structure: {} depth edges in the images, expected {} or more; take scenes with "
+        "objects near and far",
+        fit.edges, kMinEdges);
+  }
+  if (ContrastOf(fit) >= kMinContrast) return {};
+  return fmt::format(
+      "the edges of the scans and of the images coincide only {:.1f} sigmas better than by chance, "
+      "expected {:.0f}; is the pose off by more than 2 deg or 10 cm, or are the pairs not of one "
+      "moment?",
+      ContrastOf(fit), kMinContrast);
+}
+
+PoseCheck CheckScenes(const SceneFit& fit, const Rigid3d& given, const CheckLimits& limits) {
+  PoseCheck check{.reason = WhyUnclear(fit),
+                  .change = PoseDifference(fit.cam_from_lidar, given),
+                  .covariance = fit.covariance};
+  if (!check.reason.empty()) return check;
+  // A covariance from few tiles is uncertain itself (Hotelling's distribution, approximated).
+  const double few = 1.0 + 9.0 / std::max(2.0, fit.tiles - 6.0);
+  const bool is_far =
+      SquaredMahalanobis<6>(check.change, fit.own_covariance) > kMovedDistance * few;
+  const double share = (fit.start_score - fit.chance_mean) / (fit.score - fit.chance_mean);
+  const bool is_worse = ContrastOf(fit) > kClearContrast && share < kMinShare;
+  if (is_far || is_worse) {
+    check.state = PoseState::kMoved;
+    check.covariance = fit.own_covariance;
+    check.reason =
+        fmt::format("{} (with the given pose the edges coincide {:.0f} % as well)",
+                    DescribeChange(check.change, fit.own_covariance), 100.0 * std::max(0.0, share));
+    return check;
+  }
+  check = JudgeChange(check.change, fit.covariance, limits, fit.scenes, "different scenes");
+  if (check.state != PoseState::kMoved) return check;
+  check.state = PoseState::kUnknown;
+  check.reason = fmt::format(
+      "measured {}, which {} different scenes are too few to confirm; take "
+      "scenes that differ",
+      DescribeChange(check.change, check.covariance), fit.scenes);
+  return check;
+}
+
+}  // namespace sextant

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "calibrate/scene/scene_search.h"
+
+namespace sextant {
+
+enum class PoseState { kValid, kMoved, kUnknown };
+
+/// "still valid", "moved" or "cannot tell".
+std::string_view ToString(PoseState state);
+
+/// The smallest change that matters: a pose is called valid only where one of this size would have
+/// been seen.
+struct CheckLimits {
+  double rotation_rad = 0.0;
+  double translation_m = 0.0;
+};
+
+/// A judged pose.
+struct PoseCheck {
+  PoseState state = PoseState::kUnknown;
+  std::string reason{};  ///< One sentence.
+  /// PoseDifference(measured pose, given pose), in the axes of the camera, and its covariance.
+  Vector6d change = Vector6d::Zero();
+  Matrix6d covariance = Matrix6d::Zero();
+};
+
+/// Quantile 98 % of the chi-square distribution of 6: the squared Mahalanobis distance that a pose
+/// that has not moved exceeds in 2 percent of the checks.
+inline constexpr double kMovedDistance = 15.03;
+
+/// A pose has moved if the distance of the change exceeds kMovedDistance, else it is valid if a
+/// change of `limits` in any direction would have been seen, else unknown. `what` names the
+/// `samples`: "different scenes", "views of the board".
+PoseCheck JudgeChange(const Vector6d& change, const Matrix6d& covariance, const CheckLimits& limits,
+                      int samples, std::string_view what);
+
+/// Why nothing is known by this fit: too few edges, or edges that coincide hardly better than by
+/// chance. Empty if something is.
+std::string WhyUnclear(const SceneFit& fit);
+
+/// The same for a fit that was started at the given pose. The threshold grows where few tiles show
+/// the spread. A pose has moved, too, if its own edges coincide far worse than those of the fit,
+/// and nothing is known where even those coincide hardly better than by chance.
+PoseCheck CheckScenes(const SceneFit& fit, const Rigid3d& given, const CheckLimits& limits);
+
+}  // namespace sextant

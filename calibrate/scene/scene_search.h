@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "base/progress.h"
+#include "calibrate/scene/scene_score.h"
+
+namespace sextant {
+
+/// The pose at which the edges of the scans coincide best with those of the images. Of optima that
+/// are as good up to chance it is the one nearest to the start.
+struct SceneFit {
+  Rigid3d cam_from_lidar;
+  /// Of (dphi, dt): the spread of this optimum over the tiles of all images (sandwich estimate,
+  /// H^-1 G H^-1), and what no scene averages out: time between the sensors, motion during a turn,
+  /// the width of the beam (0.05 deg and 12 mm per axis).
+  Matrix6d own_covariance = Matrix6d::Zero();
+  /// The same with the spread over the other optima that are as good.
+  Matrix6d covariance = Matrix6d::Zero();
+  double score = 0.0;        ///< At the comparing scale, a blur of 3 pixels.
+  double start_score = 0.0;  ///< Of the start itself.
+  double chance_mean = 0.0;  ///< Of poses off by 2.5 to 5 degrees: what coincides by chance.
+  double chance_sigma = 0.0;
+  int edges = 0;   ///< In view.
+  int scenes = 0;  ///< That differ.
+  int tiles = 0;   ///< On which the spread rests.
+};
+
+/// Searches up to about 2.5 deg and 15 cm around `start`: a grid of rotations at the coarsest
+/// scale, then Newton's method from the best cells, from coarse to fine. Time: about 50 us for each
+/// edge; 0.5 s for ten pairs.
+SceneFit SearchScenes(std::span<const ScenePair> pairs, const Rigid3d& start,
+                      const ProgressCallback& progress = {});
+
+}  // namespace sextant

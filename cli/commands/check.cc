@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/units.h"
+#include "calibrate/calibrate.h"
+#include "calibrate/scene/pose_check.h"
+#include "cli/commands/commands.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "cli/scene_input.h"
+#include "io/output/appended_file.h"
+#include "io/text/number_text.h"
+
+namespace sextant::cli {
+namespace {
+
+constexpr int kMovedExit = 3;
+constexpr int kUnknownExit = 5;
+
+struct CheckOptions {
+  SceneInputOptions input{};
+  std::string boards_path{};
+  std::vector<double> limits = {80.0, 0.5};  ///< mm and degrees.
+  std::string json_path{};
+  std::string history_path{};
+};
+
+void Declare(CheckOptions& options, Arguments& arguments) {
+  DeclareSceneInput(options.input, arguments);
+  arguments.Add(
+      "--board", options.boards_path,
+      "A board is in view: the pose is compared with the calibration by it, which is more\n"
+      "accurate");
+  arguments.Add("--detect", options.limits,
+                "The smallest change that matters: MM,DEG; valid only if it would have been seen",
+                {.shows_default = true,
+                 .range = {{1e-3, 1e6}},
+                 .min_values = 2,
+                 .max_values = 2,
+                 .separator = ','});
+  arguments.Add("--json", options.json_path, "Write the check as JSON; - for standard output",
+                {.writes = Writes::kFileOrStandardOutput});
+  arguments.Add("--history", options.history_path,
+                "Append a line to this CSV file, for checks at regular times",
+                {.writes = Writes::kCheckedByCommand});
+}
+
+CheckLimits LimitsOf(const CheckOptions& options) {
+  return {.rotation_rad = kRadPerDeg * options.limits[1],
+          .translation_m = 1e-3 * options.limits[0]};
+}
+
+Expected<PoseCheck> CheckByBoard(const CheckOptions& options, const SceneInput& input,
+                                 const ProgressCallback& progress) {
+  Session session = input.session;
+  session.boards = options.boards_path;
+  session.camera = options.input.camera_path;
+  CalibrateOptions settings{.camera = input.given.camera, .progress = progress};
+  settings.match.initial = input.given.cam_from_lidar;
+  SEXTANT_ASSIGN_OR_RETURN(const Calibration calibration, Calibrate(session, settings));
+  if (!calibration.result) return PoseCheck{.reason = calibration.result.error().message};
+  const CalibrationResult& result = *calibration.result;
+  if (!result.covariance || result.verdict->usability == Usability::kNotUsable) {
+    return PoseCheck{.reason =
+                         "the calibration by the board is not usable: " + result.verdict->reason};
+  }
+  return JudgeChange(PoseDifference(result.cam_from_lidar, input.given.cam_from_lidar),
+                     *result.covariance, LimitsOf(options), static_cast<int>(result.views.size()),
+                     "views of the board");
+}
+
+Expected<PoseCheck> CheckPose(const CheckOptions& options, const SceneInput& input) {
+  Progress progress;
+  if (!options.boards_path.empty()) return CheckByBoard(options, input, progress.Callback());
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<ScenePair> pairs,
+                           ReadScenePairs(input, progress.Callback()));
+  const Rigid3d& given = input.given.cam_from_lidar;
+  return CheckScenes(SearchScenes(pairs, given, progress.Callback()), given, LimitsOf(options));
+}
+
+// Of (dphi [deg], dt [mm]).
+std::vector<double> InPlainUnits(const Vector6d& value) {
+  std::vector<double> plain;
+  for (int i = 0; i < 6; ++i) plain.push_back(i < 3 ? value(i) / kRadPerDeg : 1e3 * value(i));
+  return plain;
+}
+
+std::string NowUtc() {
+  return fmt::format(
+      "{:%FT%TZ}",
+      fmt::gmtime(std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now())));
+}
+
+std::string JsonOf(const PoseCheck& check, std::size_t pairs, const std::string& path) {
+  const Vector6d sigma = check.covariance.diagonal().cwiseSqrt();
+  nlohmann::ordered_json json = {{"pose", path},
+                                 {"pairs", pairs},
+                                 {"state", ToString(check.state)},
+                                 {"reason", check.reason},
+                                 {"change_deg_mm", InPlainUnits(check.change)},
+                                 {"sigma_deg_mm", InPlainUnits(sigma)}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+Expected<void> AppendHistory(const std::string& path, const PoseCheck& check, std::size_t pairs) {
+  if (path.empty()) return {};
+  const std::string header =
+      "time_utc,state,pairs,x_deg,y_deg,z_deg,x_mm,y_mm,z_mm,sigma_x_deg,sigma_y_deg,sigma_z_deg,"
+      "sigma_x_mm,sigma_y_mm,sigma_z_mm\n";
+  SEXTANT_ASSIGN_OR_RETURN(AppendedFile file, AppendedFile::Open(path));
+  SEXTANT_ASSIGN_OR_RETURN(const std::string begin, file.ReadBeginning(header.size()));
+  if (!begin.empty() && begin != header) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     path + ": is no history of sextant check; expected one, or a new file");
+  }
+  std::string line = begin.empty() ? header : std::string();
+  line += fmt::format("{},{},{}", NowUtc(), ToString(check.state), pairs);
+  for (const double v : InPlainUnits(check.change)) line += fmt::format(",{:.4f}", v);
+  for (const double v : InPlainUnits(check.covariance.diagonal().cwiseSqrt())) {
+    line += fmt::format(",{:.4f}", v);
+  }
+  SEXTANT_RETURN_IF_ERROR(file.Append(line + "\n"));
+  return file.Flush();
+}
+
+int Run(const CheckOptions& options) {
+  const Expected<SceneInput> input = ReadSceneInput(options.input);
+  if (!input) return Refuse("check", input.error());
+  const Expected<PoseCheck> check = CheckPose(options, *input);
+  if (!check) return Refuse("check", check.error());
+  const std::size_t pairs = input->session.files.pairs.size();
+  if (const Expected<void> ok = AppendHistory(options.history_path, *check, pairs); !ok) {
+    return Refuse("check", ok.error());
+  }
+  const int code = check->state == PoseState::kValid   ? kAnswered
+                   : check->state == PoseState::kMoved ? kMovedExit
+                                                       : kUnknownExit;
+  const std::string text = fmt::format("{}: {}\n", ToString(check->state), check->reason);
+  return Deliver("check", options.json_path, text, JsonOf(*check, pairs, options.input.pose_path),
+                 code);
+}
+
+}  // namespace
+
+Command CheckCommand() {
+  constexpr const char* kFooter =
+      "Depth edges of the scans are compared with the edges of the photos; no board is needed. "
+      "The\n"
+      "start may be off by 2 deg and 10 cm. Take pairs of scenes that differ, with objects near "
+      "and far.\n"
+      "Exit codes: 0 still valid, 3 moved, 5 cannot tell. docs/check.md has what limits it.\n"
+      "Examples:\n"
+      "  sextant check result.yaml --image 'cam/*.png' --cloud 'scan/*.pcd'\n"
+      "  sextant check calib.txt:P2 --camera calib.txt:P2 --image a.png --cloud a.bin --history "
+      "log.csv";
+  return MakeCommand<CheckOptions>("check",
+                                   "Whether a calibration is still valid, by everyday "
+                                   "scenes or a board",
+                                   kFooter, Declare, Run);
+}
+
+}  // namespace sextant::cli

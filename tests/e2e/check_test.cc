@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Poses of other programs, checked with everyday scenes.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <string>
+
+#include "e2e/run_sextant.h"
+#include "io/text/text_file.h"
+#include "support/real_data.h"
+
+namespace sextant {
+namespace {
+
+using test::ProgramRun;
+using test::RunSextant;
+using test::TestPath;
+using test::WriteText;
+using testing::HasSubstr;
+
+TEST(Check, KittiByAPoseOfAnotherProgram) {
+  SEXTANT_REAL_DATA(folder, "field/kitti");
+  const std::string gt = (folder / "gt.json").string();
+  const std::string scenes = " --camera " + gt + " --image '" + (folder / "img/*.png").string() +
+                             "' --cloud '" + (folder / "pcd/*.pcd").string() + "'";
+  const std::string history = TestPath("history.csv");
+  const ProgramRun run = RunSextant("check " + gt + scenes + " --history " + history);
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+  EXPECT_THAT(run.out, HasSubstr("still valid: "));
+  EXPECT_THAT(run.err, HasSubstr("read as cam_from_lidar"));
+  const Expected<std::string> lines = ReadTextFile(history);
+  ASSERT_TRUE(lines);
+  EXPECT_THAT(*lines, HasSubstr("Z,still valid,7,"));
+
+  const ProgramRun one = RunSextant(
+      "check " + gt + " --camera " + gt + " --image " + (folder / "img/000649.png").string() +
+      " --cloud " + (folder / "pcd/000649.pcd").string() + " --json - --history " + history);
+  EXPECT_EQ(one.exit_code, 5) << one.out << one.err;
+  EXPECT_THAT(one.out, HasSubstr("\"state\": \"cannot tell\""));
+}
+
+TEST(Check, AsksForWhatIsMissing) {
+  WriteText(TestPath("flat.txt"), "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  const std::string files = " --image a.png --cloud a.pcd";
+  const ProgramRun direction = RunSextant("check " + TestPath("flat.txt") + files);
+  EXPECT_EQ(direction.exit_code, 2);
+  EXPECT_THAT(direction.err, HasSubstr("add --pose-is cam_from_lidar or lidar_from_cam"));
+  const ProgramRun camera =
+      RunSextant("refine-scene " + TestPath("flat.txt") + " --pose-is cam_from_lidar" + files);
+  EXPECT_EQ(camera.exit_code, 2);
+  EXPECT_THAT(camera.err, HasSubstr("has no camera; expected --camera"));
+}
+
+}  // namespace
+}  // namespace sextant
