@@ -107,7 +107,7 @@ py::list ViewsOf(const ModuleCalibration& calibration) {
   return views;
 }
 
-py::list RowsOf(const ModuleCalibration& calibration) {
+py::list BoardFates(const ModuleCalibration& calibration) {
   py::list rows;
   for (const BoardRow& row : calibration.all->assembly.rows) {
     rows.append(py::make_tuple(calibration.all->observed.views[row.view].name, row.board,
@@ -178,7 +178,7 @@ void BindCalibrate(py::module_& module) {
   calibration
       .def_property_readonly("views", &ViewsOf,
                              "A dict for each view: name, kept, reason, and residuals [m, px].")
-      .def_property_readonly("boards", &RowsOf,
+      .def_property_readonly("boards", &BoardFates,
                              "What became of each board in each view: (view, board, status, why).")
       .def_property_readonly("problem", &ProblemOf, "The pairs, for solve() and compare().")
       .def(
