@@ -24,6 +24,39 @@ double SlopeRoot(double residual, double limit) {
   return 1.0 / std::sqrt(1.0 + ratio * ratio);
 }
 
+using KindSums = std::array<RigSum, kRigKinds>;
+
+std::vector<KindSums> SumsByKind(const RigModel& model, const RigLinearisation& at,
+                                 const RigInformation& information) {
+  std::vector<KindSums> sums(model.sensors);
+  const auto add = [&](std::size_t sensor, RigKind kind, const RigSum& sum) {
+    RigSum& to = sums[sensor][static_cast<std::size_t>(kind)];
+    to.squares += sum.squares;
+    to.redundancy += sum.redundancy;
+  };
+  for (std::size_t k = 0; k < at.rows.size(); ++k) {
+    const RigRows& rows = at.rows[k];
+    if (rows.block < 0) {
+      add(rows.sensor, RigKind::kShiftOut, information.sums[k]);
+      add(rows.sensor, RigKind::kShiftIn, information.in_plane[k]);
+    } else {
+      add(rows.sensor, model.blocks[static_cast<std::size_t>(rows.block)].kind,
+          information.sums[k]);
+    }
+  }
+  return sums;
+}
+
+std::vector<bool> SensorsWithShifts(const RigModel& model) {
+  std::vector<bool> shifts(model.sensors, false);
+  for (const RigPlacementModel& placement : model.placements) {
+    for (const RigShift& shift : placement.shifts) {
+      if (shift.sigma_m > kMinShift_m) shifts[shift.sensor] = true;
+    }
+  }
+  return shifts;
+}
+
 }  // namespace
 
 double& LevelOf(RigNoise& noise, std::size_t sensor, RigKind kind) {
@@ -104,28 +137,8 @@ RigNoise EstimatedLevels(const RigModel& model, const RigLinearisation& at,
                          const RigInformation& information, const RigNoise& before) {
   constexpr double kPriorResiduals = 10.0;
   constexpr double kPriorShifts = 4.0;
-  std::vector<std::array<RigSum, kRigKinds>> sums(model.sensors);
-  const auto add = [&](std::size_t sensor, RigKind kind, const RigSum& sum) {
-    RigSum& to = sums[sensor][static_cast<std::size_t>(kind)];
-    to.squares += sum.squares;
-    to.redundancy += sum.redundancy;
-  };
-  for (std::size_t k = 0; k < at.rows.size(); ++k) {
-    const RigRows& rows = at.rows[k];
-    if (rows.block < 0) {
-      add(rows.sensor, RigKind::kShiftOut, information.sums[k]);
-      add(rows.sensor, RigKind::kShiftIn, information.in_plane[k]);
-    } else {
-      add(rows.sensor, model.blocks[static_cast<std::size_t>(rows.block)].kind,
-          information.sums[k]);
-    }
-  }
-  std::vector<bool> shifts(model.sensors, false);
-  for (const RigPlacementModel& placement : model.placements) {
-    for (const RigShift& shift : placement.shifts) {
-      if (shift.sigma_m > kMinShift_m) shifts[shift.sensor] = true;
-    }
-  }
+  const std::vector<KindSums> sums = SumsByKind(model, at, information);
+  const std::vector<bool> shifts = SensorsWithShifts(model);
   RigNoise noise = before;
   for (std::size_t s = 0; s < sums.size(); ++s) {
     for (std::size_t kind = 0; kind < kRigKinds; ++kind) {
