@@ -80,7 +80,7 @@ class PoseColumns {
   std::size_t count_ = 0;
 };
 
-Rigid3d ReadPose(LineReader& in, PoseColumns& row) {
+Rigid3d ReadImportedPose(LineReader& in, PoseColumns& row) {
   const double x = row.Real("x");
   const double y = row.Real("y");
   const double z = row.Real("z");
@@ -117,7 +117,7 @@ Expected<std::vector<ImportedPose>> ParseImportedPoses(std::string_view text,
   while (in.Next() && in.HasFields(row.count(), form)) {
     ImportedPose& pose = poses.emplace_back();
     pose.solver = row.Text("solver");
-    pose.cam_from_lidar = ReadPose(in, row);
+    pose.cam_from_lidar = ReadImportedPose(in, row);
     pose.condition = row.Text("condition");
     pose.trial = row.Count("trial");
     if (row.Has("time_us")) pose.time_us = row.Real("time_us");

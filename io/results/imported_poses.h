@@ -17,8 +17,8 @@ namespace sextant {
 struct ImportedPose {
   std::string solver;
   Rigid3d cam_from_lidar;
-  std::string condition;          ///< Of an experiment; empty: of any.
-  std::uint64_t trial = 0;        ///< Of that condition.
+  std::string condition;          ///< The experiment's; empty: any.
+  std::uint64_t trial = 0;        ///< Its number in that condition.
   std::optional<double> time_us;  ///< What it took; not known without.
 };
 

@@ -45,8 +45,8 @@ enum class PlotType {
 /// A plot of the report with one line per subject.
 struct PlotSpec {
   PlotType type = PlotType::kLines;
-  int metric = -1;        ///< Of kCdf and kCoverage.
-  double max = 0.0;       ///< Of kCdf: end of the axis, and threshold of the area; 0: by the data.
+  int metric = -1;        ///< The x of kCdf and kCoverage.
+  double max = 0.0;       ///< End of the axis of kCdf and limit of its area; 0: by the data.
   std::string condition;  ///< The only one that is shown; empty: all.
   std::string title;
   std::string name;  ///< File name without extension.

@@ -31,7 +31,7 @@ struct Statistic {
   double quantile = 0.5;
   int metric = 0;
   int reference = -1;  ///< Second metric of an efficiency, else -1.
-  double limit = 0.0;  ///< Of an area: the threshold at which it ends.
+  double limit = 0.0;  ///< The threshold at which an area ends.
   int where = -1;      ///< Only trials in which this metric is not 0; -1: all.
   int decimals = 3;
 };
