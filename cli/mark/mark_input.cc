@@ -44,7 +44,9 @@ Expected<Rigid3d> ChoosePose(const MarkOptions& options) {
     const Eigen::AngleAxisd turn(-kRadPerDeg * options.yaw_deg, Eigen::Vector3d::UnitZ());
     return AxesCamFromLidar() * Rigid3d{Eigen::Quaterniond(turn), Eigen::Vector3d::Zero()};
   }
-  return PoseFromArgument("--cam-from-lidar", options.cam_from_lidar, options.pose_is);
+  // The name of the option states the direction of a file that does not.
+  const std::string& direction = options.pose_is.empty() ? "cam_from_lidar" : options.pose_is;
+  return PoseFromArgument("--cam-from-lidar", options.cam_from_lidar, direction);
 }
 
 bool SameProjection(const ScanMarks& a, const ScanMarks& b) {

@@ -67,7 +67,7 @@ TEST(Refused, CountsOutOfRange) {
 std::string ScaledPoints(const std::string& exponent) {
   std::string text = "4\n";
   for (int sensor = 0; sensor < 2; ++sensor) {
-    for (const char* row : {"0 0 0", "1 0 0", "0 1 0", "0 0 1"}) {
+    for (const char* row : {"0 0 1", "1 0 1", "0 1 1", "1 1 1"}) {
       for (const char c : std::string(row)) {
         text += c == '1' ? "1e" + exponent : std::string(1, c);
       }

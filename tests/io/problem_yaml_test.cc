@@ -232,13 +232,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"FaceWithoutSigma", View("    printed: []\n    face_in_lidar:\n      - [1, 2, 3]"),
                 kParse, "range_sigma_m: expected this key"},
         BadText{"EdgeOfNoSide",
-                View("    printed: []\n    edges:\n      - {direction: [1, 0, 0], side: 8, "
+                View("    printed: []\n    edges:\n      - {direction: [1, 0, 0], side: -1, "
                      "sigma_m: 0.01}"),
                 kParse, "p.yaml:11: side: expected"},
         BadText{"EdgeOfTheHoleOfAWholeBoard",
                 View("    printed: []\n    edges:\n      - {direction: [1, 0, 0], side: 4, "
                      "sigma_m: 0.01}"),
-                kParse, "board 0 of view 0 has an edge ray of side 4, expected 0 to 3"},
+                kParse, "board 0 of view 0 has an edge ray of side 4, which board 0 does not have"},
         BadText{"DecimalComma",
                 Problem("pairs_3d3d:\n- {point_in_cam: ['0,5',1,2], point_in_lidar: [1,2,3]}"),
                 kParse, "decimal comma?"},

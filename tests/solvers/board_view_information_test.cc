@@ -186,7 +186,7 @@ TEST(CheckBoardViews, StatesTheFault) {
       {"direction", [](auto& p) { p.board_views[0].edges[0].direction *= 2.0; },
        ErrorCode::kInvalidInput, "unit vector"},
       {"side", [](auto& p) { p.board_views[0].edges[0].side = 4; }, ErrorCode::kInvalidInput,
-       "side 4, expected 0 to 3"},
+       "side 4, which board 0 does not have"},
       {"edge sigma", [](auto& p) { p.board_views[0].edges[0].sigma_m = 0.0; },
        ErrorCode::kInvalidInput, "sigma 0 m"},
       {"pose", [nan](auto& p) { p.board_views[0].cam_from_board.translation.x() = nan; },
