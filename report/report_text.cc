@@ -255,7 +255,7 @@ std::string ComparisonTable(const std::vector<ScoredRow>& rows, PoseColumns pose
   for (const ScoredRow& scored : rows) {
     if (scored.row.report) table.AddRow(CellsOf(scored, columns, pose));
   }
-  return table.Plain();
+  return table.Plain(std::string::npos);
 }
 
 }  // namespace

@@ -7,8 +7,6 @@
 #include <tuple>
 #include <utility>
 
-#include "base/median.h"
-
 namespace sextant {
 namespace {
 
@@ -16,15 +14,25 @@ constexpr double kMaxDeviations = 3.0;
 
 using Residuals = std::vector<double> Evaluation::*;
 
-// The smallest robust standard deviation of the residuals of one kind, but no less than `least`.
-double SmallestSigma(const std::vector<ScoredRow>& rows, Residuals kind, double least) {
-  constexpr double kSigmaOfMedian = 1.4826;
+// From the smaller half of the residuals and two more, of `dimension` numbers each, less the six
+// unknowns of a pose: an answer that fits three pairs exactly does not look exact.
+double RobustSigma(std::vector<double> residuals, double dimension) {
+  std::ranges::sort(residuals);
+  const std::size_t half = std::max<std::size_t>(3, (residuals.size() + 1) / 2);
+  const std::size_t count = std::min(residuals.size(), half + 2);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < count; ++i) sum += residuals[i] * residuals[i];
+  return std::sqrt(sum / std::max(1.0, dimension * static_cast<double>(count) - 6.0));
+}
+
+// The smallest over the answers, but no less than `least`.
+double SmallestSigma(const std::vector<ScoredRow>& rows, Residuals kind, double dimension,
+                     double least) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const ScoredRow& scored : rows) {
     if (!scored.row.report || !scored.spec.estimates_rotation) continue;
-    std::vector<double> residuals = scored.row.report->evaluation.*kind;
-    if (residuals.empty()) continue;
-    smallest = std::min(smallest, kSigmaOfMedian * Median(residuals));
+    const std::vector<double>& residuals = scored.row.report->evaluation.*kind;
+    if (!residuals.empty()) smallest = std::min(smallest, RobustSigma(residuals, dimension));
   }
   return std::max(least, smallest);
 }
@@ -42,8 +50,8 @@ void SetScores(std::vector<ScoredRow>& rows) {
   // Of exact data, whose residuals are rounding errors.
   constexpr double kMinSigma_px = 1e-3;
   constexpr double kMinSigma_m = 1e-5;
-  const double sigma_px = SmallestSigma(rows, &Evaluation::per_pair_px, kMinSigma_px);
-  const double sigma_m = SmallestSigma(rows, &Evaluation::per_pair_m, kMinSigma_m);
+  const double sigma_px = SmallestSigma(rows, &Evaluation::per_pair_px, 2.0, kMinSigma_px);
+  const double sigma_m = SmallestSigma(rows, &Evaluation::per_pair_m, 3.0, kMinSigma_m);
   for (ScoredRow& scored : rows) {
     if (!scored.row.report) continue;
     double sum = 0.0;

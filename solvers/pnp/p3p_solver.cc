@@ -6,11 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "geometry/residuals.h"
 #include "solvers/core/registry.h"
 #include "solvers/kernels/p3p.h"
+#include "solvers/kernels/pair_terms.h"
+#include "solvers/least_squares/refine_pose.h"
 #include "solvers/pnp/explained.h"
 #include "solvers/pnp/reprojection_covariance.h"
 
@@ -157,6 +160,9 @@ class P3pSolver final : public Solver {
         !ok) {
       return MakeError(ok.error().code, spec().name + ": " + ok.error().message);
     }
+    if (triples.size() > 1) {
+      if (auto lost = PoseWithoutTriple(problem, poses.front())) return *std::move(lost);
+    }
     Estimate estimate;
     estimate.cam_from_lidar = poses.front();
     estimate.alternatives.assign(poses.begin() + 1, poses.end());
@@ -188,6 +194,34 @@ class P3pSolver final : public Solver {
       }
     }
     return {best, sorted.front()};
+  }
+
+  // Near a double solution noise can deprive every triple of the pose: least squares of all pairs,
+  // where these are few, then explains them far better than any triple.
+  std::optional<Estimate> PoseWithoutTriple(const CalibrationProblem& problem,
+                                            const Rigid3d& best) const {
+    constexpr Misfit kNone{std::numeric_limits<int>::max(), 0.0};
+    constexpr RefineLimits kLimits = {.max_iterations = 50, .step_tolerance = 1e-10};
+    const std::size_t pairs = problem.pairs_2d3d.size();
+    const Misfit misfit = MisfitOf(problem, best, kNone);
+    if (pairs > kMaxCorners || misfit.first > 0) return std::nullopt;
+    const PairTerms terms = MakeTerms(problem, PairKind::k2d3d);
+    const RefinedPose refined = RefinePose(terms.View(), best, kLimits);
+    if (!refined.cam_from_lidar.IsFinite()) return std::nullopt;
+    const Misfit least = MisfitOf(problem, refined.cam_from_lidar, kNone);
+    if (!IsFarWorse(misfit, least, pairs)) return std::nullopt;
+    Estimate estimate;
+    estimate.cam_from_lidar = refined.cam_from_lidar;
+    estimate.iterations = refined.iterations;
+    estimate.inliers.resize(pairs);
+    std::iota(estimate.inliers.begin(), estimate.inliers.end(), 0);
+    estimate.covariance =
+        ReprojectionCovariance(*problem.camera, problem.pairs_2d3d, estimate.cam_from_lidar);
+    estimate.warnings.push_back(
+        spec().name +
+        ": noise leaves no three pixels an exact pose near that of all; the answer "
+        "is least squares of the pixels");
+    return estimate;
   }
 
   static void Append(const TriplePoses& found, std::vector<Rigid3d>& poses) {

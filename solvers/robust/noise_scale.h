@@ -31,7 +31,7 @@ inline constexpr std::uint64_t kScaleSeed = 1;
 /// (RandomAgreementProbability). Least squares on the best k follows each improvement. The sigma is
 /// that of the Gaussian cut off at e_k, then of the pairs within 99 percent of it, repeated until
 /// these stay the same. It is at least 1e-7 of the extent of the measurements; p is that of at
-/// least 1e-5 of it.
+/// least 1e-4 of it.
 ///
 /// 3D-3D pairs: of each 1024 triples only those whose lengths agree best in both frames are tried,
 /// so that 95 percent of outliers take a few milliseconds. 2D-3D: P3P. Where `inner` keeps the

@@ -17,7 +17,7 @@ constexpr double kMinShare = 1e-7;
 // No measurement is finer than this share of the extent: a few pairs that agree even better,
 // because one was computed from the other, are no stronger evidence than many that agree as well as
 // measurements do.
-constexpr double kFinestShare = 1e-5;
+constexpr double kFinestShare = 1e-4;
 // Exponent and the two leading bits of the mantissa: four bins per factor of two.
 constexpr int kBinShift = 50;
 
