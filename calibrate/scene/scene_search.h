@@ -13,15 +13,15 @@ namespace sextant {
 /// are as good up to chance it is the one nearest to the start.
 struct SceneFit {
   Rigid3d cam_from_lidar;
-  /// Of (dphi, dt): the spread of this optimum over the tiles of all images (sandwich estimate,
-  /// H^-1 G H^-1), and what no scene averages out: time between the sensors, motion during a turn,
-  /// the width of the beam (0.05 deg and 12 mm per axis).
+  /// The covariance of (dphi, dt): the spread of this optimum over the tiles of all images
+  /// (sandwich estimate, H^-1 G H^-1), and what no scene averages out: time between the sensors,
+  /// motion during a turn, the width of the beam (0.05 deg and 12 mm per axis).
   Matrix6d own_covariance = Matrix6d::Zero();
   /// The same with the spread over the other optima that are as good.
   Matrix6d covariance = Matrix6d::Zero();
   double score = 0.0;        ///< At the comparing scale, a blur of 3 pixels.
-  double start_score = 0.0;  ///< Of the start itself.
-  double chance_mean = 0.0;  ///< Of poses off by 2.5 to 5 degrees: what coincides by chance.
+  double start_score = 0.0;  ///< The score of the start.
+  double chance_mean = 0.0;  ///< What coincides by chance: poses off by 2.5 to 5 deg.
   double chance_sigma = 0.0;
   int edges = 0;   ///< In view.
   int scenes = 0;  ///< That differ.

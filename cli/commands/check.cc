@@ -83,7 +83,7 @@ Expected<PoseCheck> CheckPose(const CheckOptions& options, const SceneInput& inp
   return CheckScenes(SearchScenes(pairs, given, progress.Callback()), given, LimitsOf(options));
 }
 
-// Of (dphi [deg], dt [mm]).
+// (dphi [deg], dt [mm]).
 std::vector<double> InPlainUnits(const Vector6d& value) {
   std::vector<double> plain;
   for (int i = 0; i < 6; ++i) plain.push_back(i < 3 ? value(i) / kRadPerDeg : 1e3 * value(i));
