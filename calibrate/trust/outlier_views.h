@@ -8,8 +8,8 @@
 
 namespace sextant {
 
-/// Of views compared by their raw observations: those that were left out, and those that disagree
-/// with the others beyond chance, each by its own sigma. The probability that any of n views in
+/// The views, among those compared by their raw observations, that were left out or disagree with
+/// the others beyond chance, each by its own sigma. The probability that any of n views in
 /// accordance with the noise is marked is 1 percent (Bonferroni's bound). A view is as bad as its
 /// worst board; one that was not compared is marked. O(views compared).
 std::vector<bool> DisagreeingViews(std::span<const ViewComparison> compared,

@@ -92,7 +92,7 @@ struct PageBoard {
   std::vector<Eigen::Vector3d> by_lidar{};      ///< The same.
   std::vector<Eigen::Vector2d> camera_in_px{};  ///< Closed outlines in the photo, with the lens.
   std::vector<Eigen::Vector2d> lidar_in_px{};
-  std::vector<double> residuals_m{};   ///< Of each corner; infinite if it does not project.
+  std::vector<double> residuals_m{};   ///< One for each corner; infinite if it does not project.
   std::vector<double> residuals_px{};  ///< The same.
   double range_m = 0.0;
 };
@@ -101,7 +101,7 @@ struct PageView {
   std::string name{};
   bool is_kept = true;
   std::string reason{};  ///< Why it was left out; or empty.
-  std::string time{};    ///< Of the recording; empty if unknown.
+  std::string time{};    ///< When it was recorded; empty if unknown.
   std::optional<double> rmse_m{};
   std::optional<double> rmse_px{};
   std::optional<double> held_out_m{};
@@ -134,7 +134,7 @@ struct PageCoverage {
   int width_px = 0;
   int height_px = 0;
   std::vector<std::vector<Eigen::Vector2d>> outlines{};
-  double share = 0.0;  ///< Of the image's cells that a board has touched.
+  double share = 0.0;  ///< Share of the image's cells that a board has touched.
 };
 
 /// Correlations, -1 to 1.
@@ -152,7 +152,7 @@ struct PageNext {
 struct ReportPage {
   std::string title{};
   std::string date{};     ///< The only text that is not a function of the inputs.
-  std::string version{};  ///< Of the program.
+  std::string version{};  ///< The version of the program.
   PageVerdict verdict{};
   std::vector<PageFigure> figures{};
   std::vector<PageTransform> transforms{};

@@ -57,7 +57,7 @@ struct ViewSums {
 /// One for each view. Rows of weight 0 do not count.
 std::vector<ViewSums> SumsOf(const JointLinearisation& at, const JointCovariance& covariance);
 
-/// Of the offsets of the rings, over `ratio` times the sigmas of their priors.
+/// The sum over the offsets of the rings, over `ratio` times the sigmas of their priors.
 KindSum RingSumOf(const JointModel& model, const JointState& state,
                   const JointCovariance& covariance, double ratio);
 

@@ -18,7 +18,7 @@
 #include "support/drawn_board.h"
 #include "support/pictures.h"
 #include "support/run_program.h"
-#include "support/virtual_display.h"
+#include "support/display/virtual_display.h"
 
 namespace sextant {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The report in a real browser: what its scripts do, and what it looks like.
-#include "support/browser.h"
+#include "support/display/browser.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/browser.h"
+#include "support/display/browser.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/virtual_display.h"
+#include "support/display/virtual_display.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
