@@ -31,7 +31,7 @@ TEST(BoardViews, JointIsNearTheBoundAndBetterThanTwoStageSolvers) {
     int views;
     int trials;
   };
-  for (const Case& at : {Case{2, 200}, Case{4, 150}, Case{20, 40}, Case{100, 12}}) {
+  for (const Case& at : {Case{2, 200}, Case{4, 200}, Case{20, 60}, Case{100, 24}}) {
     SCOPED_TRACE(at.views);
     const Experiment experiment = *ParseExperiment(
         "kind: board_views\nseed: 1\ntrials: " + std::to_string(at.trials) +
