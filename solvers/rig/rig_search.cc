@@ -116,7 +116,8 @@ class RigSearch {
     }
   }
 
-  // Without its returns, a view has no shift: what was left out once for it stays out.
+  // Without its returns, a view has no shift: what was left out once for it stays out. A shift is as
+  // large as the level allowed with which it was estimated, which may have become smaller since.
   bool IsShifted(const RigBlock& block) {
     const int shift = model_.placements[block.placement].shift_of[block.seen];
     if (shift < 0) return false;
@@ -128,7 +129,7 @@ class RigSearch {
     for (int k = 0; k < 6; ++k) {
       const bool out = kShiftIsOutOfPlane[static_cast<std::size_t>(k)];
       const double level =
-          LevelOf(answer_.noise, of.sensor, out ? RigKind::kShiftOut : RigKind::kShiftIn);
+          LevelOf(minimised_with_, of.sensor, out ? RigKind::kShiftOut : RigKind::kShiftIn);
       squares += std::pow(at[k] / (level * of.sigma_m), 2);
     }
     if (squares < 6.0 * kMaxShift * kMaxShift) return false;
@@ -140,6 +141,7 @@ class RigSearch {
     minimum_.SetWeights(WeightsFor(model_, minimum_.state(), Units(), answer_.selection,
                                    answer_.noise, loss_scale));
     const RigSteps steps = minimum_.Solve(options_.max_iterations, tolerance);
+    minimised_with_ = answer_.noise;
     answer_.iterations += steps.count;
     if (steps.converged) return {};
     return MakeError(ErrorCode::kNoConvergence,
@@ -151,6 +153,7 @@ class RigSearch {
   const RigModel& model_;
   const RigOptions& options_;
   RigMinimum minimum_;
+  RigNoise minimised_with_;
   std::map<std::pair<std::size_t, std::size_t>, bool> shifted_;
   RigAnswer answer_;
 };
