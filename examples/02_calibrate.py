@@ -24,5 +24,5 @@ session = sextant.read_session(sys.argv[1])
 again = sextant.calibrate(
     images=[sextant.read_image(path) for path in session.images],
     clouds=[sextant.read_cloud(path) for path in session.clouds],
-    boards=session.boards, camera=session.camera)
+    boards=session.boards, camera=session.camera, bootstrap=0)
 print(again.closing)

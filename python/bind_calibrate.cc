@@ -192,7 +192,7 @@ void BindCalibrate(py::module_& module) {
           [](const C& c, const std::string& path) {
             ValueOf(WriteFileAtomically(path, FormatCalibrationResult(c.result())));
           },
-          py::arg("path"), "Writes the result file; replaces only files that sextant wrote.")
+          py::arg("path"), "Writes the result file, whole or not at all; replaces an existing one.")
       .def("__repr__", [](const C& c) { return DescribeCalibration(*c.all); })
       .def("_repr_html_", [](const py::object& self) {
         return py::module_::import("sextant._notebook").attr("calibration_html")(self);

@@ -45,9 +45,9 @@ Experiment LoadExperimentOf(const RunRequest& request, const SolverRegistry& reg
 }
 
 // Python's interrupt ends the run between two blocks; the rows that are written stay.
-void RaiseInterrupt() {
+void EndIfInterrupted() {
   const py::gil_scoped_acquire gil;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  RaiseInterrupt();
 }
 
 FinishedRun RunExperiment(const Experiment& experiment, const RunRequest& request) {
@@ -62,7 +62,7 @@ FinishedRun RunExperiment(const Experiment& experiment, const RunRequest& reques
                     {.rows_path = rows,
                      .threads = request.threads,
                      .fresh = !request.resumes,
-                     .after_block = [](std::uint64_t, std::uint64_t) { RaiseInterrupt(); }}));
+                     .after_block = [](std::uint64_t, std::uint64_t) { EndIfInterrupted(); }}));
   if (request.is_kept) ValueOf(WriteReport(experiment, rows, folder, {}));
   const RowFileReader reader = ValueOf(RowFileReader::Open(rows));
   const ReportData data = ValueOf(ReportData::Compute(experiment, reader));

@@ -59,8 +59,7 @@ ErrorCode CodeOf(const py::error_already_set& raised) {
 }
 
 tl::unexpected<Error> Refusal(const std::string& solver, const py::error_already_set& raised) {
-  // The interrupt ends the whole computation, at its next return to Python.
-  if (raised.matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt();
+  if (raised.matches(PyExc_KeyboardInterrupt)) NoteInterrupt();
   const std::string message = py::str(raised.value());
   if (IsOfType(raised, "sextant._error", "Error")) {
     return MakeError(CodeOf(raised), solver + ": " + message);

@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <exception>
+#include <type_traits>
 #include <utility>
 
 #include "base/error.h"
@@ -28,11 +29,29 @@ T ValueOf(Expected<T> expected) {
   if constexpr (!std::is_void_v<T>) return *std::move(expected);
 }
 
+/// Notes that Python's interrupt ended a function that a solver called: the computation goes on
+/// until RaiseInterrupt. Needs the GIL.
+void NoteInterrupt();
+
+/// Throws Python's KeyboardInterrupt where one was noted, or is pending on the main thread. Needs
+/// the GIL; from any thread.
+void RaiseInterrupt();
+
 /// Runs the computation while other Python threads run. It may touch no Python object.
 template <class Computation>
 auto WithoutGil(Computation&& computation) {
-  const pybind11::gil_scoped_release released;
-  return computation();
+  const auto run = [&computation] {
+    const pybind11::gil_scoped_release released;
+    return computation();
+  };
+  if constexpr (std::is_void_v<decltype(computation())>) {
+    run();
+    RaiseInterrupt();
+  } else {
+    auto result = run();
+    RaiseInterrupt();
+    return result;
+  }
 }
 
 }  // namespace sextant::python
