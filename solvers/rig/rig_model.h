@@ -64,9 +64,10 @@ struct RigShift {
   double lever_m = 0.0;  ///< Half the board's mean side.
   double sigma_m = 0.0;
 };
-/// Where the sensor has no such shift: so small that it changes no answer, and still shows a view
-/// that contradicts the others.
-inline constexpr double kMinShift_m = 1e-4;
+/// Where the sensor has no such shift: so small that it changes no answer.
+inline constexpr double kMinShift_m = 1e-6;
+/// While it is decided which views contradict the others, shifts are at least of this level.
+inline constexpr double kDecisionShift_m = 1e-4;
 inline constexpr std::array<bool, 6> kShiftIsOutOfPlane = {true, true, false, false, false, true};
 
 /// A placement prepared for estimation.

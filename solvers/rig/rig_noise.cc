@@ -144,7 +144,7 @@ RigNoise EstimatedLevels(const RigModel& model, const RigLinearisation& at,
     for (std::size_t kind = 0; kind < kRigKinds; ++kind) {
       const bool is_shift = kind >= static_cast<std::size_t>(RigKind::kShiftOut);
       if (is_shift && !shifts[s]) {
-        noise[s][kind] = 1.0;
+        noise[s][kind] = kDecisionShift_m / kMinShift_m;
         continue;
       }
       const double prior = is_shift ? kPriorShifts : kPriorResiduals;
@@ -154,6 +154,14 @@ RigNoise EstimatedLevels(const RigModel& model, const RigLinearisation& at,
     }
   }
   return noise;
+}
+
+void ClearAbsentShifts(const RigModel& model, RigNoise& noise) {
+  const std::vector<bool> shifts = SensorsWithShifts(model);
+  for (std::size_t s = 0; s < noise.size(); ++s) {
+    if (shifts[s]) continue;
+    LevelOf(noise, s, RigKind::kShiftOut) = LevelOf(noise, s, RigKind::kShiftIn) = 1.0;
+  }
 }
 
 bool IsSameLevels(const RigNoise& a, const RigNoise& b) {

@@ -33,6 +33,9 @@ RigNoise MedianLevels(const RigModel& model, const RigState& state, const RigUni
 RigNoise EstimatedLevels(const RigModel& model, const RigLinearisation& at,
                          const RigInformation& information, const RigNoise& before);
 
+/// Sets the level of the shifts of sensors that have none to 1.
+void ClearAbsentShifts(const RigModel& model, RigNoise& noise);
+
 bool IsSameLevels(const RigNoise& a, const RigNoise& b);
 
 /// Which units of each block are used.

@@ -40,6 +40,7 @@ class RigSearch {
       for (double& level : levels) level = std::max(level, 1.0);
     }
     SEXTANT_RETURN_IF_ERROR(Cut());
+    ClearAbsentShifts(model_, answer_.noise);
     SEXTANT_RETURN_IF_ERROR(Minimise(kNoLoss, options_.step_tolerance));
     const auto information = RigInformationOf(minimum_.Linearise());
     if (!information) return Undetermined();
