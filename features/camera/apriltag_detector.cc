@@ -32,18 +32,30 @@ OptionSet<AprilTagOptions> Options() {
       .Choice("refine_edges", &AprilTagOptions::refine_edges, {"false", "true"},
               "snap the edges to gradients of the full image")
       .Count("hamming", &AprilTagOptions::hamming, -1, 2,
-             "wrong bits that are corrected; -1: one, where its table takes less than 32 MB")
+             "wrong bits that are corrected; -1: one, and two where the noise explains them, "
+             "as far as the table takes less than 32 MB")
       .Real("min_margin", &AprilTagOptions::min_margin, "grey levels", 0.0, 255.0,
             "minimum decision margin of a tag");
   return options;
 }
 
-// One corrected bit, if its table takes less than 32 MB: with two, real photos have false tags. The
-// library makes a table with three slots of 16 bytes for each code with each set of wrong bits.
+// The largest number of corrected bits, up to 2, whose table takes less than 32 MB. The library
+// makes a table with three slots of 16 bytes for each code with each set of wrong bits.
 int AffordableHamming(const apriltag_family_t& family) {
   constexpr double kMaxBytes = 32e6;
+  const double bits = family.nbits;
   const double bytes_per_set = 48.0 * family.ncodes;
-  return bytes_per_set * (1.0 + family.nbits) < kMaxBytes ? 1 : 0;
+  if (bytes_per_set * (1.0 + bits + 0.5 * bits * (bits - 1.0)) < kMaxBytes) return 2;
+  return bytes_per_set * (1.0 + bits) < kMaxBytes ? 1 : 0;
+}
+
+// By default two wrong bits count as those of a tag only if its contrast is so low that noise may
+// have changed them: real photos have quads of high contrast that are two bits from a code.
+bool IsBelieved(const AprilTagOptions& options, const apriltag_detection_t& tag,
+                double noise_grey) {
+  constexpr double kMaxMarginOverNoise = 4.0;
+  return options.hamming >= 0 || tag.hamming < 2 ||
+         static_cast<double>(tag.decision_margin) < kMaxMarginOverNoise * noise_grey;
 }
 
 // The library's detector, which processes one image at a time.
@@ -127,6 +139,7 @@ void DetectIn(Engine& engine, const AprilTagOptions& options, const cv::Mat& gre
     apriltag_detection_t* tag = nullptr;
     zarray_get(quads.get(), i, &tag);
     if (tag->decision_margin < options.min_margin) continue;
+    if (!IsBelieved(options, *tag, noise_grey)) continue;
     tags.push_back(FromLibrary(options, *tag));
     for (Eigen::Vector2d& corner : tags.back().corners_px) {
       corner += Eigen::Vector2d(region.x, region.y);

@@ -118,7 +118,7 @@ PointCloud ReadLivoxPoints(MessageReader& in) {
   const std::size_t count = in.Length(kPointSize, "points");
   PointCloud cloud;
   for (std::size_t i = 0; i < count && in.ok(); ++i) {
-    cloud.time_s.push_back(1e-9 * in.Take<std::uint32_t>("points.offset_time"));
+    cloud.time_s.push_back(in.Take<std::uint32_t>("points.offset_time") / 1e9);
     Eigen::Vector3d point;
     for (double& value : point) value = static_cast<double>(in.Take<float>("points.xyz"));
     cloud.points.push_back(point);

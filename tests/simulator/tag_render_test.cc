@@ -85,9 +85,12 @@ struct Found {
   Points corners;  // Clockwise from the tag's top-left, in our pixel convention.
 };
 
-std::vector<Found> FindAruco(const cv::Mat& image, const cv::aruco::Dictionary& dictionary) {
+std::vector<Found> FindAruco(const cv::Mat& image, const cv::aruco::Dictionary& dictionary,
+                             int border_cells) {
+  cv::aruco::DetectorParameters parameters = ArucoParameters();
+  parameters.markerBorderBits = border_cells;
   std::vector<Found> found;
-  for (const OpenCvTag& tag : DetectAruco(image, dictionary, ArucoParameters())) {
+  for (const OpenCvTag& tag : DetectAruco(image, dictionary, parameters)) {
     found.push_back({.id = tag.id, .corners = {}});
     for (const cv::Point2f& corner : tag.corners_px)
       found.back().corners.emplace_back(corner.x, corner.y);
@@ -143,7 +146,8 @@ TEST_P(TagFamilyTest, IsDetectedByItsLibraryInARenderedImage) {
     const auto aruco = FindArucoDictionary(family);
     const AprilTagFamily april = MakeAprilTagFamily(family);
     const std::vector<Found> found =
-        aruco ? FindAruco(*image, *aruco) : FindAprilTag(*image, april.get());
+        aruco ? FindAruco(*image, *aruco, ArucoBorderCells(family))
+              : FindAprilTag(*image, april.get());
     ASSERT_EQ(found.size(), 1U) << family << " " << id;
     EXPECT_EQ(found[0].id, id);
     const Points truth = TrueCorners(camera, pose, tag);
