@@ -113,11 +113,12 @@ class RigModelMaker {
       range = AddNumber(of.sensor, "range_bias_m", errors.range_offset_sigma_m, true);
     }
     for (auto& [ring, terms] : groups) {
-      Eigen::VectorXd by(std::ssize(terms));
+      const std::ptrdiff_t count = std::ssize(terms);
+      Eigen::VectorXd by(count);
       for (std::size_t k = 0; k < terms.size(); ++k) {
         by[static_cast<Eigen::Index>(k)] = -terms[k].inverse_sigma;
       }
-      Add(block, RigKind::kFace, std::ssize(terms), 1, FaceResiduals(std::move(terms)));
+      Add(block, RigKind::kFace, count, 1, FaceResiduals(std::move(terms)));
       auto& numbers = model_.blocks.back().numbers;
       if (range) numbers.push_back({*range, by});
       if (ring >= 0) numbers.push_back({RingNumber(of.sensor, ring), by});
