@@ -10,6 +10,7 @@
 
 #include "solvers/core/board_view_check.h"
 #include "solvers/core/rig_problem_check.h"
+#include "solvers/rig/rig_print_scale.h"
 #include "solvers/rig/rig_search.h"
 #include "solvers/rig/rig_start.h"
 
@@ -57,6 +58,7 @@ class RigSolution {
         static_cast<std::size_t>(std::ranges::find(sensors_, options.root) - sensors_.begin());
     model_ = RigModelOf(part_);
     SEXTANT_ASSIGN_OR_RETURN(answer_, SearchRig(model_, StateOf(part_, model_, start), options));
+    scales_ = PrintScalesNear(model_, answer_, options);
     return {};
   }
 
@@ -154,6 +156,22 @@ class RigSolution {
           "includes; look for a systematic error (intrinsics, board size)",
           NameOf(noise.kind), whole_.sensors[noise.sensor].name, noise.level));
     }
+    WarnOfScales(estimate);
+  }
+
+  void WarnOfScales(RigEstimate& estimate) const {
+    constexpr double kMaxSigmas = 4.0;
+    constexpr double kMinShare = 0.002;  // Of usual prints and focal lengths.
+    for (const RigPrintScale& scale : scales_) {
+      const double share = std::abs(scale.share);
+      if (share < kMinShare || share < kMaxSigmas * scale.sigma) continue;
+      estimate.warnings.push_back(fmt::format(
+          "the print that {} sees seems to be {:.1f} +- {:.1f} % {} than stated, or its focal "
+          "length is wrong by that share: poses are wrong by more than their sigmas; measure the "
+          "print, and check the intrinsics",
+          whole_.sensors[sensors_[scale.sensor]].name, 100.0 * share, 100.0 * scale.sigma,
+          scale.share > 0.0 ? "larger" : "smaller"));
+    }
   }
 
   const RigProblem& whole_;
@@ -161,6 +179,7 @@ class RigSolution {
   RigProblem part_;
   RigModel model_;
   RigAnswer answer_;
+  std::vector<RigPrintScale> scales_;
 };
 
 }  // namespace

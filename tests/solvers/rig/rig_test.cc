@@ -146,7 +146,7 @@ TEST(Rig, OneCameraAndOneLidarAreTheCaseOfTwoSensors) {
 TEST(Rig, JointIsBetterThanChaining) {
   // Each sensor misses some moments, so that the chain does not use what the cameras see together.
   RigSimulation simulation{.cameras = 2, .lidars = 1, .moments = 12, .takes_part = 0.7};
-  simulation.sensors.range_sigma_m = 0.02;
+  simulation.sensors.errors = LidarErrorModel{};
   double joint = 0.0;
   double chained = 0.0;
   for (int i = 0; i < 20; ++i) {
@@ -209,6 +209,25 @@ TEST(Rig, ABoardThatMovedBetweenSensorsIsLeftOutForOneOfThem) {
   const UncertainPose pose = estimate->Between(0, 2);
   const Vector6d error = PoseDifference(pose.b_from_a, rig.TrueBetween(0, 2));
   EXPECT_LT(SquaredMahalanobis<6>(error, pose.covariance), 22.5);  // 0.1 %
+}
+
+TEST(Rig, AWrongSizeOfThePrintIsAWarning) {
+  for (const double share : {0.0, 0.05}) {
+    RigSimulation simulation{.cameras = 2, .lidars = 1, .moments = 10};
+    simulation.sensors.errors = LidarErrorModel{};
+    SimulatedRig rig = SimulateRig(simulation);
+    for (RigPlacement& placement : rig.problem.placements) {
+      for (RigObservation& seen : placement.seen) {
+        for (BoardPoints& printed : seen.raw.printed) {
+          for (Eigen::Vector2d& point : printed.in_board_m) point *= 1.0 + share;
+        }
+      }
+    }
+    const auto estimate = SolveRig(rig.problem);
+    ASSERT_TRUE(estimate) << estimate.error().message;
+    ASSERT_EQ(estimate->warnings.size(), share > 0.0 ? 2U : 0U);
+    if (share > 0.0) EXPECT_THAT(estimate->warnings[0], HasSubstr("% smaller than stated"));
+  }
 }
 
 /// The rig's boards as features that someone has extracted.
