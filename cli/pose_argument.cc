@@ -52,6 +52,9 @@ Expected<Rigid3d> CamFromLidarWithNote(const StatedPose& pose, const std::string
                                        const std::string& path) {
   const std::optional<PoseDirection> asked = AskedDirection(pose_is);
   SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_lidar, CamFromLidar(pose, asked, path));
+  for (const std::string& doubt : DoubtsOf(pose, cam_from_lidar)) {
+    PrintError("warning: {}: {}\n", path, doubt);
+  }
   if (!asked && pose.camera_frame.empty()) {
     PrintError("{}: read as {}: {}. If it is not, add --pose-is\n", path, ToString(*pose.direction),
                pose.basis);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/units.h"
 #include "geometry/symmetric.h"
@@ -106,6 +107,11 @@ std::string WhyUnclear(const SceneFit& fit) {
       ContrastOf(fit), kMinContrast);
 }
 
+bool EndedAtLimit(const SceneFit& fit, const Rigid3d& start) {
+  const PoseDistance moved = DistanceBetween(fit.cam_from_lidar, start);
+  return moved.rotation_rad > kSearchedRotation_rad || moved.translation_m > kSearchedTranslation_m;
+}
+
 PoseCheck CheckScenes(const SceneFit& fit, const Rigid3d& given, const CheckLimits& limits) {
   PoseCheck check{.reason = WhyUnclear(fit),
                   .change = PoseDifference(fit.cam_from_lidar, given),
@@ -119,10 +125,15 @@ PoseCheck CheckScenes(const SceneFit& fit, const Rigid3d& given, const CheckLimi
   const bool is_worse = ContrastOf(fit) > kClearContrast && share < kMinShare;
   if (is_far || is_worse) {
     check.state = PoseState::kMoved;
-    check.covariance = fit.own_covariance;
     check.reason =
         fmt::format("{} (with the given pose the edges coincide {:.0f} % as well)",
-                    DescribeChange(check.change, fit.own_covariance), 100.0 * std::max(0.0, share));
+                    DescribeChange(check.change, fit.covariance), 100.0 * std::max(0.0, share));
+    if (!EndedAtLimit(fit, given)) return check;
+    check.covariance.setConstant(std::numeric_limits<double>::infinity());
+    check.reason = fmt::format(
+        "by more than {:.1f} m or {:.0f} deg, the limit of the search; by how much is not known, "
+        "calibrate again, or give a pose that is nearer",
+        kSearchedTranslation_m, kSearchedRotation_rad / kRadPerDeg);
     return check;
   }
   check = JudgeChange(check.change, fit.covariance, limits, fit.scenes, "different scenes");

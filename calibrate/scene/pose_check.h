@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/units.h"
 #include "calibrate/scene/scene_search.h"
 
 namespace sextant {
@@ -43,9 +44,17 @@ PoseCheck JudgeChange(const Vector6d& change, const Matrix6d& covariance, const 
 /// chance. Empty if something is.
 std::string WhyUnclear(const SceneFit& fit);
 
+/// The largest change that a search measures; beyond it the optimum may be a wrong one.
+inline constexpr double kSearchedRotation_rad = 2.0 * kRadPerDeg;
+inline constexpr double kSearchedTranslation_m = 0.1;
+
+/// Whether a fit is farther from its start than that.
+bool EndedAtLimit(const SceneFit& fit, const Rigid3d& start);
+
 /// The same for a fit that was started at the given pose. The threshold grows where few tiles show
 /// the spread. A pose has moved, too, if its own edges coincide far worse than those of the fit,
-/// and nothing is known where even those coincide hardly better than by chance.
+/// and nothing is known where even those coincide hardly better than by chance. The covariance is
+/// that of the fit; infinite where the pose has moved and the search ended at its limit.
 PoseCheck CheckScenes(const SceneFit& fit, const Rigid3d& given, const CheckLimits& limits);
 
 }  // namespace sextant

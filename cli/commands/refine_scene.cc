@@ -48,7 +48,15 @@ double WorstSigma(const SquareMatrix<3>& covariance) {
 
 // A fit whose edges coincide by chance is not usable whatever its covariance. Scenes are never
 // GOOD: no independent measurement, as a board is, confirms them.
-ResultVerdict VerdictOf(const SceneFit& fit, const RefineSceneOptions& options) {
+ResultVerdict VerdictOf(const SceneFit& fit, const Rigid3d& start,
+                        const RefineSceneOptions& options) {
+  if (EndedAtLimit(fit, start)) {
+    return {.usability = Usability::kNotUsable,
+            .reason = fmt::format("the refined pose is more than {:.1f} m or {:.0f} deg from the "
+                                  "start, the limit of the search, and may be a wrong optimum",
+                                  kSearchedTranslation_m, kSearchedRotation_rad / kRadPerDeg),
+            .next = "Look at it with sextant project; where the edges coincide, start from it"};
+  }
   const double rotation_deg = WorstSigma(fit.covariance.topLeftCorner<3, 3>()) / kRadPerDeg;
   const double translation_mm = 1e3 * WorstSigma(fit.covariance.bottomRightCorner<3, 3>());
   const std::string accuracy = fmt::format(
@@ -69,7 +77,7 @@ ResultVerdict VerdictOf(const SceneFit& fit, const RefineSceneOptions& options) 
 
 CalibrationResult ResultOf(const SceneInput& input, const SceneFit& fit,
                            const RefineSceneOptions& options) {
-  const ResultVerdict verdict = VerdictOf(fit, options);
+  const ResultVerdict verdict = VerdictOf(fit, input.given.cam_from_lidar, options);
   CalibrationResult result;
   result.version = std::string(Version());
   result.solver = "scene_edges";

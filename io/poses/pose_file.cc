@@ -54,17 +54,19 @@ Expected<StatedPose> ReadPoseFile(const std::filesystem::path& path) {
 Expected<StatedPose> ParsePose(std::string_view text, const std::string& file,
                                std::string_view name) {
   if (IsKitti(text, file)) return ParsePoseKitti(text, file, name);
+  if (!IsXml(text) && BeginsWithNumber(text, file)) return ParsePoseNumbers(text, file, name);
   if (!name.empty()) {
     return MakeError(
         ErrorCode::kParse,
-        fmt::format("{}: only KITTI's calibration has a camera {} to choose", file, Quoted(name)));
+        fmt::format("{}: has nothing named {}; only a camera of KITTI's calibration and a matrix "
+                    "of several can be chosen",
+                    file, Quoted(name)));
   }
   if (IsXml(text)) return ParsePoseXml(text, file);
   if (text.find("static_transform_publisher") != std::string_view::npos &&
       text.find("LaunchDescription") != std::string_view::npos) {
     return ParsePoseLaunch(text, file);
   }
-  if (BeginsWithNumber(text, file)) return ParsePoseNumbers(text, file);
   return ParsePoseYaml(text, file);
 }
 
@@ -77,6 +79,9 @@ Expected<Rigid3d> CamFromLidar(const StatedPose& pose, std::optional<PoseDirecti
                                  "from it{}; add --pose-is cam_from_lidar or lidar_from_cam",
                                  file, pose.basis.empty() ? "" : ": " + pose.basis));
   }
+  if (!asked && !pose.doubt.empty()) {
+    return MakeError(ErrorCode::kInvalidOption, file + ": " + pose.doubt);
+  }
   // Axes are evidence, names and keys are statements.
   const bool is_stated = pose.direction && !pose.camera_frame.empty();
   if (asked && is_stated && *asked != *pose.direction) {
@@ -86,6 +91,27 @@ Expected<Rigid3d> CamFromLidar(const StatedPose& pose, std::optional<PoseDirecti
   }
   const PoseDirection direction = asked ? *asked : *pose.direction;
   return direction == PoseDirection::kCamFromLidar ? pose.transform : pose.transform.Inverse();
+}
+
+std::vector<std::string> DoubtsOf(const StatedPose& pose, const Rigid3d& cam_from_lidar) {
+  constexpr double kMaxApart_m = 20.0;
+  constexpr double kAlong = 0.866;  // Within 30 deg.
+  std::vector<std::string> doubts;
+  const double apart_m = cam_from_lidar.translation.norm();
+  if (apart_m > kMaxApart_m) {
+    doubts.push_back(
+        fmt::format("the sensors are {:.0f} m apart; is the translation in millimetres? "
+                    "Expected metres",
+                    apart_m));
+  }
+  const double along_up = (cam_from_lidar.rotation * Eigen::Vector3d::UnitZ()).z();
+  if (along_up > kAlong && !pose.is_result) {
+    doubts.push_back(
+        fmt::format("the optical axis of {} is along the LiDAR's z axis, which mostly points up; "
+                    "the optical frame has x right, y down, z forward",
+                    pose.camera_frame.empty() ? "the camera" : pose.camera_frame));
+  }
+  return doubts;
 }
 
 }  // namespace sextant

@@ -42,10 +42,17 @@ std::string OnlyOne(const std::set<std::string>& names, bool (*is)(const std::st
   return found.size() == 1 ? found.front() : std::string();
 }
 
+// A frame that is connected with the root of a tree, by the transform `by` of the frame `next`.
+struct Connected {
+  Rigid3d pose;
+  std::string next{};
+  const FrameTransform* by = nullptr;  // None: the root.
+};
+using Tree = std::map<std::string, Connected>;
+
 // The pose of every frame that is connected with `from`, in it.
-std::map<std::string, Rigid3d> PosesIn(const std::string& from,
-                                       const std::vector<FrameTransform>& transforms) {
-  std::map<std::string, Rigid3d> poses = {{from, Rigid3d{}}};
+Tree PosesIn(const std::string& from, const std::vector<FrameTransform>& transforms) {
+  Tree poses = {{from, Connected{}}};
   for (bool grew = true; grew;) {
     grew = false;
     for (const FrameTransform& t : transforms) {
@@ -54,13 +61,65 @@ std::map<std::string, Rigid3d> PosesIn(const std::string& from,
       if ((parent == poses.end()) == (child == poses.end())) continue;
       grew = true;
       if (child == poses.end()) {
-        poses.emplace(t.child, parent->second * t.parent_from_child);
+        const Rigid3d pose = parent->second.pose * t.parent_from_child;
+        poses.emplace(t.child, Connected{pose, t.parent, &t});
       } else {
-        poses.emplace(t.parent, child->second * t.parent_from_child.Inverse());
+        const Rigid3d pose = child->second.pose * t.parent_from_child.Inverse();
+        poses.emplace(t.parent, Connected{pose, t.child, &t});
       }
     }
   }
   return poses;
+}
+
+// The transforms from a frame to the root.
+std::set<const FrameTransform*> PathOf(const Tree& tree, const std::string& frame) {
+  std::set<const FrameTransform*> path;
+  for (const Connected* at = &tree.at(frame); at->by != nullptr; at = &tree.at(at->next)) {
+    path.insert(at->by);
+  }
+  return path;
+}
+
+// A transform beside the tree may not contradict one on the way to `frame`; what moves elsewhere
+// (odometry, repeated over time) does not matter.
+Expected<void> CheckContradictions(const Tree& tree, const std::vector<FrameTransform>& transforms,
+                                   const std::string& frame, const std::string& file) {
+  const std::set<const FrameTransform*> path = PathOf(tree, frame);
+  for (const FrameTransform& t : transforms) {
+    const auto parent = tree.find(t.parent);
+    const auto child = tree.find(t.child);
+    if (parent == tree.end() || child == tree.end()) continue;
+    if (Agree(parent->second.pose * t.parent_from_child, child->second.pose)) continue;
+    const auto of_parent = PathOf(tree, t.parent);
+    const auto of_child = PathOf(tree, t.child);
+    for (const FrameTransform* on_path : path) {
+      if (of_parent.contains(on_path) == of_child.contains(on_path)) continue;
+      return MakeError(ErrorCode::kParse,
+                       fmt::format("{}: the transform of {} and {} at line {} contradicts that of "
+                                   "{} and {} at line {}; expected one of them",
+                                   file, Quoted(t.parent), Quoted(t.child), t.line,
+                                   Quoted(on_path->parent), Quoted(on_path->child), on_path->line));
+    }
+  }
+  return {};
+}
+
+// A frame that is not named an optical one is, by ROS's convention, x forward, y left, z up.
+void DoubtOpticalFrame(StatedPose& pose) {
+  if (!pose.direction || HasAny(pose.camera_frame, {"optical"})) return;
+  const bool is_stated = *pose.direction == PoseDirection::kCamFromLidar;
+  const Rigid3d cam_from_lidar = is_stated ? pose.transform : pose.transform.Inverse();
+  const Eigen::Vector3d up_in_cam = cam_from_lidar.rotation * Eigen::Vector3d::UnitZ();
+  if (up_in_cam.y() < kUprightCosine) return;
+  const bool is_link = up_in_cam.z() > -kUprightCosine;
+  pose.doubt = fmt::format(
+      "{} {}; add the transform from it to its optical frame, whose name has \"optical\" (rpy "
+      "-1.5708 0 -1.5708 where x is forward), or add --pose-is {} if it is the optical frame",
+      pose.camera_frame,
+      is_link ? "has x forward by ROS's convention, and its axes agree: z is up"
+              : "is not named an optical frame, and as one it would not be upright",
+      ToString(*pose.direction));
 }
 
 StatedPose OfSingle(const FrameTransform& t, const std::string& camera, const std::string& lidar) {
@@ -93,9 +152,11 @@ Expected<StatedPose> ConnectFrames(const std::vector<FrameTransform>& transforms
     // Where the file names the camera, the other frame is the LiDAR, whatever its name.
     const FrameTransform& only = transforms.front();
     if (is_marked) lidar = only.parent == camera ? only.child : only.parent;
-    return OfSingle(only, camera, lidar);
+    StatedPose pose = OfSingle(only, camera, lidar);
+    if (!is_marked) DoubtOpticalFrame(pose);
+    return pose;
   }
-  const std::map<std::string, Rigid3d> in_camera = PosesIn(camera, transforms);
+  const Tree in_camera = PosesIn(camera, transforms);
   const auto found = in_camera.find(lidar);
   if (camera.empty() || lidar.empty() || camera == lidar || found == in_camera.end()) {
     return MakeError(ErrorCode::kMissingData,
@@ -103,12 +164,21 @@ Expected<StatedPose> ConnectFrames(const std::vector<FrameTransform>& transforms
                                  "names of their frames, or a single transform; its frames are {}",
                                  file, fmt::join(names, ", ")));
   }
-  return StatedPose{
-      .transform = found->second,
+  SEXTANT_RETURN_IF_ERROR(CheckContradictions(in_camera, transforms, lidar, file));
+  StatedPose pose{
+      .transform = found->second.pose,
       .direction = PoseDirection::kCamFromLidar,
       .basis = fmt::format("its frames {} and {} are connected", Quoted(camera), Quoted(lidar)),
       .camera_frame = camera,
       .lidar_frame = lidar};
+  if (!is_marked) DoubtOpticalFrame(pose);
+  return pose;
+}
+
+bool Agree(const Rigid3d& a, const Rigid3d& b) {
+  constexpr double kRounded = 1e-3;
+  const PoseDistance apart = DistanceBetween(a, b);
+  return apart.rotation_rad < kRounded && apart.translation_m < kRounded;
 }
 
 std::string OpticalFrameIn(std::string_view text) {
@@ -119,15 +189,19 @@ std::string OpticalFrameIn(std::string_view text) {
   return std::string(text.substr(begin, end - begin));
 }
 
+bool IsUprightEitherWay(const Rigid3d& pose) {
+  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+  return std::min(rotation(1, 2), rotation(2, 1)) < kUprightCosine;
+}
+
 void RecogniseByAxes(StatedPose& pose) {
   // Row y, column z: the part of the LiDAR's z axis along the camera's y axis.
   const Eigen::Matrix3d rotation = pose.transform.rotation.toRotationMatrix();
   const double as_stated = rotation(1, 2);
   const double inverted = rotation(2, 1);
-  constexpr double kUpright = 0.7;
-  if (as_stated < -kUpright && std::abs(inverted) < kUpright) {
+  if (as_stated < kUprightCosine && std::abs(inverted) < -kUprightCosine) {
     pose.direction = PoseDirection::kCamFromLidar;
-  } else if (inverted < -kUpright && std::abs(as_stated) < kUpright) {
+  } else if (inverted < kUprightCosine && std::abs(as_stated) < -kUprightCosine) {
     pose.direction = PoseDirection::kLidarFromCam;
   }
   pose.basis = pose.direction ? "the only direction in which the camera is upright"

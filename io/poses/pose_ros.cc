@@ -53,7 +53,7 @@ Expected<FrameTransform> FromOptions(const std::vector<std::string>& words, cons
                                                 : std::array{n["qw"], n["qx"], n["qy"], n["qz"]};
   SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, PoseOfNumbers({n["x"], n["y"], n["z"]}, wxyz,
                                                              std::string(place.file), place.line));
-  return FrameTransform{values["frame-id"], values["child-frame-id"], pose};
+  return FrameTransform{values["frame-id"], values["child-frame-id"], pose, place.line};
 }
 
 // x y z and a quaternion or yaw pitch roll, then parent and child.
@@ -74,7 +74,7 @@ Expected<FrameTransform> FromOrder(const std::vector<std::string>& words, const 
       n.size() == 6 ? QuaternionOf(n[3], n[4], n[5]) : std::array{n[6], n[3], n[4], n[5]};
   SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, PoseOfNumbers({n[0], n[1], n[2]}, wxyz,
                                                              std::string(place.file), place.line));
-  return FrameTransform{words[n.size()], words[n.size() + 1], pose};
+  return FrameTransform{words[n.size()], words[n.size() + 1], pose, place.line};
 }
 
 std::string AttributeOf(const tinyxml2::XMLElement* element, const char* name) {
@@ -102,7 +102,8 @@ Expected<FrameTransform> JointOf(const tinyxml2::XMLElement& joint, const std::s
       const Rigid3d pose,
       PoseOfNumbers({n[0], n[1], n[2]}, QuaternionOf(n[5], n[4], n[3]), file, joint.GetLineNum()));
   return FrameTransform{AttributeOf(joint.FirstChildElement("parent"), "link"),
-                        AttributeOf(joint.FirstChildElement("child"), "link"), pose};
+                        AttributeOf(joint.FirstChildElement("child"), "link"), pose,
+                        joint.GetLineNum()};
 }
 
 // Fixed joints and static transforms, at any depth.

@@ -29,7 +29,10 @@ Expected<KittiLines> ReadKittiLines(std::string_view text, const std::string& fi
     if (!is_matrix || key.starts_with("calib") || key.starts_with("corner")) continue;
     std::vector<double> numbers;
     for (std::size_t i = 1; i < in.field_count(); ++i) numbers.push_back(in.Real(i, key));
-    lines[key] = numbers;
+    const auto [at, is_new] = lines.emplace(key, numbers);
+    if (!is_new && at->second != numbers) {
+      in.Fail(ErrorCode::kParse, "contradicts the earlier line " + key + "; expected one of them");
+    }
   }
   if (!in.ok()) return in.TakeError();
   return lines;
@@ -77,6 +80,23 @@ Expected<Eigen::Vector3d> ChosenOffset(const KittiLines& lines, const std::strin
   return chosen.value_or(Eigen::Vector3d::Zero());
 }
 
+// The order of the quaternion by a comment; by the axes of the camera where there is none.
+Expected<Rigid3d> OfOrder(std::string_view text, const Rigid3d& w_last, const Rigid3d& w_first,
+                          const std::string& file) {
+  const bool says_last = text.find("qx qy qz qw") != std::string_view::npos;
+  const bool says_first = text.find("qw qx qy qz") != std::string_view::npos;
+  if (says_last != says_first) return says_last ? w_last : w_first;
+  if (Agree(w_last, w_first) || !IsUprightEitherWay(w_first)) return w_last;
+  return MakeError(
+      ErrorCode::kInvalidOption,
+      fmt::format("{}: the camera is upright {}; add the comment '# x y z qx qy qz qw' or "
+                  "'# x y z qw qx qy qz', or write a 4x4 matrix",
+                  file,
+                  IsUprightEitherWay(w_last)
+                      ? "with the quaternion read as x y z w, and as w x y z too"
+                      : "only with the quaternion read as w x y z, not as x y z w"));
+}
+
 // Seven numbers on one line: x y z qx qy qz qw.
 Expected<StatedPose> FromSevenNumbers(std::string_view text, const std::string& file) {
   LineReader in(file, text);
@@ -85,10 +105,31 @@ Expected<StatedPose> FromSevenNumbers(std::string_view text, const std::string& 
   for (std::size_t i = 0; i < 7; ++i) n[i] = in.Real(i);
   if (in.ok() && !in.AtEnd()) in.Fail(ErrorCode::kParse, "expected one line x y z qx qy qz qw");
   if (!in.ok()) return in.TakeError();
-  SEXTANT_ASSIGN_OR_RETURN(
-      const Rigid3d transform,
-      PoseOfNumbers({n[0], n[1], n[2]}, {n[6], n[3], n[4], n[5]}, file, in.line()));
+  const std::array<double, 3> xyz = {n[0], n[1], n[2]};
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d w_last,
+                           PoseOfNumbers(xyz, {n[6], n[3], n[4], n[5]}, file, in.line()));
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d w_first,
+                           PoseOfNumbers(xyz, {n[3], n[4], n[5], n[6]}, file, in.line()));
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d transform, OfOrder(text, w_last, w_first, file));
   return StatedPose{.transform = transform};
+}
+
+// The matrix with the number `name`, from 1; without a name all must be the same.
+Expected<Rigid3d> ChosenMatrix(const std::vector<Rigid3d>& matrices, const std::string& file,
+                               std::string_view name) {
+  for (std::size_t i = 0; i < matrices.size(); ++i) {
+    if (name == std::to_string(i + 1)) return matrices[i];
+    if (!name.empty() || Agree(matrices[i], matrices.front())) continue;
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        fmt::format("{0}: has {1} matrices, and the first and number {2} differ; choose "
+                    "one by its number, as in {0}:{2}",
+                    file, matrices.size(), i + 1));
+  }
+  if (name.empty()) return matrices.front();
+  return MakeError(ErrorCode::kUnknownName,
+                   fmt::format("{}: expected the number of a matrix from 1 to {}, got {}", file,
+                               matrices.size(), Quoted(name)));
 }
 
 // "# cam_from_lidar" in a comment, as the format `matrix` of sextant export has it.
@@ -147,10 +188,11 @@ Expected<StatedPose> ParsePoseKitti(std::string_view text, const std::string& fi
                     .lidar_frame = "velodyne"};
 }
 
-Expected<StatedPose> ParsePoseNumbers(std::string_view text, const std::string& file) {
+Expected<StatedPose> ParsePoseNumbers(std::string_view text, const std::string& file,
+                                      std::string_view name) {
   LineReader first(file, text);
   StatedPose pose;
-  if (first.Next() && first.field_count() == 7) {
+  if (first.Next() && first.field_count() == 7 && name.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(pose, FromSevenNumbers(text, file));
   } else {
     const std::string with_last_row = std::string(text) + "\n0 0 0 1\n";
@@ -160,7 +202,7 @@ Expected<StatedPose> ParsePoseNumbers(std::string_view text, const std::string& 
       if (!of_rows || of_rows->size() != 1) return tl::unexpected<Error>(list.error());
       list = of_rows;
     }
-    pose.transform = list->front();
+    SEXTANT_ASSIGN_OR_RETURN(pose.transform, ChosenMatrix(*list, file, name));
   }
   pose.direction = CommentedDirection(text);
   if (!pose.direction) {

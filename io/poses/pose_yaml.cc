@@ -50,9 +50,24 @@ Expected<Rigid3d> KeyedPose(YamlFields& in, const YamlNode& node) {
   return PoseOfNumbers(translation, wxyz, in.file(), node.line);
 }
 
+// lidar_from_cam beside cam_from_lidar must be its inverse.
+Expected<void> CheckInverse(YamlFields& in, const Rigid3d& cam_from_lidar, int line,
+                            const YamlNode& node) {
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d lidar_from_cam, KeyedPose(in, node));
+  if (Agree(lidar_from_cam.Inverse(), cam_from_lidar)) return {};
+  return MakeError(ErrorCode::kParse,
+                   fmt::format("{}: cam_from_lidar at line {} and lidar_from_cam at line {} "
+                               "contradict each other; expected one of them, or the inverse",
+                               in.file(), line, node.line));
+}
+
 Expected<StatedPose> FromKey(YamlFields& in, const YamlNode& root, PoseDirection direction) {
   const std::string key(ToString(direction));
   SEXTANT_ASSIGN_OR_RETURN(const Rigid3d transform, KeyedPose(in, *root.Find(key)));
+  if (const YamlNode* other = root.Find("lidar_from_cam");
+      other != nullptr && other != root.Find(key)) {
+    SEXTANT_RETURN_IF_ERROR(CheckInverse(in, transform, root.Find(key)->line, *other));
+  }
   const auto name = [&](const char* frame, const char* otherwise) {
     return root.Find(frame) != nullptr ? in.TextAt(root, frame) : std::string(otherwise);
   };
@@ -68,6 +83,7 @@ Expected<StatedPose> FromKey(YamlFields& in, const YamlNode& root, PoseDirection
 
 FrameTransform StampedTransform(YamlFields& in, const YamlNode& node) {
   FrameTransform t;
+  t.line = node.line;
   t.parent = in.TextAt(in.Require(node, "header"), "frame_id");
   t.child = in.TextAt(node, "child_frame_id");
   const YamlNode& transform = in.Require(node, "transform");
@@ -125,6 +141,9 @@ Expected<StatedPose> FromExtrinsics(YamlFields& in, const YamlNode& node) {
   StatedPose pose{.transform = transform};
   RecogniseByAxes(pose);
   pose.basis += ", with the rotation read as a quaternion w x y z";
+  if (IsUprightEitherWay({Eigen::Quaterniond(wxyz[3], wxyz[0], wxyz[1], wxyz[2]), {}})) {
+    pose.basis += " (read as x y z w it would be upright too)";
+  }
   return pose;
 }
 

@@ -51,5 +51,21 @@ TEST(Check, AsksForWhatIsMissing) {
   EXPECT_THAT(camera.err, HasSubstr("has no camera; expected --camera"));
 }
 
+TEST(Check, PosesWithoutAClearMeaningAreRefusedByExport) {
+  const std::string path = TestPath("pose.txt");
+  const auto run = [&](const std::string& text) {
+    WriteText(path, text);
+    return RunSextant("export " + path + " --to matrix");
+  };
+  const ProgramRun link =
+      run("<launch><node pkg='tf2_ros' type='static_transform_publisher' name='x' "
+          "args='0.1 0 -0.05 0 0 0 velodyne camera_link'/></launch>\n");
+  EXPECT_EQ(link.exit_code, 2) << link.out;
+  EXPECT_THAT(link.err, HasSubstr("camera_link has x forward by ROS's convention"));
+  const ProgramRun millimetres = run("0 -1 0 48\n0 0 -1 -55\n1 0 0 -288\n0 0 0 1\n");
+  EXPECT_EQ(millimetres.exit_code, 0) << millimetres.err;
+  EXPECT_THAT(millimetres.err, HasSubstr("297 m apart; is the translation in millimetres?"));
+}
+
 }  // namespace
 }  // namespace sextant

@@ -155,6 +155,90 @@ TEST(PoseFile, ReadsExtrinsicsOfJson) {
       std::nullopt, {Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), Eigen::Vector3d::Zero()});
 }
 
+std::string Stamped(const char* parent, const char* child, const std::string& rotation) {
+  return fmt::format(
+      "header: {{frame_id: {}}}\nchild_frame_id: {}\ntransform:\n"
+      "  translation: {{x: 0.1, y: 0, z: -0.05}}\n  rotation: {}\n",
+      parent, child, rotation);
+}
+
+TEST(PoseFile, TakesNoFrameWithXForwardAsOptical) {
+  const std::string identity = "{x: 0, y: 0, z: 0, w: 1}";
+  const std::string link = Stamped("velodyne", "camera_link", identity);
+  EXPECT_THAT(ErrorOf(link), HasSubstr("camera_link has x forward by ROS's convention"));
+  EXPECT_THAT(ErrorOf(link), HasSubstr("--pose-is lidar_from_cam"));
+  ExpectPose(link, PoseDirection::kLidarFromCam,
+             {Eigen::Quaterniond::Identity(), {-0.1, 0.0, 0.05}});
+  EXPECT_THAT(ErrorOf("<launch><node type='static_transform_publisher' args='1 0 2 0 0 0 base "
+                      "camera_link'/><node type='static_transform_publisher' args='1 0 3 0 0 0 "
+                      "base velodyne'/></launch>"),
+              HasSubstr("camera_link has x forward"));
+  // A frame of any name with the axes of an optical frame, and one that is tilted.
+  EXPECT_EQ(ErrorOf(Stamped("velodyne", "cam0", "{x: -0.5, y: 0.5, z: -0.5, w: 0.5}")), "");
+  EXPECT_THAT(ErrorOf(Stamped("velodyne", "cam0", "{x: 0.6, y: 0, z: 0, w: 0.8}")),
+              HasSubstr("not named an optical frame"));
+}
+
+TEST(PoseFile, DoubtsWhatIsImprobable) {
+  const Expected<StatedPose> up =
+      ParsePose(Stamped("velodyne", "camera_optical_frame", "{x: 0, y: 0, z: 0, w: 1}"), "pose");
+  ASSERT_TRUE(up);
+  const std::vector<std::string> doubts = DoubtsOf(*up, up->transform);
+  ASSERT_EQ(doubts.size(), 1U);
+  EXPECT_THAT(doubts.front(), HasSubstr("the optical axis of camera_optical_frame is along"));
+  const Rigid3d far{ForwardPose().rotation, {48.0, -55.0, -288.0}};
+  ASSERT_EQ(DoubtsOf(StatedPose{}, far).size(), 1U);
+  EXPECT_THAT(DoubtsOf(StatedPose{}, far).front(), HasSubstr("in millimetres?"));
+  EXPECT_TRUE(DoubtsOf(StatedPose{}, ForwardPose()).empty());
+}
+
+TEST(PoseFile, RefusesSevenNumbersOfUnknownOrder) {
+  const std::string other = "0.048 -0.055 -0.288 -0.50032536 -0.49988836 0.50370142 -0.49605548\n";
+  EXPECT_THAT(ErrorOf(other), HasSubstr("x y z w, and as w x y z too"));
+  EXPECT_THAT(ErrorOf(other, PoseDirection::kCamFromLidar), HasSubstr("# x y z qw qx qy qz"));
+  EXPECT_EQ(ErrorOf("# x y z qx qy qz qw\n" + other), "");
+  const Eigen::Quaterniond forward(-0.50032536, -0.49988836, 0.50370142, -0.49605548);
+  ExpectPose("# x y z qw qx qy qz\n" + other, std::nullopt,
+             {forward.normalized(), {0.048, -0.055, -0.288}}, 1e-6);
+  // cam_from_lidar of a camera that looks forward: no other order makes it upright.
+  const std::string seven = Seven(ForwardPose());
+  ExpectPose(seven.substr(seven.find('\n') + 1));
+}
+
+TEST(PoseFile, RefusesContradictionsOfOneFile) {
+  const std::string pose = "{translation_m: [1, 2, 3], quaternion_wxyz: [1, 0, 0, 0]}\n";
+  EXPECT_THAT(ErrorOf("cam_from_lidar: " + pose + "lidar_from_cam: " + pose),
+              HasSubstr("cam_from_lidar at line 1 and lidar_from_cam at line 2 contradict"));
+  const auto joint = [](const char* parent, const char* child, double x) {
+    return fmt::format(
+        "<joint type='fixed'><parent link='{}'/><child link='{}'/><origin xyz='{} 0 0' "
+        "rpy='-1.5708 0 -1.5708'/></joint>\n",
+        parent, child, x);
+  };
+  const std::string first = "<robot>\n" + joint("velodyne", "camera", 0.1);
+  EXPECT_THAT(ErrorOf(first + joint("velodyne", "camera", 0.2) + "</robot>"),
+              HasSubstr("at line 3 contradicts that of 'velodyne' and 'camera' at line 2"));
+  EXPECT_EQ(ErrorOf(first + joint("velodyne", "camera", 0.1) + "</robot>"), "");
+  // What moves beside the way from the LiDAR to the camera does not matter.
+  EXPECT_EQ(
+      ErrorOf(first + joint("odom", "velodyne", 1) + joint("odom", "velodyne", 2) + "</robot>"),
+      "");
+}
+
+TEST(PoseFile, AsksWhichOfSeveralMatrices) {
+  const Rigid3d second{ForwardPose().rotation, {0.5, 0.0, 0.0}};
+  const std::string two = Rows(ForwardPose(), 4) + Rows(second, 4);
+  EXPECT_THAT(ErrorOf(two), HasSubstr("has 2 matrices"));
+  EXPECT_THAT(ErrorOf(two), HasSubstr("pose.txt:2"));
+  EXPECT_EQ(ErrorOf(Rows(second, 4) + Rows(second, 4)), "");
+  const Expected<StatedPose> chosen = ParsePose(two, "rts.txt", "2");
+  ASSERT_TRUE(chosen) << chosen.error().message;
+  EXPECT_LT(PoseDifference(chosen->transform, second).norm(), 1e-12);
+  const Expected<StatedPose> none = ParsePose(two, "rts.txt", "3");
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().message, HasSubstr("number of a matrix from 1 to 2, got '3'"));
+}
+
 TEST(PoseFile, RefusesWhatIsNoPose) {
   EXPECT_THAT(ErrorOf("a: 1\n"), HasSubstr("expected a pose"));
   EXPECT_THAT(ErrorOf("<robot></robot>"), HasSubstr("expected a static_transform_publisher"));

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/core/mat.hpp>
 
 #include "base/random.h"
@@ -22,6 +23,7 @@ namespace sextant {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr CheckLimits kLimits = {.rotation_rad = 0.5 * kRadPerDeg, .translation_m = 0.08};
 
@@ -80,6 +82,42 @@ TEST(PoseCheck, KittiIsStillValidAndMovedWhereItMoved) {
   Random random(3);
   EXPECT_THAT(state(OffBy(drive.cam_from_lidar, 0.5 * kRadPerDeg, 0.0, random)),
               HasSubstr("moved"));
+}
+
+TEST(PoseCheck, AFitAtTheLimitOfTheSearchStatesNoSigma) {
+  SceneFit fit;
+  fit.cam_from_lidar.translation = {0.0, 0.0, -0.102};
+  fit.own_covariance = 1e-6 * Matrix6d::Identity();
+  fit.covariance = 1e-4 * Matrix6d::Identity();
+  fit.score = 100.0;
+  fit.chance_sigma = 1.0;
+  fit.edges = 1000;
+  fit.scenes = 7;
+  fit.tiles = 60;
+  const PoseCheck far = CheckScenes(fit, Rigid3d{}, kLimits);
+  EXPECT_EQ(far.state, PoseState::kMoved);
+  EXPECT_THAT(far.reason, HasSubstr("by more than 0.1 m or 2 deg, the limit of the search"));
+  EXPECT_THAT(far.reason, Not(HasSubstr("+-")));
+  EXPECT_TRUE(std::isinf(far.covariance(5, 5)));
+  // Within the limit the sigma is that of refine-scene, with the other optima.
+  fit.cam_from_lidar.translation.z() = -0.05;
+  const PoseCheck near = CheckScenes(fit, Rigid3d{}, kLimits);
+  EXPECT_EQ(near.state, PoseState::kMoved);
+  EXPECT_THAT(near.reason, HasSubstr("-50 +- 10 mm along z"));
+  EXPECT_EQ(near.covariance, fit.covariance);
+}
+
+TEST(PoseCheck, KittiOffByAMetreIsNeverGivenASmallSigma) {
+  SEXTANT_REAL_DATA(folder, "field/kitti");
+  const Drive& drive = KittiDrive(folder);
+  for (const int axis : {0, 2}) {
+    Rigid3d given = drive.cam_from_lidar;
+    given.translation(axis) += 1.0;
+    const PoseCheck check = CheckScenes(SearchScenes(drive.pairs, given), given, kLimits);
+    EXPECT_NE(check.state, PoseState::kValid) << check.reason;
+    if (check.state != PoseState::kMoved) continue;
+    EXPECT_THAT(check.reason, HasSubstr("the limit"));
+  }
 }
 
 TEST(PoseCheck, KittiIsRefinedFromTwoDegreesAndTenCentimetres) {
