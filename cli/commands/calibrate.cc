@@ -25,6 +25,7 @@
 #include "io/problems/problem_yaml.h"
 #include "io/results/calibration_result.h"
 #include "report/calibrate_text.h"
+#include "report/collect/no_pose.h"
 #include "solvers/all/all_solvers.h"
 
 namespace sextant::cli {
@@ -113,7 +114,7 @@ void Declare(CalibrateCommandOptions& options, Arguments& arguments) {
                 {.writes = Writes::kFile});
   arguments.Add("--report", options.report_path,
                 "Write a report for people who did not run this: one file of HTML that opens\n"
-                "offline (with an answer only)",
+                "offline. Without a pose it shows what each sensor saw",
                 {.writes = Writes::kFile});
 }
 
@@ -182,7 +183,8 @@ Expected<CalibrateOptions> SettingsFrom(const CalibrateCommandOptions& options) 
 Expected<void> CheckRigOptions(const CalibrateCommandOptions& options) {
   const std::pair<bool, const char*> given[] = {{!options.solvers.empty(), "--solver"},
                                                 {!options.initial.empty(), "--initial"},
-                                                {!options.camera_path.empty(), "--camera"}};
+                                                {!options.camera_path.empty(), "--camera"},
+                                                {!options.report_path.empty(), "--report"}};
   for (const auto& [is_given, name] : given) {
     if (!is_given) continue;
     return MakeError(ErrorCode::kInvalidOption,
@@ -228,19 +230,30 @@ Expected<Calibration> CalibrateWithProgress(const CalibrateCommandOptions& optio
   return Calibrate(session, settings);
 }
 
+Expected<void> WriteReportOf(const CalibrateCommandOptions& options,
+                             const Calibration& calibration) {
+  if (options.report_path.empty()) return {};
+  const FrameSource frames = [&](const std::vector<ResultView>&, const FrameVisitor& visit) {
+    return VisitFrames(calibration.observed.session, options.tolerance_s, visit);
+  };
+  return WriteReport(
+      {.result = calibration.result ? *calibration.result : ResultWithoutPose(calibration),
+       .calibration = &calibration,
+       .frames = frames},
+      options.report_path);
+}
+
 Expected<void> WriteFiles(const CalibrateCommandOptions& options, const Calibration& calibration) {
   const bool has_problem = !calibration.assembly.rows.empty();
   if (has_problem && !options.problem_path.empty()) {
     SEXTANT_RETURN_IF_ERROR(
         WriteFileAtomically(options.problem_path, FormatProblemYaml(ProblemFileOf(calibration))));
   }
-  if (!calibration.result) return {};
-  SEXTANT_RETURN_IF_ERROR(
-      WriteFileAtomically(options.out_path, FormatCalibrationResult(*calibration.result)));
-  if (options.report_path.empty()) return {};
-  return WriteReport(
-      {.result = *calibration.result, .calibration = &calibration, .frames = FramesOfFiles({})},
-      options.report_path);
+  if (calibration.result) {
+    SEXTANT_RETURN_IF_ERROR(
+        WriteFileAtomically(options.out_path, FormatCalibrationResult(*calibration.result)));
+  }
+  return WriteReportOf(options, calibration);
 }
 
 int Run(const CalibrateCommandOptions& options) {
@@ -259,6 +272,7 @@ int Run(const CalibrateCommandOptions& options) {
   }
   std::string text = DescribeCalibration(*calibration);
   if (!calibration->result) {
+    if (!options.report_path.empty()) text += WroteLine(options.report_path, kReportWords);
     Print("{}", text);
     return Refuse("calibrate", calibration->result.error(), kNoAnswer);
   }

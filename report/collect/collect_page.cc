@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "calibrate/trust/information.h"
 #include "eval/statistics/text_table.h"
+#include "report/collect/no_pose.h"
 #include "report/collect/page_inputs.h"
 #include "report/collect/page_next.h"
 #include "report/collect/page_plots.h"
@@ -139,7 +140,10 @@ ReportPage CollectPage(const PageSource& source) {
                   .inputs = InputsOf(result, source.calibration, source.folder),
                   .configuration = result.configuration};
   if (result.trust) page.sigma_text = result.trust->comparison;
-  page.configuration.insert(page.configuration.begin(), "solver: " + result.solver);
+  if (!result.solver.empty()) {
+    page.configuration.insert(page.configuration.begin(), "solver: " + result.solver);
+  }
+  if (source.calibration != nullptr && !source.calibration->result) DropWhatNeedsThePose(page);
   return page;
 }
 

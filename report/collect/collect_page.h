@@ -15,7 +15,7 @@ namespace sextant {
 struct PageSource {
   CalibrationResult result{};
   /// What a result file does not contain: noise, nuisance parameters, solvers, input files. Null:
-  /// the page says that it is absent.
+  /// the page says that it is absent. One without a pose has `result` by ResultWithoutPose.
   const Calibration* calibration = nullptr;
   FrameSource frames{};            ///< Photos and scans of the views.
   std::filesystem::path folder{};  ///< Where relative paths of the result may start, too.

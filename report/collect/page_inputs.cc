@@ -35,8 +35,8 @@ std::vector<InputFile> FilesOf(const CalibrationResult& result, const Calibratio
 
 }  // namespace
 
-PageTable InputsOf(const CalibrationResult& result, const Calibration* calibration,
-                   const std::filesystem::path& folder) {
+PageInputs InputsOf(const CalibrationResult& result, const Calibration* calibration,
+                    const std::filesystem::path& folder) {
   const std::vector<InputFile> files = FilesOf(result, calibration);
   std::vector<std::string> hashes(files.size());
   tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
@@ -50,11 +50,12 @@ PageTable InputsOf(const CalibrationResult& result, const Calibration* calibrati
   }
   if (files.empty()) {
     table.note = "The result names no files.";
-  } else {
-    table.note = fmt::format("All of them together: SHA-256 {} of the column above, a line each.",
-                             HashOfBytes(all));
+    return {.files = std::move(table)};
   }
-  return table;
+  std::string hash = HashOfBytes(all);
+  table.note =
+      fmt::format("All of them together: SHA-256 {} of the column above, a line each.", hash);
+  return {.files = std::move(table), .hash = std::move(hash)};
 }
 
 }  // namespace sextant

@@ -145,7 +145,10 @@ PageTable SigmaTable(const CalibrationResult& result) {
   if (result.covariance) {
     table.rows.push_back(SigmaRow("the result", result.covariance->diagonal().cwiseSqrt()));
   }
-  if (!result.trust) return table;
+  if (!result.trust) {
+    if (table.rows.empty()) table.note = "The uncertainty is unknown.";
+    return table;
+  }
   const TrustFigures& trust = *result.trust;
   if (trust.solver_sigma) {
     table.rows.push_back(SigmaRow("the solver's noise model", *trust.solver_sigma));
@@ -176,13 +179,14 @@ PageTable NoiseTable(const CalibrationResult& result, const Calibration* calibra
                           Fixed(1e3 * result.lidar->range_sigma_m, 1) + " mm", "–",
                           "estimated from the scans"});
   }
-  const SolveReport* report = calibration == nullptr ? nullptr : calibration->report();
-  if (report == nullptr) {
+  if (calibration == nullptr) {
     table.note =
-        "Result files do not contain the nuisance parameters: `sextant calibrate --report` "
+        "Result files do not contain the nuisance parameters: sextant calibrate --report "
         "shows them.";
     return table;
   }
+  const SolveReport* report = calibration->report();
+  if (report == nullptr) return table;
   const LidarErrorModel& errors = calibration->problem.lidar_errors;
   if (report->noise) AddNoise(*report->noise, table);
   AddFit(*report, table);
@@ -194,11 +198,12 @@ PageTable NoiseTable(const CalibrationResult& result, const Calibration* calibra
 }
 
 PageTable ComparisonTable(const Calibration* calibration) {
-  if (calibration == nullptr || calibration->report() == nullptr) {
+  if (calibration == nullptr) {
     return {.note =
-                "Result files do not contain the data: `sextant calibrate --report` compares "
+                "Result files do not contain the data: sextant calibrate --report compares "
                 "solvers."};
   }
+  if (calibration->comparison.empty()) return {.note = "There was nothing to give to a solver."};
   const std::vector<ComparisonRow> rows = ComparisonFor(*calibration);
   const bool has_truth =
       std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.from_truth; });

@@ -204,7 +204,7 @@ std::vector<PageSensor> PageSensorsOf(const CalibrationResult& result) {
       if (const auto ray = Unproject(*result.camera, pixel)) camera.frustum.push_back(0.5 * *ray);
     }
   }
-  PageSensor lidar{.name = result.lidar_frame};
+  PageSensor lidar{.name = result.lidar_frame, .base_from_sensor = Rigid3d{}};
   if (result.lidar) lidar.facts = FactsOf(*result.lidar);
   return {std::move(lidar), std::move(camera)};
 }

@@ -54,8 +54,8 @@ struct PageTransform {
 struct PageSensor {
   std::string name{};
   bool is_camera = false;
-  PageTable facts{};  ///< Name and value.
-  Rigid3d base_from_sensor{};
+  PageTable facts{};                          ///< Name and value.
+  std::optional<Rigid3d> base_from_sensor{};  ///< None while its pose is unknown.
   /// Camera: points 0.5 m away on the rays of the image's outline, clockwise from the top left, as
   /// many on each side; in its own frame.
   std::vector<Eigen::Vector3d> frustum{};
@@ -143,6 +143,12 @@ struct PageCorrelation {
   Eigen::MatrixXd values{};
 };
 
+/// What the result rests on.
+struct PageInputs {
+  PageTable files{};
+  std::string hash{};  ///< Of all of them together; empty if there are none.
+};
+
 /// Where to hold a board next.
 struct PageNext {
   std::vector<std::string> sentences{};
@@ -170,7 +176,7 @@ struct ReportPage {
   std::vector<std::string> diagnostics{};
   PageNext next{};
   std::string closing{};
-  PageTable inputs{};  ///< Files with their hashes.
+  PageInputs inputs{};
   std::vector<std::string> configuration{};
 };
 

@@ -54,10 +54,12 @@ std::string NextHtml(const PageNext& next) {
 }
 
 std::string InputsHtml(const ReportPage& page) {
-  std::string html = TableHtml(page.inputs);
-  html += "<details><summary>Configuration</summary><pre>";
-  for (const std::string& line : page.configuration) html += HtmlText(line) + "\n";
-  html += "</pre></details>\n";
+  std::string html = TableHtml(page.inputs.files);
+  if (!page.configuration.empty()) {
+    html += "<details><summary>Configuration</summary><pre>";
+    for (const std::string& line : page.configuration) html += HtmlText(line) + "\n";
+    html += "</pre></details>\n";
+  }
   if (!ThreeScript().empty()) {
     html += "<details><summary>Licence of three.js, which this page contains</summary><pre>";
     html += std::string(ThreeLicence()) + "</pre></details>\n";
@@ -76,6 +78,9 @@ std::string UncertaintyHtml(const ReportPage& page) {
 
 std::string TransformsHtml(const ReportPage& page) {
   std::string html;
+  if (page.transforms.empty()) {
+    html = "<p class=\"lead\">No transform was found, so there is none to use.</p>\n";
+  }
   for (const PageTransform& transform : page.transforms) html += TransformHtml(transform);
   return html + SensorsHtml(page.sensors);
 }

@@ -16,7 +16,7 @@ namespace {
 constexpr double kPlotWidth = 520.0;
 constexpr double kPlotHeight = 300.0;
 constexpr double kLeft = 58.0;
-constexpr double kRight = 14.0;
+constexpr double kRight = 20.0;
 constexpr double kTop = 12.0;
 constexpr double kBottom = 46.0;
 

@@ -23,15 +23,17 @@ Json PointsJson(const std::vector<Eigen::Vector3d>& points) {
   return array;
 }
 
+// Requires its pose.
 Json SensorJson(const PageSensor& sensor) {
   std::vector<Eigen::Vector3d> frustum;
+  const Rigid3d& base_from_sensor = *sensor.base_from_sensor;
   for (const Eigen::Vector3d& corner : sensor.frustum) {
-    frustum.push_back(sensor.base_from_sensor * corner);
+    frustum.push_back(base_from_sensor * corner);
   }
-  const Eigen::Matrix3d axes = sensor.base_from_sensor.rotation.toRotationMatrix();
+  const Eigen::Matrix3d axes = base_from_sensor.rotation.toRotationMatrix();
   return {{"name", PrintableLine(sensor.name)},
           {"camera", sensor.is_camera},
-          {"origin", PointsJson({sensor.base_from_sensor.translation})},
+          {"origin", PointsJson({base_from_sensor.translation})},
           {"axes", PointsJson({axes.col(0), axes.col(1), axes.col(2)})},
           {"frustum", PointsJson(frustum)}};
 }
@@ -84,7 +86,9 @@ Json ViewJson(const PageView& view) {
 std::string SceneJson(const ReportPage& page) {
   Json json = {{"palette", Json::array()}, {"sensors", Json::array()}, {"views", Json::array()}};
   for (const std::string_view colour : kPalette) json["palette"].push_back(colour);
-  for (const PageSensor& sensor : page.sensors) json["sensors"].push_back(SensorJson(sensor));
+  for (const PageSensor& sensor : page.sensors) {
+    if (sensor.base_from_sensor) json["sensors"].push_back(SensorJson(sensor));
+  }
   for (const PageView& view : page.views) json["views"].push_back(ViewJson(view));
   return ScriptJson(json);
 }

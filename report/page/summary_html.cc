@@ -67,7 +67,8 @@ Eigen::Vector3d EulerOf(const Rigid3d& pose) {
 std::string DirectionHtml(const std::string& name, const std::string& formula,
                           const Rigid3d& pose) {
   const Eigen::Vector3d& t = pose.translation;
-  const Eigen::Quaterniond& q = pose.rotation;
+  Eigen::Quaterniond q = pose.rotation;
+  if (q.w() < 0.0) q.coeffs() *= -1.0;
   const Eigen::Vector3d euler = EulerOf(pose);
   return fmt::format(
       "<div class=\"direction\"><h3><code>{}</code></h3>\n<p class=\"note\"><code>{}</code></p>\n"
@@ -78,7 +79,7 @@ std::string DirectionHtml(const std::string& name, const std::string& formula,
       "</tbody></table></div>\n<pre>{}</pre></div>\n",
       HtmlText(name), HtmlText(formula), Fixed(t.x(), 5), Fixed(t.y(), 5), Fixed(t.z(), 5),
       Fixed(q.w(), 6), Fixed(q.x(), 6), Fixed(q.y(), 6), Fixed(q.z(), 6), Fixed(euler.x(), 3),
-      Fixed(euler.y(), 3), Fixed(euler.z(), 3), HtmlText(MatrixText(pose)));
+      Fixed(euler.y(), 3), Fixed(euler.z(), 3), MatrixText(pose));
 }
 
 // Blue for positive and orange for negative correlations, stronger with their size.
@@ -92,14 +93,22 @@ std::string CellColour(double value) {
                      static_cast<int>(rgb.z()));
 }
 
+// The first digits, which tell two sets of inputs apart; the whole is beside the files.
+std::string HashHtml(const std::string& hash) {
+  constexpr std::size_t kDigits = 16;
+  if (hash.empty()) return {};
+  return fmt::format(" · <a href=\"#inputs\">inputs</a> <code>{}</code>",
+                     HtmlText(hash.substr(0, kDigits)));
+}
+
 }  // namespace
 
 std::string SummaryHtml(const ReportPage& page) {
   std::string html = fmt::format(
       "<header>\n<p class=\"kicker\">Calibration report</p>\n<h1>{}</h1>\n<p class=\"note\">{}{}"
-      "sextant {}</p>\n</header>\n",
+      "sextant {}{}</p>\n</header>\n",
       HtmlText(page.title), HtmlText(page.date), page.date.empty() ? "" : " · ",
-      HtmlText(page.version));
+      HtmlText(page.version), HashHtml(page.inputs.hash));
   html += VerdictHtml(page.verdict) + "<dl class=\"figures\">\n";
   for (const PageFigure& figure : page.figures) {
     html += fmt::format("<div><dt>{}</dt><dd><b>{}</b><span>{}</span></dd></div>\n",
@@ -126,8 +135,8 @@ std::string TransformHtml(const PageTransform& transform) {
                    Fixed(kDegPerRad * s(2), 3)},
                   {"translation along [mm]", Fixed(1e3 * s(3), 2), Fixed(1e3 * s(4), 2),
                    Fixed(1e3 * s(5), 2)}},
-         .note = fmt::format("In the axes of {}: camera x right, y down, z forward; LiDAR x "
-                             "forward, y left, z up.",
+         .note = fmt::format("In the axes of the frame {} (camera: x right, y down, z forward; "
+                             "LiDAR: x forward, y left, z up).",
                              to)});
   }
   html += "<div class=\"two\">\n";

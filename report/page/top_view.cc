@@ -20,7 +20,9 @@ class Floor {
  public:
   explicit Floor(const ReportPage& page) {
     Extend(Eigen::Vector3d::Zero());
-    for (const PageSensor& sensor : page.sensors) Extend(sensor.base_from_sensor.translation);
+    for (const PageSensor& sensor : page.sensors) {
+      if (sensor.base_from_sensor) Extend(sensor.base_from_sensor->translation);
+    }
     for (const PageView& view : page.views) {
       for (const PageBoard& board : view.boards) {
         for (const Eigen::Vector3d& corner : board.by_camera) Extend(corner);
@@ -101,7 +103,8 @@ std::string ScanSvg(const Floor& floor, const std::vector<PageView>& views) {
 }
 
 std::string SensorSvg(const Floor& floor, const PageSensor& sensor) {
-  const Eigen::Vector2d place = sensor.base_from_sensor.translation.head<2>();
+  if (!sensor.base_from_sensor) return {};
+  const Eigen::Vector2d place = sensor.base_from_sensor->translation.head<2>();
   const Eigen::Vector2d at = floor.At(place);
   std::string svg;
   // The rays of the middles of the left and the right side.
@@ -109,7 +112,7 @@ std::string SensorSvg(const Floor& floor, const PageSensor& sensor) {
   for (const std::size_t k : {3 * rays / 8, 7 * rays / 8}) {
     if (k >= rays) continue;
     const Eigen::Vector3d far = 3.0 * sensor.frustum[k];
-    const Eigen::Vector2d to = floor.At((sensor.base_from_sensor * far).head<2>());
+    const Eigen::Vector2d to = floor.At((*sensor.base_from_sensor * far).head<2>());
     svg += fmt::format("<path class=\"ray\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>", at.x(), at.y(),
                        to.x(), to.y());
   }

@@ -210,10 +210,13 @@ TEST(Calibrate, NoCommonBoardEndsInOne) {
     boards.replace(at, std::string(id).size(), std::string(id).replace(4, 1, "7"));
   }
   WriteText(session / "boards.yaml", boards);
-  const ProgramRun run = RunSextant("calibrate " + session.string() + Out());
+  const std::string page = (TestFolder() / "report.html").string();
+  const ProgramRun run = RunSextant("calibrate " + session.string() + Out() + " --report " + page);
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.err, HasSubstr("no board was seen by both sensors"));
   EXPECT_THAT(run.err, HasSubstr("was not found"));
+  EXPECT_THAT(ReadText(page), HasSubstr("<strong>NOT USABLE</strong>"));
+  EXPECT_THAT(ReadText(page), Not(HasSubstr("camera_from_lidar")));
 }
 
 // An unreadable view is left out; a scan that is also the output must not be, and be replaced.

@@ -28,7 +28,7 @@ inline ReportPage SomePage(int views, const std::string& text, const std::string
   PageSensor camera{.name = text, .is_camera = true, .base_from_sensor = cam_from_lidar.Inverse()};
   camera.frustum = {{-0.3, -0.2, 0.4}, {0.3, -0.2, 0.4}, {0.3, 0.2, 0.4}, {-0.3, 0.2, 0.4}};
   camera.facts = {.rows = {{text, text}}, .words = 2};
-  page.sensors = {{.name = text}, camera};
+  page.sensors = {{.name = text, .base_from_sensor = Rigid3d{}}, camera};
   for (int i = 0; i < views; ++i) {
     const double x = 2.0 + 0.3 * i;
     PageBoard board{.name = text,
@@ -75,7 +75,7 @@ inline ReportPage SomePage(int views, const std::string& text, const std::string
                     .share = 0.25}};
   page.coverage_plots = page.residual_plots = page.sigma_plots = {plot};
   const PageTable table{.header = {text, text}, .rows = {{text, text}}, .note = text};
-  page.sigmas = page.noise = page.comparison = page.inputs = table;
+  page.sigmas = page.noise = page.comparison = page.inputs.files = table;
   page.sigma_text = text;
   page.correlation =
       PageCorrelation{.names = {text, text}, .values = Eigen::MatrixXd::Identity(2, 2)};

@@ -61,6 +61,13 @@ window.SextantScene = function (data, select) {
       { color: colour, transparent: opacity < 1, opacity: opacity }));
   }
 
+  // A line that is wider than a pixel, which WebGL does not have.
+  function rod(from, to, colour) {
+    var radius = 0.0022 * Math.max(1, from.length());
+    var tube = new THREE.TubeGeometry(new THREE.LineCurve3(from, to), 1, radius, 6, false);
+    return new THREE.Mesh(tube, new THREE.MeshBasicMaterial({ color: colour }));
+  }
+
   function label(text, place, colour, size) {
     var canvas = document.createElement('canvas');
     var pen = canvas.getContext('2d');
@@ -88,8 +95,14 @@ window.SextantScene = function (data, select) {
     group.add(new THREE.Mesh(face, new THREE.MeshBasicMaterial({
       color: colour, transparent: true, opacity: isStrong ? 0.22 : 0.05, side: THREE.DoubleSide,
       depthWrite: false })));
-    group.add(line(c.concat([c[0]]), colour, isStrong ? 1 : 0.4));
-    if (isStrong) c.forEach(function (corner) { pickable.push(corner); });
+    if (!isStrong) {
+      group.add(line(c.concat([c[0]]), colour, 0.55));
+      return;
+    }
+    c.forEach(function (corner, k) {
+      pickable.push(corner);
+      group.add(rod(corner, c[(k + 1) % 4], colour));
+    });
   }
 
   function showBoards() {
@@ -188,8 +201,8 @@ window.SextantScene = function (data, select) {
         parts.axes.add(label('xyz'[k], origin.clone().addScaledVector(axis, 0.24), colour, 0.028));
       });
       parts.axes.add(label(sensor.name, origin.clone().add(
-        new THREE.Vector3(0, 0, sensor.camera ? -0.12 : 0.32)),
-        sensor.camera ? '#8fd0f5' : '#ffb56b', 0.04));
+        new THREE.Vector3(0, 0, sensor.camera ? -0.14 : 0.34)),
+        sensor.camera ? '#8fd0f5' : '#ffb56b', 0.034));
       var corners = vectors(sensor.frustum);
       if (corners.length === 0) return;
       corners.forEach(function (corner, k) {
@@ -229,7 +242,7 @@ window.SextantScene = function (data, select) {
     var aside = new THREE.Vector3(-forward.y, forward.x, 0);
     var up = new THREE.Vector3(0, 0, 1);
     var sensor = data.sensors.find(function (one) { return one.camera === (kind === 'camera'); });
-    var between = target.clone().multiplyScalar(0.55);
+    var between = target.clone().multiplyScalar(0.6);
     if ((kind === 'camera' || kind === 'lidar') && sensor) {
       eye.position.copy(vectors(sensor.origin)[0]);
     } else if (kind === 'top') {
@@ -240,8 +253,8 @@ window.SextantScene = function (data, select) {
       eye.position.copy(between).addScaledVector(aside, -1.7 * distance);
     } else {
       target = between;
-      eye.position.copy(between).addScaledVector(forward, -1.2 * distance)
-        .addScaledVector(aside, -0.75 * distance).addScaledVector(up, 0.75 * distance);
+      eye.position.copy(between).addScaledVector(forward, -0.95 * distance)
+        .addScaledVector(aside, -0.55 * distance).addScaledVector(up, 0.5 * distance);
     }
     controls.target.copy(target);
     controls.update();

@@ -9,6 +9,7 @@
 
 #include "base/units.h"
 #include "report/collect/file_hash.h"
+#include "report/collect/no_pose.h"
 #include "report/collect/pose_in_words.h"
 #include "report/collect/utc_text.h"
 #include "report/collect/view_media.h"
@@ -113,8 +114,8 @@ TEST(CollectPage, AViewWithoutFilesSaysWhy) {
   EXPECT_FALSE(page.views[0].photo);
   EXPECT_THAT(page.noise.note, HasSubstr("sextant calibrate --report"));
   EXPECT_THAT(page.comparison.rows, IsEmpty());
-  EXPECT_THAT(page.inputs.rows, SizeIs(2));
-  EXPECT_EQ(page.inputs.rows[0][2], "not a readable file");
+  EXPECT_THAT(page.inputs.files.rows, SizeIs(2));
+  EXPECT_EQ(page.inputs.files.rows[0][2], "not a readable file");
 }
 
 TEST(CollectPage, HoldsWhatTheResultHolds) {
@@ -129,6 +130,46 @@ TEST(CollectPage, HoldsWhatTheResultHolds) {
   EXPECT_THAT(page.date, HasSubstr("report of 2026-01-02"));
   EXPECT_THAT(page.sigmas.rows, SizeIs(4));
   EXPECT_THAT(FormatPage(page), HasSubstr("</html>"));
+}
+
+// Nothing on the page may look as if a pose was known.
+TEST(CollectPage, WithoutAPoseItShowsTheViewsAndWhyTheyWereLeftOut) {
+  const CalibrationResult known = ResultWith(1);
+  const Rigid3d& cam_from_board = *known.views[0].boards[0].cam_from_board;
+  Calibration calibration;
+  calibration.observed.camera = *known.camera;
+  calibration.observed.boards = known.boards;
+  Observation seen;
+  seen.in_image.resize(1);
+  seen.in_image[0].board = 0;
+  seen.in_image[0].pose.cam_from_board = cam_from_board;
+  seen.missing = {{.board = 0, .image = false, .why = "no plate of its size"}};
+  calibration.observed.views = {
+      {.name = "1", .seen = seen},
+      {.name = "2", .seen = MakeError(ErrorCode::kIo, "2.png: not an image")}};
+  Error error(ErrorCode::kMissingData, "no board was seen by both sensors");
+  error.AddLine("view 1: not in the scan");
+  calibration.result = tl::unexpected<Error>(error);
+  const Frame frame = NoisyFrame();
+  const ReportPage page = CollectPage({.result = ResultWithoutPose(calibration),
+                                       .calibration = &calibration,
+                                       .frames = AlwaysThe(frame)});
+  EXPECT_EQ(page.verdict.word, "NOT USABLE");
+  EXPECT_EQ(page.verdict.reason, "no board was seen by both sensors");
+  EXPECT_THAT(page.diagnostics, testing::ElementsAre("view 1: not in the scan"));
+  EXPECT_THAT(page.transforms, IsEmpty());
+  ASSERT_THAT(page.views, SizeIs(2));
+  EXPECT_EQ(page.views[0].reason, "scan: no plate of its size");
+  EXPECT_EQ(page.views[1].reason, "2.png: not an image");
+  ASSERT_THAT(page.views[0].boards, SizeIs(1));
+  EXPECT_THAT(page.views[0].boards[0].camera_in_px, Not(IsEmpty()));
+  EXPECT_THAT(page.views[0].boards[0].by_camera, IsEmpty());
+  ASSERT_TRUE(page.views[0].photo && page.views[0].scan);
+  EXPECT_THAT(page.views[0].photo->dots, IsEmpty());
+  EXPECT_THAT(page.views[0].scan->colour, IsEmpty());
+  const std::string html = FormatPage(page);
+  EXPECT_THAT(html, HasSubstr("No transform was found"));
+  EXPECT_THAT(html, Not(HasSubstr("camera_from_lidar")));
 }
 
 TEST(PoseInWords, NamesTheDirectionsOfTheLidar) {

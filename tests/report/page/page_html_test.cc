@@ -127,7 +127,7 @@ TEST(PageHtml, NeedsNoJavaScriptForItsTables) {
         "class=\"scan\"", "class=\"by-camera\"", "class=\"by-lidar\"", "class=\"heat\"",
         "left out</b>: a text", "<td>1 right</td><td class=\"n\">2.0</td><td class=\"n\">0.20</td>",
         "id=\"uncertainty\"", "id=\"solvers\"", "id=\"next\"", "id=\"inputs\"",
-        "a text_from_a text", "0.10000000"}) {
+        "a text_from_a text", "0.10000000\n"}) {
     EXPECT_THAT(html, HasSubstr(part)) << part;
   }
 }
