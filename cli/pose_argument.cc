@@ -48,6 +48,29 @@ std::optional<PoseDirection> AskedDirection(const std::string& pose_is) {
                                                            : PoseDirection::kLidarFromCam;
 }
 
+bool IsUpright(const Rigid3d& cam_from_lidar) {
+  return (cam_from_lidar.rotation * Eigen::Vector3d::UnitZ()).y() < -0.7;
+}
+
+// Numbers in the order of ROS, x y z w, are the likely mistake.
+void WarnOfNumbers(const std::string& option, const Rigid3d& pose, const std::string& pose_is) {
+  const bool is_inverse = AskedDirection(pose_is) == PoseDirection::kLidarFromCam;
+  const auto cam_from_lidar = [&](const Rigid3d& stated) {
+    return is_inverse ? stated.Inverse() : stated;
+  };
+  for (const std::string& doubt : DoubtsOf({}, cam_from_lidar(pose))) {
+    PrintError("warning: {}: {}\n", option, doubt);
+  }
+  const Eigen::Quaterniond& q = pose.rotation;
+  const Rigid3d other{Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()), pose.translation};
+  if (!IsUpright(cam_from_lidar(pose)) && IsUpright(cam_from_lidar(other))) {
+    PrintError(
+        "warning: {}: the camera would be upright with the quaternion read as x y z w; the order "
+        "of this option is w x y z\n",
+        option);
+  }
+}
+
 Expected<Rigid3d> CamFromLidarWithNote(const StatedPose& pose, const std::string& pose_is,
                                        const std::string& path) {
   const std::optional<PoseDirection> asked = AskedDirection(pose_is);
@@ -81,6 +104,7 @@ Expected<Rigid3d> PoseFromArgument(const std::string& option,
                                    const std::string& pose_is) {
   if (values.size() == 1) return PoseOfFile(values.front(), pose_is);
   SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, PoseFromNumbers(option, values));
+  WarnOfNumbers(option, pose, pose_is);
   return AskedDirection(pose_is) == PoseDirection::kLidarFromCam ? pose.Inverse() : pose;
 }
 

@@ -14,8 +14,8 @@ enum class PoseState { kValid, kMoved, kUnknown };
 /// "still valid", "moved" or "cannot tell".
 std::string_view ToString(PoseState state);
 
-/// The smallest change that matters: a pose is called valid only where one of this size would have
-/// been seen.
+/// A pose is called valid only where a change of this size would have been seen. A smaller change
+/// that is certain is a moved pose as well.
 struct CheckLimits {
   double rotation_rad = 0.0;
   double translation_m = 0.0;

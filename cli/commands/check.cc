@@ -37,7 +37,8 @@ void Declare(CheckOptions& options, Arguments& arguments) {
       "A board is in view: the pose is compared with the calibration by it, which is more\n"
       "accurate");
   arguments.Add("--detect", options.limits,
-                "The smallest change that matters: MM,DEG; valid only if it would have been seen",
+                "MM,DEG: valid only if a change of this size would have been seen; a smaller one\n"
+                "that is certain is \"moved\" as well",
                 {.shows_default = true,
                  .range = {{1e-3, 1e6}},
                  .min_values = 2,
