@@ -78,6 +78,7 @@ void AddAgreement(const Evidence& evidence, VerdictFigures& figures) {
 void AddChecks(const Trust& trust, const CalibrationProblem& problem, VerdictFigures& figures) {
   const TrustFigures& checks = trust.figures;
   figures.is_checked = true;
+  figures.halves_off = trust.halves_off;
   const std::vector<int> used = ViewsOf(problem);
   figures.outlier_views = static_cast<int>(std::ranges::count_if(
       checks.outlier_views, [&](int view) { return std::ranges::binary_search(used, view); }));

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <string>
 
 #include "base/random.h"
+#include "calibrate/trust/halves.h"
 #include "calibrate/trust/outlier_views.h"
 #include "calibrate/trust/select_views.h"
 #include "calibrate/trust/stated_covariance.h"
@@ -217,6 +219,26 @@ void AddFits(const CalibrationProblem& problem, const std::vector<int>& views,
   trust.figures.held_out_rmse_px = all_held_out.pixels.Value();
 }
 
+// Without the views of which the answer uses no board.
+std::vector<int> UsedViews(const std::vector<int>& views, const SolveReport& answer) {
+  std::vector<int> used;
+  std::ranges::copy_if(views, std::back_inserter(used), [&answer](int view) {
+    const auto is_of_view = [view](const BoardViewFit& fit) { return fit.view == view; };
+    return std::ranges::none_of(answer.board_views, is_of_view) ||
+           std::ranges::any_of(answer.board_views, [&](const BoardViewFit& fit) {
+             return is_of_view(fit) && fit.used;
+           });
+  });
+  return used;
+}
+
+// Squared scatter of the views over the solver's sigma, the larger of the two checks.
+double ScatterOver(const TrustFigures& figures) {
+  const double ratio = std::max(figures.jackknife_over_solver.value_or(0.0),
+                                figures.bootstrap_over_solver.value_or(0.0));
+  return ratio * ratio;
+}
+
 std::vector<double> HeldOutErrors(const Trust& trust) {
   std::vector<double> errors;
   for (const ViewTrust& view : trust.views) {
@@ -303,6 +325,8 @@ Expected<Trust> AssessTrust(const CalibrationProblem& problem, const Solver& sol
   figures.jackknife_over_solver = MeanRatio(figures.jackknife_sigma, figures.solver_sigma);
   scatter.jackknife_over_solver = figures.jackknife_over_solver;
   trust.covariance = StatedCovariance(answer.covariance, scatter);
+  trust.halves_off = HalvesDisagreement(
+      problem, solver, GroupsOf(UsedViews(views, answer), options.together), ScatterOver(figures));
   if (trust.covariance) {
     figures.stated_over_solver = MeanRatio(SigmaOf(*trust.covariance), figures.solver_sigma);
   }

@@ -40,6 +40,7 @@ struct Trust {
   int independent_views = 0;       ///< Groups of views that share no errors.
   /// The covariance of the answer, enlarged to what the views show (StatedCovariance).
   std::optional<Matrix6d> covariance{};
+  std::optional<double> halves_off{};  ///< HalvesDisagreement.
 };
 
 /// Tests how consistent the views of a problem are, with the solver that gave `answer`.
@@ -54,6 +55,8 @@ struct Trust {
 /// Outliers: DisagreeingViews of the raw observations where the problem has these, else
 /// OutlyingViews of the held-out errors; the others are then solved again and all views are tested
 /// under that pose, until nothing changes.
+///
+/// Halves in the order of the views: HalvesDisagreement, a test for a sensor that moved.
 ///
 /// Runs in parallel; the result does not depend on the number of threads. With a single view only
 /// the covariance's figures are set. Errors: kMissingData where the problem has no view.

@@ -31,6 +31,7 @@ constexpr Limit kContradictingShare = {0.1, 0.34};
 constexpr Limit kOutlierShare = {0.1, 0.34};
 constexpr Limit kSpreadOverSolver = {3.0, 15.0};
 constexpr Limit kHeldOutExcess = {1.5, 4.0};
+constexpr Limit kHalvesOff = {3.0, 5.0};  // Sigmas.
 constexpr Limit kCornerRms_m = {0.03, 0.1};
 constexpr Limit kRangeExcess = {0.006, 0.014};
 constexpr Limit kSizeExcess = {0.015, 0.05};
@@ -51,6 +52,7 @@ class Judge {
     Sizes();
     Prints();
     Views();
+    Halves();
     Normals();
     Corners();
     Number();
@@ -105,15 +107,37 @@ class Judge {
         "See the reasons under the table, and hold the board where more rings cross it");
   }
 
+  void Halves() {
+    if (!f_.halves_off) return;
+    Add(kHalvesOff.Of(*f_.halves_off),
+        fmt::format("The first and the second half of the views give different poses, by {:.0f} "
+                    "sigma",
+                    *f_.halves_off),
+        "Check whether a sensor moved between the views, and calibrate the views before and after "
+        "separately");
+  }
+
   void Ranges() {
     if (!f_.range_excess) return;
     const double size = std::abs(*f_.range_excess);
-    if (size < kSignificant * f_.range_excess_sigma) return;
+    if (size < kSignificant * f_.range_excess_sigma) return UnclearRanges(size);
     Add(kRangeExcess.Of(size),
         fmt::format("Boards are {:.1f} percent {} in the images than in the scans (1 sigma {:.1f})",
                     100.0 * size, *f_.range_excess > 0.0 ? "farther away" : "nearer",
                     100.0 * f_.range_excess_sigma),
         "Measure the print and compare it with the board file, and check the focal length");
+  }
+
+  // An excess that would matter, if it were certain, is no reason for trust either.
+  void UnclearRanges(double size) {
+    if (size < kRangeExcess.no_use) return;
+    Add(Usability::kUsableWithCare,
+        fmt::format("Boards may be {:.1f} percent {} in the images than in the scans (1 sigma "
+                    "{:.1f}); these views cannot tell",
+                    100.0 * size, *f_.range_excess > 0.0 ? "farther away" : "nearer",
+                    100.0 * f_.range_excess_sigma),
+        "Add views with the board at other distances, and check the focal length and the size of "
+        "the print");
   }
 
   void Sizes() {

@@ -31,6 +31,7 @@ struct VerdictFigures {
   std::optional<double> worst_rotation_rad{};
   std::optional<double> spread_over_solver{};  ///< Scatter of the views over the solver's sigma.
   std::optional<double> held_out_over_fit{};   ///< Ratio of the RMS errors of the corners.
+  std::optional<double> halves_off{};          ///< HalvesDisagreement, in sigmas.
   std::optional<double> corner_rms_m{};        ///< Corners by the image and by the scan.
   /// Ranges in the images over those in the scans, minus 1, with its sigma.
   std::optional<double> range_excess{};

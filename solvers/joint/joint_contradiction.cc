@@ -2,10 +2,10 @@
 #include "solvers/joint/joint_contradiction.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "base/median.h"
+#include "solvers/joint/normal_of_f.h"
 
 namespace sextant {
 namespace {
@@ -15,16 +15,6 @@ namespace {
 constexpr double kFreedomOfView = 2.0;
 constexpr double kAlike = 0.5;
 constexpr double kReturns = 0.7;
-
-// The normal quantile that corresponds to an F-distributed quotient (Wilson and Hilferty 1931;
-// Paulson 1942). It is bounded for few degrees of the denominator: three views and four never leave
-// one out at 4 sigma.
-double NormalOfF(double quotient, double freedom, double freedom_of_scale) {
-  const double root = std::cbrt(quotient);
-  const double a = 2.0 / (9.0 * freedom);
-  const double b = 2.0 / (9.0 * freedom_of_scale);
-  return ((1.0 - b) * root - (1.0 - a)) / std::sqrt(a + b * root * root);
-}
 
 double ViewsCompared(const std::vector<ViewSums>& sums) {
   return static_cast<double>(

@@ -184,6 +184,24 @@ TEST(Trust, OutliersAreNamedAmongTheWarnings) {
   EXPECT_THAT(result.warnings[0], HasSubstr("pose7 disagrees with the other views: under their"));
 }
 
+// The LiDAR turns by 1 deg between the views: no view alone contradicts the others.
+TEST(HalvesDisagreement, ShowsASensorThatMoved) {
+  constexpr int kSessions = 40;
+  for (int session = 0; session < kSessions; ++session) {
+    const auto seed = static_cast<std::uint64_t>(100 + session);
+    CalibrationProblem problem = SomeViews(10, seed);
+    EXPECT_LT(TrustOf(problem, {.bootstrap_samples = 10}).halves_off.value(), 4.0) << seed;
+    for (Pair3d3d& pair : problem.pairs_3d3d) {
+      if (pair.id.view >= 5) pair.point_in_lidar = ExpSo3({0.0, 0.0, 0.0175}) * pair.point_in_lidar;
+    }
+    EXPECT_GT(TrustOf(problem, {.bootstrap_samples = 10}).halves_off.value(), 3.0) << seed;
+  }
+}
+
+TEST(HalvesDisagreement, NeedsFourGroups) {
+  EXPECT_FALSE(TrustOf(SomeViews(3, 1), {.bootstrap_samples = 0}).halves_off);
+}
+
 TEST(DisagreeingViews, AreBeyondChanceByTheirOwnSigmas) {
   const std::vector<int> views = {3, 5, 8, 9};
   const std::vector<ViewComparison> compared = {

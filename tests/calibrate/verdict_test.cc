@@ -97,12 +97,21 @@ INSTANTIATE_TEST_SUITE_P(
         VerdictCase{"Spread", [](F& f) { f.spread_over_solver = 5.0; }, kCare, "5.0 times"},
         VerdictCase{"WildSpread", [](F& f) { f.spread_over_solver = 30.0; }, kNo, "30.0 times"},
         VerdictCase{"HeldOut", [](F& f) { f.held_out_over_fit = 2.5; }, kCare, "2.5 times worse"},
+        VerdictCase{"HalvesWithinNoise", [](F& f) { f.halves_off = 2.8; }, kGood, ""},
+        VerdictCase{"HalvesDiffer", [](F& f) { f.halves_off = 4.0; }, kCare, "different poses"},
+        VerdictCase{"Moved", [](F& f) { f.halves_off = 8.0; }, kNo, "by 8 sigma"},
         VerdictCase{"RangesWithinNoise",
                     [](F& f) {
                       f.range_excess = 0.012;
                       f.range_excess_sigma = 0.006;
                     },
                     kGood, ""},
+        VerdictCase{"RangesUnclear",
+                    [](F& f) {
+                      f.range_excess = 0.03;
+                      f.range_excess_sigma = 0.012;
+                    },
+                    kCare, "may be 3.0 percent farther away"},
         VerdictCase{"RangesLong", [](F& f) { f.range_excess = 0.01; }, kCare,
                     "Boards are 1.0 percent farther away in the images"},
         VerdictCase{"RangesShort", [](F& f) { f.range_excess = -0.02; }, kNo, "2.0 percent nearer"},
