@@ -21,7 +21,8 @@ int DeliverRig(const char* command, const Expected<RigResult>& result, const std
   }
   const std::string text =
       DescribeRig(*result) + "\n" + WroteLine(out_path, "the result, for sextant export");
-  return Deliver(command, json_path, text, json, kAnswered);
+  const bool whole = result->refutations.empty() && result->unconnected.empty();
+  return Deliver(command, json_path, text, json, whole ? kAnswered : kNotUsable);
 }
 
 }  // namespace sextant::cli

@@ -146,9 +146,12 @@ std::string DescribeRig(const RigResult& result) {
   std::vector<std::string> warnings = result.unconnected;
   warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
   for (std::string& line : LoopWarnings(result)) warnings.push_back(std::move(line));
-  if (!warnings.empty()) text += "\n";
+  if (!warnings.empty() || !result.refutations.empty()) text += "\n";
   for (const std::string& warning : warnings) {
     text += Wrapped("warning: " + warning, kRigWidth);
+  }
+  for (const std::string& reason : result.refutations) {
+    text += Wrapped("NOT USABLE: " + reason, kRigWidth);
   }
   return text;
 }

@@ -116,7 +116,8 @@ Expected<RigResult> CalibrateRig(const RigFile& rig) {
                    .views = ViewsOf(rig, estimate),
                    .numbers = NumbersOf(rig, estimate),
                    .unconnected = estimate.unconnected,
-                   .warnings = estimate.warnings};
+                   .warnings = estimate.warnings,
+                   .refutations = estimate.refutations};
 }
 
 RigResult RigOfTransforms(const std::vector<Rigid3d>& cam_from_lidar) {

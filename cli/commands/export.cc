@@ -91,8 +91,14 @@ Expected<void> CheckVerdict(const ExportCommandOptions& options, const Calibrati
                                options.result_path, result.verdict->reason, result.verdict->next));
 }
 
-Expected<std::string> ExportedRig(const ExportCommandOptions& options, const std::string& text) {
-  SEXTANT_ASSIGN_OR_RETURN(const RigResult rig, ParseRigResult(text, options.result_path));
+Expected<void> CheckVerdict(const ExportCommandOptions& options, const RigResult& rig) {
+  if (options.force || rig.refutations.empty()) return {};
+  return MakeError(ErrorCode::kInvalidInput,
+                   fmt::format("{} is NOT USABLE: {}. To export it nevertheless, add --force",
+                               options.result_path, rig.refutations[0]));
+}
+
+Expected<std::string> ExportedRig(const ExportCommandOptions& options, const RigResult& rig) {
   if (options.sensors.empty()) return ExportRig(options.format, rig);
   SEXTANT_ASSIGN_OR_RETURN(const CalibrationResult pair,
                            ResultOfPair(rig, options.sensors[0], options.sensors[1]));
@@ -125,10 +131,19 @@ int Write(const ExportCommandOptions& options, const Expected<std::string>& text
   return kAnswered;
 }
 
+int RunOnRig(const ExportCommandOptions& options, const std::string& text) {
+  const Expected<RigResult> rig = ParseRigResult(text, options.result_path);
+  if (!rig) return Refuse("export", rig.error());
+  if (const Expected<void> ok = CheckVerdict(options, *rig); !ok) {
+    return Refuse("export", ok.error(), kNotUsable);
+  }
+  return Write(options, ExportedRig(options, *rig));
+}
+
 int Run(const ExportCommandOptions& options) {
   if (const Expected<void> ok = CheckParent(options); !ok) return Refuse("export", ok.error());
   const Expected<std::string> file = ReadTextFile(options.result_path);
-  if (file && IsRigResult(*file)) return Write(options, ExportedRig(options, *file));
+  if (file && IsRigResult(*file)) return RunOnRig(options, *file);
   const Expected<CalibrationResult> result = ResultOfFile(options.result_path, options.pose_is);
   if (!result) return Refuse("export", result.error());
   if (const Expected<void> ok = CheckVerdict(options, *result); !ok) {

@@ -141,6 +141,7 @@ std::string FormatRigResult(const RigResult& result) {
   }
   json["unconnected"] = result.unconnected;
   json["warnings"] = result.warnings;
+  json["not_usable"] = result.refutations;
   return json.dump(2, ' ', false, RigJson::error_handler_t::replace) + "\n";
 }
 
@@ -161,6 +162,12 @@ Expected<RigResult> ParseRigResult(std::string_view text, const std::string& fil
   const YamlNode& sensors = in.Require(root, "sensors");
   if (in.IsSequence(sensors, "sensors")) {
     for (const YamlNode& node : sensors.items) result.sensors.push_back(ReadSensor(in, node));
+  }
+  const YamlNode* refutations = root.Find("not_usable");
+  if (refutations != nullptr && in.IsSequence(*refutations, "not_usable")) {
+    for (const YamlNode& node : refutations->items) {
+      result.refutations.push_back(in.Text(node, "not_usable"));
+    }
   }
   if (!in.ok()) return in.TakeError();
   return result;

@@ -70,6 +70,7 @@ struct RigResult {
   std::vector<RigResultNumber> numbers{};
   std::vector<std::string> unconnected{};  ///< What would connect each sensor without a pose.
   std::vector<std::string> warnings{};
+  std::vector<std::string> refutations{};  ///< Why it is NOT USABLE; usually none.
 
   const RigResultSensor* Find(std::string_view name) const;
   /// Errors: kUnknownName, with the names; kMissingData where a sensor is not connected.
@@ -79,9 +80,9 @@ struct RigResult {
 /// rig.json; docs/formats.md documents its keys.
 std::string FormatRigResult(const RigResult& result);
 
-/// Reads the sensors and the root, all that other commands need. Errors: kIo; kParse and kNonFinite
-/// with file, line and key. Time is linear in the file's size; memory is that of ParseYaml
-/// (io/text/yaml_node.h).
+/// Reads the sensors, the root and the refutations, all that other commands need. Errors: kIo;
+/// kParse and kNonFinite with file, line and key. Time is linear in the file's size; memory is that
+/// of ParseYaml (io/text/yaml_node.h).
 Expected<RigResult> ReadRigResult(const std::filesystem::path& path);
 Expected<RigResult> ParseRigResult(std::string_view text, const std::string& file);
 

@@ -147,30 +147,56 @@ class RigSolution {
           "board stand still, and are its corners in the right order?",
           placement.board, NameOfMoment(placement), whole_.sensors[fit.sensor].name));
     }
-    // A ratio of 1.5 is more than an inaccurate estimate of a sigma.
+    RefuteByNoise(estimate);
+    RefuteByPrints(estimate);
+    RefuteByWhatIsLeft(estimate);
+  }
+
+  void RefuteByNoise(RigEstimate& estimate) const {
+    // A ratio of 1.5 is more than an inaccurate estimate of a sigma; no sigma is wrong by 10.
     constexpr double kMuch = 1.5;
+    constexpr double kImpossible = 10.0;
     for (const RigNoiseLevel& noise : estimate.noise) {
       if (noise.level < kMuch) continue;
+      if (noise.level > kImpossible) {
+        estimate.refutations.push_back(fmt::format(
+            "the {} of {} are off by {:.0f} times their stated noise: check that what is listed "
+            "under a moment was recorded together, the order of corners, sizes and intrinsics",
+            NameOf(noise.kind), whole_.sensors[noise.sensor].name, noise.level));
+        continue;
+      }
       estimate.warnings.push_back(fmt::format(
           "the noise of the {} of {} is {:.1f} times as large as stated, which the covariance "
           "includes; look for a systematic error (intrinsics, board size)",
           NameOf(noise.kind), whole_.sensors[noise.sensor].name, noise.level));
     }
-    WarnOfScales(estimate);
   }
 
-  void WarnOfScales(RigEstimate& estimate) const {
+  void RefuteByPrints(RigEstimate& estimate) const {
     constexpr double kMaxSigmas = 4.0;
-    constexpr double kMinShare = 0.002;  // Of usual prints and focal lengths.
+    constexpr double kMinShare = 0.005;  // Of usual prints and focal lengths.
     for (const RigPrintScale& scale : scales_) {
       const double share = std::abs(scale.share);
       if (share < kMinShare || share < kMaxSigmas * scale.sigma) continue;
-      estimate.warnings.push_back(fmt::format(
+      estimate.refutations.push_back(fmt::format(
           "the print that {} sees seems to be {:.1f} +- {:.1f} % {} than stated, or its focal "
-          "length is wrong by that share: poses are wrong by more than their sigmas; measure the "
-          "print, and check the intrinsics",
+          "length is wrong by that share: measure the print, and check the intrinsics",
           whole_.sensors[sensors_[scale.sensor]].name, 100.0 * share, 100.0 * scale.sigma,
           scale.share > 0.0 ? "larger" : "smaller"));
+    }
+  }
+
+  void RefuteByWhatIsLeft(RigEstimate& estimate) const {
+    for (const std::size_t sensor : sensors_) {
+      const auto seen = std::ranges::count(estimate.fits, sensor, &RigObservationFit::sensor);
+      const auto used = std::ranges::count_if(estimate.fits, [&](const RigObservationFit& fit) {
+        return fit.sensor == sensor && fit.used;
+      });
+      if (2 * used >= seen) continue;
+      estimate.refutations.push_back(fmt::format(
+          "only {} of the {} boards that {} sees agree with the other sensors: check that what is "
+          "listed under a moment was recorded together",
+          used, seen, whole_.sensors[sensor].name));
     }
   }
 

@@ -63,6 +63,8 @@ struct RigEstimate {
   std::vector<RigEstimatedNumber> numbers{};
   std::vector<RigNoiseLevel> noise{};
   std::vector<std::string> warnings{};
+  /// Why the poses may be wrong by more than their covariance states: sentences; usually none.
+  std::vector<std::string> refutations{};
   int iterations = 0;
 
   /// a_from_b with the covariance of its (dphi, dt). Requires that both sensors are connected.

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -98,6 +99,28 @@ TEST(RigCommand, ARigIsExportedAsATreeOrAPair) {
   const ProgramRun none = RunSextant("export " + out + " --sensors left top --to matrix");
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_THAT(none.err, HasSubstr("there are: lidar, left, right"));
+}
+
+TEST(RigCommand, AWrongSizeOfTheTagIsNotUsable) {
+  const std::string problem = TestPath("rig.yaml");
+  const std::string out = TestPath("wrong.json");
+  ASSERT_EQ(RunSextant("calibrate " + SessionOfRig().string() + " --out " + TestPath("rig.json") +
+                       " --problem " + problem)
+                .exit_code,
+            0);
+  std::string text = test::ReadText(problem);
+  // The printed points as if the tags were a quarter larger.
+  for (std::size_t at = text.find("0.1025"); at != std::string::npos; at = text.find("0.1025")) {
+    text.replace(at, 6, "0.128125");
+  }
+  ASSERT_NE(text, test::ReadText(problem));
+  const std::string wrong = TestPath("wrong.yaml");
+  std::ofstream(wrong) << text;
+  const ProgramRun run = RunSextant("rig " + wrong + " --out " + out);
+  EXPECT_EQ(run.exit_code, 3) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("NOT USABLE"));
+  EXPECT_EQ(RunSextant("export " + out + " --to ros2").exit_code, 3);
+  EXPECT_EQ(RunSextant("export " + out + " --to ros2 --force").exit_code, 0);
 }
 
 TEST(RigCommand, OneCameraOfSeveralIsCalibratedAlone) {

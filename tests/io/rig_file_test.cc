@@ -121,6 +121,14 @@ TEST(RigResult, IsReadBack) {
   EXPECT_THAT(read->Between("right", "top").error().message, HasSubstr("top, left, lost"));
 }
 
+TEST(RigResult, SaysWhyItIsNotUsable) {
+  RigResult rig = ThreeSensors();
+  rig.refutations = {"the print is \"small\""};
+  const Expected<RigResult> read = ParseRigResult(FormatRigResult(rig), "rig.json");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->refutations, rig.refutations);
+}
+
 TEST(ExportRig, EveryFormatHasEverySensor) {
   const RigResult rig = ThreeSensors();
   for (const char* format : {"ros1", "ros2", "ros2_yaml", "urdf", "kitti"}) {

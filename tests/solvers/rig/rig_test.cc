@@ -91,7 +91,7 @@ TEST(Rig, ExactObservationsOfCamerasAndLidarsGiveTheTruth) {
 
 TEST(Rig, ErrorsAreThoseOfTheBoundAndOfTheCovariance) {
   RigSimulation simulation{.cameras = 2, .lidars = 2, .moments = 8, .takes_part = 0.8};
-  const PairErrors errors = ErrorsOver(simulation, 40);
+  const PairErrors errors = ErrorsOver(simulation, 25);
   EXPECT_GT(errors.nees / errors.count, 0.8);
   EXPECT_LT(errors.nees / errors.count, 1.25);
   EXPECT_LT(std::sqrt(errors.over_bound / errors.count), 1.3);
@@ -100,7 +100,7 @@ TEST(Rig, ErrorsAreThoseOfTheBoundAndOfTheCovariance) {
 TEST(Rig, SystematicErrorsOfLidarsAreInTheCovariance) {
   RigSimulation simulation{.cameras = 1, .lidars = 2, .moments = 8};
   simulation.sensors.errors = LidarErrorModel{};
-  const PairErrors errors = ErrorsOver(simulation, 40);
+  const PairErrors errors = ErrorsOver(simulation, 20);
   EXPECT_GT(errors.nees / errors.count, 0.8);
   EXPECT_LT(errors.nees / errors.count, 1.25);
 }
@@ -108,7 +108,7 @@ TEST(Rig, SystematicErrorsOfLidarsAreInTheCovariance) {
 TEST(Rig, CamerasAloneAndLidarsAloneAreCases) {
   for (const auto& [cameras, lidars] : {std::pair(3, 0), std::pair(0, 3)}) {
     RigSimulation simulation{.cameras = cameras, .lidars = lidars, .moments = 8};
-    const PairErrors errors = ErrorsOver(simulation, 25);
+    const PairErrors errors = ErrorsOver(simulation, 12);
     EXPECT_GT(errors.nees / errors.count, 0.75) << cameras << " cameras";
     EXPECT_LT(errors.nees / errors.count, 1.3) << cameras << " cameras";
   }
@@ -116,7 +116,7 @@ TEST(Rig, CamerasAloneAndLidarsAloneAreCases) {
 
 TEST(Rig, OneCameraAndOneLidarAreTheCaseOfTwoSensors) {
   const auto joint = *BuiltinSolvers().Make("joint(gnc(kabsch))");
-  for (int seed = 1; seed <= 10; ++seed) {
+  for (int seed = 1; seed <= 6; ++seed) {
     ViewSimulation simulation{.seed = static_cast<std::uint64_t>(seed), .views = 8};
     simulation.errors = LidarErrorModel{};
     const auto views = SimulateViews(simulation);
@@ -139,7 +139,7 @@ TEST(Rig, OneCameraAndOneLidarAreTheCaseOfTwoSensors) {
     const UncertainPose pose = solved->Between(0, 1);
     const Vector6d off = PoseDifference(pose.b_from_a, report->cam_from_lidar);
     EXPECT_LT(SquaredMahalanobis<6>(off, *report->covariance) / 6.0, 0.3 * 0.3) << seed;
-    EXPECT_NEAR(std::log(pose.covariance.trace() / report->covariance->trace()), 0.0, 0.5) << seed;
+    EXPECT_NEAR(std::log(pose.covariance.trace() / report->covariance->trace()), 0.0, 0.2) << seed;
   }
 }
 
@@ -225,8 +225,26 @@ TEST(Rig, AWrongSizeOfThePrintIsAWarning) {
     }
     const auto estimate = SolveRig(rig.problem);
     ASSERT_TRUE(estimate) << estimate.error().message;
-    ASSERT_EQ(estimate->warnings.size(), share > 0.0 ? 2U : 0U);
-    if (share > 0.0) EXPECT_THAT(estimate->warnings[0], HasSubstr("% smaller than stated"));
+    ASSERT_EQ(estimate->refutations.size(), share > 0.0 ? 2U : 0U);
+    for (const std::string& reason : estimate->refutations) {
+      EXPECT_THAT(reason, HasSubstr("% smaller than stated"));
+    }
+  }
+}
+
+TEST(Rig, ScansOfOtherMomentsAreRefuted) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    RigSimulation simulation{.seed = seed, .cameras = 1, .lidars = 1, .moments = 8};
+    simulation.sensors.errors = LidarErrorModel{};
+    SimulatedRig rig = SimulateRig(simulation);
+    auto& placements = rig.problem.placements;
+    const RigObservation first = placements[0].seen[1];
+    for (std::size_t i = 0; i + 1 < placements.size(); ++i) {
+      placements[i].seen[1] = placements[i + 1].seen[1];
+    }
+    placements.back().seen[1] = first;
+    const auto estimate = SolveRig(rig.problem);
+    EXPECT_TRUE(!estimate || !estimate->refutations.empty()) << seed;
   }
 }
 
