@@ -3,11 +3,15 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "base/version.h"
 #include "cli/output.h"
 #include "eval/diagnostics/outlying_pairs.h"
+#include "eval/diagnostics/unexplained_pairs.h"
 #include "io/boards/board_file.h"
 #include "io/boards/marker_files.h"
 #include "io/cameras/camera_file.h"
@@ -72,6 +76,26 @@ std::string ResultsJson(const LoadedProblem& input, const std::vector<Comparison
   return FormatResults(results);
 }
 
+// "" for answers of which one may be right.
+std::string RefutingVerdict(const ProblemInputOptions& options, const LoadedProblem& input,
+                            const std::vector<ComparisonRow>& rows) {
+  if (RefutesPoses(input.diagnostics, options.reorder)) {
+    return "NOT USABLE: the data diagnostics below name a fault that no solver corrects\n";
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const ComparisonRow& row : rows) {
+    if (!row.report) continue;
+    const std::optional<double> share = UnexplainedShare(input.file.problem, *row.report);
+    if (!share) return "";
+    least = std::min(least, *share);
+  }
+  if (!(least > kMaxUnexplainedShare) || std::isinf(least)) return "";
+  return fmt::format(
+      "NOT USABLE: no pose explains these pairs: what it leaves is {:.0f} percent of their spread "
+      "(at most {:.0f} in measurements that belong together). Check which point belongs to which\n",
+      100.0 * least, 100.0 * kMaxUnexplainedShare);
+}
+
 }  // namespace
 
 void DeclareProblemInput(ProblemInputOptions& options, Arguments& arguments) {
@@ -132,12 +156,9 @@ int DeliverAnswers(const char* command, const ProblemInputOptions& options,
                    const LoadedProblem& input, const std::vector<ComparisonRow>& rows,
                    const std::string& text, bool answered) {
   const std::string diagnostics = DiagnosticsText(input, rows, options.reorder);
-  const bool refuted = answered && RefutesPoses(input.diagnostics, options.reorder);
-  const std::string verdict =
-      refuted ? "NOT USABLE: the data diagnostics below name a fault that no solver corrects\n"
-              : "";
+  const std::string verdict = answered ? RefutingVerdict(options, input, rows) : "";
   if (options.json_path == "-") PrintError("{}{}", verdict, diagnostics);
-  const int answer = refuted ? kNotUsable : kAnswered;
+  const int answer = verdict.empty() ? kAnswered : kNotUsable;
   return Deliver(command, options.json_path, verdict + text + diagnostics, ResultsJson(input, rows),
                  answered ? answer : kNoAnswer);
 }

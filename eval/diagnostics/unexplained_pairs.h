@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "geometry/calibration_problem.h"
+#include "solvers/core/solver.h"
+
+namespace sextant {
+
+/// The RMS residual of the pairs that an answer uses, over the RMS distance of their camera points,
+/// or pixels, from their mean [-]: about 0 for correspondences, near 1 for unrelated points. None
+/// for problems with both kinds of pairs or without pairs, and for fewer than four used ones. O(n).
+std::optional<double> UnexplainedShare(const CalibrationProblem& problem,
+                                       const SolveReport& report);
+
+/// A larger share explains nothing: measurements of boards are at a tenth even where the noise is
+/// large.
+inline constexpr double kMaxUnexplainedShare = 0.3;
+
+}  // namespace sextant
