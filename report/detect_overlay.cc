@@ -43,8 +43,8 @@ void DrawEdge(cv::Mat& canvas, const Camera& camera, const Eigen::Vector3d& a,
   }
 }
 
-void DrawChecker(cv::Mat& canvas, const CheckerDetection& checker) {
-  for (const Eigen::Vector2d& corner : checker.corners_px) {
+void DrawCorners(cv::Mat& canvas, const std::vector<Eigen::Vector2d>& corners_px) {
+  for (const Eigen::Vector2d& corner : corners_px) {
     cv::circle(canvas, FixedPoint(corner), 4 << kFixedPointShift, kTag, 2, cv::LINE_AA,
                kFixedPointShift);
   }
@@ -71,13 +71,17 @@ cv::Mat DrawDetection(const cv::Mat& image, const ImageReport& report,
   for (const TagDetection& tag : report.seen.other_tags) {
     DrawTag(canvas, tag.corners_px, std::to_string(tag.id), boards.empty() ? kTag : kStranger);
   }
-  for (const CheckerDetection& checker : report.checkers) DrawChecker(canvas, checker);
+  for (const CheckerDetection& checker : report.checkers) DrawCorners(canvas, checker.corners_px);
   for (const SeenBoard& seen : report.seen.boards) {
     for (const SeenTag& tag : seen.tags) {
       DrawTag(canvas, tag.refined ? tag.refined->corners_px : tag.detection.corners_px,
               std::to_string(tag.detection.id), kTag);
     }
-    if (seen.checker) DrawChecker(canvas, *seen.checker);
+    if (seen.checker) DrawCorners(canvas, seen.checker->corners_px);
+    const bool has_marked_corners = !boards.empty() && boards[seen.index].checker &&
+                                    boards[seen.index].checker->holds_tags &&
+                                    !seen.is_checker_missing;
+    if (has_marked_corners) DrawCorners(canvas, seen.printed.front().pixels);
     if (camera) DrawBoard(canvas, *camera, seen);
   }
   return canvas;

@@ -86,7 +86,11 @@ std::string DescribeBoard(const ImageReport& report, const SeenBoard& seen, cons
   std::string text =
       fmt::format("  board {}{}", board.id, board.name.empty() ? "" : " " + board.name);
   if (expected > 0) text += fmt::format(": {} of {} tags", seen.tags.size(), expected);
-  if (board.checker) {
+  if (board.checker && board.checker->holds_tags) {
+    text += fmt::format(", {} of {} corners between them",
+                        seen.is_checker_missing ? 0 : seen.printed.front().pixels.size(),
+                        board.checker->inner_columns * board.checker->inner_rows);
+  } else if (board.checker) {
     text += fmt::format(": checkerboard of {} x {} inner corners {}", board.checker->inner_columns,
                         board.checker->inner_rows, seen.checker ? "found" : "not found");
     if (seen.checker && !seen.checker->is_turn_known) {
@@ -94,7 +98,13 @@ std::string DescribeBoard(const ImageReport& report, const SeenBoard& seen, cons
     }
   }
   text += "\n";
-  for (const SeenTag& tag : seen.tags) text += DescribeSeenTag(tag);
+  // Between tags in a checkerboard, its corners count, and the tags' own corners are not needed.
+  const bool counts_tags = !board.checker || !board.checker->holds_tags || seen.is_checker_missing;
+  for (const SeenTag& tag : seen.tags) {
+    text += counts_tags
+                ? DescribeSeenTag(tag)
+                : fmt::format("    {}\n", DescribeTag(tag.detection, tag.detection.corners_px));
+  }
   for (const std::size_t tag : seen.duplicate_tags) {
     text += fmt::format("    tag {} of {}: found more than once, so not used\n", board.tags[tag].id,
                         board.tags[tag].family);
