@@ -72,7 +72,8 @@ class CliqueSolver final : public Solver {
     Expected<Estimate> estimate =
         BetterOnInliers(*inner_, problem, *scorer, pose, final_max_squared);
     if (!estimate) return estimate;
-    SEXTANT_RETURN_IF_ERROR(CheckConsensus(*scorer, max_squared, estimate->inliers, min_inliers));
+    SEXTANT_RETURN_IF_ERROR(CheckConsensus(*scorer, estimate->cam_from_lidar, max_squared,
+                                           estimate->inliers, min_inliers));
     estimate->iterations = static_cast<int>(std::min<std::int64_t>(clique.nodes, 1'000'000'000));
     estimate->termination =
         clique.is_maximum ? Termination::kConverged : Termination::kMaxIterations;

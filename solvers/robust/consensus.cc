@@ -108,6 +108,21 @@ Expected<void> CheckConsensus(const PairScorer& scorer, double max_squared,
                   distinct, count, min_inliers, false_alarms, kMaxFalseAlarms));
 }
 
+Expected<void> CheckConsensus(const PairScorer& scorer, const Rigid3d& pose, double max_squared,
+                              std::span<const int> inliers, int min_inliers) {
+  const Expected<void> within_limit = CheckConsensus(scorer, max_squared, inliers, min_inliers);
+  const int distinct = scorer.CountDistinct(inliers);
+  if (within_limit || distinct < min_inliers) return within_limit;
+  std::vector<double> squared(scorer.size());
+  scorer.SquaredResiduals(pose, squared);
+  double largest = 0.0;
+  for (const int i : inliers) largest = std::max(largest, squared[static_cast<std::size_t>(i)]);
+  const auto count = static_cast<int>(scorer.size());
+  const double chance = scorer.RandomAgreementProbability(largest);
+  if (count * FalseAlarms(scorer.kind(), distinct, count, chance) < kMaxFalseAlarms) return {};
+  return within_limit;
+}
+
 double WantedSamples(std::size_t count, std::size_t inliers, int sample_size, double confidence) {
   const auto n = static_cast<double>(count);
   double all_inliers = 1.0;

@@ -55,6 +55,12 @@ OptionSet<Options>& AddInlierOptions(OptionSet<Options>& options) {
 Expected<void> CheckConsensus(const PairScorer& scorer, double max_squared,
                               std::span<const int> inliers, int min_inliers);
 
+/// The same, with their pose known: they may also be more than chance explains within the largest
+/// of their residuals, of which each of the n - m is a threshold to be tried. Few pairs whose
+/// residuals are all far below the limit are a consensus, too.
+Expected<void> CheckConsensus(const PairScorer& scorer, const Rigid3d& pose, double max_squared,
+                              std::span<const int> inliers, int min_inliers);
+
 /// The minimum number of pairs, of whichever kind `needs` names.
 int MinPairs(const DataNeeds& needs);
 

@@ -90,8 +90,8 @@ class GncSolver final : public Solver {
     Expected<Estimate> estimate =
         BetterOnInliers(*inner_, problem, *scorer, pose, options_.FinalMaxSquared(*scorer));
     if (!estimate) return estimate;
-    SEXTANT_RETURN_IF_ERROR(
-        CheckConsensus(*scorer, max_squared, estimate->inliers, MinPairs(spec().needs)));
+    SEXTANT_RETURN_IF_ERROR(CheckConsensus(*scorer, estimate->cam_from_lidar, max_squared,
+                                           estimate->inliers, MinPairs(spec().needs)));
     estimate->iterations = iterations;
     estimate->termination = iterations < options_.max_iterations ? Termination::kConverged
                                                                  : Termination::kMaxIterations;

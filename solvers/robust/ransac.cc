@@ -168,7 +168,8 @@ class RansacSolver final : public Solver {
     Expected<Estimate> estimate =
         Finish(problem, *scorer, search.best(), options_.FinalMaxSquared(*scorer));
     if (!estimate) return estimate;
-    SEXTANT_RETURN_IF_ERROR(CheckConsensus(*scorer, max_squared, estimate->inliers, MinInliers()));
+    SEXTANT_RETURN_IF_ERROR(CheckConsensus(*scorer, estimate->cam_from_lidar, max_squared,
+                                           estimate->inliers, MinInliers()));
     if (2 * estimate->inliers.size() < scorer->size()) {
       // If the points are mirrored, those near one plane agree on a pose, which is not the answer.
       Expected<Estimate> of_all = SolveWhole(*inner_, problem);
@@ -179,7 +180,7 @@ class RansacSolver final : public Solver {
   }
 
   // The same search around p3p, whose refit on the inliers would be worse than least squares.
-  Expected<Estimate> SolveByTriples(const TermScorer& scorer, double max_squared) const {
+  Expected<Estimate> SolveByTriples(TermScorer&& scorer, double max_squared) const {
     const PairTerms& terms = scorer.terms();
     const P3pConsensus found = FindP3pConsensus(terms.pixels.View(), terms.camera,
                                                 {.max_squared = max_squared,
@@ -188,8 +189,12 @@ class RansacSolver final : public Solver {
                                                  .local_rounds = options_.local_optimisation,
                                                  .seed = options_.seed});
     if (!found.found) return NoPose(found.samples, 3);
-    Estimate estimate = LeastSquaresOnInliers(scorer, found.cam_from_lidar, max_squared);
-    SEXTANT_RETURN_IF_ERROR(CheckConsensus(scorer, max_squared, estimate.inliers, MinInliers()));
+    // The search's rounds of least squares may end before the minimum where the pairs are few.
+    const auto fit = scorer.FitInliers(found.cam_from_lidar, max_squared, {});
+    Estimate estimate = LeastSquaresOnInliers(
+        scorer, fit && fit->IsFinite() ? *fit : found.cam_from_lidar, max_squared);
+    SEXTANT_RETURN_IF_ERROR(CheckConsensus(scorer, estimate.cam_from_lidar, max_squared,
+                                           estimate.inliers, MinInliers()));
     SetIterations(found.samples, estimate);
     return estimate;
   }

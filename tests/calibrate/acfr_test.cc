@@ -65,7 +65,20 @@ std::vector<SessionView> SeeAcfr(const std::filesystem::path& folder) {
   return ObserveFiles(*observer, pairs, {});
 }
 
-// Of the corners of each view under the answer of the others [m].
+// The point without the errors of the LiDAR that the answer states: a corner by the scan contains
+// them, and the pose does not.
+Eigen::Vector3d Corrected(const Eigen::Vector3d& point_in_lidar, const SolveReport& report) {
+  Eigen::Vector3d point = point_in_lidar;
+  for (const EstimatedNumber& number : report.extras) {
+    if (number.name == "range_bias_m") point -= number.value * point_in_lidar.normalized();
+    if (number.name == "beam_crossing_m") {
+      point.z() -= number.value * point_in_lidar.z() / point_in_lidar.head<2>().norm();
+    }
+  }
+  return point;
+}
+
+// Of the corners of each view under the answer of the others [m], with its corrections.
 double HeldOutRmse(const CalibrationProblem& problem, const char* spec) {
   const SolverPtr solver = *BuiltinSolvers().Make(spec);
   std::set<int> views;
@@ -79,10 +92,11 @@ double HeldOutRmse(const CalibrationProblem& problem, const char* spec) {
     std::erase_if(others.board_views, [view](const BoardView& b) { return b.view == view; });
     const Expected<SolveReport> report = solver->Solve(others);
     EXPECT_TRUE(report) << report.error().message;
-    const Evaluation evaluation = Evaluate(problem, report->cam_from_lidar);
-    for (std::size_t i = 0; i < problem.pairs_3d3d.size(); ++i) {
-      if (problem.pairs_3d3d[i].id.view != view) continue;
-      squares += evaluation.per_pair_m[i] * evaluation.per_pair_m[i];
+    for (const Pair3d3d& pair : problem.pairs_3d3d) {
+      if (pair.id.view != view) continue;
+      const Eigen::Vector3d predicted =
+          report->cam_from_lidar * Corrected(pair.point_in_lidar, *report);
+      squares += (pair.point_in_cam - predicted).squaredNorm();
     }
   }
   return std::sqrt(squares / static_cast<double>(problem.pairs_3d3d.size()));
