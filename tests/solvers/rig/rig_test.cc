@@ -91,7 +91,7 @@ TEST(Rig, ExactObservationsOfCamerasAndLidarsGiveTheTruth) {
 
 TEST(Rig, ErrorsAreThoseOfTheBoundAndOfTheCovariance) {
   RigSimulation simulation{.cameras = 2, .lidars = 2, .moments = 8, .takes_part = 0.8};
-  const PairErrors errors = ErrorsOver(simulation, 25);
+  const PairErrors errors = ErrorsOver(simulation, 14);
   EXPECT_GT(errors.nees / errors.count, 0.8);
   EXPECT_LT(errors.nees / errors.count, 1.25);
   EXPECT_LT(std::sqrt(errors.over_bound / errors.count), 1.3);
@@ -100,7 +100,7 @@ TEST(Rig, ErrorsAreThoseOfTheBoundAndOfTheCovariance) {
 TEST(Rig, SystematicErrorsOfLidarsAreInTheCovariance) {
   RigSimulation simulation{.cameras = 1, .lidars = 2, .moments = 8};
   simulation.sensors.errors = LidarErrorModel{};
-  const PairErrors errors = ErrorsOver(simulation, 20);
+  const PairErrors errors = ErrorsOver(simulation, 12);
   EXPECT_GT(errors.nees / errors.count, 0.8);
   EXPECT_LT(errors.nees / errors.count, 1.25);
 }
@@ -108,7 +108,7 @@ TEST(Rig, SystematicErrorsOfLidarsAreInTheCovariance) {
 TEST(Rig, CamerasAloneAndLidarsAloneAreCases) {
   for (const auto& [cameras, lidars] : {std::pair(3, 0), std::pair(0, 3)}) {
     RigSimulation simulation{.cameras = cameras, .lidars = lidars, .moments = 8};
-    const PairErrors errors = ErrorsOver(simulation, 12);
+    const PairErrors errors = ErrorsOver(simulation, 8);
     EXPECT_GT(errors.nees / errors.count, 0.75) << cameras << " cameras";
     EXPECT_LT(errors.nees / errors.count, 1.3) << cameras << " cameras";
   }
@@ -149,7 +149,7 @@ TEST(Rig, JointIsBetterThanChaining) {
   simulation.sensors.errors = LidarErrorModel{};
   double joint = 0.0;
   double chained = 0.0;
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 10; ++i) {
     simulation.seed = static_cast<std::uint64_t>(i + 1);
     const SimulatedRig rig = SimulateRig(simulation);
     const auto all = SolveRig(rig.problem);
@@ -211,7 +211,7 @@ TEST(Rig, ABoardThatMovedBetweenSensorsIsLeftOutForOneOfThem) {
   EXPECT_LT(SquaredMahalanobis<6>(error, pose.covariance), 22.5);  // 0.1 %
 }
 
-TEST(Rig, AWrongSizeOfThePrintIsAWarning) {
+TEST(Rig, AWrongSizeOfThePrintIsRefuted) {
   for (const double share : {0.0, 0.05}) {
     RigSimulation simulation{.cameras = 2, .lidars = 1, .moments = 10};
     simulation.sensors.errors = LidarErrorModel{};
@@ -233,7 +233,7 @@ TEST(Rig, AWrongSizeOfThePrintIsAWarning) {
 }
 
 TEST(Rig, ScansOfOtherMomentsAreRefuted) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     RigSimulation simulation{.seed = seed, .cameras = 1, .lidars = 1, .moments = 8};
     simulation.sensors.errors = LidarErrorModel{};
     SimulatedRig rig = SimulateRig(simulation);
