@@ -61,7 +61,8 @@ CalibrationResult ResultWithoutPose(const Calibration& calibration) {
     if (view.seen && !result.lidar) result.lidar = view.seen->lidar;
     result.views.push_back(LeftOut(view, i));
   }
-  const std::vector<std::string> lines = LinesOf(calibration.result.error().message);
+  std::vector<std::string> lines = LinesOf(calibration.result.error().message);
+  if (lines.front()[0] >= 'a' && lines.front()[0] <= 'z') lines.front()[0] -= 'a' - 'A';
   result.verdict = ResultVerdict{
       .reason = lines.front(),
       .next = "Read below why each view was left out, correct that, and calibrate again"};
@@ -74,6 +75,7 @@ CalibrationResult ResultWithoutPose(const Calibration& calibration) {
 void DropWhatNeedsThePose(ReportPage& page) {
   page.transforms.clear();
   page.figures.clear();
+  page.coverage.clear();
   page.next = {.sentences = {"No proposal: that needs a first pose."}};
   for (PageSensor& sensor : page.sensors) {
     if (sensor.is_camera) sensor.base_from_sensor.reset();

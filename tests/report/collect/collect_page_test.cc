@@ -155,7 +155,7 @@ TEST(CollectPage, WithoutAPoseItShowsTheViewsAndWhyTheyWereLeftOut) {
                                        .calibration = &calibration,
                                        .frames = AlwaysThe(frame)});
   EXPECT_EQ(page.verdict.word, "NOT USABLE");
-  EXPECT_EQ(page.verdict.reason, "no board was seen by both sensors");
+  EXPECT_EQ(page.verdict.reason, "No board was seen by both sensors");
   EXPECT_THAT(page.diagnostics, testing::ElementsAre("view 1: not in the scan"));
   EXPECT_THAT(page.transforms, IsEmpty());
   ASSERT_THAT(page.views, SizeIs(2));
