@@ -110,8 +110,11 @@ TEST(RigCommand, AWrongSizeOfTheTagIsNotUsable) {
             0);
   std::string text = test::ReadText(problem);
   // The printed points as if the tags were a quarter larger.
-  for (std::size_t at = text.find("0.1025"); at != std::string::npos; at = text.find("0.1025")) {
-    text.replace(at, 6, "0.128125");
+  const std::string corners =
+      "[-0.1025, -0.1025, 0.1025, -0.1025, 0.1025, 0.1025, -0.1025, 0.1025]";
+  const std::string larger = "[-0.128, -0.128, 0.128, -0.128, 0.128, 0.128, -0.128, 0.128]";
+  for (std::size_t at = text.find(corners); at != std::string::npos; at = text.find(corners)) {
+    text.replace(at, corners.size(), larger);
   }
   ASSERT_NE(text, test::ReadText(problem));
   const std::string wrong = TestPath("wrong.yaml");
