@@ -146,7 +146,7 @@ struct PageCorrelation {
 /// What the result rests on.
 struct PageInputs {
   PageTable files{};
-  std::string hash{};  ///< Of all of them together; empty if there are none.
+  std::string hash{};  ///< SHA-256 over those of the files; empty without files.
 };
 
 /// Where to hold a board next.
