@@ -50,11 +50,16 @@ double WorstSigma(const SquareMatrix<3>& covariance) {
 // GOOD: no independent measurement, as a board is, confirms them.
 ResultVerdict VerdictOf(const SceneFit& fit, const Rigid3d& start,
                         const RefineSceneOptions& options) {
-  if (EndedAtLimit(fit, start)) {
+  // A start off by the whole limit is refined, too, to a pose that is a little farther from it.
+  constexpr double kMargin = 1.25;
+  const PoseDistance moved = DistanceBetween(fit.cam_from_lidar, start);
+  if (moved.rotation_rad > kMargin * kSearchedRotation_rad ||
+      moved.translation_m > kMargin * kSearchedTranslation_m) {
     return {.usability = Usability::kNotUsable,
-            .reason = fmt::format("the refined pose is more than {:.1f} m or {:.0f} deg from the "
+            .reason = fmt::format("the refined pose is more than {:.3f} m or {:.1f} deg from the "
                                   "start, the limit of the search, and may be a wrong optimum",
-                                  kSearchedTranslation_m, kSearchedRotation_rad / kRadPerDeg),
+                                  kMargin * kSearchedTranslation_m,
+                                  kMargin * kSearchedRotation_rad / kRadPerDeg),
             .next = "Look at it with sextant project; where the edges coincide, start from it"};
   }
   const double rotation_deg = WorstSigma(fit.covariance.topLeftCorner<3, 3>()) / kRadPerDeg;
