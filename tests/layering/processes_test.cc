@@ -26,8 +26,8 @@ const std::regex& Start() {
 bool MayStartPrograms(const SourceFile& file) {
   return file.path == "base/process/run_process.cc" ||
          // In the background, with its own process group or measurement.
-         file.path == "tests/support/virtual_display.cc" || file.path == "bench/process_cost.cc" ||
-         file.path == "tests/support/cost/child_cost.cc";
+         file.path == "tests/support/display/virtual_display.cc" ||
+         file.path == "bench/process_cost.cc" || file.path == "tests/support/cost/child_cost.cc";
 }
 
 std::string WithoutComment(const std::string& line) { return line.substr(0, line.find("//")); }
