@@ -99,16 +99,16 @@ std::vector<std::string> DescribeEdges(std::span<const MeasuredEdge> edges,
 
 std::optional<PrintFit> MeasurePrints(std::span<const SessionView> views,
                                       const Assembly& assembly) {
-  constexpr int kPoseNumbers = 6;
+  constexpr int kPoseUnknowns = 6;
   std::vector<double> rms_px;
   std::vector<double> over_noise;
   for (const MatchedBoard& kept : assembly.matching.kept) {
     const BoardPose& pose = views[static_cast<std::size_t>(kept.view)]
                                 .seen->in_image[static_cast<std::size_t>(kept.sighting)]
                                 .pose;
-    if (pose.residuals <= kPoseNumbers) continue;
+    if (pose.residuals <= kPoseUnknowns) continue;
     rms_px.push_back(pose.rms_px);
-    over_noise.push_back(std::sqrt(pose.chi_square / (pose.residuals - kPoseNumbers)));
+    over_noise.push_back(std::sqrt(pose.chi_square / (pose.residuals - kPoseUnknowns)));
   }
   if (rms_px.empty()) return std::nullopt;
   return PrintFit{.rms_px = UpperMedian(rms_px), .over_noise = UpperMedian(over_noise)};
