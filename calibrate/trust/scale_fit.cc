@@ -27,10 +27,10 @@ struct NormalEquations {
   Vector7d right = Vector7d::Zero();
   double squares = 0.0;
 
-  void Add(const NormalEquations& other, double sign = 1.0) {
-    matrix += sign * other.matrix;
-    right += sign * other.right;
-    squares += sign * other.squares;
+  void Add(const NormalEquations& other, double factor = 1.0) {
+    matrix += factor * other.matrix;
+    right += factor * other.right;
+    squares += factor * other.squares;
   }
   std::optional<Matrix7d> Inverse() const {
     const auto inverse = InvertSymmetric<Eigen::Dynamic>(matrix);
@@ -46,6 +46,35 @@ std::map<ViewAndBoardId, Eigen::Vector3d> CentersInCam(const CalibrationProblem&
     centers[{view.view, view.board}] = view.cam_from_board.translation;
   }
   return centers;
+}
+
+// Scans of a board that stays in its place repeat its errors: they count as one, their mean.
+struct Placement {
+  int board = 0;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  NormalEquations sum{};
+  int count = 0;
+};
+
+std::vector<NormalEquations> MeanByPlacement(
+    const std::map<ViewAndBoardId, NormalEquations>& boards,
+    const std::map<ViewAndBoardId, Eigen::Vector3d>& centers) {
+  constexpr double kSamePlace_m = 0.05;
+  std::vector<Placement> placements;
+  for (const auto& [id, equations] : boards) {
+    const Eigen::Vector3d& center = centers.at(id);
+    auto at = std::find_if(placements.begin(), placements.end(), [&](const Placement& placement) {
+      return placement.board == id.second && (placement.center - center).norm() < kSamePlace_m;
+    });
+    if (at == placements.end()) at = placements.insert(at, {id.second, center});
+    at->sum.Add(equations);
+    ++at->count;
+  }
+  std::vector<NormalEquations> means(placements.size());
+  for (std::size_t i = 0; i < placements.size(); ++i) {
+    means[i].Add(placements[i].sum, 1.0 / placements[i].count);
+  }
+  return means;
 }
 
 // `share` maps the centre of a board to its displacement per unit of the excess.
@@ -67,9 +96,7 @@ std::vector<NormalEquations> EquationsOf(const CalibrationProblem& problem, cons
     board.right += weight * jacobian.transpose() * residual;
     board.squares += weight * residual.squaredNorm();
   }
-  std::vector<NormalEquations> equations;
-  for (const auto& [id, board] : boards) equations.push_back(board);
-  return equations;
+  return MeanByPlacement(boards, centers);
 }
 
 // The variance of the excess by the jackknife over boards; 0 where leaving one out leaves too few.

@@ -23,7 +23,8 @@ struct ScaleFit {
 /// Two models of boards that appear too far away in images: a print smaller than the board file
 /// states scales the whole distance, a focal length that is too long scales the depth only. Each is
 /// a least-squares fit of pose and excess to the corners' differences.
-/// The jackknife leaves out one board of one view at a time.
+/// The jackknife leaves out one board in one place at a time; views of a board that did not move
+/// count as one.
 /// None for fewer than two boards, and where their positions do not determine the excess.
 struct ScaleFits {
   ScaleFit print{};
