@@ -8,12 +8,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "geometry/intrinsics.h"
 #include "solvers/core/board_view_check.h"
 #include "solvers/joint/beam_crossing.h"
+#include "solvers/joint/board_bend.h"
 #include "solvers/refine/refine_camera.h"
 
 namespace sextant {
@@ -22,7 +24,8 @@ namespace {
 constexpr double kFreeOffset_m = 0.1;  // Prior of a range bias that an option frees.
 // Prior of the distance at which the beams cross, 30 mm for a sensor about which nothing is known.
 constexpr double kCrossingOverRing = 3.0;
-constexpr double kFreeShare = 0.05;  // Prior of sizes and intrinsics, in shares of them.
+constexpr double kRimGrowth_m = 0.02;  // Prior of what a hole appears too small.
+constexpr double kFreeShare = 0.05;    // Prior of sizes and intrinsics, in shares of them.
 
 // Largest shift of a printed point's pixel by one unit of an intrinsic.
 double LeverOf(const CalibrationProblem& problem, int intrinsic) {
@@ -58,7 +61,9 @@ class ModelMaker {
   Expected<JointModel> Make() {
     AddRanges();
     AddCrossing();
+    AddBends();
     AddGrowth();
+    AddRimGrowth();
     if (options_.board_size == JointBoardSize::kScale) AddScale();
     if (options_.board_size == JointBoardSize::kSides) AddSides();
     SEXTANT_RETURN_IF_ERROR(AddIntrinsics());
@@ -105,16 +110,42 @@ class ModelMaker {
     for (std::size_t i = 0; i < model_.views.size(); ++i) {
       JointView& view = model_.views[i];
       const BoardPlane plane(problem_.board_views[i].lidar_from_board);
-      const Eigen::VectorXd by_range = RangeByCrossing(view.terms, plane);
-      for (FaceGroup& group : view.face) {
-        group.shared.push_back(shared);
-        group.by.conservativeResize(Eigen::NoChange, group.by.cols() + 1);
-        for (std::size_t k = 0; k < group.members.size(); ++k) {
-          group.by(static_cast<Eigen::Index>(k), group.by.cols() - 1) =
-              by_range[static_cast<Eigen::Index>(group.members[k])];
-        }
-      }
+      AddToRanges(shared, RangeByCrossing(view.terms, plane), view);
       view.shifts.push_back({shared, OutwardByCrossing(view.terms, plane)});
+    }
+  }
+
+  // Of each board, as a common range offset would be determined by its bend.
+  void AddBends() {
+    const double sigma_m = kBendOverRange * problem_.lidar_errors.range_offset_sigma_m;
+    if (!(sigma_m > 0.0)) return;
+    std::map<int, std::size_t> first_of_board;
+    for (std::size_t i = 0; i < model_.views.size(); ++i) {
+      JointView& view = model_.views[i];
+      if (view.terms.face.empty()) continue;
+      const BoardView& seen = problem_.board_views[i];
+      const Board& board = *FindBoard(problem_.boards, seen.board);
+      const auto [first, is_new] = first_of_board.try_emplace(board.id, model_.shared.size());
+      for (Eigen::Index k = 0; is_new && k < kBends; ++k) {
+        AddOffset(fmt::format("board_{}_{}", board.id, kBendNames[k]), sigma_m, false);
+      }
+      const double half_diagonal_m = 0.5 * std::hypot(board.top_right_m, board.right_bottom_m);
+      const auto by = RangeByBend(view.terms, BoardPlane(seen.lidar_from_board), half_diagonal_m);
+      for (Eigen::Index k = 0; k < kBends; ++k) {
+        AddToRanges(first->second + static_cast<std::size_t>(k), by.col(k), view);
+      }
+    }
+  }
+
+  // A shared number that adds to the range of each face return of a view.
+  static void AddToRanges(std::size_t shared, const Eigen::VectorXd& by_range, JointView& view) {
+    for (FaceGroup& group : view.face) {
+      group.shared.push_back(shared);
+      group.by.conservativeResize(Eigen::NoChange, group.by.cols() + 1);
+      for (std::size_t k = 0; k < group.members.size(); ++k) {
+        group.by(static_cast<Eigen::Index>(k), group.by.cols() - 1) =
+            by_range[static_cast<Eigen::Index>(group.members[k])];
+      }
     }
   }
 
@@ -153,6 +184,22 @@ class ModelMaker {
             std::abs(outward.dot(across));
       }
       model_.views[i].shifts.push_back({shared, std::move(by)});
+    }
+  }
+
+  // Of the rims of round holes, whose points are placed by their deviation from a circle of free
+  // radius.
+  void AddRimGrowth() {
+    std::optional<std::size_t> shared;
+    for (std::size_t i = 0; i < model_.views.size(); ++i) {
+      const std::vector<EdgeRay>& edges = problem_.board_views[i].edges;
+      Eigen::MatrixXd by(edges.size(), 1);
+      for (std::size_t k = 0; k < edges.size(); ++k) {
+        by(static_cast<Eigen::Index>(k), 0) = edges[k].side >= kFirstRim ? 1.0 : 0.0;
+      }
+      if (by.isZero()) continue;
+      if (!shared) shared = AddOffset("rim_growth_m", kRimGrowth_m, true);
+      model_.views[i].shifts.push_back({*shared, std::move(by)});
     }
   }
 
