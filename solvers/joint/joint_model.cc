@@ -115,15 +115,16 @@ class ModelMaker {
     }
   }
 
-  // Of each board, as a common range offset would be determined by its bend.
+  // Of each board, as a common range offset would be determined by its bend. Where rings have
+  // offsets, these are as large.
   void AddBends() {
     const double sigma_m = kBendOverRange * problem_.lidar_errors.range_offset_sigma_m;
     if (!(sigma_m > 0.0)) return;
     std::map<int, std::size_t> first_of_board;
     for (std::size_t i = 0; i < model_.views.size(); ++i) {
       JointView& view = model_.views[i];
-      if (view.terms.face.empty()) continue;
       const BoardView& seen = problem_.board_views[i];
+      if (view.terms.face.empty() || RingOf(seen, 0) >= 0) continue;
       const Board& board = *FindBoard(problem_.boards, seen.board);
       const auto [first, is_new] = first_of_board.try_emplace(board.id, model_.shared.size());
       for (Eigen::Index k = 0; is_new && k < kBends; ++k) {
