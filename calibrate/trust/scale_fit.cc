@@ -59,12 +59,12 @@ struct Placement {
 std::vector<NormalEquations> MeanByPlacement(
     const std::map<ViewAndBoardId, NormalEquations>& boards,
     const std::map<ViewAndBoardId, Eigen::Vector3d>& centers) {
-  constexpr double kSamePlace_m = 0.05;
+  constexpr double kSamePlacement_m = 0.05;
   std::vector<Placement> placements;
   for (const auto& [id, equations] : boards) {
     const Eigen::Vector3d& center = centers.at(id);
     auto at = std::find_if(placements.begin(), placements.end(), [&](const Placement& placement) {
-      return placement.board == id.second && (placement.center - center).norm() < kSamePlace_m;
+      return placement.board == id.second && (placement.center - center).norm() < kSamePlacement_m;
     });
     if (at == placements.end()) at = placements.insert(at, {id.second, center});
     at->sum.Add(equations);
