@@ -13,6 +13,6 @@ namespace sextant {
 /// The files behind a result with their SHA-256: boards, camera and recording where the calibration
 /// is known (it may be null), photos and scans. Reads every file once, on all cores.
 PageInputs InputsOf(const CalibrationResult& result, const Calibration* calibration,
-                   const std::filesystem::path& folder);
+                    const std::filesystem::path& folder);
 
 }  // namespace sextant

@@ -32,8 +32,9 @@ struct RowEntries {
 
 /// The normal equations of one placement: its own columns and those that it shares.
 struct PlacementNormal {
-  Eigen::MatrixXd inverse;  ///< The inverse of its own part; 0 along directions without information.
-  Eigen::MatrixXd slope;    ///< Change of its minimum by the shared columns.
+  Eigen::MatrixXd
+      inverse;            ///< The inverse of its own part; 0 along directions without information.
+  Eigen::MatrixXd slope;  ///< Change of its minimum by the shared columns.
 };
 
 // Pseudo-inverse after scaling to a unit diagonal.

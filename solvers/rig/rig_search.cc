@@ -117,8 +117,8 @@ class RigSearch {
     }
   }
 
-  // Without its returns, a view has no shift: what was left out once for it stays out. A shift is as
-  // large as the level allowed with which it was estimated, which may have become smaller since.
+  // Without its returns, a view has no shift: what was left out once for it stays out. A shift is
+  // as large as the level allowed with which it was estimated, which may have become smaller since.
   bool IsShifted(const RigBlock& block) {
     const int shift = model_.placements[block.placement].shift_of[block.seen];
     if (shift < 0) return false;

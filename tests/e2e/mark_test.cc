@@ -15,10 +15,10 @@
 #include "io/boards/polygon_file.h"
 #include "io/clouds/pcd_file.h"
 #include "io/results/results_json.h"
+#include "support/display/virtual_display.h"
 #include "support/drawn_board.h"
 #include "support/pictures.h"
 #include "support/run_program.h"
-#include "support/display/virtual_display.h"
 
 namespace sextant {
 namespace {

@@ -145,9 +145,8 @@ TEST_P(TagFamilyTest, IsDetectedByItsLibraryInARenderedImage) {
     ASSERT_TRUE(image) << image.error().message;
     const auto aruco = FindArucoDictionary(family);
     const AprilTagFamily april = MakeAprilTagFamily(family);
-    const std::vector<Found> found =
-        aruco ? FindAruco(*image, *aruco, ArucoBorderCells(family))
-              : FindAprilTag(*image, april.get());
+    const std::vector<Found> found = aruco ? FindAruco(*image, *aruco, ArucoBorderCells(family))
+                                           : FindAprilTag(*image, april.get());
     ASSERT_EQ(found.size(), 1U) << family << " " << id;
     EXPECT_EQ(found[0].id, id);
     const Points truth = TrueCorners(camera, pose, tag);

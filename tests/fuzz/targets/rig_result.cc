@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/results/rig_result.h"
+
 #include "tests/fuzz/entry_point.h"
 #include "tests/fuzz/outcome.h"
 
