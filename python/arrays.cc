@@ -30,7 +30,19 @@ std::string ShapeOf(const Numbers& array) {
   return text + (array.ndim() == 1 ? ",)" : ")");
 }
 
+// Conversions to double that would lose what the array says.
+void CheckKeepsValues(const py::handle& object, const char* name) {
+  if (!py::isinstance<py::array>(object)) return;
+  if (py::hasattr(object, "mask")) {
+    Refuse(fmt::format("{}: expected an array without a mask; leave out the masked rows", name));
+  }
+  if (py::reinterpret_borrow<py::array>(object).dtype().kind() == 'c') {
+    Refuse(fmt::format("{}: expected real numbers, got complex ones", name));
+  }
+}
+
 Numbers NumericArray(const py::handle& object, const char* name) {
+  CheckKeepsValues(object, name);
   Numbers array = Numbers::ensure(object);
   if (!array) {
     PyErr_Clear();

@@ -226,7 +226,7 @@ class Judge {
   }
 
   std::string WorstText() const {
-    return fmt::format("{:.2g} mm and {:.2g} deg", 1e3 * *f_.worst_translation_m,
+    return fmt::format("{:.3g} mm and {:.3g} deg", 1e3 * *f_.worst_translation_m,
                        *f_.worst_rotation_rad * kDegPerRad);
   }
 

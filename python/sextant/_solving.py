@@ -6,6 +6,7 @@ import os
 import numpy as np
 
 from . import _core
+from ._error import Error
 from ._own import spec_of
 
 
@@ -49,5 +50,12 @@ def project(points_in_lidar, cam_from_lidar, camera):
     cam_from_lidar: (4, 4), or anything with a `matrix`. The image's size does not limit the pixels.
     """
     matrix = np.asarray(getattr(cam_from_lidar, "matrix", cam_from_lidar), dtype=float)
+    if matrix.shape not in ((4, 4), (3, 4)):
+        raise Error(f"cam_from_lidar: expected shape (4, 4) or (3, 4), got {matrix.shape}")
+    turn = matrix[:3, :3]
+    if not (np.abs(turn @ turn.T - np.eye(3)).max() < 1e-6 and np.linalg.det(turn) > 0):
+        raise Error("cam_from_lidar: its 3x3 part is not a rotation")
     points = np.asarray(points_in_lidar, dtype=float)
+    if points.ndim != 2 or points.shape[1] < 3:
+        raise Error(f"points_in_lidar: expected shape (N, 3), got {points.shape}")
     return camera.project(points[:, :3] @ matrix[:3, :3].T + matrix[:3, 3])

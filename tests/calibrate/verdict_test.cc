@@ -137,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(
         VerdictCase{"NotChecked", [](F& f) { f.is_checked = false; }, kCare, "not compared"},
         VerdictCase{"Coarse", [](F& f) { f.worst_translation_m = 0.02; }, kCare,
                     "20 mm and 0.05 deg, and 10 mm and 0.1 deg are needed"},
-        VerdictCase{"Useless", [](F& f) { f.worst_rotation_rad = 0.05; }, kNo, "2.9 deg"},
+        VerdictCase{"Useless", [](F& f) { f.worst_rotation_rad = 0.05; }, kNo, "2.86 deg"},
         VerdictCase{"Uncertain", [](F& f) { f.worst_translation_m.reset(); }, kNo,
                     "cannot be computed"},
         VerdictCase{"TheWorstRuleDecides",

@@ -151,3 +151,14 @@ def test_other_threads_run_while_a_solver_computes():
     thread.join()
     # With the GIL held, the thread would tick between the calls alone, if at all.
     assert sum(start < t < end for t in ticks) > 60
+
+
+def test_what_is_no_transform_or_has_hidden_values_is_refused():
+    in_lidar, in_cam = pairs(8)
+    for wrong in (np.diag([-1.0, 1, 1, 1]), np.diag([2.0, 2, 1, 1]), np.eye(3)):
+        with pytest.raises(sextant.Error, match="cam_from_lidar"):
+            sextant.project(in_lidar, wrong, CAMERA)
+    with pytest.raises(sextant.Error, match="mask"):
+        sextant.solve(np.ma.masked_array(in_lidar, mask=in_lidar > 3), in_cam)
+    with pytest.raises(sextant.Error, match="real numbers"):
+        sextant.solve(in_lidar + 1j, in_cam)
