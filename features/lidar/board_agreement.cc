@@ -33,6 +33,7 @@ constexpr double kMinDensity = 0.3;
 constexpr int kMinEdgePoints = 10;
 constexpr int kMinEdgePointsOnMinRings = 12;  // With kMinRings, furniture has up to 11 by chance.
 constexpr int kMinPointsOfBoard = 16;
+constexpr double kMaxPlaneSigma = 0.12;  // Of the shorter edge: more is no flat plate.
 constexpr double kThroughCost = 4.0;
 constexpr double kBeyondCost = 2.0;
 constexpr int kMinRims = 3;
@@ -270,6 +271,12 @@ std::optional<std::string> RejectionReason(const BoardPatch& patch, const Board&
   }
   if (agreement.points < kMinPointsOfBoard) {
     return fmt::format("only {} returns on it, {} are needed", agreement.points, kMinPointsOfBoard);
+  }
+  const double max_sigma_m = kMaxPlaneSigma * std::min(board.top_right_m, board.right_bottom_m);
+  if (patch.plane.sigma_m > max_sigma_m) {
+    return fmt::format(
+        "its returns are {:.0f} mm off a plane (1 sigma), a plate of its size at most {:.0f} mm",
+        1e3 * patch.plane.sigma_m, 1e3 * max_sigma_m);
   }
   if (agreement.density < kMinDensity) {
     return fmt::format("only {:.0f} % of the returns expected from a board there",
