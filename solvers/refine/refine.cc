@@ -86,8 +86,12 @@ class RefineSolver final : public Solver {
 
  private:
   struct QuickAnswer {
+    // With a constructor, std::optional builds it in place, by clang 14 too.
+    QuickAnswer(Estimate&& answer, bool certain)
+        : estimate(std::move(answer)), is_certain(certain) {}
+
     Estimate estimate;
-    bool is_certain = false;  // Of small residuals; else the start may have been a bad one.
+    bool is_certain;  // Of small residuals; else the start may have been a bad one.
   };
 
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {
