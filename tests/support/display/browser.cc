@@ -16,6 +16,7 @@ ProcessEnd RunChromium(const std::filesystem::path& profile,
   std::vector<std::string> command = {"chromium",
                                       "--headless",
                                       "--no-sandbox",
+                                      "--disable-dev-shm-usage",  // It is small in containers.
                                       "--disable-extensions",
                                       "--disable-background-networking",
                                       "--no-first-run",
