@@ -42,7 +42,7 @@ void CompleteInliers(std::size_t count, bool are_stated, std::vector<int>& inlie
     return;
   }
   std::ranges::sort(inliers);
-  inliers.erase(std::ranges::unique(inliers).begin(), inliers.end());
+  inliers.erase(std::unique(inliers.begin(), inliers.end()), inliers.end());
   if (inliers.empty() || (inliers.front() >= 0 && inliers.back() < static_cast<int>(count))) return;
   RefuseAnswer(ErrorCode::kInvalidInput,
                fmt::format("inliers: expected numbers of pairs from 0 to {}, got {}",

@@ -147,7 +147,7 @@ std::vector<std::vector<int>> ViewsThatShare(std::span<const RepeatedPlacement> 
       return shares;
     });
     std::ranges::sort(joined);
-    joined.erase(std::ranges::unique(joined).begin(), joined.end());
+    joined.erase(std::unique(joined.begin(), joined.end()), joined.end());
     groups.push_back(std::move(joined));
   }
   return groups;

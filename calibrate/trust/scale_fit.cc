@@ -62,11 +62,12 @@ std::vector<NormalEquations> MeanByPlacement(
   constexpr double kSamePlacement_m = 0.05;
   std::vector<Placement> placements;
   for (const auto& [id, equations] : boards) {
+    const int number = id.second;
     const Eigen::Vector3d& center = centers.at(id);
     auto at = std::find_if(placements.begin(), placements.end(), [&](const Placement& placement) {
-      return placement.board == id.second && (placement.center - center).norm() < kSamePlacement_m;
+      return placement.board == number && (placement.center - center).norm() < kSamePlacement_m;
     });
-    if (at == placements.end()) at = placements.insert(at, {id.second, center});
+    if (at == placements.end()) at = placements.insert(at, {number, center});
     at->sum.Add(equations);
     ++at->count;
   }

@@ -80,9 +80,9 @@ std::vector<ScoredRow> SortByScore(std::vector<ComparisonRow> rows,
   }
   SetScores(scored);
   std::ranges::stable_sort(scored, {}, [](const ScoredRow& of) {
-    constexpr double kNone = std::numeric_limits<double>::infinity();
+    constexpr double kWorst = std::numeric_limits<double>::infinity();
     return std::tuple(!of.row.report.has_value(), !of.spec.estimates_rotation,
-                      of.score.value_or(kNone));
+                      of.score.value_or(kWorst));
   });
   MeasureFromFirst(scored);
   return scored;
