@@ -11,8 +11,8 @@
 namespace sextant {
 
 // The residual blocks of the joint problem, with analytic derivatives. The block of a view has both
-// poses of its board (BoardPoses as PoseManifold<2>). Weights belong to the problem and multiply
-// the whitened residuals; one with the weight 0 is not evaluated.
+// poses of its board (BoardPoses, as a PoseManifold of two). Weights belong to the problem and
+// multiply the whitened residuals; one with the weight 0 is not evaluated.
 
 /// Printed points of one tag or checkerboard. Parameters: the view's, then intrinsics if any.
 class PrintedCost final : public ceres::CostFunction {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/symmetric.h"
+#include "solvers/joint/scaled_inverse.h"
 
 namespace sextant {
 namespace {
@@ -67,18 +68,6 @@ Normal NormalOf(const JointLinearisation& at) {
     }
   }
   return normal;
-}
-
-// Pseudo-inverse after scaling to a unit diagonal.
-DynamicMatrix InverseOf(const DynamicMatrix& information) {
-  constexpr double kSmallestEigenvalue = 1e-14;
-  const Eigen::VectorXd scale =
-      information.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
-  const auto eigen = EigenOf<Eigen::Dynamic>(scale.asDiagonal() * information * scale.asDiagonal());
-  const Eigen::VectorXd inverse =
-      eigen.values.unaryExpr([](double e) { return e > kSmallestEigenvalue ? 1.0 / e : 0.0; });
-  const DynamicMatrix vectors = scale.asDiagonal() * eigen.vectors;
-  return vectors * inverse.asDiagonal() * vectors.transpose();
 }
 
 double LeverageOf(const SparseRow& row, const DynamicMatrix& covariance) {
@@ -145,7 +134,7 @@ std::optional<JointCovariance> JointCovariance::Of(const JointLinearisation& at)
   JointCovariance covariance;
   DynamicMatrix information = normal.shared;
   for (const ViewNormal& view : normal.views) {
-    covariance.views_.push_back(InverseOf(view.own));
+    covariance.views_.push_back(ScaledInverse(view.own));
     covariance.by_shared_.push_back(-covariance.views_.back() * view.mixed);
     information.noalias() += view.mixed.transpose() * covariance.by_shared_.back();
   }

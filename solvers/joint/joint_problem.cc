@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/joint/joint_problem.h"
 
-#include <ceres/ceres.h>
-
 #include <algorithm>
-#include <memory>
 #include <utility>
 
 #include "solvers/joint/joint_costs.h"
@@ -20,23 +17,17 @@ JointWeights NoWeights(const JointView& view) {
           std::vector<double>(view.terms.edges.size(), 0.0), Vector6d::Zero(), 0.0};
 }
 
-ceres::Problem::Options Unchecked() {
-  ceres::Problem::Options options;
-  options.disable_all_safety_checks = true;
-  return options;
-}
-
 }  // namespace
 
 JointProblem::JointProblem(const JointModel& model, const JointState& start)
-    : model_(model), state_(start), boards_(start.boards.size()), problem_(Unchecked()) {
+    : model_(model), state_(start), boards_(start.boards.size()), problem_(UncheckedProblem()) {
   for (const JointView& view : model.views) weights_.push_back(NoWeights(view));
   StorePose(start.cam_from_lidar, cam_from_lidar_.data());
   for (std::size_t i = 0; i < boards_.size(); ++i) {
     StorePose(start.boards[i].cam_from_board, boards_[i].data());
     StorePose(start.boards[i].lidar_from_board, boards_[i].data() + kPoseNumbers);
   }
-  problem_.AddParameterBlock(cam_from_lidar_.data(), kPoseNumbers, new PoseManifold<1>);
+  problem_.AddParameterBlock(cam_from_lidar_.data(), kPoseNumbers, new PoseManifold(1));
   AddViews();
   AddShared();
 }
@@ -51,12 +42,12 @@ void JointProblem::Add(JointRows rows, ceres::CostFunction* cost,
 }
 
 void JointProblem::AddViews() {
-  auto* manifold = new PoseManifold<2>;  // The problem owns it from the first use on.
+  auto* manifold = new PoseManifold(2);  // The problem owns it from the first use on.
   for (std::size_t i = 0; i < boards_.size(); ++i) {
     const JointView& view = model_.views[i];
     const JointWeights& weights = weights_[i];
     double* board = boards_[i].data();
-    problem_.AddParameterBlock(board, PoseManifold<2>::kAmbient, manifold);
+    problem_.AddParameterBlock(board, manifold->AmbientSize(), manifold);
     for (std::size_t k = 0; k < view.terms.printed.size(); ++k) {
       std::vector<double*> blocks = {board};
       if (!model_.intrinsics.empty()) blocks.push_back(state_.shared.back().data());
@@ -99,30 +90,15 @@ void JointProblem::SetWeights(const std::vector<JointWeights>& weights, double r
   }
 }
 
-JointSteps JointProblem::Solve(int max_iterations, double step_tolerance) {
-  ceres::Solver::Options options;
-  options.max_num_iterations = max_iterations;
-  options.parameter_tolerance = step_tolerance;
-  options.function_tolerance = 1e-15;
-  options.gradient_tolerance = 0.0;
-  options.initial_trust_region_radius = 1e6;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
-  options.logging_type = ceres::SILENT;
-  options.num_threads = 1;
-  options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (auto& board : boards_) options.linear_solver_ordering->AddElementToGroup(board.data(), 0);
-  // A group for each shared block: within one, Ceres orders by address, and sums would depend on
-  // it.
-  int group = 1;
-  options.linear_solver_ordering->AddElementToGroup(cam_from_lidar_.data(), group);
-  for (Eigen::VectorXd& block : state_.shared) {
-    options.linear_solver_ordering->AddElementToGroup(block.data(), ++group);
-  }
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem_, &summary);
+SchurSteps JointProblem::Solve(int max_iterations, double step_tolerance) {
+  std::vector<double*> boards;
+  for (auto& board : boards_) boards.push_back(board.data());
+  std::vector<double*> others = {cam_from_lidar_.data()};
+  for (Eigen::VectorXd& block : state_.shared) others.push_back(block.data());
+  const SchurSteps steps =
+      MinimiseBySchur(problem_, boards, others, {max_iterations, step_tolerance, 1e-15});
   StoreState();
-  return {summary.num_successful_steps + summary.num_unsuccessful_steps,
-          summary.termination_type == ceres::CONVERGENCE};
+  return steps;
 }
 
 void JointProblem::StoreState() {

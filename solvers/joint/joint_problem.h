@@ -9,6 +9,7 @@
 
 #include "solvers/joint/joint_model.h"
 #include "solvers/joint/pose_manifold.h"
+#include "solvers/joint/schur_minimum.h"
 
 namespace sextant {
 
@@ -42,11 +43,6 @@ struct JointLinearisation {
   std::vector<double> link_factors;  ///< JointWeights::link_factor of each view.
 };
 
-struct JointSteps {
-  int count = 0;
-  bool converged = false;
-};
-
 /// argmin of 1/2 sum |w r|^2 over cam_from_lidar, the poses of every board and the shared blocks,
 /// as a ceres::Problem. A view's two poses are one parameter block, which the Schur complement
 /// eliminates, so that an iteration is linear in the number of views (Triggs et al. 2000).
@@ -61,7 +57,7 @@ class JointProblem {
   /// One for each view, and that of the priors of the rings' offsets.
   void SetWeights(const std::vector<JointWeights>& weights, double ring_weight);
 
-  JointSteps Solve(int max_iterations, double step_tolerance);
+  SchurSteps Solve(int max_iterations, double step_tolerance);
 
   JointLinearisation Linearise();
 

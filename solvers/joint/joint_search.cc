@@ -205,7 +205,7 @@ class JointSearch {
       if (left_out_[i]) Unlink(weights[i]);
     }
     problem_.SetWeights(weights, 1.0 / noise_.rings);
-    const JointSteps steps = problem_.Solve(options_.max_iterations, step_tolerance);
+    const SchurSteps steps = problem_.Solve(options_.max_iterations, step_tolerance);
     answer_.iterations += steps.count;
     if (steps.converged) return {};
     return MakeError(

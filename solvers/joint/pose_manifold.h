@@ -20,43 +20,25 @@ inline void StorePose(const Rigid3d& pose, double* numbers) {
   all << pose.rotation.coeffs(), pose.translation;
 }
 
-/// `kPoses` poses with the library's perturbation (Perturb).
+/// `poses` poses with the library's perturbation (Perturb), as one parameter block.
 ///
 /// Ceres multiplies a cost's derivative by the 7 numbers of a pose with PlusJacobian, and uses
 /// neither otherwise. Here PlusJacobian is (I, 0), so that the first six columns of each pose (all
 /// rotations and translations of the block first) are the derivative by its (dphi, dt): the costs
-/// in this folder write that derivative into the first 6 kPoses columns and 0 into the others.
-template <int kPoses>
+/// of joint and rig write that derivative into the first 6 columns a pose and 0 into the others.
 class PoseManifold final : public ceres::Manifold {
  public:
-  static constexpr int kAmbient = kPoseNumbers * kPoses;
-  static constexpr int kTangent = 6 * kPoses;
+  explicit PoseManifold(int poses) : poses_(poses) {}
 
-  int AmbientSize() const override { return kAmbient; }
-  int TangentSize() const override { return kTangent; }
+  int AmbientSize() const override { return kPoseNumbers * poses_; }
+  int TangentSize() const override { return 6 * poses_; }
+  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override;
+  bool PlusJacobian(const double* x, double* jacobian) const override;
+  bool Minus(const double* y, const double* x, double* y_minus_x) const override;
+  bool MinusJacobian(const double* x, double* jacobian) const override;
 
-  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
-    for (int i = 0; i < kPoses; ++i) {
-      StorePose(Perturb(PoseIn(x + kPoseNumbers * i), Eigen::Map<const Vector6d>(delta + 6 * i)),
-                x_plus_delta + kPoseNumbers * i);
-    }
-    return true;
-  }
-  bool PlusJacobian(const double* /*x*/, double* jacobian) const override {
-    Eigen::Map<Eigen::Matrix<double, kAmbient, kTangent, Eigen::RowMajor>>(jacobian).setIdentity();
-    return true;
-  }
-  bool Minus(const double* y, const double* x, double* y_minus_x) const override {
-    for (int i = 0; i < kPoses; ++i) {
-      Eigen::Map<Vector6d>(y_minus_x + 6 * i) =
-          PoseDifference(PoseIn(y + kPoseNumbers * i), PoseIn(x + kPoseNumbers * i));
-    }
-    return true;
-  }
-  bool MinusJacobian(const double* /*x*/, double* jacobian) const override {
-    Eigen::Map<Eigen::Matrix<double, kTangent, kAmbient, Eigen::RowMajor>>(jacobian).setIdentity();
-    return true;
-  }
+ private:
+  int poses_;
 };
 
 }  // namespace sextant

@@ -28,40 +28,7 @@ Eigen::Matrix3d LogByTurn(const Eigen::Vector3d& phi) {
   return Eigen::Matrix3d::Identity() - 0.5 * hat + (1.0 / 12.0) * hat * hat;
 }
 
-void SetLeadingIdentity(double* jacobian, int rows, int columns) {
-  Eigen::Map<RowMajor>(jacobian, rows, columns).setIdentity();
-}
-
 }  // namespace
-
-int PosesManifold::AmbientSize() const { return kPoseNumbers * poses_; }
-int PosesManifold::TangentSize() const { return 6 * poses_; }
-
-bool PosesManifold::Plus(const double* x, const double* delta, double* x_plus_delta) const {
-  for (int i = 0; i < poses_; ++i) {
-    StorePose(Perturb(PoseIn(x + kPoseNumbers * i), Eigen::Map<const Vector6d>(delta + 6 * i)),
-              x_plus_delta + kPoseNumbers * i);
-  }
-  return true;
-}
-
-bool PosesManifold::PlusJacobian(const double* /*x*/, double* jacobian) const {
-  SetLeadingIdentity(jacobian, AmbientSize(), TangentSize());
-  return true;
-}
-
-bool PosesManifold::Minus(const double* y, const double* x, double* y_minus_x) const {
-  for (int i = 0; i < poses_; ++i) {
-    Eigen::Map<Vector6d>(y_minus_x + 6 * i) =
-        PoseDifference(PoseIn(y + kPoseNumbers * i), PoseIn(x + kPoseNumbers * i));
-  }
-  return true;
-}
-
-bool PosesManifold::MinusJacobian(const double* /*x*/, double* jacobian) const {
-  SetLeadingIdentity(jacobian, TangentSize(), AmbientSize());
-  return true;
-}
 
 RigBlockCost::RigBlockCost(const RigBlock& block, const RigPlacementModel& placement,
                            const std::vector<double>& weights)

@@ -2,30 +2,12 @@
 #pragma once
 
 #include <ceres/cost_function.h>
-#include <ceres/manifold.h>
 
 #include <vector>
 
 #include "solvers/rig/rig_model.h"
 
 namespace sextant {
-
-/// Any number of poses with the library's perturbation as one parameter block; see PoseManifold, of
-/// which this is the form for a number that is known when the program runs.
-class PosesManifold final : public ceres::Manifold {
- public:
-  explicit PosesManifold(int poses) : poses_(poses) {}
-
-  int AmbientSize() const override;
-  int TangentSize() const override;
-  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override;
-  bool PlusJacobian(const double* x, double* jacobian) const override;
-  bool Minus(const double* y, const double* x, double* y_minus_x) const override;
-  bool MinusJacobian(const double* x, double* jacobian) const override;
-
- private:
-  int poses_;
-};
 
 /// The residuals of a block at sensor_from_root * root_from_board * board_from_seen. Parameters:
 /// the sensor's pose, the placement's (board, then shifts), each shared number.

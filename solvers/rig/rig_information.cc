@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/symmetric.h"
+#include "solvers/joint/scaled_inverse.h"
 
 namespace sextant {
 namespace {
@@ -36,18 +37,6 @@ struct PlacementNormal {
       inverse;            ///< The inverse of its own part; 0 along directions without information.
   Eigen::MatrixXd slope;  ///< Change of its minimum by the shared columns.
 };
-
-// Pseudo-inverse after scaling to a unit diagonal.
-Eigen::MatrixXd ScaledInverse(const Eigen::MatrixXd& information) {
-  constexpr double kSmallestEigenvalue = 1e-14;
-  const Eigen::VectorXd scale =
-      information.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
-  const auto eigen = EigenOf<Eigen::Dynamic>(scale.asDiagonal() * information * scale.asDiagonal());
-  const Eigen::VectorXd inverse =
-      eigen.values.unaryExpr([](double e) { return e > kSmallestEigenvalue ? 1.0 / e : 0.0; });
-  const Eigen::MatrixXd vectors = scale.asDiagonal() * eigen.vectors;
-  return vectors * inverse.asDiagonal() * vectors.transpose();
-}
 
 class NormalEquations {
  public:

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/rig/rig_minimum.h"
 
-#include <ceres/ceres.h>
+#include <ceres/sized_cost_function.h>
 
 #include <algorithm>
 #include <map>
-#include <memory>
 
 #include "solvers/rig/rig_costs.h"
 
@@ -27,16 +26,10 @@ class NumberPrior final : public ceres::SizedCostFunction<1, 1> {
   double sigma_;
 };
 
-ceres::Problem::Options WithoutChecks() {
-  ceres::Problem::Options options;
-  options.disable_all_safety_checks = true;
-  return options;
-}
-
 }  // namespace
 
 RigMinimum::RigMinimum(const RigModel& model, std::size_t root, const RigState& start)
-    : model_(model), root_(root), problem_(WithoutChecks()) {
+    : model_(model), root_(root), problem_(UncheckedProblem()) {
   for (const RigBlock& block : model.blocks) {
     weights_.blocks.emplace_back(static_cast<std::size_t>(block.units), 0.0);
   }
@@ -46,7 +39,7 @@ RigMinimum::RigMinimum(const RigModel& model, std::size_t root, const RigState& 
   }
   sensors_.resize(model.sensors);
   Load(start);
-  auto* manifold = new PoseManifold<1>;  // The problem owns it from the first use on.
+  auto* manifold = new PoseManifold(1);  // The problem owns it from the first use on.
   for (auto& sensor : sensors_) problem_.AddParameterBlock(sensor.data(), kPoseNumbers, manifold);
   problem_.SetParameterBlockConstant(sensors_[root].data());
   std::map<std::size_t, ceres::Manifold*> by_poses;
@@ -54,7 +47,7 @@ RigMinimum::RigMinimum(const RigModel& model, std::size_t root, const RigState& 
   for (std::size_t i = 0; i < placements_.size(); ++i) {
     const std::size_t poses = placements_[i].size() / kPoseNumbers;
     ceres::Manifold*& shared = by_poses[poses];
-    if (shared == nullptr) shared = new PosesManifold(static_cast<int>(poses));
+    if (shared == nullptr) shared = new PoseManifold(static_cast<int>(poses));
     problem_.AddParameterBlock(placements_[i].data(), static_cast<int>(placements_[i].size()),
                                shared);
     for (; block < model.blocks.size() && model.blocks[block].placement == i; ++block) {
@@ -138,33 +131,16 @@ void RigMinimum::SetWeights(const RigWeights& weights) {
   }
 }
 
-RigSteps RigMinimum::Solve(int max_iterations, double step_tolerance) {
-  ceres::Solver::Options options;
-  options.max_num_iterations = max_iterations;
-  options.parameter_tolerance = step_tolerance;
-  options.function_tolerance = 1e-12;
-  options.gradient_tolerance = 0.0;
-  options.initial_trust_region_radius = 1e6;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
-  options.logging_type = ceres::SILENT;
-  options.num_threads = 1;
-  options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (auto& placement : placements_) {
-    options.linear_solver_ordering->AddElementToGroup(placement.data(), 0);
-  }
-  // A group for each other block: within one, Ceres orders by address, and sums would depend on it.
-  int group = 0;
-  for (auto& sensor : sensors_) {
-    options.linear_solver_ordering->AddElementToGroup(sensor.data(), ++group);
-  }
-  for (double& number : state_.numbers) {
-    options.linear_solver_ordering->AddElementToGroup(&number, ++group);
-  }
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem_, &summary);
+SchurSteps RigMinimum::Solve(int max_iterations, double step_tolerance) {
+  std::vector<double*> placements;
+  for (auto& placement : placements_) placements.push_back(placement.data());
+  std::vector<double*> others;
+  for (auto& sensor : sensors_) others.push_back(sensor.data());
+  for (double& number : state_.numbers) others.push_back(&number);
+  const SchurSteps steps =
+      MinimiseBySchur(problem_, placements, others, {max_iterations, step_tolerance, 1e-12});
   Store();
-  return {summary.num_successful_steps + summary.num_unsuccessful_steps,
-          summary.termination_type == ceres::CONVERGENCE};
+  return steps;
 }
 
 RigLinearisation RigMinimum::Linearise() {

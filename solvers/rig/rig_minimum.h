@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "solvers/joint/pose_manifold.h"
+#include "solvers/joint/schur_minimum.h"
 #include "solvers/rig/rig_model.h"
 
 namespace sextant {
@@ -38,11 +39,6 @@ struct RigLinearisation {
   std::vector<RigRows> rows;  ///< By placement; those of the numbers' priors are in none.
 };
 
-struct RigSteps {
-  int count = 0;
-  bool converged = false;
-};
-
 /// argmin of 1/2 sum |w r|^2 over the poses of the sensors, the boards and their shifts, and the
 /// shared numbers, as a ceres::Problem. A placement's poses are one parameter block, which the
 /// Schur complement eliminates, so that an iteration is linear in the number of placements (Triggs
@@ -57,7 +53,7 @@ class RigMinimum {
 
   void SetWeights(const RigWeights& weights);
 
-  RigSteps Solve(int max_iterations, double step_tolerance);
+  SchurSteps Solve(int max_iterations, double step_tolerance);
 
   RigLinearisation Linearise();
 

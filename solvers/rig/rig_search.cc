@@ -141,7 +141,7 @@ class RigSearch {
   Expected<void> Minimise(double loss_scale, double tolerance) {
     minimum_.SetWeights(WeightsFor(model_, minimum_.state(), Units(), answer_.selection,
                                    answer_.noise, loss_scale));
-    const RigSteps steps = minimum_.Solve(options_.max_iterations, tolerance);
+    const SchurSteps steps = minimum_.Solve(options_.max_iterations, tolerance);
     minimised_with_ = answer_.noise;
     answer_.iterations += steps.count;
     if (steps.converged) return {};

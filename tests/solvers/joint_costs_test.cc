@@ -101,8 +101,8 @@ struct CostCase {
 
   SimulatedViews session;
   JointModel model;
-  PoseManifold<1> one;
-  PoseManifold<2> two;
+  PoseManifold one{1};
+  PoseManifold two{2};
   CostBlock board;
   CostBlock pose;
 };
