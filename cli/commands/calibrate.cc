@@ -13,6 +13,7 @@
 #include "calibrate/session/rig_session.h"
 #include "calibrate/session/session.h"
 #include "cli/commands/commands.h"
+#include "cli/need_option.h"
 #include "cli/output.h"
 #include "cli/pose_argument.h"
 #include "cli/progress.h"
@@ -93,15 +94,7 @@ void Declare(CalibrateCommandOptions& options, Arguments& arguments) {
   arguments.Add("--detector", options.detector, "See sextant detect");
   arguments.Add("--extractor", options.extractor, "See sextant boards", {.shows_default = true});
   DeclareSearch(options.search, arguments);
-  arguments.Add(
-      "--need", options.need,
-      "The accuracy that you need, for the verdict: MM,DEG, 1 sigma of the least certain\n"
-      "direction",
-      {.shows_default = true,
-       .range = {{1e-3, 1e6}},
-       .min_values = 2,
-       .max_values = 2,
-       .separator = ','});
+  DeclareNeed(options.need, arguments);
   arguments.Add("--bootstrap", options.bootstrap,
                 "Bootstrap samples over the views; 0: neither bootstrap nor cross-validation",
                 {.shows_default = true, .range = {{0, 100'000}}});

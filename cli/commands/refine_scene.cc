@@ -8,6 +8,7 @@
 #include "calibrate/scene/pose_check.h"
 #include "calibrate/trust/verdict.h"
 #include "cli/commands/commands.h"
+#include "cli/need_option.h"
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/scene_input.h"
@@ -27,15 +28,7 @@ struct RefineSceneOptions {
 
 void Declare(RefineSceneOptions& options, Arguments& arguments) {
   DeclareSceneInput(options.input, arguments);
-  arguments.Add(
-      "--need", options.need,
-      "The accuracy that you need, for the verdict: MM,DEG, 1 sigma of the least certain\n"
-      "direction",
-      {.shows_default = true,
-       .range = {{1e-3, 1e6}},
-       .min_values = 2,
-       .max_values = 2,
-       .separator = ','});
+  DeclareNeed(options.need, arguments);
   arguments.Add("--out", options.out_path, "Result file (YAML)",
                 {.shows_default = true, .writes = Writes::kFile});
   arguments.Add("--json", options.json_path, "Write the result as JSON too; - for standard output",
