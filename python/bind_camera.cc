@@ -102,6 +102,8 @@ std::string ReprOf(const Camera& camera) {
 }  // namespace
 
 void BindCamera(py::module_& module) {
+  module.def("check_pose",
+             [](const py::object& pose, const std::string& name) { PoseFrom(pose, name.c_str()); });
   py::class_<Camera>(module, "Camera",
                      "Intrinsics in pixels; pixel (0, 0) is the centre of the top-left pixel.\n\n"
                      "Camera frame: x right, y down, z forward. model: pinhole, brown_conrady,\n"

@@ -50,11 +50,7 @@ def project(points_in_lidar, cam_from_lidar, camera):
     cam_from_lidar: (4, 4), or anything with a `matrix`. The image's size does not limit the pixels.
     """
     matrix = np.asarray(getattr(cam_from_lidar, "matrix", cam_from_lidar), dtype=float)
-    if matrix.shape not in ((4, 4), (3, 4)):
-        raise Error(f"cam_from_lidar: expected shape (4, 4) or (3, 4), got {matrix.shape}")
-    turn = matrix[:3, :3]
-    if not (np.abs(turn @ turn.T - np.eye(3)).max() < 1e-6 and np.linalg.det(turn) > 0):
-        raise Error("cam_from_lidar: its 3x3 part is not a rotation")
+    _core.check_pose(matrix, "cam_from_lidar")
     points = np.asarray(points_in_lidar, dtype=float)
     if points.ndim != 2 or points.shape[1] < 3:
         raise Error(f"points_in_lidar: expected shape (N, 3), got {points.shape}")
