@@ -145,10 +145,6 @@ std::string FormatRigResult(const RigResult& result) {
   return json.dump(2, ' ', false, RigJson::error_handler_t::replace) + "\n";
 }
 
-Expected<RigResult> ReadRigResult(const std::filesystem::path& path) {
-  return ReadWith(path, ParseRigResult);
-}
-
 Expected<RigResult> ParseRigResult(std::string_view text, const std::string& file) {
   SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
   YamlFields in(file);

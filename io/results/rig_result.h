@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -80,10 +79,9 @@ struct RigResult {
 /// rig.json; docs/formats.md documents its keys.
 std::string FormatRigResult(const RigResult& result);
 
-/// Reads the sensors, the root and the refutations, all that other commands need. Errors: kIo;
-/// kParse and kNonFinite with file, line and key. Time is linear in the file's size; memory is that
+/// Reads the sensors, the root and the refutations, all that other commands need. Errors: kParse
+/// and kNonFinite with file, line and key. Time is linear in the file's size; memory is that
 /// of ParseYaml (io/text/yaml_node.h).
-Expected<RigResult> ReadRigResult(const std::filesystem::path& path);
 Expected<RigResult> ParseRigResult(std::string_view text, const std::string& file);
 
 /// Whether a text is that of a rig's result.
