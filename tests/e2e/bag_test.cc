@@ -23,7 +23,7 @@ using testing::HasSubstr;
 ProgramRun RunBag(const std::string& arguments) { return test::RunSextant("bag " + arguments); }
 
 std::string Seed(const std::string& name) {
-  return (test::SourceFolder() / "tests/fuzz/corpus" / name).string();
+  return (test::SourceRoot() / "tests/fuzz/corpus" / name).string();
 }
 
 // The seed has a scan, an image of 2 x 2 and an encoded image, all with one time stamp.

@@ -69,7 +69,7 @@ void WriteSessionFiles() {
 }
 
 TEST(FormatsPage, ItsExamplesAreAccepted) {
-  const Expected<std::string> page = ReadTextFile(test::SourceFolder() / "docs/formats.md");
+  const Expected<std::string> page = ReadTextFile(test::SourceRoot() / "docs/formats.md");
   ASSERT_TRUE(page) << page.error().message;
   WriteSessionFiles();
   const std::string name = test::TestPath("example.yaml");
@@ -95,7 +95,7 @@ TEST(FormatsPage, ItsExamplesAreAccepted) {
 }
 
 TEST(FormatsPage, TheResultHasTheEulerAnglesOfItsPose) {
-  const Expected<std::string> page = ReadTextFile(test::SourceFolder() / "docs/formats.md");
+  const Expected<std::string> page = ReadTextFile(test::SourceRoot() / "docs/formats.md");
   ASSERT_TRUE(page) << page.error().message;
   for (const Block& block : FencedBlocks(*page)) {
     if (block.first_word != "sextant_result") continue;

@@ -112,7 +112,7 @@ TEST(Refused, ALoopOfLinksIsAMessage) {
 
 TEST(Refused, ARecordingThatIsCutIsReadAndSaid) {
   SKIP_WHERE_NOT_BUILT();
-  const std::string bytes = test::ReadText(test::SourceFolder() / "tests/fuzz/corpus/rosbag1/none");
+  const std::string bytes = test::ReadText(test::SourceRoot() / "tests/fuzz/corpus/rosbag1/none");
   const std::string path = TestPath("cut.bag");
   // The index follows the chunk with the messages.
   WriteText(path, bytes.substr(0, bytes.size() - 300));

@@ -8,6 +8,7 @@
 
 #include "e2e/run_sextant.h"
 #include "e2e/shared_session.h"
+#include "e2e/swinging_scene.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 
@@ -20,38 +21,16 @@ using test::RunSextant;
 using test::TestPath;
 using testing::HasSubstr;
 
-// Two cameras and a LiDAR; the boards swing slowly, so that they are elsewhere in each scan.
-constexpr const char* kSceneOfRig = R"(sextant_scene: 1
-name: rig
-lidar: {model: vlp16, pose: {position_m: [0, 0, 1]}}
-cameras:
-  - name: left
+constexpr const char* kCameras = R"(  - name: left
     intrinsics: {model: pinhole, width_px: 960, height_px: 600, fx_px: 560, fy_px: 560, cx_px: 479.5, cy_px: 299.5}
     pose: {position_m: [0.05, 0.2, 0.92], yaw_deg: 2, pitch_deg: 1, roll_deg: -1}
   - name: right
     intrinsics: {model: pinhole, width_px: 960, height_px: 600, fx_px: 560, fy_px: 560, cx_px: 479.5, cy_px: 299.5}
     pose: {position_m: [0.05, -0.2, 0.92], yaw_deg: -2, pitch_deg: 0, roll_deg: 1}
-boards:
-  - board:
-      id: 0
-      top_right_m: 0.468
-      right_bottom_m: 0.484
-      tags: [{family: aruco_original, id: 26, edge_m: 0.205}]
-    pose: {position_m: [1.9, 0.5, 1], yaw_deg: 15, pitch_deg: 5, roll_deg: 45}
-    swing: {axis_in_world: [0, 1, 0], amplitude_deg: 20, period_s: 400}
-  - board:
-      id: 1
-      top_right_m: 0.468
-      right_bottom_m: 0.49
-      tags: [{family: aruco_original, id: 582, edge_m: 0.205}]
-    pose: {position_m: [2.3, -0.55, 1.05], yaw_deg: -20, pitch_deg: -5, roll_deg: 42}
-    swing: {axis_in_world: [0, 1, 0.3], amplitude_deg: 20, period_s: 300, phase_deg: 100}
-walls:
-  - {name: back, width_m: 8, height_m: 4, pose: {position_m: [4.5, 0, 1.5]}}
 )";
 
 std::filesystem::path SessionOfRig() {
-  return test::SharedSession(kSceneOfRig, "--interval 60 --scans 3");
+  return test::SharedSession(test::SwingingScene("rig", kCameras), "--interval 60 --scans 3");
 }
 
 TEST(RigCommand, ASessionOfSeveralCamerasIsSolvedAsOneRig) {

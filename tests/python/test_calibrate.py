@@ -10,25 +10,7 @@ import sextant.testing
 
 from scenes import PROGRAM, SOURCE
 
-# As in tests/examples.
-SCENE = """sextant_scene: 1
-name: example
-lidar: {model: vlp16, pose: {position_m: [0, 0, 1]}}
-cameras:
-  - name: cam
-    intrinsics: {model: pinhole, width_px: 960, height_px: 600, fx_px: 560, fy_px: 560, cx_px: 479.5, cy_px: 299.5}
-    pose: {position_m: [0.05, 0.1, 0.92], yaw_deg: 2, pitch_deg: 1, roll_deg: -1}
-boards:
-  - board:
-      id: 0
-      top_right_m: 0.468
-      right_bottom_m: 0.484
-      tags: [{family: aruco_original, id: 26, edge_m: 0.205}]
-    pose: {position_m: [1.9, 0.5, 1], yaw_deg: 15, pitch_deg: 5, roll_deg: 45}
-    swing: {axis_in_world: [0, 1, 0], amplitude_deg: 20, period_s: 400}
-walls:
-  - {name: back, width_m: 8, height_m: 4, pose: {position_m: [4.5, 0, 1.5]}}
-"""
+SCENE = (SOURCE / "tests" / "examples" / "swinging_board.yaml").read_text()
 
 
 @pytest.fixture(scope="module")

@@ -38,8 +38,6 @@ SourceFile Read(const fs::path& path) {
 
 }  // namespace
 
-fs::path SourceFolder() { return SEXTANT_SOURCE_DIR; }
-
 std::vector<SourceFile> ReadSourceTree() {
   std::vector<SourceFile> files;
   fs::recursive_directory_iterator entry(SEXTANT_SOURCE_DIR);

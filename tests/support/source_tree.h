@@ -14,9 +14,6 @@ struct SourceFile {
   std::vector<std::string> lines;
 };
 
-/// The project's root.
-std::filesystem::path SourceFolder();
-
 /// All text files of the project by path: sources, build files, scripts and pages, without build
 /// folders and hidden ones.
 std::vector<SourceFile> ReadSourceTree();

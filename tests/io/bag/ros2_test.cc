@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::filesystem::path Seed(const std::string& name) {
-  return test::SourceFolder() / "tests/fuzz/corpus" / name;
+  return test::SourceRoot() / "tests/fuzz/corpus" / name;
 }
 
 // Each container, with each compression, has one cloud and one camera.
