@@ -95,8 +95,9 @@ std::string Merged(const FuseOptions& options, const std::vector<PointCloud>& cl
 std::string Describe(const FuseOptions& options, const std::vector<PointCloud>& clouds,
                      const std::vector<Rigid3d>& last_from_cloud) {
   std::string text;
+  const ReferenceCloud last(clouds.back());
   for (std::size_t i = 0; i + 1 < clouds.size(); ++i) {
-    const CloudAgreement agreement = CompareClouds(clouds[i], last_from_cloud[i], clouds.back());
+    const CloudAgreement agreement = CompareClouds(clouds[i], last_from_cloud[i], last);
     text += fmt::format("{}: ", options.clouds[i]);
     text += agreement.compared == 0
                 ? std::string("has no surface in common with the last cloud\n")

@@ -3,12 +3,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <initializer_list>
 #include <map>
 #include <set>
 
+#include "base/text/lower_case.h"
 #include "geometry/coordinate_range.h"
 #include "io/poses/pose_parts.h"
 #include "io/text/number_text.h"
@@ -17,8 +17,7 @@ namespace sextant {
 namespace {
 
 bool HasAny(const std::string& name, std::initializer_list<std::string_view> words) {
-  std::string lower = name;
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string lower = LowerCase(name);
   return std::ranges::any_of(
       words, [&](std::string_view word) { return lower.find(word) != std::string::npos; });
 }
