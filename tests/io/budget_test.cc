@@ -197,7 +197,7 @@ TEST(Budget, HeadersThatPromiseManyPointsTakeNoMemory) {
   }
 }
 
-// A chain of frames from the last to the first one, as a hostile file has it, and odometry at its end.
+// A chain of frames from the LiDAR to the camera, and odometry that branches off.
 std::string ChainOfFrames(int frames) {
   const auto transform = [](const std::string& parent, const std::string& child, int x_m) {
     return fmt::format(
@@ -209,7 +209,7 @@ std::string ChainOfFrames(int frames) {
     return i == 0 ? std::string("lidar") : i == frames ? "camera_optical" : fmt::format("f{}", i);
   };
   std::string text = "transforms:\n";
-  for (int i = frames; i > 0; --i) text += transform(name(i - 1), name(i), 0);
+  for (int i = 1; i <= frames; ++i) text += transform(name(i - 1), name(i), 0);
   for (int i = 0; i < frames; ++i) text += transform(name(frames / 2), "odom", i);
   return text;
 }
