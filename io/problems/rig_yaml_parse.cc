@@ -25,7 +25,7 @@ using RigKeys = std::vector<std::string>;
 constexpr std::size_t kMaxSensors = 100;
 constexpr std::size_t kMaxNumbers = 2000;  // Of the points of one board; two each.
 // Of the covariances of all pixels, which grow with the square of the pixels of one observation.
-constexpr std::size_t kMaxCovarianceNumbers = std::size_t{32} << 20;
+constexpr std::size_t kMaxCovarianceNumbers = std::size_t{128} << 20;
 
 /// A board with the points on it that observations may refer to.
 struct RigBoard {
@@ -45,6 +45,7 @@ class RigReader {
       ReadSensors(in_.Require(root, "sensors"));
       ReadBoards(in_.Require(root, "boards"));
       if (const YamlNode* name = root.Find("root")) rig_.root = SensorNamed(*name, "root");
+      CheckPixels(in_.Require(root, "moments"));
       ReadMoments(in_.Require(root, "moments"));
     }
     if (!in_.ok()) return in_.TakeError();
@@ -139,6 +140,24 @@ class RigReader {
     return 0;
   }
 
+  // Before any covariance is made.
+  void CheckPixels(const YamlNode& moments) {
+    std::size_t numbers = 0;
+    for (const YamlNode& moment : moments.items) {
+      const YamlNode* seen = moment.Find("observations");
+      if (seen == nullptr) continue;
+      for (const YamlNode& node : seen->items) {
+        const YamlNode* pixels = node.Find("pixels");
+        if (pixels != nullptr) numbers += pixels->items.size() * pixels->items.size();
+        if (numbers <= kMaxCovarianceNumbers) continue;
+        return in_.Fail(node.line, "pixels",
+                        fmt::format("expected fewer pixels: the covariances of all observations up "
+                                    "to this one would take more than {} MiB",
+                                    (kMaxCovarianceNumbers * sizeof(double)) >> 20));
+      }
+    }
+  }
+
   void ReadMoments(const YamlNode& list) {
     static const RigKeys kKeys = {"name", "observations"};
     if (!in_.IsSequence(list, "moments")) return;
@@ -209,13 +228,6 @@ class RigReader {
     const double sigma = in_.RealAt(node, "sigma_px", kUsual_px);
     if (!(sigma > 0.0)) in_.Fail(node.line, "sigma_px", "expected a sigma above 0");
     if (!IsAsMany(node.line, "pixels", printed.pixels.size(), points.size())) return;
-    covariance_numbers_ += 4 * points.size() * points.size();
-    if (covariance_numbers_ > kMaxCovarianceNumbers) {
-      return in_.Fail(node.line, "pixels",
-                      fmt::format("expected fewer pixels: the covariances of all observations up to "
-                                  "this one would take more than {} MiB",
-                                  (kMaxCovarianceNumbers * sizeof(double)) >> 20));
-    }
     const auto size = 2 * std::ssize(points);
     printed.covariance_px2 = sigma * sigma * Eigen::MatrixXd::Identity(size, size);
     observation_.raw.printed.push_back(std::move(printed));
@@ -271,7 +283,6 @@ class RigReader {
   std::filesystem::path folder_;
   std::map<int, RigBoard> boards_;
   RigObservation observation_;
-  std::size_t covariance_numbers_ = 0;
   RigFile rig_;
 };
 

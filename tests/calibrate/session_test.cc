@@ -68,13 +68,15 @@ TEST(ExpandPattern, StarsMatchAnyTextAndTakeNoLongerThanOthers) {
 TEST(ExpandPattern, RefusesMoreFilesThanASessionHas) {
   const ScratchFolder folder;
   fs::create_directory(folder.path() / "f");
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < 100; ++i) {
     ASSERT_TRUE(WriteFileAtomically(folder.path() / "f" / std::to_string(i), ""));
+  }
+  for (int i = 0; i < 1100; ++i) {
     fs::create_directory_symlink("f", folder.path() / ("f" + std::to_string(i)));
   }
   const auto some = ExpandPattern(folder.path() / "f1*" / "*");
   ASSERT_TRUE(some);
-  EXPECT_EQ(some->size(), 111U * 400U);
+  EXPECT_EQ(some->size(), 211U * 100U);
   const auto all = ExpandPattern(folder.path() / "*" / "*");
   ASSERT_FALSE(all);
   EXPECT_THAT(all.error().message, testing::HasSubstr("more than 100000 files match"));
