@@ -89,8 +89,8 @@ int Spawn(std::vector<std::string> arguments, const MemoryFile& in, const Memory
   return error;
 }
 
-// The status of the ended program; none at the timeout, or where it writes too much: then the program
-// is dead too. What it writes is in memory, so it is looked at while it runs.
+// The status of the ended program; none at the timeout, or where it writes too much: then the
+// program is dead too. What it writes is in memory, so it is looked at while it runs.
 std::optional<int> WaitFor(pid_t pid, std::chrono::milliseconds timeout,
                            const std::function<bool()>& writes_too_much) {
   const auto end = std::chrono::steady_clock::now() + timeout;

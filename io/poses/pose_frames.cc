@@ -166,7 +166,8 @@ std::string ListOf(const std::set<std::string>& names) {
   std::string list;
   std::size_t listed = 0;
   for (const std::string& name : names) {
-    if (listed++ == kMaxListed) return list + fmt::format(" and {} more", names.size() - kMaxListed);
+    if (listed++ == kMaxListed)
+      return list + fmt::format(" and {} more", names.size() - kMaxListed);
     list += (list.empty() ? "" : ", ") + Quoted(name);
   }
   return list;

@@ -35,9 +35,9 @@ TEST(Check, KittiByAPoseOfAnotherProgram) {
 
   // As an editor leaves it: the next line does not continue the last one.
   WriteText(history, lines->substr(0, lines->size() - 1));
-  const std::string check_one =
-      "check " + gt + " --camera " + gt + " --image " + (folder / "img/000649.png").string() +
-      " --cloud " + (folder / "pcd/000649.pcd").string() + " --json -";
+  const std::string check_one = "check " + gt + " --camera " + gt + " --image " +
+                                (folder / "img/000649.png").string() + " --cloud " +
+                                (folder / "pcd/000649.pcd").string() + " --json -";
   const ProgramRun one = RunSextant(check_one + " --history " + history);
   EXPECT_EQ(one.exit_code, 5) << one.out << one.err;
   EXPECT_THAT(one.out, HasSubstr("\"state\": \"cannot tell\""));

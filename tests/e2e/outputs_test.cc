@@ -78,8 +78,9 @@ TEST(Outputs, TwoOutputsAreNotOneFile) {
 
 TEST(Outputs, ADictionaryOfTagsIsAnInput) {
   const std::string dictionary = TestPath("tags.yml");
-  WriteText(dictionary, "%YAML:1.0\n---\nnmarkers: 1\nmarkersize: 4\nmaxCorrectionBits: 0\n"
-                        "marker_0: \"1010010110100101\"\n");
+  WriteText(dictionary,
+            "%YAML:1.0\n---\nnmarkers: 1\nmarkersize: 4\nmaxCorrectionBits: 0\n"
+            "marker_0: \"1010010110100101\"\n");
   const std::string before = ReadText(dictionary);
   ExpectRefused(RunSextant("detect none.png --overwrite --detector 'aruco(file=\"" + dictionary +
                            "\")' --json " + dictionary),
@@ -246,11 +247,11 @@ TEST(Outputs, AFileThatWasBeingReplacedSurvivesAKill) {
 }
 
 TEST(Outputs, EveryCommandThatWritesHasOverwrite) {
-  for (const char* command : {"calibrate",      "advise",      "project", "report", "export",
-                              "detect",         "boards",      "mark",    "bag",    "simulate",
-                              "simulate pairs", "print-board", "convert", "fuse",   "solve",
-                              "compare",        "average",     "run",     "merge",  "reproduce",
-                              "rig",            "check",       "refine-scene"}) {
+  for (const char* command :
+       {"calibrate", "advise",    "project", "report",   "export",         "detect",
+        "boards",    "mark",      "bag",     "simulate", "simulate pairs", "print-board",
+        "convert",   "fuse",      "solve",   "compare",  "average",        "run",
+        "merge",     "reproduce", "rig",     "check",    "refine-scene"}) {
     EXPECT_THAT(RunSextant(std::string(command) + " --help").out, HasSubstr("--overwrite"))
         << command;
   }

@@ -201,7 +201,8 @@ TEST(Budget, HeadersThatPromiseManyPointsTakeNoMemory) {
 std::string ChainOfFrames(int frames) {
   const auto transform = [](const std::string& parent, const std::string& child, int x_m) {
     return fmt::format(
-        " - {{header: {{frame_id: {}}}, child_frame_id: {}, transform: {{translation: {{x: {}, y: 0, "
+        " - {{header: {{frame_id: {}}}, child_frame_id: {}, transform: {{translation: {{x: {}, y: "
+        "0, "
         "z: 0}}, rotation: {{x: 0, y: 0, z: 0, w: 1}}}}}}\n",
         parent, child, x_m);
   };
@@ -235,7 +236,8 @@ TEST(Budget, PixelsOfRigsTakeNoGigabytes) {
   std::string points = "0, 0";
   for (int i = 1; i < kPoints; ++i) points += fmt::format(", 0.{:03}, 0", i);
   std::string text =
-      "sextant_rig: 1\nsensors:\n  - name: cam\n    camera: {model: pinhole, fx_px: 700, fy_px: 700, "
+      "sextant_rig: 1\nsensors:\n  - name: cam\n    camera: {model: pinhole, fx_px: 700, fy_px: "
+      "700, "
       "cx_px: 640, cy_px: 360}\n  - name: lidar\nboards:\n  - {id: 0, top_right_m: 2, "
       "right_bottom_m: 2, points_m: [" +
       points + "]}\nmoments:\n";

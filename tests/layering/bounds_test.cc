@@ -20,9 +20,8 @@ bool IsOfReaders(const SourceFile& file) {
 
 // Whether a header declares a function that reads a file, or the text or bytes of one.
 bool DeclaresReader(const std::string& text) {
-  static const std::regex reader(
-      R"(Expected<[^;{}]*> (Read|Parse|Open|Decode|Load)[A-Z]\w*\()"
-      R"((const std::filesystem::path&|std::string_view (text|bytes)))");
+  static const std::regex reader(R"(Expected<[^;{}]*> (Read|Parse|Open|Decode|Load)[A-Z]\w*\()"
+                                 R"((const std::filesystem::path&|std::string_view (text|bytes)))");
   return std::regex_search(text, reader);
 }
 
