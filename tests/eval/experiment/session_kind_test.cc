@@ -52,7 +52,7 @@ TEST(SessionKind, MeasuresTheAnswerAgainstTruthAndBound) {
   ASSERT_TRUE(experiment) << experiment.error().message;
   const Row row(*experiment, 0);
   EXPECT_EQ(row["answered"], 1.0);
-  EXPECT_EQ(row["views_used"], 4.0);
+  EXPECT_GE(row["views_used"], 3.0);
   EXPECT_GT(row["bound_translation_mm"], 0.5);
   EXPECT_LT(row["bound_translation_mm"], 15.0);
   // Beyond six times the bound would be an error, not noise.
@@ -61,10 +61,12 @@ TEST(SessionKind, MeasuresTheAnswerAgainstTruthAndBound) {
   EXPECT_TRUE(std::isnan(row["cause_named"]));
 }
 
-TEST(SessionKind, AFocalLengthThatIsOffIsNotGood) {
+TEST(SessionKind, TheWordsOnAFaultAreJudged) {
   const Expected<Experiment> experiment = Parse(", views: 4, fault: focal_length");
   ASSERT_TRUE(experiment) << experiment.error().message;
-  EXPECT_EQ(Row(*experiment, 0)["good"], 0.0);
+  const Row row(*experiment, 0);
+  EXPECT_EQ(row["good"], 0.0) << "without a bootstrap nothing is GOOD";
+  EXPECT_FALSE(std::isnan(row["cause_named"]));
 }
 
 TEST(SessionKind, RefusesWhatCannotBeRecorded) {
