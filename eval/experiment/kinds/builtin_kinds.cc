@@ -13,7 +13,8 @@
   X(BoardImage)          \
   X(Fusion)              \
   X(RealPairs)           \
-  X(RealViews)
+  X(RealViews)           \
+  X(Check)
 
 namespace sextant {
 
