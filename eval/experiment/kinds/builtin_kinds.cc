@@ -14,7 +14,8 @@
   X(Fusion)              \
   X(Session)             \
   X(RealPairs)           \
-  X(RealViews)
+  X(RealViews)           \
+  X(Check)
 
 namespace sextant {
 
