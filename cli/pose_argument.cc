@@ -8,7 +8,6 @@
 
 #include "geometry/coordinate_range.h"
 #include "io/output/standard_output.h"
-#include "io/poses/pose_file.h"
 #include "io/text/number_text.h"
 
 namespace sextant::cli {
@@ -108,15 +107,24 @@ Expected<Rigid3d> PoseFromArgument(const std::string& option,
   return AskedDirection(pose_is) == PoseDirection::kLidarFromCam ? pose.Inverse() : pose;
 }
 
-Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is) {
+Expected<GivenPose> GivenPoseOfFile(const std::string& path, const std::string& pose_is) {
   SEXTANT_ASSIGN_OR_RETURN(const StatedPose pose, ReadPoseFile(path));
   SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_lidar, CamFromLidarWithNote(pose, pose_is, path));
-  if (pose.is_result) return ReadCalibrationResult(path);
-  CalibrationResult result;
-  result.cam_from_lidar = cam_from_lidar;
-  if (!pose.camera_frame.empty()) result.camera_frame = pose.camera_frame;
-  if (!pose.lidar_frame.empty()) result.lidar_frame = pose.lidar_frame;
-  return result;
+  GivenPose given{.direction = pose_is.empty() ? *pose.direction : *AskedDirection(pose_is),
+                  .basis = pose_is.empty() ? pose.basis : "stated by --pose-is"};
+  if (pose.is_result) {
+    SEXTANT_ASSIGN_OR_RETURN(given.result, ReadCalibrationResult(path));
+    return given;
+  }
+  given.result.cam_from_lidar = cam_from_lidar;
+  if (!pose.camera_frame.empty()) given.result.camera_frame = pose.camera_frame;
+  if (!pose.lidar_frame.empty()) given.result.lidar_frame = pose.lidar_frame;
+  return given;
+}
+
+Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is) {
+  SEXTANT_ASSIGN_OR_RETURN(GivenPose given, GivenPoseOfFile(path, pose_is));
+  return std::move(given.result);
 }
 
 }  // namespace sextant::cli

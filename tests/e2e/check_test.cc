@@ -30,13 +30,15 @@ TEST(Check, KittiByAPoseOfAnotherProgram) {
   EXPECT_THAT(run.err, HasSubstr("read as cam_from_lidar"));
   const Expected<std::string> lines = ReadTextFile(history);
   ASSERT_TRUE(lines);
-  EXPECT_THAT(*lines, HasSubstr("Z,still valid,7,"));
+  EXPECT_THAT(*lines, HasSubstr("Z,still valid,cam_from_lidar,7,"));
+  EXPECT_THAT(run.out, HasSubstr("The pose was read as cam_from_lidar."));
 
   const ProgramRun one = RunSextant(
       "check " + gt + " --camera " + gt + " --image " + (folder / "img/000649.png").string() +
       " --cloud " + (folder / "pcd/000649.pcd").string() + " --json - --history " + history);
   EXPECT_EQ(one.exit_code, 5) << one.out << one.err;
   EXPECT_THAT(one.out, HasSubstr("\"state\": \"cannot tell\""));
+  EXPECT_THAT(one.out, HasSubstr("\"pose_read_as\": \"cam_from_lidar\""));
 }
 
 TEST(Check, AsksForWhatIsMissing) {
