@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/diagnostics/unexplained_pairs.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <span>
 #include <vector>
@@ -40,6 +42,18 @@ std::optional<double> UnexplainedShare(const CalibrationProblem& problem,
   std::vector<Eigen::Vector2d> pixels;
   for (const Pair2d3d& pair : problem.pairs_2d3d) pixels.push_back(pair.pixel);
   return ShareOf<2>(pixels, report.evaluation.per_pair_px, report.inliers);
+}
+
+std::optional<std::string> DescribeMisfit(const CalibrationProblem& problem,
+                                          const SolveReport& report) {
+  const double most = problem.pairs_2d3d.empty() ? 0.1 : 0.05;
+  const std::optional<double> share = UnexplainedShare(problem, report);
+  if (!share || *share < most) return std::nullopt;
+  return fmt::format(
+      "misfit: the residuals are {:.0f} percent of the spread of the measurements, where {:.0f} or "
+      "less is usual, so that the stated uncertainty, which takes them for noise, may be wrong; "
+      "check which point belongs to which, and that no sensor or board moved",
+      100.0 * *share, 100.0 * most);
 }
 
 }  // namespace sextant

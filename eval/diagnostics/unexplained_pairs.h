@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "geometry/calibration_problem.h"
 #include "solvers/core/solver.h"
@@ -17,5 +18,10 @@ std::optional<double> UnexplainedShare(const CalibrationProblem& problem,
 /// A larger share explains nothing: measurements of boards are at a tenth even where the noise is
 /// large.
 inline constexpr double kMaxUnexplainedShare = 0.3;
+
+/// A sentence where an answer leaves more than measurements do, but less than kMaxUnexplainedShare:
+/// a tenth of the spread of points, a twentieth of that of pixels.
+std::optional<std::string> DescribeMisfit(const CalibrationProblem& problem,
+                                          const SolveReport& report);
 
 }  // namespace sextant
