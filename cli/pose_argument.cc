@@ -8,7 +8,6 @@
 
 #include "geometry/coordinate_range.h"
 #include "io/output/standard_output.h"
-#include "io/poses/pose_file.h"
 #include "io/text/number_text.h"
 
 namespace sextant::cli {
@@ -109,9 +108,15 @@ Expected<Rigid3d> PoseFromArgument(const std::string& option,
 }
 
 Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is) {
-  SEXTANT_ASSIGN_OR_RETURN(const StatedPose pose, ReadPoseFile(path));
+  SEXTANT_ASSIGN_OR_RETURN(const PoseText text, ReadPoseText(path));
+  return ResultOfText(text, path, pose_is);
+}
+
+Expected<CalibrationResult> ResultOfText(const PoseText& text, const std::string& path,
+                                         const std::string& pose_is) {
+  SEXTANT_ASSIGN_OR_RETURN(const StatedPose pose, ParsePose(text.text, text.file, text.name));
   SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_lidar, CamFromLidarWithNote(pose, pose_is, path));
-  if (pose.is_result) return ReadCalibrationResult(path);
+  if (pose.is_result) return ParseCalibrationResult(text.text, path);
   CalibrationResult result;
   result.cam_from_lidar = cam_from_lidar;
   if (!pose.camera_frame.empty()) result.camera_frame = pose.camera_frame;

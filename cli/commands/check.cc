@@ -115,11 +115,13 @@ Expected<void> AppendHistory(const std::string& path, const PoseCheck& check, st
       "sigma_x_mm,sigma_y_mm,sigma_z_mm\n";
   SEXTANT_ASSIGN_OR_RETURN(AppendedFile file, AppendedFile::Open(path));
   SEXTANT_ASSIGN_OR_RETURN(const std::string begin, file.ReadBeginning(header.size()));
+  SEXTANT_ASSIGN_OR_RETURN(const std::string end, file.ReadEnd(1));
   if (!begin.empty() && begin != header) {
     return MakeError(ErrorCode::kInvalidOption,
                      path + ": is no history of sextant check; expected one, or a new file");
   }
-  std::string line = begin.empty() ? header : std::string();
+  // An earlier line that was cut stays a line of its own.
+  std::string line = begin.empty() ? header : std::string(end == "\n" ? "" : "\n");
   line += fmt::format("{},{},{}", NowUtc(), ToString(check.state), pairs);
   for (const double v : InPlainUnits(check.change)) line += fmt::format(",{:.4f}", v);
   for (const double v : InPlainUnits(check.covariance.diagonal().cwiseSqrt())) {
@@ -130,20 +132,23 @@ Expected<void> AppendHistory(const std::string& path, const PoseCheck& check, st
 }
 
 int Run(const CheckOptions& options) {
+  if (!options.history_path.empty()) {
+    const Expected<void> ok = AppendedFile::Claim(options.history_path);
+    if (!ok) return Refuse("check", {ok.error().code, "--history: " + ok.error().message});
+  }
   const Expected<SceneInput> input = ReadSceneInput(options.input);
   if (!input) return Refuse("check", input.error());
   const Expected<PoseCheck> check = CheckPose(options, *input);
   if (!check) return Refuse("check", check.error());
   const std::size_t pairs = input->session.files.pairs.size();
-  if (const Expected<void> ok = AppendHistory(options.history_path, *check, pairs); !ok) {
-    return Refuse("check", ok.error());
-  }
+  const Expected<void> noted = AppendHistory(options.history_path, *check, pairs);
   const int code = check->state == PoseState::kValid   ? kAnswered
                    : check->state == PoseState::kMoved ? kMovedExit
                                                        : kUnknownExit;
   const std::string text = fmt::format("{}: {}\n", ToString(check->state), check->reason);
-  return Deliver("check", options.json_path, text, JsonOf(*check, pairs, options.input.pose_path),
-                 code);
+  const int delivered = Deliver("check", options.json_path, text,
+                                JsonOf(*check, pairs, options.input.pose_path), code);
+  return noted ? delivered : Refuse("check", noted.error());
 }
 
 }  // namespace
