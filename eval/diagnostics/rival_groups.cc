@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/units.h"
 #include "eval/diagnostics/spread_over.h"
+#include "eval/diagnostics/without_noise.h"
 #include "solvers/core/rivals.h"
 
 namespace sextant {
@@ -50,10 +52,11 @@ std::optional<RivalGroups> FindRivalGroups(const SolverRegistry& registry,
   const bool in_pixels = problem.pairs_3d3d.empty();
   const std::size_t count = in_pixels ? problem.pairs_2d3d.size() : problem.pairs_3d3d.size();
   if (count < kMinPairs || (in_pixels && !problem.camera)) return std::nullopt;
-  CalibrationProblem searched;
-  searched.camera = problem.camera;
-  searched.pairs_3d3d = SpreadOver(problem.pairs_3d3d, kMaxSearched);
-  if (in_pixels) searched.pairs_2d3d = SpreadOver(problem.pairs_2d3d, kMaxSearched);
+  CalibrationProblem some;
+  some.camera = problem.camera;
+  some.pairs_3d3d = SpreadOver(problem.pairs_3d3d, kMaxSearched);
+  if (in_pixels) some.pairs_2d3d = SpreadOver(problem.pairs_2d3d, kMaxSearched);
+  const CalibrationProblem searched = WithoutNoise(std::move(some));
   const Expected<SolverPtr> solver = registry.Make(in_pixels ? "ransac(p3p)" : "ransac(kabsch)");
   if (!solver) return std::nullopt;
   const Expected<SolveReport> report = (*solver)->Solve(searched);

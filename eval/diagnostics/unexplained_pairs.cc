@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -46,14 +47,18 @@ std::optional<double> UnexplainedShare(const CalibrationProblem& problem,
 
 std::optional<std::string> DescribeMisfit(const CalibrationProblem& problem,
                                           const SolveReport& report) {
-  const double most = problem.pairs_2d3d.empty() ? 0.1 : 0.05;
+  constexpr double kUsual = 0.2;
+  const bool is_stated = std::any_of(problem.pairs_3d3d.begin(), problem.pairs_3d3d.end(),
+                                     [](const Pair3d3d& pair) { return HasKnownNoise(pair); }) ||
+                         std::any_of(problem.pairs_2d3d.begin(), problem.pairs_2d3d.end(),
+                                     [](const Pair2d3d& pair) { return HasKnownNoise(pair); });
   const std::optional<double> share = UnexplainedShare(problem, report);
-  if (!share || *share < most) return std::nullopt;
+  if (is_stated || !share || *share < kUsual) return std::nullopt;
   return fmt::format(
       "misfit: the residuals are {:.0f} percent of the spread of the measurements, where {:.0f} or "
       "less is usual, so that the stated uncertainty, which takes them for noise, may be wrong; "
       "check which point belongs to which, and that no sensor or board moved",
-      100.0 * *share, 100.0 * most);
+      100.0 * *share, 100.0 * kUsual);
 }
 
 }  // namespace sextant

@@ -19,8 +19,8 @@ std::optional<double> UnexplainedShare(const CalibrationProblem& problem,
 /// large.
 inline constexpr double kMaxUnexplainedShare = 0.3;
 
-/// A sentence where an answer leaves more than measurements do, but less than kMaxUnexplainedShare:
-/// a tenth of the spread of points, a twentieth of that of pixels.
+/// A sentence where the answer to pairs that state no noise leaves more than a fifth of their
+/// spread: more than measurements usually do, but less than kMaxUnexplainedShare may be.
 std::optional<std::string> DescribeMisfit(const CalibrationProblem& problem,
                                           const SolveReport& report);
 

@@ -2,6 +2,7 @@
 #include "eval/metrics/default_specs.h"
 
 #include "eval/diagnostics/outlying_pairs.h"
+#include "eval/diagnostics/without_noise.h"
 
 namespace sextant {
 
@@ -37,15 +38,15 @@ std::string DefaultSpec(const SolverRegistry& registry, const CalibrationProblem
   const std::string least_squares = in_pixels ? "refine(sqpnp)" : "kabsch";
   const std::string robust = in_pixels ? "refine(ransac(p3p))" : "robust(kabsch)";
   if (points + pixels == 0) return least_squares;
-  const auto answer_of = [&](const std::string& spec) {
-    return registry.Make(spec).and_then([&](const SolverPtr& s) { return s->Solve(problem); });
+  const auto answer_of = [&](const std::string& spec, const CalibrationProblem& pairs) {
+    return registry.Make(spec).and_then([&](const SolverPtr& s) { return s->Solve(pairs); });
   };
   // Judged by the robust answer: outliers, if they are many, spoil the other one so that none of
   // them stands out.
-  const Expected<SolveReport> answer = answer_of(robust);
+  const Expected<SolveReport> answer = answer_of(robust, WithoutNoise(problem));
   if (!answer) return least_squares;
   if (!OutlyingPairs(*answer, in_pixels).empty()) return robust;
-  return in_pixels && !answer_of(least_squares) ? robust : least_squares;
+  return in_pixels && !answer_of(least_squares, problem) ? robust : least_squares;
 }
 
 }  // namespace sextant

@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::uint64_t kSeeds = 10;
+constexpr std::uint64_t kCauseSeeds = 10;
 
 CalibrationProblem SceneOf(std::uint64_t seed, int pairs = 30) {
   Random random(DeriveSeed(1, "causes", 0, seed));
@@ -33,7 +33,7 @@ CalibrationProblem PixelsOf(std::uint64_t seed) {
 }
 
 TEST(OtherIntrinsics, AreNamedWhereTheImageWasCropped) {
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kCauseSeeds; ++seed) {
     CalibrationProblem problem = PixelsOf(seed);
     EXPECT_FALSE(OtherIntrinsics(problem)) << *OtherIntrinsics(problem);
     for (Pair2d3d& pair : problem.pairs_2d3d) pair.pixel -= Eigen::Vector2d(200.0, 100.0);
@@ -44,7 +44,7 @@ TEST(OtherIntrinsics, AreNamedWhereTheImageWasCropped) {
 }
 
 TEST(SlightScale, IsNamedThoughItDoesNotHalveTheRmse) {
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kCauseSeeds; ++seed) {
     CalibrationProblem problem = SceneOf(seed, 60);
     EXPECT_FALSE(SlightScale(problem)) << "seed " << seed;
     for (Pair3d3d& pair : problem.pairs_3d3d) pair.point_in_cam *= 1.02;
@@ -58,7 +58,7 @@ TEST(SlightScale, IsNamedThoughItDoesNotHalveTheRmse) {
 
 // Three pairs are wrong by half a metre: no factor explains every second pair and the others alike.
 TEST(SlightScale, IsNotSeenInOutliers) {
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kCauseSeeds; ++seed) {
     CalibrationProblem problem = SceneOf(seed, 24);
     for (std::size_t i = 0; i < 3; ++i) problem.pairs_3d3d[i].point_in_cam.x() += 0.5;
     EXPECT_FALSE(SlightScale(problem)) << "seed " << seed;
@@ -67,7 +67,7 @@ TEST(SlightScale, IsNotSeenInOutliers) {
 
 // Most of the pairs are outliers, so that the median of the residuals is one of them.
 TEST(OutlyingPairs, AreThoseThatARobustAnswerLeavesOut) {
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kCauseSeeds; ++seed) {
     CalibrationProblem problem = SceneOf(seed, 40);
     problem.pairs_2d3d.clear();
     constexpr int kOutliers = 24;

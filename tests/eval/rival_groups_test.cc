@@ -19,7 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::uint64_t kSeeds = 10;
+constexpr std::uint64_t kMovedSeeds = 10;
 
 /// A scene of which the camera moved before the second half of the pairs.
 struct MovedScene {
@@ -62,7 +62,7 @@ class RivalGroupsTest : public testing::TestWithParam<std::tuple<int, bool>> {};
 TEST_P(RivalGroupsTest, AreFoundAndBothPosesReported) {
   const auto& [pairs, in_pixels] = GetParam();
   const SolverRegistry registry = BuiltinSolvers();
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kMovedSeeds; ++seed) {
     const MovedScene scene = Moved(pairs, in_pixels, seed);
     const auto rivals = FindRivalGroups(registry, scene.problem);
     ASSERT_TRUE(rivals) << "seed " << seed;
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Every, RivalGroupsTest,
 // No robust solver keeps all pairs under the compromise.
 TEST(RivalGroups, AreNoConsensusOfAllPairs) {
   const SolverRegistry registry = BuiltinSolvers();
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kMovedSeeds; ++seed) {
     const MovedScene scene = Moved(10, false, seed);
     for (const char* spec : {"ransac(kabsch)", "robust(kabsch)", "clique(kabsch)", "gnc(kabsch)"}) {
       const auto report = (*registry.Make(spec))->Solve(scene.problem);
@@ -104,6 +104,21 @@ TEST(RivalGroups, AreNoConsensusOfAllPairs) {
           << spec << ", seed " << seed;
       EXPECT_EQ(report->alternatives.size(), 1U) << spec << ", seed " << seed;
     }
+  }
+}
+
+// A sigma that is stated three times too small is no second pose.
+TEST(RivalGroups, AreNotFoundWhereTheStatedNoiseIsTooSmall) {
+  const SolverRegistry registry = BuiltinSolvers();
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Random random(DeriveSeed(3, "too small a sigma", 0, seed));
+    RandomScene scene = MakeRandomScene(
+        {.pairs = 8 + static_cast<int>(seed), .sigma_m = 0.02, .sigma_px = 2.0}, random);
+    for (Pair3d3d& pair : scene.problem.pairs_3d3d) pair.sigma_m /= 3.0;
+    for (Pair2d3d& pair : scene.problem.pairs_2d3d) pair.sigma_px /= 3.0;
+    EXPECT_FALSE(FindRivalGroups(registry, scene.problem)) << seed;
+    scene.problem.pairs_3d3d.clear();
+    EXPECT_FALSE(FindRivalGroups(registry, scene.problem)) << seed;
   }
 }
 
