@@ -16,7 +16,7 @@ enum class SceneUnknowns { kPose, kIntrinsics, kBoth };
 struct SceneObjective {
   std::span<const ScenePair> pairs;
   SceneModel start;
-  std::size_t stride = 1;  ///< Of the edges, at the coarse levels.
+  std::size_t stride = 1;  ///< The coarse levels use one edge in so many.
   SceneUnknowns unknowns = SceneUnknowns::kPose;
 
   /// The gradient of what is not estimated is 0.

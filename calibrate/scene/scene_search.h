@@ -32,7 +32,7 @@ struct SceneFit {
   /// The squared Mahalanobis distance between the optima of the halves, by four times the
   /// covariance; its mean is 6 if the covariance is right.
   double halves_distance = 0.0;
-  double focal_px = 0.0;  ///< Of the first camera.
+  double focal_px = 0.0;  ///< The focal length of the first camera.
   int edges = 0;          ///< In view.
   int scenes = 0;         ///< That differ.
   int tiles = 0;          ///< On which the spread rests.

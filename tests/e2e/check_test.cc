@@ -31,7 +31,8 @@ TEST(Check, KittiByAPoseOfAnotherProgram) {
   EXPECT_THAT(run.err, HasSubstr("read as cam_from_lidar"));
   const Expected<std::string> lines = ReadTextFile(history);
   ASSERT_TRUE(lines);
-  EXPECT_THAT(*lines, HasSubstr("Z,still valid,7,"));
+  EXPECT_THAT(*lines, HasSubstr("Z,still valid,cam_from_lidar,7,"));
+  EXPECT_THAT(run.out, HasSubstr("The pose was read as cam_from_lidar."));
 
   // As an editor leaves it: the next line does not continue the last one.
   WriteText(history, lines->substr(0, lines->size() - 1));
@@ -41,6 +42,7 @@ TEST(Check, KittiByAPoseOfAnotherProgram) {
   const ProgramRun one = RunSextant(check_one + " --history " + history);
   EXPECT_EQ(one.exit_code, 5) << one.out << one.err;
   EXPECT_THAT(one.out, HasSubstr("\"state\": \"cannot tell\""));
+  EXPECT_THAT(one.out, HasSubstr("\"pose_read_as\": \"cam_from_lidar\""));
   const Expected<std::string> more = ReadTextFile(history);
   ASSERT_TRUE(more);
   EXPECT_THAT(*more, testing::StartsWith(*lines));

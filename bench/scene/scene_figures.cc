@@ -11,7 +11,7 @@
 
 #include "base/median.h"
 #include "base/units.h"
-#include "bench/scene_recording.h"
+#include "bench/scene/scene_recording.h"
 #include "calibrate/scene/pose_check.h"
 
 namespace sextant {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/scene_recording.h"
+#include "bench/scene/scene_recording.h"
 
 #include <fmt/core.h>
 

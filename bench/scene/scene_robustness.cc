@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // scene_robustness NAME POSE CAMERA IMAGES CLOUDS PAIRS DRAWS [ALTERATION]: how `sextant check`
 // judges a recording of known calibration that is altered, one row for each alteration and offset
-// of the given pose. ALTERATION: only those whose name contains it. scripts/check-figures runs it.
+// of the given pose. ALTERATION: only those whose name contains it. Each answer in full goes to
+// standard error.
 #include <fmt/core.h>
 
 #include <array>
@@ -10,7 +11,7 @@
 
 #include "base/median.h"
 #include "base/units.h"
-#include "bench/scene_alterations.h"
+#include "bench/scene/scene_alterations.h"
 #include "calibrate/scene/pose_check.h"
 
 namespace sextant {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/scene_recording.h"
+#include "bench/scene/scene_recording.h"
 
 namespace sextant {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/scene_alterations.h"
+#include "bench/scene/scene_alterations.h"
 
 #include <fmt/core.h>
 
