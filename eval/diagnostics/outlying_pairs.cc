@@ -111,7 +111,10 @@ std::vector<int> OutlyingPairs(const SolveReport& report, bool in_pixels) {
       report.evaluation.per_pair_m.empty() || report.evaluation.per_pair_px.empty();
   const bool leaves_out = !report.inliers.empty() && report.inliers.size() < residuals.size();
   if (sigma == 0.0 || !one_kind || !leaves_out) return OutlyingResiduals(residuals, dimension);
-  const double limit = TailOf(residuals.size(), dimension) * sigma;
+  // Few pairs determine their pose and noise that much less well.
+  const double freedom =
+      std::max(1.0, dimension * static_cast<double>(report.inliers.size()) - 6.0);
+  const double limit = TailOf(residuals.size(), dimension) * sigma * (1.0 + 6.0 / freedom);
   std::vector<int> outliers;
   for (int i = 0; i < static_cast<int>(residuals.size()); ++i) {
     const double residual = residuals[static_cast<std::size_t>(i)];
