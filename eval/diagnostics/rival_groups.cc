@@ -47,11 +47,12 @@ std::string Agreement(const PairGroup& group, bool in_pixels) {
 
 std::optional<RivalGroups> FindRivalGroups(const SolverRegistry& registry,
                                            const CalibrationProblem& problem) {
-  constexpr std::size_t kMinPairs = 8;
   constexpr std::size_t kMaxSearched = 400;
   const bool in_pixels = problem.pairs_3d3d.empty();
+  // Four pixels of eight are explained by any of several poses.
+  const std::size_t min_members = in_pixels ? 5 : 4;
   const std::size_t count = in_pixels ? problem.pairs_2d3d.size() : problem.pairs_3d3d.size();
-  if (count < kMinPairs || (in_pixels && !problem.camera)) return std::nullopt;
+  if (count < 2 * min_members || (in_pixels && !problem.camera)) return std::nullopt;
   CalibrationProblem some;
   some.camera = problem.camera;
   some.pairs_3d3d = SpreadOver(problem.pairs_3d3d, kMaxSearched);
@@ -75,7 +76,7 @@ std::optional<RivalGroups> FindRivalGroups(const SolverRegistry& registry,
     auto& [larger, smaller] = rivals.groups;
     if (larger.members.size() < smaller.members.size()) std::swap(larger, smaller);
     const auto wanted = kRivalShare * static_cast<double>(larger.members.size());
-    if (smaller.members.size() >= kMinPairs / 2 &&
+    if (smaller.members.size() >= min_members &&
         static_cast<double>(smaller.members.size()) >= wanted) {
       return rivals;
     }

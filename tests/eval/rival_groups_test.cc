@@ -88,11 +88,18 @@ TEST_P(RivalGroupsTest, AreFoundAndBothPosesReported) {
   EXPECT_GE(found, 9);
 }
 
-// Eight pixels would be four each, which any of several poses explains.
 INSTANTIATE_TEST_SUITE_P(Every, RivalGroupsTest,
                          testing::Values(std::tuple(10, false), std::tuple(20, false),
                                          std::tuple(60, false), std::tuple(20, true),
                                          std::tuple(60, true)));
+
+// Four pixels each, which any of several poses explains.
+TEST(RivalGroups, AreNotFoundInEightPixels) {
+  const SolverRegistry registry = BuiltinSolvers();
+  for (std::uint64_t seed = 1; seed <= kMovedSeeds; ++seed) {
+    EXPECT_FALSE(FindRivalGroups(registry, Moved(8, true, seed).problem)) << seed;
+  }
+}
 
 // No robust solver keeps all pairs under the compromise.
 TEST(RivalGroups, AreNoConsensusOfAllPairs) {
