@@ -17,6 +17,7 @@
 #include "io/cameras/camera_file.h"
 #include "io/output/standard_output.h"
 #include "io/problems/read_problem.h"
+#include "solvers/all/all_solvers.h"
 
 namespace sextant::cli {
 namespace {
@@ -57,13 +58,16 @@ std::string DiagnosticsText(const LoadedProblem& input, const std::vector<Compar
     for (const std::string& line : Describe(repeated)) text += "  " + line + "\n";
   }
   for (const std::string& line : Describe(input.diagnostics)) text += "  " + line + "\n";
+  if (input.rivals) text += "  " + Describe(*input.rivals, input.repeated) + "\n";
   const bool has_cause = !input.diagnostics.causes.empty();
   const bool is_misordered = input.diagnostics.order.better && !reordered;
-  if (rows.size() == 1 && rows.front().report && !has_cause && !is_misordered) {
-    for (const std::string& line :
-         DescribeOutliers(rows.front().report->evaluation, input.repeated)) {
+  const bool is_judged = has_cause || is_misordered || input.rivals;
+  if (rows.size() == 1 && rows.front().report && !is_judged) {
+    for (const std::string& line : DescribeOutliers(*rows.front().report, input.repeated)) {
       text += "  " + line + "\n";
     }
+    const auto misfit = DescribeMisfit(input.file.problem, *rows.front().report);
+    if (misfit && !input.diagnostics.contradiction) text += "  " + *misfit + "\n";
   }
   if (reordered) text += "  " + DescribeReordering(input.diagnostics.order) + "\n";
   if (text.empty()) return text;
@@ -81,6 +85,10 @@ std::string RefutingVerdict(const ProblemInputOptions& options, const LoadedProb
                             const std::vector<ComparisonRow>& rows) {
   if (RefutesPoses(input.diagnostics, options.reorder)) {
     return "NOT USABLE: the data diagnostics below name a fault that no solver corrects\n";
+  }
+  if (input.rivals) {
+    return "NOT USABLE: two groups of pairs contradict each other, and nothing says which is "
+           "right\n";
   }
   double least = std::numeric_limits<double>::infinity();
   for (const ComparisonRow& row : rows) {
@@ -123,6 +131,10 @@ Expected<LoadedProblem> LoadProblem(const ProblemInputOptions& options) {
   input.diagnostics = DiagnosePairs(problem);
   if (options.reorder && input.diagnostics.order.better) {
     problem = Reordered(problem, *input.diagnostics.order.better);
+  }
+  // A contradiction between boards, or data that is not what it seems, says more.
+  if (!input.diagnostics.contradiction && !RefutesPoses(input.diagnostics, options.reorder)) {
+    input.rivals = FindRivalGroups(AllSolvers(), problem);
   }
   input.summary = {.path = options.problem_path,
                    .format = std::string(ToString(read.format)),

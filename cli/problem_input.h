@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command.h"
 #include "eval/diagnostics/pair_diagnostics.h"
 #include "eval/diagnostics/repeated_pairs.h"
+#include "eval/diagnostics/rival_groups.h"
 #include "eval/metrics/compare.h"
 #include "io/problems/problem_yaml.h"
 #include "io/results/results_json.h"
@@ -35,6 +37,7 @@ struct LoadedProblem {
   ProblemFile file;
   std::vector<RepeatedPairs> repeated;  ///< Pairs that the file lists more than once.
   PairDiagnostics diagnostics;          ///< For the pairs in the file's own order.
+  std::optional<RivalGroups> rivals;    ///< In the order that is used; none where boards differ.
   std::vector<std::string> notes;       ///< What was corrected while reading.
   ResultInput summary;
 };

@@ -42,6 +42,25 @@ std::size_t CountProjected(const Evaluation& evaluation) {
                                                 [](double r) { return std::isfinite(r); }));
 }
 
+// Where an answer leaves pairs out, the RMSE of the others, which is that of its noise.
+template <class TextOf>
+std::string RmseOfUsed(const SolveReport& report, const std::vector<double>& residuals,
+                       const TextOf& text_of) {
+  // The inliers are indices into pairs of one kind only.
+  const bool one_kind =
+      report.evaluation.per_pair_m.empty() || report.evaluation.per_pair_px.empty();
+  const std::size_t used = report.inliers.size();
+  if (!one_kind || used == 0 || used >= residuals.size()) return {};
+  double squares = 0.0;
+  for (const int i : report.inliers) {
+    const double residual = residuals[static_cast<std::size_t>(i)];
+    if (!std::isfinite(residual)) return {};
+    squares += residual * residual;
+  }
+  return fmt::format(", {} over the {} used",
+                     text_of(std::sqrt(squares / static_cast<double>(used))), used);
+}
+
 // Three pairs of any kind determine a pose; with more there is another reason.
 const char* WhyNoCovariance(const SolveReport& report) {
   constexpr std::size_t kExact = 3;
@@ -245,7 +264,7 @@ std::vector<std::string> CellsOf(const ScoredRow& scored, const ComparisonColumn
   add(true, RotationText(row.from_first));
   add(columns.truth, TranslationText(row.from_truth));
   add(columns.truth, RotationText(row.from_truth));
-  add(true, fmt::format("{:.1f}", report.wall_time_us));
+  add(true, std::isnan(report.wall_time_us) ? "-" : fmt::format("{:.1f}", report.wall_time_us));
   return cells;
 }
 
@@ -264,12 +283,15 @@ std::string DescribeAnswer(const SolveReport& report) {
   const Evaluation& evaluation = report.evaluation;
   std::string text = report.solver + "\n" + DescribePose(report.cam_from_lidar);
   if (evaluation.rmse_m) {
-    text += fmt::format("  RMSE                       {} over {} pairs\n",
-                        LengthText(*evaluation.rmse_m), evaluation.per_pair_m.size());
+    text += fmt::format("  RMSE                       {} over {} pairs{}\n",
+                        LengthText(*evaluation.rmse_m), evaluation.per_pair_m.size(),
+                        RmseOfUsed(report, evaluation.per_pair_m, LengthText));
   }
   if (evaluation.rmse_px) {
-    text += fmt::format("  reprojection RMSE          {:.4f} px over {} pairs\n",
-                        *evaluation.rmse_px, CountProjected(evaluation));
+    const auto in_px = [](double rmse) { return fmt::format("{:.4f} px", rmse); };
+    text +=
+        fmt::format("  reprojection RMSE          {} over {} pairs{}\n", in_px(*evaluation.rmse_px),
+                    CountProjected(evaluation), RmseOfUsed(report, evaluation.per_pair_px, in_px));
   }
   text += DescribeUncertainty(report);
   text += DescribeNoise(report);

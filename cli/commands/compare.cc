@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "cli/commands/commands.h"
@@ -78,7 +79,7 @@ ComparisonRow RowOf(const ImportedPose& imported, const CalibrationProblem& prob
   ComparisonRow row{imported.solver, SolveReport{}, {}, {}};
   row.report->solver = imported.solver;
   row.report->cam_from_lidar = imported.cam_from_lidar;
-  row.report->wall_time_us = imported.time_us.value_or(0.0);
+  row.report->wall_time_us = imported.time_us.value_or(std::numeric_limits<double>::quiet_NaN());
   row.report->evaluation = Evaluate(problem, imported.cam_from_lidar);
   if (truth) row.from_truth = DistanceBetween(imported.cam_from_lidar, *truth);
   return row;

@@ -25,8 +25,8 @@ void Declare(SolveOptions& options, Arguments& arguments) {
   arguments.Add(
       "--solver", options.solver,
       "A solver, possibly composed; see sextant list solvers. Default: kabsch for 3D-3D\n"
-      "pairs; for 2D-3D pairs refine(sqpnp), or refine(ransac(p3p)) where it finds no pose\n"
-      "or outliers, or p3p for three pairs");
+      "pairs, or robust(kabsch) where there are outliers; for 2D-3D pairs refine(sqpnp), or\n"
+      "refine(ransac(p3p)) where it finds no pose or outliers, or p3p for three pairs");
   arguments.Add("--overlay", options.overlay,
                 "IMAGE OUT: draw measured and reprojected points on the image, residuals x10",
                 {.min_values = 2, .writes = Writes::kFile});

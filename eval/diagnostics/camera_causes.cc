@@ -6,6 +6,13 @@
 
 #include "base/units.h"
 #include "eval/diagnostics/causes.h"
+#include "eval/diagnostics/outlying_pairs.h"
+#include "eval/diagnostics/spread_over.h"
+#include "geometry/intrinsics.h"
+#include "solvers/core/evaluation.h"
+#include "solvers/kernels/pair_terms.h"
+#include "solvers/matching/point_order.h"
+#include "solvers/refine/refine_camera.h"
 
 namespace sextant {
 namespace {
@@ -80,7 +87,65 @@ void AddPixelsOutside(const Camera& camera, std::span<const Pair2d3d> pairs,
       outside.size() > listed ? ", ..." : "", first.x(), first.y()));
 }
 
+// Some of the pixels with their points about the centre of these, in pixels of unit weight.
+CalibrationProblem SomePixels(const CalibrationProblem& problem) {
+  constexpr std::size_t kMaxPairs = 200;
+  CalibrationProblem some;
+  some.camera = problem.camera;
+  some.pairs_2d3d = SpreadOver(problem.pairs_2d3d, kMaxPairs);
+  const Eigen::Vector3d first = some.pairs_2d3d.front().point_in_lidar;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Pair2d3d& pair : some.pairs_2d3d) sum += pair.point_in_lidar - first;
+  const Eigen::Vector3d centre = first + sum / static_cast<double>(some.pairs_2d3d.size());
+  for (Pair2d3d& pair : some.pairs_2d3d) {
+    pair.point_in_lidar -= centre;
+    pair.sigma_px = 0.0;
+  }
+  return some;
+}
+
+double SumOfSquaredPixels(const CalibrationProblem& problem, const Rigid3d& pose) {
+  double squares = 0.0;
+  for (const double residual : Evaluate(problem, pose).per_pair_px) squares += residual * residual;
+  return squares;
+}
+
 }  // namespace
+
+std::optional<std::string> OtherIntrinsics(const CalibrationProblem& problem) {
+  constexpr std::size_t kMinPairs = 10;
+  constexpr double kMinRmse_px = 0.1;
+  constexpr double kMinF = 15.0;
+  constexpr double kMaxShare = 0.5;
+  const bool are_pixels = problem.camera && problem.pairs_2d3d.size() >= kMinPairs;
+  if (!are_pixels || !ValidateCamera(*problem.camera)) return std::nullopt;
+  CalibrationProblem some = SomePixels(problem);
+  const auto start = FitGivenOrder(*ModelOf(some.pairs_2d3d, *some.camera));
+  if (!start) return std::nullopt;
+  const double given = SumOfSquaredPixels(some, start->cam_from_lidar);
+  const auto count = static_cast<double>(some.pairs_2d3d.size());
+  if (!std::isfinite(given) || !(given > count * kMinRmse_px * kMinRmse_px)) return std::nullopt;
+  const std::vector<double> residuals = Evaluate(some, start->cam_from_lidar).per_pair_px;
+  if (!OutlyingResiduals(residuals, 2).empty()) return std::nullopt;
+  const Expected<std::vector<int>> free = FreeIntrinsics(*some.camera, kFocal | kCenter);
+  if (!free) return std::nullopt;
+  const auto refined =
+      RefinePoseAndCamera(MakeTerms(some, PairKind::k2d3d), start->cam_from_lidar, *free, {}, {});
+  if (!refined) return std::nullopt;
+  some.camera = refined->camera.camera;
+  const double other = SumOfSquaredPixels(some, refined->cam_from_lidar);
+  const auto freed = static_cast<double>(free->size());
+  const double f = (given - other) / freed * (2.0 * count - 6.0 - freed) / other;
+  if (!(f > kMinF) || other > kMaxShare * given) return std::nullopt;
+  return fmt::format(
+      "camera: with fx, fy = {:.4g}, {:.4g} px and the principal point ({:.4g}, {:.4g}), estimated "
+      "along with the pose, the RMSE falls from {:.3g} to {:.3g} px: the intrinsics may not be "
+      "those "
+      "of these images (cropped, scaled, refocused, or with a distortion that is not stated), and "
+      "the pose is then off; check them, or use refine(..., intrinsics=focal+center)",
+      some.camera->fx_px, some.camera->fy_px, some.camera->cx_px, some.camera->cy_px,
+      std::sqrt(given / count), std::sqrt(other / count));
+}
 
 std::vector<std::string> CausesInCamera(const CalibrationProblem& problem) {
   std::vector<std::string> causes;

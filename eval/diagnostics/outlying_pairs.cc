@@ -12,17 +12,6 @@
 namespace sextant {
 namespace {
 
-// The place in the file of a pair that is left after the merge.
-int PlaceInFile(int index, bool in_pixels, std::span<const RepeatedPairs> repeated) {
-  for (const RepeatedPairs& of_kind : repeated) {
-    if (of_kind.in_pixels != in_pixels) continue;
-    for (const RepeatedPair& pair : of_kind.merged) {
-      if (pair.repeat <= index) ++index;
-    }
-  }
-  return index + 1;
-}
-
 std::string OutlierList(std::span<const double> residuals, const std::vector<int>& outliers,
                         bool in_pixels, std::span<const RepeatedPairs> repeated) {
   constexpr std::size_t kMaxListed = 8;
@@ -36,14 +25,37 @@ std::string OutlierList(std::span<const double> residuals, const std::vector<int
   return outliers.size() > kMaxListed ? text + ", ..." : text;
 }
 
-void AddOutliers(std::span<const double> residuals, bool in_pixels,
-                 std::span<const RepeatedPairs> repeated, std::vector<std::string>& lines) {
-  const std::vector<int> outliers = OutlyingResiduals(residuals, in_pixels ? 2 : 3);
+const std::vector<double>& ResidualsOf(const SolveReport& report, bool in_pixels) {
+  return in_pixels ? report.evaluation.per_pair_px : report.evaluation.per_pair_m;
+}
+
+void AddOutliers(const SolveReport& report, bool in_pixels, std::span<const RepeatedPairs> repeated,
+                 std::vector<std::string>& lines) {
+  const std::vector<int> outliers = OutlyingPairs(report, in_pixels);
   if (outliers.empty()) return;
+  const std::vector<double>& residuals = ResidualsOf(report, in_pixels);
+  const bool are_used = std::any_of(outliers.begin(), outliers.end(), [&](int i) {
+    return std::binary_search(report.inliers.begin(), report.inliers.end(), i);
+  });
   lines.push_back(fmt::format(
-      "outliers: {} of {} pairs are farther off than the others' noise explains: {}; check or "
-      "remove them, or use a robust solver",
-      outliers.size(), residuals.size(), OutlierList(residuals, outliers, in_pixels, repeated)));
+      "outliers: {} of {} pairs are farther off than the others' noise explains: {}; {}",
+      outliers.size(), residuals.size(), OutlierList(residuals, outliers, in_pixels, repeated),
+      are_used ? "check or remove them, or use a robust solver"
+               : "the answer leaves them out; check or remove them"));
+}
+
+// The residual in sigmas that one of `count` pairs exceeds with a probability of 1 %. The tail of
+// the chi distribution with 3 degrees lies 0.5 farther out than that with 2.
+double TailOf(std::size_t count, int dimension) {
+  constexpr double kChance = 0.01;
+  return std::sqrt(2.0 * std::log(static_cast<double>(count) / kChance)) +
+         (dimension == 3 ? 0.5 : 0.0);
+}
+
+// Largest first.
+void SortByResidual(std::span<const double> residuals, std::vector<int>& indices) {
+  std::ranges::stable_sort(indices, std::ranges::greater{},
+                           [&](int i) { return residuals[static_cast<std::size_t>(i)]; });
 }
 
 // The noise of a coordinate, from the residuals up to a limit about a pose of six parameters.
@@ -62,7 +74,6 @@ double SigmaOfThoseUpTo(double limit, const std::vector<double>& sorted, int dim
 
 std::vector<int> OutlyingResiduals(std::span<const double> residuals, int dimension) {
   constexpr std::size_t kMinPairs = 8;
-  constexpr double kChance = 0.01;
   constexpr double kOfLargest = 0.1;
   constexpr int kMaxRounds = 5;
   std::vector<double> sorted;
@@ -71,9 +82,7 @@ std::vector<int> OutlyingResiduals(std::span<const double> residuals, int dimens
   }
   if (sorted.size() < kMinPairs) return {};
   std::ranges::sort(sorted);
-  // The tail of the chi distribution with 3 degrees lies 0.5 farther out than that with 2.
-  const double tail = std::sqrt(2.0 * std::log(static_cast<double>(sorted.size()) / kChance)) +
-                      (dimension == 3 ? 0.5 : 0.0);
+  const double tail = TailOf(sorted.size(), dimension);
   double sigma = sorted[sorted.size() / 2] / (dimension == 3 ? 1.5382 : 1.1774);
   double limit = 0.0;
   for (int round = 0; round < kMaxRounds; ++round) {
@@ -86,16 +95,41 @@ std::vector<int> OutlyingResiduals(std::span<const double> residuals, int dimens
       outliers.push_back(static_cast<int>(i));
     }
   }
-  std::ranges::stable_sort(outliers, std::ranges::greater{},
-                           [&](int i) { return residuals[static_cast<std::size_t>(i)]; });
+  SortByResidual(residuals, outliers);
   return outliers;
 }
 
-std::vector<std::string> DescribeOutliers(const Evaluation& evaluation,
+std::vector<int> OutlyingPairs(const SolveReport& report, bool in_pixels) {
+  const std::vector<double>& residuals = ResidualsOf(report, in_pixels);
+  const int dimension = in_pixels ? 2 : 3;
+  double sigma = 0.0;  // Not estimated.
+  if (report.noise) {
+    sigma = (in_pixels ? report.noise->sigma_px : report.noise->sigma_m).value_or(0.0);
+  }
+  // The inliers are of one kind only.
+  const bool one_kind =
+      report.evaluation.per_pair_m.empty() || report.evaluation.per_pair_px.empty();
+  const bool leaves_out = !report.inliers.empty() && report.inliers.size() < residuals.size();
+  if (sigma == 0.0 || !one_kind || !leaves_out) return OutlyingResiduals(residuals, dimension);
+  // Few pairs determine their pose and noise that much less well.
+  const double freedom =
+      std::max(1.0, dimension * static_cast<double>(report.inliers.size()) - 6.0);
+  const double limit = TailOf(residuals.size(), dimension) * sigma * (1.0 + 6.0 / freedom);
+  std::vector<int> outliers;
+  for (int i = 0; i < static_cast<int>(residuals.size()); ++i) {
+    const double residual = residuals[static_cast<std::size_t>(i)];
+    const bool is_used = std::binary_search(report.inliers.begin(), report.inliers.end(), i);
+    if (!is_used && std::isfinite(residual) && residual > limit) outliers.push_back(i);
+  }
+  SortByResidual(residuals, outliers);
+  return outliers;
+}
+
+std::vector<std::string> DescribeOutliers(const SolveReport& report,
                                           std::span<const RepeatedPairs> repeated) {
   std::vector<std::string> lines;
-  AddOutliers(evaluation.per_pair_m, false, repeated, lines);
-  AddOutliers(evaluation.per_pair_px, true, repeated, lines);
+  AddOutliers(report, false, repeated, lines);
+  AddOutliers(report, true, repeated, lines);
   return lines;
 }
 

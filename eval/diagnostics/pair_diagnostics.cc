@@ -167,6 +167,11 @@ PairDiagnostics DiagnosePairs(const CalibrationProblem& problem) {
   Append(in_pixels, diagnostics.causes);
   Append(in_points, diagnostics.causes);
   diagnostics.misread = !in_pixels.empty() || !in_points.empty();
+  if (!diagnostics.misread) {
+    for (auto& cause : {OtherIntrinsics(problem), SlightScale(problem)}) {
+      if (cause) diagnostics.causes.push_back(*cause);
+    }
+  }
   if (!in_points.empty()) return diagnostics;
   diagnostics.order = DiagnoseOrder(problem);
   if (problem.pairs_3d3d.size() < 3) return diagnostics;

@@ -107,7 +107,8 @@ void AddNormalised(std::vector<Fault>& faults) {
 }
 
 void AddSizes(const Camera& camera, std::vector<Fault>& faults) {
-  for (const double factor : {2.0, 0.5, 4.0, 0.25, 3.0, 1.0 / 3.0, 1.5, 2.0 / 3.0, 1.25, 0.8}) {
+  for (const double factor :
+       {2.0, 0.5, 4.0, 0.25, 3.0, 1.0 / 3.0, 1.5, 2.0 / 3.0, 4.0 / 3.0, 0.75, 1.25, 0.8}) {
     const std::string size = camera.width_px > 0
                                  ? fmt::format(" ({:.0f} x {:.0f} px)", camera.width_px / factor,
                                                camera.height_px / factor)

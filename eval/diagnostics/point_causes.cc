@@ -35,11 +35,12 @@ struct Unit {
   double in_m;
   const char* name;
 };
-constexpr std::array<Unit, 5> kUnits = {{{0.001, "millimetres"},
+constexpr std::array<Unit, 6> kUnits = {{{0.001, "millimetres"},
                                          {0.01, "centimetres"},
                                          {0.1, "decimetres"},
                                          {0.3048, "feet"},
-                                         {0.0254, "inches"}}};
+                                         {0.0254, "inches"},
+                                         {0.9144, "yards"}}};
 
 // What makes the lengths of one sensor `factor` > 1 times those of the other.
 std::string CauseOfFactor(double factor, const char* longer) {
@@ -53,33 +54,48 @@ std::string CauseOfFactor(double factor, const char* longer) {
          "camera's focal length and the LiDAR's range scale";
 }
 
-/// One sensor's lengths as a multiple of the other's.
-std::optional<std::string> FindScale(const Points& in_cam, const Points& in_lidar) {
-  constexpr double kMinDeviation = 0.003;
-  constexpr double kMaxOfRmse = 0.5;
-  constexpr double kMinF = 100.0;
+/// One sensor's lengths as a multiple of the other's, with the F-test of that factor.
+struct ScaleTest {
+  double ratio = 1.0;  // LiDAR's lengths over the camera's.
+  double f = 0.0;
+  double rmse_as_given = 0.0;
+  double rmse_without = 0.0;  // In the camera's unit.
+};
+
+std::optional<ScaleTest> TestScale(const Points& in_cam, const Points& in_lidar) {
   const double ratio = SpreadOfPoints(in_lidar) / SpreadOfPoints(in_cam);
-  if (!std::isfinite(ratio) || std::abs(ratio - 1.0) < kMinDeviation) return std::nullopt;
+  if (!std::isfinite(ratio)) return std::nullopt;
   Points scaled = in_lidar;
   for (Eigen::Vector3d& point : scaled) point /= ratio;
   const Expected<KabschFit> given = FitKabsch(in_cam, in_lidar);
   const Expected<KabschFit> with_ratio = FitKabsch(in_cam, scaled);
   if (!given || !with_ratio) return std::nullopt;
   const auto n = static_cast<double>(in_cam.size());
-  const double f = (given->sum_squares - with_ratio->sum_squares) * (3.0 * n - 7.0) /
-                   std::max(with_ratio->sum_squares, 1e-300);
-  if (f < kMinF || with_ratio->sum_squares > kMaxOfRmse * kMaxOfRmse * given->sum_squares) {
+  return ScaleTest{.ratio = ratio,
+                   .f = (given->sum_squares - with_ratio->sum_squares) * (3.0 * n - 7.0) /
+                        std::max(with_ratio->sum_squares, 1e-300),
+                   .rmse_as_given = std::sqrt(given->sum_squares / n),
+                   .rmse_without = std::sqrt(with_ratio->sum_squares / n)};
+}
+
+std::optional<std::string> FindScale(const Points& in_cam, const Points& in_lidar) {
+  constexpr double kMinDeviation = 0.003;
+  constexpr double kMaxOfRmse = 0.5;
+  constexpr double kMinF = 100.0;
+  const std::optional<ScaleTest> test = TestScale(in_cam, in_lidar);
+  if (!test || std::abs(test->ratio - 1.0) < kMinDeviation || test->f < kMinF ||
+      test->rmse_without > kMaxOfRmse * test->rmse_as_given) {
     return std::nullopt;
   }
-  const bool lidar_is_longer = ratio > 1.0;
-  const double factor = lidar_is_longer ? ratio : 1.0 / ratio;
+  const bool lidar_is_longer = test->ratio > 1.0;
+  const double factor = lidar_is_longer ? test->ratio : 1.0 / test->ratio;
   const char* longer = lidar_is_longer ? "LiDAR" : "camera";
-  const double to_m = lidar_is_longer ? 1.0 : ratio;
+  const double to_m = lidar_is_longer ? 1.0 : test->ratio;
   return fmt::format(
       "units: the {}'s lengths are {:.4g} times the {}'s, {} (RMSE {:.4g} m as given, {:.4g} m "
       "without this factor)",
       longer, factor, lidar_is_longer ? "camera" : "LiDAR", CauseOfFactor(factor, longer),
-      std::sqrt(given->sum_squares / n), to_m * std::sqrt(with_ratio->sum_squares / n));
+      test->rmse_as_given, to_m * test->rmse_without);
 }
 
 /// Both sensors' lengths as a multiple of the boards' known ones, the same for every edge: a single
@@ -161,6 +177,42 @@ std::optional<std::string> FindExchangedSensors(const CalibrationProblem& proble
 }
 
 }  // namespace
+
+std::optional<std::string> SlightScale(const CalibrationProblem& problem) {
+  constexpr std::size_t kMinPairs = 12;
+  constexpr double kMinDeviation = 0.003;
+  constexpr double kMinF = 30.0;
+  constexpr double kMinHalfF = 8.0;
+  constexpr double kMaxApart = 0.5;  // Of the halves' deviations, relative to that of all.
+  if (problem.pairs_3d3d.size() < kMinPairs) return std::nullopt;
+  Points in_cam;
+  Points in_lidar;
+  std::array<Points, 2> half_in_cam;
+  std::array<Points, 2> half_in_lidar;
+  for (std::size_t i = 0; i < problem.pairs_3d3d.size(); ++i) {
+    const Pair3d3d& pair = problem.pairs_3d3d[i];
+    in_cam.push_back(pair.point_in_cam);
+    in_lidar.push_back(pair.point_in_lidar);
+    half_in_cam[i % 2].push_back(pair.point_in_cam);
+    half_in_lidar[i % 2].push_back(pair.point_in_lidar);
+  }
+  const std::optional<ScaleTest> all = TestScale(in_cam, in_lidar);
+  const std::optional<ScaleTest> even = TestScale(half_in_cam[0], half_in_lidar[0]);
+  const std::optional<ScaleTest> odd = TestScale(half_in_cam[1], half_in_lidar[1]);
+  if (!all || !even || !odd || std::abs(all->ratio - 1.0) < kMinDeviation) return std::nullopt;
+  const double apart = std::abs(even->ratio - odd->ratio) / std::abs(all->ratio - 1.0);
+  if (all->f < kMinF || std::min(even->f, odd->f) < kMinHalfF || apart > kMaxApart) {
+    return std::nullopt;
+  }
+  const bool lidar_is_longer = all->ratio > 1.0;
+  return fmt::format(
+      "scale: the {}'s lengths are {:.4g} times the {}'s (RMSE {:.3g} m as given, {:.3g} m without "
+      "this factor), in every second pair as in the others; the translation may be off by this "
+      "share of the distance. Check the size of the board that each sensor assumes, the camera's "
+      "focal length and the LiDAR's ranges",
+      lidar_is_longer ? "LiDAR" : "camera", lidar_is_longer ? all->ratio : 1.0 / all->ratio,
+      lidar_is_longer ? "camera" : "LiDAR", all->rmse_as_given, all->rmse_without);
+}
 
 std::optional<Reflection> FindReflection(const std::vector<Eigen::Vector3d>& in_cam,
                                          const std::vector<Eigen::Vector3d>& in_lidar) {

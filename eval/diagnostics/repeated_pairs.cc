@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "geometry/pair_noise.h"
 
@@ -33,16 +33,38 @@ double SpreadOf(const std::vector<Pair>& pairs) {
   return std::sqrt(squares / static_cast<double>(pairs.size()));
 }
 
-// The indices by LiDAR point, and those of one point in the order of the list.
+// Coordinates along a direction in which no wall or board is flat, with the index.
 template <class Pair>
-std::vector<std::size_t> ByPoint(const std::vector<Pair>& pairs) {
-  std::vector<std::size_t> order(pairs.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, {}, [&](std::size_t i) {
-    const Eigen::Vector3d& p = pairs[i].point_in_lidar;
-    return std::tuple(p.x(), p.y(), p.z(), i);
-  });
-  return order;
+std::vector<std::pair<double, std::size_t>> SortedAlong(const std::vector<Pair>& pairs) {
+  const Eigen::Vector3d direction = Eigen::Vector3d(0.4142, 0.6180, 0.7321).normalized();
+  std::vector<std::pair<double, std::size_t>> sorted;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    sorted.emplace_back(direction.dot(pairs[i].point_in_lidar), i);
+  }
+  std::ranges::sort(sorted);
+  return sorted;
+}
+
+// LiDAR points no further apart are the same: 5e-4 of the median distance from the median point,
+// which a few far points do not change.
+template <class Pair>
+double SamePointDistance(const std::vector<Pair>& pairs) {
+  constexpr double kSame = 5e-4;
+  const auto median_of = [](std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+  };
+  std::vector<double> values(pairs.size());
+  Eigen::Vector3d centre;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) values[i] = pairs[i].point_in_lidar[axis];
+    centre[axis] = median_of(values);
+  }
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    values[i] = (pairs[i].point_in_lidar - centre).norm();
+  }
+  return kSame * median_of(values);
 }
 
 template <class Pair>
@@ -55,15 +77,29 @@ class RepeatMerger {
     if (pairs_.empty()) return;
     constexpr double kOfSpread = 0.02;
     max_apart_ = kOfSpread * SpreadOf(pairs_);
-    const std::vector<std::size_t> order = ByPoint(pairs_);
-    for (std::size_t begin = 0; begin < order.size();) {
-      std::size_t end = begin + 1;
-      while (end < order.size() &&
-             pairs_[order[end]].point_in_lidar == pairs_[order[begin]].point_in_lidar) {
-        ++end;
+    const auto sorted = SortedAlong(pairs_);
+    std::vector<std::size_t> place(pairs_.size());
+    for (std::size_t k = 0; k < sorted.size(); ++k) place[sorted[k].second] = k;
+    const double same = SamePointDistance(pairs_);
+    std::vector<bool> is_repeat(pairs_.size(), false);
+    std::vector<std::size_t> repeats;
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      if (is_repeat[i]) continue;
+      repeats.clear();
+      const auto take = [&](std::size_t k) {
+        const std::size_t j = sorted[k].second;
+        if (std::abs(sorted[k].first - sorted[place[i]].first) > same) return false;
+        const double apart = (pairs_[j].point_in_lidar - pairs_[i].point_in_lidar).norm();
+        if (j > i && !is_repeat[j] && apart <= same) repeats.push_back(j);
+        return true;
+      };
+      for (std::size_t k = place[i] + 1; k < sorted.size() && take(k); ++k) continue;
+      for (std::size_t k = place[i]; k > 0 && take(k - 1); --k) continue;
+      std::ranges::sort(repeats);
+      for (const std::size_t j : repeats) {
+        is_repeat[j] = true;
+        Compare(i, j);
       }
-      for (std::size_t i = begin + 1; i < end; ++i) Compare(order[begin], order[i]);
-      begin = end;
     }
     RemoveMerged();
     const auto by_repeat = [](const RepeatedPair& pair) { return pair.repeat; };
@@ -152,6 +188,16 @@ std::vector<std::string> Describe(const RepeatedPairs& repeated) {
         pair.first + 1, pair.repeat + 1, pair.apart, repeated.in_pixels ? "px" : "m"));
   }
   return lines;
+}
+
+int PlaceInFile(int index, bool in_pixels, std::span<const RepeatedPairs> repeated) {
+  for (const RepeatedPairs& of_kind : repeated) {
+    if (of_kind.in_pixels != in_pixels) continue;
+    for (const RepeatedPair& pair : of_kind.merged) {
+      if (pair.repeat <= index) ++index;
+    }
+  }
+  return index + 1;
 }
 
 }  // namespace sextant

@@ -22,16 +22,19 @@ struct RepeatedPairs {
   std::vector<RepeatedPair> contradictory;  ///< They cannot both be right; both remain.
 };
 
-/// Finds the pairs with exactly the LiDAR point of another pair and replaces those that agree by
-/// one pair with the mean of their camera observations, because one measurement listed several
-/// times would otherwise lower the covariance. Two observations contradict each other if they
-/// differ by more than a fiftieth of the RMS distance of all observations from their mean and,
-/// where the noise is stated, by more than 5 sigmas of their difference. `point_sets` are those of
-/// the remaining pairs. O(n log n). Returns what was found in the 3D-3D and in the 2D-3D pairs, if
-/// anything.
+/// Finds the pairs with the LiDAR point of another pair, to 5e-4 of the extent of the points
+/// (copies may have been rounded or transformed), and replaces those that agree by one pair with
+/// the mean of their camera observations, because one measurement listed several times would
+/// otherwise lower the covariance. Two observations contradict each other if they differ by more
+/// than a fiftieth of the RMS distance of all observations from their mean and, where the noise is
+/// stated, by more than 5 sigmas of their difference. `point_sets` are those of the remaining
+/// pairs. O(n log n). Returns what was found in the 3D-3D and in the 2D-3D pairs, if anything.
 std::vector<RepeatedPairs> MergeRepeatedPairs(CalibrationProblem& problem);
 
 /// One line each, with pairs counted from 1.
 std::vector<std::string> Describe(const RepeatedPairs& repeated);
+
+/// The place in the file, from 1 on, of the pair at `index` of those that are left after the merge.
+int PlaceInFile(int index, bool in_pixels, std::span<const RepeatedPairs> repeated);
 
 }  // namespace sextant

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/diagnostics/unexplained_pairs.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -40,6 +43,22 @@ std::optional<double> UnexplainedShare(const CalibrationProblem& problem,
   std::vector<Eigen::Vector2d> pixels;
   for (const Pair2d3d& pair : problem.pairs_2d3d) pixels.push_back(pair.pixel);
   return ShareOf<2>(pixels, report.evaluation.per_pair_px, report.inliers);
+}
+
+std::optional<std::string> DescribeMisfit(const CalibrationProblem& problem,
+                                          const SolveReport& report) {
+  constexpr double kUsual = 0.2;
+  const bool is_stated = std::any_of(problem.pairs_3d3d.begin(), problem.pairs_3d3d.end(),
+                                     [](const Pair3d3d& pair) { return HasKnownNoise(pair); }) ||
+                         std::any_of(problem.pairs_2d3d.begin(), problem.pairs_2d3d.end(),
+                                     [](const Pair2d3d& pair) { return HasKnownNoise(pair); });
+  const std::optional<double> share = UnexplainedShare(problem, report);
+  if (is_stated || !share || *share < kUsual) return std::nullopt;
+  return fmt::format(
+      "misfit: the residuals are {:.0f} percent of the spread of the measurements, where {:.0f} or "
+      "less is usual, so that the stated uncertainty, which takes them for noise, may be wrong; "
+      "check which point belongs to which, and that no sensor or board moved",
+      100.0 * *share, 100.0 * kUsual);
 }
 
 }  // namespace sextant

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "geometry/calibration_problem.h"
 #include "solvers/core/solver.h"
@@ -17,5 +18,10 @@ std::optional<double> UnexplainedShare(const CalibrationProblem& problem,
 /// A larger share explains nothing: measurements of boards are at a tenth even where the noise is
 /// large.
 inline constexpr double kMaxUnexplainedShare = 0.3;
+
+/// A sentence where the answer to pairs that state no noise leaves more than a fifth of their
+/// spread: more than measurements usually do, but less than kMaxUnexplainedShare may be.
+std::optional<std::string> DescribeMisfit(const CalibrationProblem& problem,
+                                          const SolveReport& report);
 
 }  // namespace sextant

@@ -2,6 +2,7 @@
 #include "eval/metrics/default_specs.h"
 
 #include "eval/diagnostics/outlying_pairs.h"
+#include "eval/diagnostics/without_noise.h"
 
 namespace sextant {
 
@@ -31,16 +32,21 @@ std::vector<std::string> DefaultSpecs(const SolverRegistry& registry,
 
 std::string DefaultSpec(const SolverRegistry& registry, const CalibrationProblem& problem) {
   const std::size_t pixels = problem.pairs_2d3d.size();
-  if (!problem.pairs_3d3d.empty() || pixels == 0) return "kabsch";
-  if (pixels == 3) return "p3p";
-  const std::string least_squares = "refine(sqpnp)";
-  const std::string robust = "refine(ransac(p3p))";
-  const auto answer_of = [&](const std::string& spec) {
-    return registry.Make(spec).and_then([&](const SolverPtr& s) { return s->Solve(problem); });
+  const std::size_t points = problem.pairs_3d3d.size();
+  const bool in_pixels = points == 0 && pixels > 0;
+  if (in_pixels && pixels == 3) return "p3p";
+  const std::string least_squares = in_pixels ? "refine(sqpnp)" : "kabsch";
+  const std::string robust = in_pixels ? "refine(ransac(p3p))" : "robust(kabsch)";
+  if (points + pixels == 0) return least_squares;
+  const auto answer_of = [&](const std::string& spec, const CalibrationProblem& pairs) {
+    return registry.Make(spec).and_then([&](const SolverPtr& s) { return s->Solve(pairs); });
   };
-  const Expected<SolveReport> report = answer_of(least_squares);
-  if (report && OutlyingResiduals(report->evaluation.per_pair_px, 2).empty()) return least_squares;
-  return answer_of(robust) ? robust : least_squares;
+  // Judged by the robust answer: outliers, if they are many, spoil the other one so that none of
+  // them stands out.
+  const Expected<SolveReport> answer = answer_of(robust, WithoutNoise(problem));
+  if (!answer) return least_squares;
+  if (!OutlyingPairs(*answer, in_pixels).empty()) return robust;
+  return in_pixels && !answer_of(least_squares, problem) ? robust : least_squares;
 }
 
 }  // namespace sextant

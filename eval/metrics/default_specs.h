@@ -15,9 +15,10 @@ namespace sextant {
 std::vector<std::string> DefaultSpecs(const SolverRegistry& registry,
                                       const CalibrationProblem& problem);
 
-/// The solver for those who name none: kabsch for 3D-3D pairs; for 2D-3D pairs refine(sqpnp), or
-/// refine(ransac(p3p)) where that finds no pose or outliers, or p3p for three pairs. Solves once or
-/// twice.
+/// The solver for those who name none: kabsch for 3D-3D pairs, or robust(kabsch) where that leaves
+/// out pairs that noise does not explain (OutlyingPairs); for 2D-3D pairs refine(sqpnp), or
+/// refine(ransac(p3p)) where that leaves out such pairs or the first finds no pose, or p3p for
+/// three pairs. Solves once or twice.
 std::string DefaultSpec(const SolverRegistry& registry, const CalibrationProblem& problem);
 
 }  // namespace sextant

@@ -62,6 +62,13 @@ void SetScores(std::vector<ScoredRow>& rows) {
   }
 }
 
+// Of answers for which no pair is within kMaxDeviations, the score is the same.
+double RmsOfAll(const ScoredRow& scored) {
+  if (!scored.row.report) return 0.0;
+  const Evaluation& evaluation = scored.row.report->evaluation;
+  return evaluation.rmse_px.value_or(evaluation.rmse_m.value_or(0.0));
+}
+
 void MeasureFromFirst(std::vector<ScoredRow>& rows) {
   for (ScoredRow& scored : rows) {
     if (!scored.row.report) continue;
@@ -81,8 +88,7 @@ std::vector<ScoredRow> SortByScore(std::vector<ComparisonRow> rows,
   SetScores(scored);
   std::ranges::stable_sort(scored, {}, [](const ScoredRow& of) {
     constexpr double kWorst = std::numeric_limits<double>::infinity();
-    return std::tuple(!of.row.report.has_value(), !of.spec.estimates_rotation,
-                      of.score.value_or(kWorst));
+    return std::tuple(!of.row.report.has_value(), of.score.value_or(kWorst), RmsOfAll(of));
   });
   MeasureFromFirst(scored);
   return scored;

@@ -19,9 +19,9 @@ struct ScoredRow {
 /// The rows, best first, by a score that holds every answer to all pairs, whichever of them it
 /// used: the root of the mean of min(r / s, 3)^2 over the residuals r of all pairs, s the smallest
 /// over the answers of the standard deviation of the smaller half of their residuals of that kind.
-/// A pair that does not project counts as 3. Solvers that keep a part of the start come after the
-/// others, those without an answer last. from_first then is the distance to the best answer.
-/// `specs`: one for each row.
+/// A pair that does not project counts as 3. Of equal scores, as where no residual is below 3, the
+/// smaller RMSE over all pairs comes first; rows without an answer come last. from_first then is
+/// the distance to the best answer. `specs`: one for each row.
 std::vector<ScoredRow> SortByScore(std::vector<ComparisonRow> rows,
                                    std::span<const SolverSpec> specs);
 

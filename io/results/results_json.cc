@@ -113,7 +113,8 @@ Json Result(const SolverResult& result) {
   json["alternatives"] = Poses(report->alternatives);
   json["iterations"] = report->iterations;
   json["termination"] = ToString(report->termination);
-  json["wall_time_us"] = report->wall_time_us;
+  json["wall_time_us"] =
+      std::isnan(report->wall_time_us) ? Json(nullptr) : Json(report->wall_time_us);
   return json;
 }
 
@@ -281,7 +282,7 @@ SolveReport ParseReport(const ParsedJson& json) {
     report.alternatives.push_back(ParsePose(pose));
   report.iterations = Get<int>(json, "iterations");
   report.termination = GetEnum(json, "termination", Termination::kMaxIterations);
-  report.wall_time_us = Get<double>(json, "wall_time_us");
+  report.wall_time_us = GetOptional(json, "wall_time_us").value_or(std::nan(""));
   return report;
 }
 

@@ -26,8 +26,8 @@ def solve(points_in_lidar, points_in_cam=None, *, solver="", **data):
     Instead of points: a Problem, or the path of a file of correspondences (points.txt, CSV, YAML).
 
     solver: as in `sextant list solvers`, such as "refine(ransac(p3p))", or a function (register).
-    By default kabsch for 3D-3D pairs; for 2D-3D pairs refine(sqpnp), or refine(ransac(p3p)) where
-    there are outliers.
+    By default kabsch for 3D-3D pairs and refine(sqpnp) for 2D-3D pairs, or robust(kabsch) and
+    refine(ransac(p3p)) where there are outliers.
 
     Raises Error with the message that `sextant solve` prints.
     """

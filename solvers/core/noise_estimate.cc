@@ -192,6 +192,15 @@ void Complete(std::span<const Pair> pairs, const Camera* camera, const SolverSpe
     estimate.covariance = Correlated(*estimate.covariance, variance * *inverse, correlated);
   }
   if (tellable) *estimate.covariance *= CovarianceInflation(parts.freedom);
+  constexpr double kFewFreedom = 6.0;
+  if (!grouped && parts.freedom <= kFewFreedom) {
+    AddWarning(
+        fmt::format("the noise is estimated from {:.0f} redundant numbers only: the region that "
+                    "holds the truth with 95 percent is {:.1f} times as wide as these sigmas "
+                    "make it; more pairs would tell",
+                    parts.freedom, std::sqrt(CovarianceInflation(parts.freedom))),
+        estimate);
+  }
   if (grouped && !tellable) {
     AddWarning(fmt::format("the pairs are of {} board{}, too few to tell what error the pairs of a "
                            "board share; the sigmas assume none and may be several times too small",

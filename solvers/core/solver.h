@@ -86,8 +86,8 @@ struct Estimate {
 
 struct SolveReport : Estimate {
   std::string solver;
-  double wall_time_us = 0.0;
-  Evaluation evaluation;  ///< The pose with its camera, over all data of the problem.
+  double wall_time_us = 0.0;  ///< NaN where it is not known: a pose that another program found.
+  Evaluation evaluation;      ///< The pose with its camera, over all data of the problem.
 };
 
 /// A method that finds cam_from_lidar. Immutable, deterministic, thread-safe.

@@ -66,6 +66,8 @@ std::vector<int> NotRejected(const std::vector<Pair>& pairs, const std::vector<i
 
 /// argmin over SE(3) of 1/2 sum rho(|r_i|^2) from the inner solver's pose, r_i whitened by the
 /// stated noise of the pairs (full 3x3 covariances included), over the inliers of the inner solver.
+/// The inliers of the answer are these, without those to which the loss gives hardly any weight
+/// (kMinLossWeight).
 ///
 /// Pairs that state no noise have it estimated: see refine_noise.h.
 /// Plain least squares runs in RefinePose, robust losses in Ceres. With on=both, the pairs of the
@@ -132,7 +134,7 @@ class RefineSolver final : public Solver {
     if (!estimate) return estimate;
     estimate->noise = pairs.noise();
     estimate->termination = Termination::kConverged;
-    estimate->inliers = spec().needs.pairs_3d3d > 0 ? used.points : used.pixels;
+    estimate->inliers = Inliers(used, pairs.Terms(), *estimate);
     estimate->alternatives = start.alternatives;
     estimate->stages = start.stages;
     return estimate;
@@ -244,6 +246,28 @@ class RefineSolver final : public Solver {
           estimate.camera = refined.camera;
           return estimate;
         });
+  }
+
+  // The used pairs of the kind that inliers are of, without those that the loss all but ignores.
+  std::vector<int> Inliers(const UsedPairs& used, const PairTerms& terms,
+                           const Estimate& estimate) const {
+    const bool of_points = spec().needs.pairs_3d3d > 0;
+    const std::vector<int>& all = of_points ? used.points : used.pixels;
+    const bool are_refined = of_points ? Uses3d3d(options_.on) : Uses2d3d(options_.on);
+    const RobustLoss loss = options_.Loss();
+    if (loss.kind == LossKind::kNone || !are_refined) return all;
+    TermsView view = terms.View();
+    if (estimate.camera) view.camera = &estimate.camera->camera;
+    if (of_points) {
+      view.pixels = {};
+    } else {
+      view.points = {};
+    }
+    std::vector<int> kept;
+    for (const int i : WeightedTerms(view, estimate.cam_from_lidar, loss)) {
+      kept.push_back(all[static_cast<std::size_t>(i)]);
+    }
+    return kept.size() < static_cast<std::size_t>(kMinPairs) ? all : kept;
   }
 
   RefineLimits Limits() const { return {options_.max_iterations, options_.step_tolerance}; }

@@ -57,6 +57,22 @@ bool AddWeighted(const Terms& terms, const Camera* camera, const ceres::LossFunc
   return true;
 }
 
+// Appends `first` + i for each term i of enough weight.
+template <int kResiduals, class Terms>
+void AppendWeighted(const Terms& terms, const TermsView& of, const Rigid3d& pose,
+                    const ceres::LossFunction* loss, int first, std::vector<int>& indices) {
+  const Eigen::Matrix3d r = pose.rotation.toRotationMatrix();
+  TermDerivatives<kResiduals> at;
+  int index = first;
+  for (const auto& term : terms) {
+    double rho[3] = {0.0, 1.0, 0.0};
+    const bool has_residual = Differentiate(term, of.camera, r, pose.translation, at);
+    if (has_residual && loss != nullptr) loss->Evaluate(at.residual.squaredNorm(), rho);
+    if (has_residual && rho[1] >= kMinLossWeight) indices.push_back(index);
+    ++index;
+  }
+}
+
 // Cost and information at the pose in `sum`; false where they are not numbers.
 bool SumUp(const TermsView& terms, const RobustLoss& loss, RefinedPose& sum) {
   const std::unique_ptr<ceres::LossFunction> rho(NewLoss(loss));
@@ -83,6 +99,16 @@ RefinedPose RefinePoseWithCeres(const TermsView& terms, const Rigid3d& start,
   refined.outcome = OutcomeOf(summary.termination_type);
   SumUp(terms, loss, refined);
   return refined;
+}
+
+std::vector<int> WeightedTerms(const TermsView& terms, const Rigid3d& pose,
+                               const RobustLoss& loss) {
+  const std::unique_ptr<ceres::LossFunction> rho(NewLoss(loss));
+  std::vector<int> indices;
+  AppendWeighted<3>(terms.points, terms, pose, rho.get(), 0, indices);
+  AppendWeighted<2>(terms.pixels, terms, pose, rho.get(), static_cast<int>(terms.points.size()),
+                    indices);
+  return indices;
 }
 
 std::optional<Matrix6d> CeresCovariance(const TermsView& terms, const Rigid3d& pose) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "solvers/least_squares/refine_pose.h"
 
 namespace sextant {
@@ -18,6 +21,14 @@ struct RobustLoss {
 /// 1/2 sum rho(|r_i|^2) and `information` sum rho'(|r_i|^2) J_i^T J_i.
 RefinedPose RefinePoseWithCeres(const TermsView& terms, const Rigid3d& start,
                                 const RobustLoss& loss, const RefineLimits& limits);
+
+/// A pair with a smaller weight rho' is no inlier: it has hardly a say in the pose, and its
+/// residual is not one of the noise.
+inline constexpr double kMinLossWeight = 0.25;
+
+/// Indices of the terms, points before pixels, whose weight rho'(|r_i|^2) at `pose` is at least
+/// kMinLossWeight.
+std::vector<int> WeightedTerms(const TermsView& terms, const Rigid3d& pose, const RobustLoss& loss);
 
 /// The covariance of (dphi, dt) at `pose` under plain least squares by ceres::Covariance; none
 /// where the information is singular. Slower than InvertSymmetric; tests compare the two.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "solvers/core/inner_solver.h"
 #include "solvers/core/registry.h"
@@ -20,8 +21,9 @@ struct DropWorstOptions : InlierOptions {
 /// Solves, removes the pair with the largest residual, and solves again: the paper's elimination
 /// by hand (20 points, then 11, then 8) as a method.
 ///
-/// Ends with `keep` pairs; with keep=0 as soon as all remaining pairs are within the threshold, and
-/// then these must be a consensus (see CheckConsensus). Residuals are in sigmas, so that a pair
+/// Ends with `keep` pairs and the inner solver on these; with keep=0 as soon as all remaining pairs
+/// are within the threshold. These must be a consensus (see CheckConsensus), and the answer is that
+/// of BetterOnInliers. Residuals are in sigmas, so that a pair
 /// that is known to be noisy is not dropped for it. Errors: kNoConsensus, kTooFewPairs (fewer than
 /// `keep`), those of the inner solver.
 class DropWorstSolver final : public Solver {
@@ -52,16 +54,17 @@ class DropWorstSolver final : public Solver {
   // Requires pairs that state their noise, or keep.
   Expected<Estimate> SolveStated(const CalibrationProblem& problem) const {
     const double max_squared = options_.MaxSquared(kind_);
-    const TermScorer scorer(MakeTerms(problem, kind_));
+    TermScorer scorer(MakeTerms(problem, kind_));
     std::vector<double> squared(scorer.size());
     std::vector<int> kept(scorer.size());
     std::iota(kept.begin(), kept.end(), 0);
     const int min_kept = options_.keep > 0 ? options_.keep : MinPairs(inner_->spec().needs);
     bool all_within = false;
     int solves = 0;
+    Rigid3d pose;
     while (true) {
       ++solves;
-      SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, PoseOfSubset(*inner_, problem, scorer, kept));
+      SEXTANT_ASSIGN_OR_RETURN(pose, PoseOfSubset(*inner_, problem, scorer, kept));
       scorer.SquaredResiduals(pose, squared);
       const auto worst = std::max_element(kept.begin(), kept.end(), [&](int a, int b) {
         return squared[static_cast<std::size_t>(a)] < squared[static_cast<std::size_t>(b)];
@@ -75,11 +78,24 @@ class DropWorstSolver final : public Solver {
       SEXTANT_RETURN_IF_ERROR(
           CheckConsensus(scorer, max_squared, agreeing, MinPairs(spec().needs)));
     }
-    Expected<Estimate> estimate = SolveSubset(*inner_, problem, kept);
+    Expected<Estimate> estimate = options_.keep > 0
+                                      ? SolveSubset(*inner_, problem, kept)
+                                      : AnswerNear(problem, scorer, pose, max_squared);
     if (!estimate) return estimate;
     estimate->iterations = solves;
     estimate->termination = Termination::kConverged;
     return estimate;
+  }
+
+  // As ransac and gnc: an algebraic inner solver weighs the pairs by their depth, so that the one
+  // noise of all pairs is not that of its answer.
+  Expected<Estimate> AnswerNear(const CalibrationProblem& problem, TermScorer& scorer,
+                                const Rigid3d& pose, double max_squared) const {
+    const std::optional<Rigid3d> fit = spec().estimates_rotation
+                                           ? scorer.FitInliers(pose, max_squared, {})
+                                           : std::optional<Rigid3d>();
+    return BetterOnInliers(*inner_, problem, scorer, fit && fit->IsFinite() ? *fit : pose,
+                           max_squared);
   }
 
   SolverPtr inner_;

@@ -4,7 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -39,6 +41,7 @@ class ScaleSearch {
       for (const Rigid3d& pose : poses_) improves = Try(pose) || improves;
       if (improves) wanted = std::max<double>(triples_->min_samples(), Wanted());
     }
+    if (best_ && unknowns_ == 6.0) PreferPart();
   }
 
   bool found() const { return best_.has_value(); }
@@ -72,29 +75,85 @@ class ScaleSearch {
     ScaleRating rating;
   };
 
-  ScaleRating Rate(const Rigid3d& pose) {
+  ScaleRatings Rate(const Rigid3d& pose) {
     scorer_.SquaredResiduals(pose, squared_);
     return rating_.Rate(squared_);
   }
 
-  // Takes the pose if it is the best, and then least squares on its inliers while that is better.
+  // Takes the pose if it is the best of all or of a part of the pairs, and in the first case then
+  // least squares on its inliers while that is better.
   bool Try(const Rigid3d& pose) {
-    constexpr int kMaxRounds = 10;
     if (!pose.IsFinite()) return false;
-    Rated next{pose, Rate(pose)};
-    if (!IsBetter(next)) return false;
-    for (int round = 0; round < kMaxRounds && IsBetter(next); ++round) {
-      best_ = next;
-      const auto fit = scorer_.FitInliers(next.pose, next.rating.max_squared,
-                                          {.max_iterations = 6, .step_tolerance = 1e-8});
-      if (unknowns_ < 6.0 || !fit || !fit->IsFinite()) break;
-      next = {*fit, Rate(*fit)};
+    const ScaleRatings ratings = Rate(pose);
+    for (std::size_t share = 1; share < best_of_.size(); ++share) {
+      if (IsBetter(ratings[share], best_of_[share])) best_of_[share] = Rated{pose, ratings[share]};
     }
+    if (!IsBetter(ratings[0], best_)) return false;
+    best_ = Improved({pose, ratings[0]}, 0);
     return true;
   }
 
-  bool IsBetter(const Rated& rated) const {
-    return !best_ || rated.rating.log_false_alarms < best_->rating.log_false_alarms;
+  // After least squares on the inliers of this share, while that is better.
+  Rated Improved(Rated best, std::size_t share) {
+    constexpr int kMaxRounds = 10;
+    for (int round = 0; round < kMaxRounds && unknowns_ == 6.0; ++round) {
+      const auto fit = scorer_.FitInliers(best.pose, best.rating.max_squared,
+                                          {.max_iterations = 6, .step_tolerance = 1e-8});
+      if (!fit || !fit->IsFinite()) break;
+      const Rated next{*fit, Rate(*fit)[share]};
+      if (!IsBetter(next.rating, best)) break;
+      best = next;
+    }
+    return best;
+  }
+
+  static bool IsBetter(const ScaleRating& rating, const std::optional<Rated>& best) {
+    return !best || rating.log_false_alarms < best->rating.log_false_alarms;
+  }
+
+  // Takes fewer pairs than the best rating where noise alone would not leave these so close to a
+  // pose. The rating of a compromise between two groups of pairs may be as good as that of either.
+  void PreferPart() {
+    const std::optional<Rigid3d> fit =
+        scorer_.FitInliers(best_->pose, best_->rating.max_squared, {});
+    std::vector<double> of_best(squared_.size());
+    scorer_.SquaredResiduals(best_->pose, of_best);
+    std::vector<bool> is_in;
+    for (const double s : of_best) is_in.push_back(s <= best_->rating.max_squared);
+    if (fit && fit->IsFinite()) scorer_.SquaredResiduals(*fit, of_best);
+    const Selection all = SelectionOf(of_best, is_in, std::numeric_limits<double>::infinity());
+    const double rounding = static_cast<double>(all.count) * rating_.min_squared();
+    if (!std::isfinite(all.squares) || !(all.squares > rounding)) return;
+    double least = kLogMaxFalseAlarms;
+    for (std::size_t share = 1; share < best_of_.size(); ++share) {
+      if (!best_of_[share]) continue;
+      const Rated part = Improved(*best_of_[share], share);
+      if (!(part.rating.log_false_alarms < kLogMaxFalseAlarms)) continue;
+      scorer_.SquaredResiduals(part.pose, squared_);
+      const Selection of_part = SelectionOf(squared_, is_in, part.rating.max_squared);
+      const double chance =
+          LogChanceOfSelection(dimension_, all.count, of_part.count, of_part.squares, all.squares);
+      if (!(chance < least)) continue;
+      least = chance;
+      best_ = part;
+    }
+  }
+
+  struct Selection {
+    std::size_t count = 0;
+    double squares = 0.0;
+  };
+
+  // Of those that are in, the pairs within max_squared.
+  static Selection SelectionOf(const std::vector<double>& squared, const std::vector<bool>& is_in,
+                               double max_squared) {
+    Selection selection;
+    for (std::size_t i = 0; i < squared.size(); ++i) {
+      if (!is_in[i] || !(squared[i] <= max_squared)) continue;
+      ++selection.count;
+      selection.squares += squared[i];
+    }
+    return selection;
   }
 
   double Wanted() const {
@@ -125,6 +184,7 @@ class ScaleSearch {
   std::vector<double> squared_;
   std::vector<Rigid3d> poses_;
   std::optional<Rated> best_;
+  std::array<std::optional<Rated>, kRatedShares.size()> best_of_;  // But of all pairs: best_.
 };
 
 bool StatesNoise(const CalibrationProblem& problem, PairKind kind) {

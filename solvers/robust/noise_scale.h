@@ -28,7 +28,9 @@ inline constexpr std::uint64_t kScaleSeed = 1;
 /// close to,
 ///   NFA = min over k of (n - 3) C(n, k) C(k, 3) p(e_k)^(k - 3),
 /// e_k the k-th smallest residual and p the probability that a random pair has at most that
-/// (RandomAgreementProbability). Least squares on the best k follows each improvement. The sigma is
+/// (RandomAgreementProbability). Least squares on the best k follows each improvement. Fewer pairs
+/// are taken where noise alone would not leave these so close to a pose (LogChanceOfSelection): all
+/// pairs may rate better than either of two groups that contradict each other. The sigma is
 /// that of the Gaussian cut off at e_k, then of the pairs within 99 percent of it, repeated until
 /// these stay the same. It is at least 1e-7 of the extent of the measurements; p is that of at
 /// least 1e-4 of it.

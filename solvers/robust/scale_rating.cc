@@ -25,6 +25,17 @@ std::int64_t LeadingBits(double positive) {
   return static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(positive) >> kBinShift);
 }
 
+// log Gamma(z) for z > 0 by Stirling's series: std::lgamma writes a global variable, which is a
+// data race.
+double LogGamma(double z) {
+  double shift = 0.0;
+  for (; z < 8.0; z += 1.0) shift += std::log(z);
+  const double inverse = 1.0 / z;
+  const double series =
+      inverse * (1.0 / 12.0 - inverse * inverse * (1.0 / 360.0 - inverse * inverse / 1260.0));
+  return (z - 0.5) * std::log(z) - z + 0.5 * std::log(2.0 * std::numbers::pi) + series - shift;
+}
+
 // The share of the mean square that is left of a Gaussian cut off at `cut` variances.
 double ShareOfVariance(int dimension, double cut) {
   const double x = 0.5 * cut;
@@ -73,22 +84,43 @@ ScaleRater::ScaleRater(const PairScorer& scorer, double extent, int absorbed)
   }
 }
 
-ScaleRating ScaleRater::Rate(std::span<const double> squared) const {
+ScaleRatings ScaleRater::Rate(std::span<const double> squared) const {
   std::array<int, kBins> counts{};
   for (const double s : squared) {
     const std::int64_t bin = std::max<std::int64_t>(0, LeadingBits(s) - first_);
     if (bin < static_cast<std::int64_t>(kBins)) ++counts[static_cast<std::size_t>(bin)];
   }
-  ScaleRating best{std::numeric_limits<double>::infinity(), upper_.back(), 0};
+  ScaleRatings best;
+  best.fill({std::numeric_limits<double>::infinity(), upper_.back(), 0});
   std::size_t k = 0;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     if (counts[bin] == 0) continue;
     k += static_cast<std::size_t>(counts[bin]);
     if (k <= absorbed_) continue;
     const double rated = log_tests_[k] + static_cast<double>(k - absorbed_) * chance_[bin];
-    if (rated < best.log_false_alarms) best = {rated, upper_[bin], static_cast<int>(k)};
+    for (std::size_t share = 0; share < best.size(); ++share) {
+      if (static_cast<double>(k) > kRatedShares[share] * static_cast<double>(size_)) break;
+      if (rated < best[share].log_false_alarms) {
+        best[share] = {rated, upper_[bin], static_cast<int>(k)};
+      }
+    }
   }
   return best;
+}
+
+double LogChanceOfSelection(int dimension, std::size_t count, std::size_t inliers, double squares,
+                            double squares_of_all) {
+  const double a = 0.5 * (dimension * static_cast<double>(inliers) - 6.0);
+  const double b = 0.5 * dimension * static_cast<double>(count - inliers);
+  const double x = squares / squares_of_all;
+  // The bound holds up to the mode of the beta distribution.
+  if (!(a > 1.0) || !(b > 1.0) || !(x < (a - 1.0) / (a + b - 2.0))) return 0.0;
+  const auto n = static_cast<double>(count);
+  const auto k = static_cast<double>(inliers);
+  const double log_choices = LogGamma(n + 1.0) - LogGamma(k + 1.0) - LogGamma(n - k + 1.0);
+  const double log_chance =
+      a * std::log(x) + (b - 1.0) * std::log1p(-x) + LogGamma(a + b) - LogGamma(a) - LogGamma(b);
+  return std::min(0.0, log_choices + log_chance);
 }
 
 double VarianceWithin(std::span<const double> squared, int dimension, double unknowns,

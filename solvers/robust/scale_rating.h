@@ -19,6 +19,10 @@ struct ScaleRating {
   int inliers = 0;                ///< k
 };
 
+/// The best ratings that leave out at least these shares of the pairs: none, a sixth, two fifths.
+inline constexpr std::array<double, 3> kRatedShares = {1.0, 5.0 / 6.0, 0.6};
+using ScaleRatings = std::array<ScaleRating, kRatedShares.size()>;
+
 /// Rates the residuals of a pose at every scale. Residuals are counted by quarters of octaves of
 /// their squares, so a rating takes time N + 200 and no sorting.
 class ScaleRater {
@@ -30,8 +34,9 @@ class ScaleRater {
   /// Residuals below this are rounding errors, and count as equal.
   double min_squared() const { return upper_.front(); }
 
-  /// Squared residuals that are not numbers count as infinite.
-  ScaleRating Rate(std::span<const double> squared) const;
+  /// The best rating for each of kRatedShares. Squared residuals that are not numbers count as
+  /// infinite.
+  ScaleRatings Rate(std::span<const double> squared) const;
 
  private:
   static constexpr std::size_t kBins = 200;
@@ -43,6 +48,17 @@ class ScaleRater {
   std::array<double, kBins> chance_{};  // log p there.
   std::vector<double> log_tests_;       // log((n - m) C(n, k) C(k, m)) by k, m = absorbed.
 };
+
+/// Logarithm of the expected number of choices of `inliers` of `count` pairs whose squares would
+/// add up to `squares` or less by noise alone, where those of all pairs about their own best pose
+/// add up to `squares_of_all`; 0 where it is not small.
+///
+/// If one Gaussian explained all pairs, leaving out m of them would be a linear hypothesis with the
+/// F-test of m `dimension` and f = `inliers` `dimension` - 6 degrees of freedom: C(count, m) P(F).
+/// P(F) is bounded from above by x^a (1 - x)^(b - 1) / B(a, b), with x = squares / squares_of_all,
+/// a = f / 2, b = m `dimension` / 2.
+double LogChanceOfSelection(int dimension, std::size_t count, std::size_t inliers, double squares,
+                            double squares_of_all);
 
 /// The variance per axis of a Gaussian of `dimension` axes, cut off at the square `max_squared`,
 /// from the squares up to that; `unknowns` were fitted to these. No less than 0.

@@ -118,7 +118,7 @@ TEST(JudgedData, OrdinaryCasesHaveNoCause) {
 std::vector<std::string> OutliersOf(CalibrationProblem problem) {
   const std::vector<RepeatedPairs> repeated = MergeRepeatedPairs(problem);
   const auto report = BuiltinSolvers().Make("refine(sqpnp)").value()->Solve(problem);
-  return DescribeOutliers(report.value().evaluation, repeated);
+  return DescribeOutliers(report.value(), repeated);
 }
 
 TEST(JudgedData, OutliersAreNamedByRow) {

@@ -119,8 +119,6 @@ void ExpectEveryRobustSolverIsRight(const FieldCase& of, const Goals& goals) {
   EXPECT_LT((right->cam_from_lidar.translation - goals.translation).cwiseAbs().maxCoeff(),
             goals.rounding);
   const Vector6d bootstrap = BootstrapSigmas(of, "refine(sqpnp)");
-  // drop_worst answers with the inner solver, which is not least squares of the pixels.
-  const Vector6d algebraic = BootstrapSigmas(of, "sqpnp");
   for (int seed = 1; seed <= kSeeds; ++seed) {
     for (const std::string& spec : RobustSpecs(seed)) {
       // Those without a seed once.
@@ -133,12 +131,8 @@ void ExpectEveryRobustSolverIsRight(const FieldCase& of, const Goals& goals) {
       for (int axis = 0; axis < 6; ++axis) {
         EXPECT_LT(std::abs(off[axis]), 3.0 * bootstrap[axis]) << spec << ", axis " << axis;
         if (goals.sigma_ratio == 0.0) continue;
-        // Its sigma of the rotation about z is 2.2 times the bootstrap's: all pixels share one
-        // noise.
-        if (spec == "drop_worst(sqpnp)" && axis == 2) continue;
-        const double own = (spec == "drop_worst(sqpnp)" ? algebraic : bootstrap)[axis];
-        EXPECT_LT(sigmas[axis], goals.sigma_ratio * own) << spec << ", axis " << axis;
-        EXPECT_GT(sigmas[axis], own / goals.sigma_ratio) << spec << ", axis " << axis;
+        EXPECT_LT(sigmas[axis], goals.sigma_ratio * bootstrap[axis]) << spec << ", axis " << axis;
+        EXPECT_GT(sigmas[axis], bootstrap[axis] / goals.sigma_ratio) << spec << ", axis " << axis;
       }
       EXPECT_EQ(report->noise->board_errors == BoardErrors::kTooFewBoards, goals.says_too_few);
     }

@@ -105,6 +105,9 @@ TEST(External, ImportedPosesAndATruthJoinTheComparison) {
   const std::size_t theirs = run.out.find("\ntheirs");
   EXPECT_LT(ours, theirs);
   EXPECT_LT(theirs, run.out.find("\nfar off"));
+  // What it took is not known.
+  const std::string row = run.out.substr(theirs + 1, run.out.find('\n', theirs + 1) - theirs - 1);
+  EXPECT_THAT(row, testing::EndsWith(" -"));
   WriteText(poses, "solver,x,y,z,qw,qx,qy,qz\ntheirs,1,0,0,3,0,0,0\n");
   const ProgramRun bad = RunSextant("compare " + PairsFile() + " --import " + poses);
   EXPECT_EQ(bad.exit_code, 2);

@@ -49,6 +49,23 @@ TEST(RepeatedPairs, ObservationsThatAgreeAreAveraged) {
   EXPECT_NEAR(problem.pairs_2d3d[2].pixel.x(), 201.5, 1e-12);
 }
 
+// One copy of every pair, rounded differently: sigma must not shrink.
+TEST(RepeatedPairs, CopiesMayDifferByRounding) {
+  CalibrationProblem problem = PixelPairs();
+  for (int i = 0; i < 6; ++i) {
+    Pair2d3d copy = problem.pairs_2d3d[static_cast<std::size_t>(i)];
+    copy.point_in_lidar += 2e-5 * Eigen::Vector3d(i % 2, -1.0, 1.0);
+    copy.pixel += Eigen::Vector2d(0.01, -0.02);
+    problem.pairs_2d3d.push_back(copy);
+  }
+  EXPECT_EQ(MergeRepeatedPairs(problem).at(0).merged.size(), 6U);
+  EXPECT_EQ(problem.pairs_2d3d.size(), 6U);
+  // A millimetre apart they are neighbours.
+  problem.pairs_2d3d.push_back(problem.pairs_2d3d[3]);
+  problem.pairs_2d3d.back().point_in_lidar.z() += 1e-3;
+  EXPECT_THAT(MergeRepeatedPairs(problem), IsEmpty());
+}
+
 TEST(RepeatedPairs, ContradictionsAreNamedAndRemain) {
   CalibrationProblem problem = PixelPairs();
   problem.pairs_2d3d.push_back(problem.pairs_2d3d[1]);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -50,6 +51,16 @@ ResultFile TwoResults() {
   file.results.push_back({"kabsch", Report()});
   file.results.push_back({"epnp", MakeError(ErrorCode::kMissingData, "no \"camera\"")});
   return file;
+}
+
+TEST(ResultsJson, AnUnknownTimeIsNull) {
+  ResultFile file = TwoResults();
+  file.results[0].report->wall_time_us = std::nan("");
+  const std::string text = FormatResults(file);
+  EXPECT_TRUE(nlohmann::json::parse(text)["results"][0]["wall_time_us"].is_null());
+  const auto read = ParseResults(text, "result.json");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_TRUE(std::isnan(read->results[0].report->wall_time_us));
 }
 
 TEST(ResultsJson, KeysAreTheContract) {
