@@ -87,10 +87,6 @@ ordered_json BoardJson(const ImageReport& report, const SeenBoard& seen, const B
   }
   result["checker_px"] = nullptr;
   if (seen.checker) result["checker_px"] = PixelsJson(seen.checker->corners_px);
-  result["outlines_px"] = ordered_json::array();
-  for (const PlateOutline& outline : seen.outlines) {
-    result["outlines_px"].push_back(PixelsJson(outline.corners_px));
-  }
   result["pose"] = nullptr;
   if (!seen.pose || !*seen.pose) return result;
   result["pose"] = BoardPoseJson(**seen.pose);

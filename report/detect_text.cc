@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "base/units.h"
-#include "features/camera/plate_outline.h"
 #include "report/detect_report.h"
 
 namespace sextant {
@@ -72,13 +71,6 @@ std::string DescribePose(const SeenBoard& board) {
     text += fmt::format("    corner {}: {:.4f} {:.4f} {:.4f} m, 1 sigma {:.2f} {:.2f} {:.2f} mm\n",
                         k, corner.x(), corner.y(), corner.z(), off.x(), off.y(), off.z());
   }
-  if (IsPoorPrint(pose.rms_px, OverNoise(pose))) {
-    text += fmt::format(
-        "    the print fits only to {:.1f} px, {:.0f} times its noise: its sizes and distances are "
-        "not those of the board file, it is not flat, or the intrinsics are not those of the "
-        "lens\n",
-        pose.rms_px, OverNoise(pose));
-  }
   if (pose.ambiguous_with) {
     text += fmt::format(
         "    ambiguous: the opposite tilt, {:.1f} deg from this, fits about as well "
@@ -105,19 +97,7 @@ std::string DescribeBoard(const ImageReport& report, const SeenBoard& seen, cons
       text += kAssumedUpright;
     }
   }
-  if (IsPlain(board)) {
-    text += seen.outlines.size() == 1
-                ? fmt::format(": outline found{}", kAssumedUpright)
-                : fmt::format(": {} outlines that could be this plain plate", seen.outlines.size());
-  }
   text += "\n";
-  for (const PlateOutline& outline : seen.outlines) {
-    text += "    outline:";
-    for (const Eigen::Vector2d& corner : outline.corners_px) {
-      text += fmt::format(" ({:.2f}, {:.2f})", corner.x(), corner.y());
-    }
-    text += "\n";
-  }
   // Between tags in a checkerboard, its corners count, and the tags' own corners are not needed.
   const bool counts_tags = !board.checker || !board.checker->holds_tags || seen.is_checker_missing;
   for (const SeenTag& tag : seen.tags) {

@@ -12,7 +12,6 @@
 #include "calibrate/observe/face_returns.h"
 #include "features/camera/explain_missing.h"
 #include "features/camera/grey_image.h"
-#include "features/camera/plate_outline.h"
 
 namespace sextant {
 namespace {
@@ -26,16 +25,6 @@ std::string WhyUnseen(const Board& board, const SeenBoard& seen) {
   if (!seen.duplicate_tags.empty()) {
     return fmt::format("its tag {} appears more than once in the image, so it is not used",
                        board.tags[seen.duplicate_tags.front()].id);
-  }
-  if (IsPlain(board) && seen.outlines.empty()) {
-    return fmt::format(
-        "no plain plate of {:.3f} x {:.3f} m was found: its whole outline, or most of each side, "
-        "must be in the photo, in front of something darker or brighter",
-        board.top_right_m, board.right_bottom_m);
-  }
-  if (IsPlain(board)) {
-    return fmt::format("{} outlines in the photo could be the plain plate; print a tag on it",
-                       seen.outlines.size());
   }
   if (board.tags.size() > 1) {
     return fmt::format("none of its {} tags of {} was found", board.tags.size(),

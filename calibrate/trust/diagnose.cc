@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -13,13 +12,14 @@
 
 #include "calibrate/trust/measured_boards.h"
 #include "calibrate/trust/scale_fit.h"
-#include "features/camera/board_pose.h"
 
 namespace sextant {
 namespace {
 
 constexpr double kMinExcess = 0.01;  // Relative to a distance.
 constexpr double kSigmas = 4.0;
+constexpr double kPoorPrint_px = 1.0;  // RMS; a good lens model leaves a third of it.
+constexpr double kPoorPrint = 3.0;     // RMS over the stated noise.
 constexpr double kSamePlace_m = 0.05;
 constexpr double kSameTurn_rad = 5.0 * std::numbers::pi / 180.0;
 
@@ -48,30 +48,14 @@ void DiagnoseScale(const CalibrationProblem& problem, const Rigid3d& pose,
                         focal));
 }
 
-void DiagnosePlaces(const CalibrationProblem& problem, const Rigid3d& pose,
-                    std::vector<std::string>& lines) {
-  constexpr std::array<std::array<const char*, 2>, 2> kTowards = {
-      {{"its left side", "its right side"}, {"its top", "its bottom"}}};
-  for (const PrintShift& shift : FindPrintShifts(problem, pose)) {
-    lines.push_back(fmt::format(
-        "board file: the print of board {} lies {:.0f} mm nearer to {} (as the board file has it) "
-        "than it says (1 sigma {:.0f} mm): measure where the print is on the plate and state it as "
-        "center_in_board_m",
-        problem.boards[static_cast<std::size_t>(shift.board)].id, 1e3 * std::abs(shift.shift_m),
-        kTowards[static_cast<std::size_t>(shift.axis)][shift.shift_m > 0.0 ? 1 : 0],
-        1e3 * shift.sigma_m));
-  }
-}
-
 void DiagnosePrints(std::span<const SessionView> views, const Assembly& assembly,
                     std::vector<std::string>& lines) {
   const std::optional<PrintFit> fit = MeasurePrints(views, assembly);
-  if (!fit || !IsPoorPrint(fit->rms_px, fit->over_noise)) return;
-  lines.push_back(fmt::format(
-      "intrinsics: the prints fit the camera model only to {:.1f} px, {:.0f} times "
-      "their noise: the intrinsics do not describe the lens, or a print is not flat, or not "
-      "as the board file describes it",
-      fit->rms_px, fit->over_noise));
+  if (!fit || fit->rms_px < kPoorPrint_px || fit->over_noise < kPoorPrint) return;
+  lines.push_back(
+      fmt::format("intrinsics: the prints fit the camera model only to {:.1f} px, {:.0f} times "
+                  "their noise: the intrinsics do not describe the lens, or a print is not flat",
+                  fit->rms_px, fit->over_noise));
 }
 
 void DiagnoseSession(const Assembly& assembly, std::vector<std::string>& lines) {
@@ -142,10 +126,7 @@ std::vector<std::string> Diagnose(std::span<const SessionView> views, const Asse
   for (std::string& line : DescribeEdges(MeasureEdges(views, assembly), assembly)) {
     lines.push_back(std::move(line));
   }
-  const std::size_t before = lines.size();
   DiagnoseScale(assembly.problem, cam_from_lidar, lines);
-  // A wrong scale displaces prints, too.
-  if (lines.size() == before) DiagnosePlaces(assembly.problem, cam_from_lidar, lines);
   DiagnosePrints(views, assembly, lines);
   return lines;
 }

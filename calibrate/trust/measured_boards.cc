@@ -9,7 +9,6 @@
 #include <map>
 
 #include "base/median.h"
-#include "features/camera/board_pose.h"
 
 namespace sextant {
 namespace {
@@ -109,7 +108,7 @@ std::optional<PrintFit> MeasurePrints(std::span<const SessionView> views,
                                 .pose;
     if (pose.residuals <= kPoseUnknowns) continue;
     rms_px.push_back(pose.rms_px);
-    over_noise.push_back(OverNoise(pose));
+    over_noise.push_back(std::sqrt(pose.chi_square / (pose.residuals - kPoseUnknowns)));
   }
   if (rms_px.empty()) return std::nullopt;
   return PrintFit{.rms_px = UpperMedian(rms_px), .over_noise = UpperMedian(over_noise)};

@@ -39,13 +39,13 @@ struct NormalEquations {
   }
 };
 
-// The pose of each board in the camera frame.
-std::map<ViewAndBoardId, Rigid3d> PosesInCam(const CalibrationProblem& problem) {
-  std::map<ViewAndBoardId, Rigid3d> poses;
+// The centre of each board in the camera frame.
+std::map<ViewAndBoardId, Eigen::Vector3d> CentersInCam(const CalibrationProblem& problem) {
+  std::map<ViewAndBoardId, Eigen::Vector3d> centers;
   for (const BoardView& view : problem.board_views) {
-    poses[{view.view, view.board}] = view.cam_from_board;
+    centers[{view.view, view.board}] = view.cam_from_board.translation;
   }
-  return poses;
+  return centers;
 }
 
 // Scans of a board that stays in its place repeat its errors: they count as one, their mean.
@@ -58,12 +58,12 @@ struct Placement {
 
 std::vector<NormalEquations> MeanByPlacement(
     const std::map<ViewAndBoardId, NormalEquations>& boards,
-    const std::map<ViewAndBoardId, Rigid3d>& poses) {
+    const std::map<ViewAndBoardId, Eigen::Vector3d>& centers) {
   constexpr double kSamePlacement_m = 0.05;
   std::vector<Placement> placements;
   for (const auto& [id, equations] : boards) {
     const int number = id.second;
-    const Eigen::Vector3d& center = poses.at(id).translation;
+    const Eigen::Vector3d& center = centers.at(id);
     auto at = std::find_if(placements.begin(), placements.end(), [&](const Placement& placement) {
       return placement.board == number && (placement.center - center).norm() < kSamePlacement_m;
     });
@@ -78,28 +78,26 @@ std::vector<NormalEquations> MeanByPlacement(
   return means;
 }
 
-// `share` maps the id of a board and its pose in the camera frame to its displacement there per
-// unit of the excess.
+// `share` maps the centre of a board to its displacement per unit of the excess.
 template <class Share>
 std::vector<NormalEquations> EquationsOf(const CalibrationProblem& problem, const Rigid3d& pose,
                                          Share share) {
-  const auto poses = PosesInCam(problem);
+  const auto centers = CentersInCam(problem);
   std::map<ViewAndBoardId, NormalEquations> boards;
   for (const Pair3d3d& pair : problem.pairs_3d3d) {
-    const auto board_pose = poses.find({pair.id.view, pair.id.board});
-    if (board_pose == poses.end()) continue;
+    const auto center = centers.find({pair.id.view, pair.id.board});
+    if (center == centers.end()) continue;
     const Eigen::Vector3d turned = pose.rotation * pair.point_in_lidar;
     Eigen::Matrix<double, 3, 7> jacobian;
-    jacobian << -Hat(turned), Eigen::Matrix3d::Identity(),
-        share(board_pose->first.second, board_pose->second);
+    jacobian << -Hat(turned), Eigen::Matrix3d::Identity(), share(center->second);
     const Eigen::Vector3d residual = pair.point_in_cam - turned - pose.translation;
     const double weight = IsotropicWeight(pair);
-    NormalEquations& board = boards[board_pose->first];
+    NormalEquations& board = boards[center->first];
     board.matrix += weight * jacobian.transpose() * jacobian;
     board.right += weight * jacobian.transpose() * residual;
     board.squares += weight * residual.squaredNorm();
   }
-  return MeanByPlacement(boards, poses);
+  return MeanByPlacement(boards, centers);
 }
 
 // The variance of the excess by the jackknife over boards; 0 where leaving one out leaves too few.
@@ -140,36 +138,14 @@ std::optional<ScaleFit> FitScale(const std::vector<NormalEquations>& boards) {
 
 std::optional<ScaleFits> FitScales(const CalibrationProblem& problem,
                                    const Rigid3d& cam_from_lidar) {
-  const auto print =
-      FitScale(EquationsOf(problem, cam_from_lidar,
-                           [](int /*board*/, const Rigid3d& pose) { return pose.translation; }));
+  const auto print = FitScale(
+      EquationsOf(problem, cam_from_lidar, [](const Eigen::Vector3d& center) { return center; }));
   const auto focal =
-      FitScale(EquationsOf(problem, cam_from_lidar, [](int /*board*/, const Rigid3d& pose) {
-        return Eigen::Vector3d(0.0, 0.0, pose.translation.z());
+      FitScale(EquationsOf(problem, cam_from_lidar, [](const Eigen::Vector3d& center) {
+        return Eigen::Vector3d(0.0, 0.0, center.z());
       }));
   if (!print || !focal) return std::nullopt;
   return ScaleFits{.print = *print, .focal = *focal};
-}
-
-std::vector<PrintShift> FindPrintShifts(const CalibrationProblem& problem,
-                                        const Rigid3d& cam_from_lidar) {
-  constexpr double kMinShift_m = 0.008;
-  constexpr double kMinSigmas = 4.0;
-  std::vector<PrintShift> shifts;
-  for (int board = 0; board < static_cast<int>(problem.boards.size()); ++board) {
-    const int id = problem.boards[static_cast<std::size_t>(board)].id;
-    for (int axis = 0; axis < 2; ++axis) {
-      const auto fit =
-          FitScale(EquationsOf(problem, cam_from_lidar, [id, axis](int of, const Rigid3d& pose) {
-            const Eigen::Vector3d along = pose.rotation * Eigen::Vector3d::Unit(axis);
-            return of == id ? along : Eigen::Vector3d(Eigen::Vector3d::Zero());
-          }));
-      if (!fit || std::abs(fit->excess) < std::max(kMinShift_m, kMinSigmas * fit->sigma)) continue;
-      shifts.push_back(
-          {.board = board, .axis = axis, .shift_m = fit->excess, .sigma_m = fit->sigma});
-    }
-  }
-  return shifts;
 }
 
 bool ScaleFit::IsSignificant() const {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "geometry/calibration_problem.h"
 #include "geometry/rigid3d.h"
@@ -36,20 +35,6 @@ struct ScaleFits {
 };
 std::optional<ScaleFits> FitScales(const CalibrationProblem& problem,
                                    const Rigid3d& cam_from_lidar);
-
-/// A print that lies elsewhere on its plate than the board file states.
-struct PrintShift {
-  int board = 0;         ///< Index into the problem's boards.
-  int axis = 0;          ///< 0: from top to right (corner 0 to 1), 1: from right to bottom.
-  double shift_m = 0.0;  ///< Positive towards corner 1, or corner 2.
-  double sigma_m = 0.0;
-};
-
-/// The displacements, of at least 8 mm and four sigmas, each the least-squares fit of pose and
-/// displacement to the corners' differences. Where boards are held in one orientation only, a
-/// displacement is not distinguishable from a translation, and none is found.
-std::vector<PrintShift> FindPrintShifts(const CalibrationProblem& problem,
-                                        const Rigid3d& cam_from_lidar);
 
 /// The covariance with the shift of a significant excess added as one standard deviation: whether
 /// the camera or the LiDAR is right about the ranges is not known.

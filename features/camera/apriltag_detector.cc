@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <mutex>
 
-#include "features/camera/contrast/contrast_regions.h"
-#include "features/camera/contrast/image_noise.h"
+#include "features/camera/contrast_regions.h"
+#include "features/camera/image_noise.h"
 #include "features/camera/tags/apriltag_family.h"
 
 namespace sextant {

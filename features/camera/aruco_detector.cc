@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "features/camera/contrast/contrast_regions.h"
+#include "features/camera/contrast_regions.h"
 #include "features/camera/tag_reading.h"
 #include "features/camera/tags/aruco_dictionary.h"
 #include "features/camera/tags/opencv_aruco.h"

@@ -104,40 +104,7 @@ bool IsSame(const Rigid3d& a, const Rigid3d& b) {
          distance.translation_m < 1e-4 * (1.0 + a.translation.norm());
 }
 
-// The error if the points are nowhere near one flat print of their layout, as with other numbers or
-// sizes in the board file: such a pose is meaningless.
-Expected<void> CheckLayout(std::span<const BoardPoints> groups, const BoardPose& pose) {
-  constexpr double kMaxOff_px = 3.0;
-  constexpr double kMaxShare = 0.02;  // Of the print's diagonal in the image.
-  Eigen::AlignedBox2d box;
-  std::size_t points = 0;
-  for (const BoardPoints& group : groups) {
-    for (const Eigen::Vector2d& pixel : group.pixels) box.extend(pixel);
-    points += group.pixels.size();
-  }
-  if (pose.rms_px <= kMaxOff_px + kMaxShare * box.diagonal().norm()) return {};
-  return MakeError(
-      ErrorCode::kInvalidInput,
-      fmt::format(
-          "the print does not fit its description in the board file: its {} points are {:.0f} "
-          "px (RMS) from where they would be; check the numbers of columns and rows, the "
-          "ids, sizes and distances, then the camera's intrinsics",
-          points, pose.rms_px));
-}
-
 }  // namespace
-
-double OverNoise(const BoardPose& pose) {
-  constexpr int kUnknowns = 6;
-  if (pose.residuals <= kUnknowns) return 0.0;
-  return std::sqrt(pose.chi_square / (pose.residuals - kUnknowns));
-}
-
-bool IsPoorPrint(double rms_px, double over_noise) {
-  constexpr double kPoor_px = 1.0;  // A good lens model leaves a third of it.
-  constexpr double kPoorOverNoise = 3.0;
-  return rms_px >= kPoor_px && over_noise >= kPoorOverNoise;
-}
 
 Expected<BoardPose> EstimateBoardPose(const Camera& camera, std::span<const BoardPoints> groups) {
   if (groups.empty()) {
@@ -176,7 +143,6 @@ Expected<BoardPose> EstimateBoardPose(const Camera& camera, std::span<const Boar
   for (const BoardPoints& group : groups)
     pose.residuals += 2 * static_cast<int>(group.pixels.size());
   pose.rms_px = std::sqrt(2.0 * best.equations.squares_px2 / pose.residuals);
-  SEXTANT_RETURN_IF_ERROR(CheckLayout(groups, pose));
   const double misfit =
       pose.residuals > 6 ? std::max(1.0, chi_square(best) / (pose.residuals - 6)) : 1.0;
   pose.covariance = misfit * *inverse;

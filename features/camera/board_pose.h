@@ -28,12 +28,6 @@ struct BoardPose {
   double ambiguity_chi_square = 0.0;  ///< Excess chi-square of the other pose; 0 if there is none.
 };
 
-/// The residuals relative to the stated covariances of the pixels; 0 without redundancy.
-double OverNoise(const BoardPose& pose);
-
-/// Whether prints fit so badly that the camera model, or their description, must be wrong.
-bool IsPoorPrint(double rms_px, double over_noise);
-
 /// Estimates the pose from all points by least squares of whitened reprojection errors.
 ///
 /// Each group alone gives two initial poses by IPPE (solvers/pnp/ippe.h; Collins and Bartoli 2014);
@@ -41,8 +35,7 @@ bool IsPoorPrint(double rms_px, double over_noise);
 /// minimum is kept as `ambiguous_with` unless a likelihood-ratio test at 1 % (chi-square 9.2
 /// between the two hypotheses, scaled as the covariance is) rejects it. Errors: kTooFewPairs (no
 /// group); kDegenerate, kMirrored from IPPE for every group; kNoConvergence; kInvalidInput for a
-/// covariance that is not positive definite or not of the points' size, and for points that are
-/// not near one flat print of their layout (RMS over 3 px and 2 percent of its diagonal).
+/// covariance that is not positive definite or not of the points' size.
 Expected<BoardPose> EstimateBoardPose(const Camera& camera, std::span<const BoardPoints> groups);
 
 /// The corners of a board, in the order of Board: 4, or 8 where it has a hole. [m]

@@ -50,28 +50,14 @@ TagDetection AsFamily(TagDetection tag, const std::string& family) {
   return tag;
 }
 
-Expected<void> CheckPlainBoards(const std::vector<Board>& boards, bool has_camera) {
-  const auto first = std::ranges::find_if(boards, IsPlain);
-  if (first == boards.end()) return {};
-  if (!has_camera) {
-    return MakeError(
-        ErrorCode::kInvalidInput,
-        fmt::format("board {} has neither tags nor a checkerboard to detect; the "
-                    "outline of a plain plate is only found with a camera's intrinsics",
-                    first->id));
-  }
-  const auto second = std::find_if(first + 1, boards.end(), IsPlain);
-  if (second == boards.end()) return {};
-  return MakeError(
-      ErrorCode::kInvalidInput,
-      fmt::format("boards {} and {} have neither tags nor a checkerboard: a photo does "
-                  "not tell two plain plates apart",
-                  first->id, second->id));
-}
-
-Expected<void> CheckTags(const std::vector<Board>& boards) {
+Expected<void> CheckBoards(const std::vector<Board>& boards) {
   std::set<std::pair<std::string, int>> tags;
   for (const Board& board : boards) {
+    if (board.tags.empty() && !board.checker) {
+      return MakeError(
+          ErrorCode::kInvalidInput,
+          fmt::format("board {} has neither tags nor a checkerboard to detect", board.id));
+    }
     for (const BoardTag& tag : board.tags) {
       if (Expected<TagPattern> pattern = MakeTagPattern(tag.family, tag.id); !pattern) {
         return MakeError(pattern.error().code,
@@ -117,15 +103,6 @@ BoardPoints PointsOf(const BoardChecker& checker, const CheckerDetection& seen) 
   return points;
 }
 
-BoardPoints PointsOf(const Board& board, const PlateOutline& outline) {
-  BoardPoints points;
-  points.in_board_m = CornersInBoard(board);
-  points.in_board_m.resize(kCornersPerBoard);
-  points.pixels.assign(outline.corners_px.begin(), outline.corners_px.end());
-  points.covariance_px2 = outline.covariance_px2;
-  return points;
-}
-
 using Detectors = std::map<std::string, TagDetectorPtr>;
 
 Expected<void> Add(const std::string& key, const std::string& spec, Detectors& detectors) {
@@ -166,8 +143,7 @@ bool HasAllTags(const SeenBoards& seen) {
 
 Expected<BoardFinder> BoardFinder::Make(std::vector<Board> boards, std::optional<Camera> camera,
                                         const std::string& detector) {
-  SEXTANT_RETURN_IF_ERROR(CheckPlainBoards(boards, camera.has_value()));
-  SEXTANT_RETURN_IF_ERROR(CheckTags(boards));
+  SEXTANT_RETURN_IF_ERROR(CheckBoards(boards));
   BoardFinder finder;
   for (const Board& board : boards) {
     for (const BoardTag& tag : board.tags) {
@@ -198,31 +174,22 @@ Expected<SeenBoards> BoardFinder::Find(const cv::Mat& image) const {
                      fmt::format("the image has {} x {} pixels, expected {} x {} as in the camera",
                                  grey.cols, grey.rows, camera_->width_px, camera_->height_px));
   }
-  const std::vector<PlateOutline> outlines = Outlines(grey);
   Detections checkers;
   SEXTANT_RETURN_IF_ERROR(DetectAll(grey, checkers_, checkers));
   if (!quick_.empty() && quick_.size() == detectors_.size()) {
     Detections found = checkers;
     SEXTANT_RETURN_IF_ERROR(DetectAll(grey, quick_, found));
-    SeenBoards seen = Assemble(grey, std::move(found), outlines);
+    SeenBoards seen = Assemble(grey, std::move(found));
     if (HasAllTags(seen)) return seen;
   }
   SEXTANT_RETURN_IF_ERROR(DetectAll(grey, detectors_, checkers));
-  return Assemble(grey, std::move(checkers), outlines);
+  return Assemble(grey, std::move(checkers));
 }
 
-std::vector<PlateOutline> BoardFinder::Outlines(const cv::Mat& grey) const {
-  const auto plain = std::ranges::find_if(boards_, IsPlain);
-  if (plain == boards_.end()) return {};
-  return FindPlateOutlines(grey, *camera_, *plain);
-}
-
-SeenBoards BoardFinder::Assemble(const cv::Mat& grey, Detections found,
-                                 const std::vector<PlateOutline>& outlines) const {
+SeenBoards BoardFinder::Assemble(const cv::Mat& grey, Detections found) const {
   SeenBoards seen;
   for (std::size_t i = 0; i < boards_.size(); ++i) {
     seen.boards.push_back(Assign(i, grey, found));
-    if (IsPlain(boards_[i])) seen.boards.back().outlines = outlines;
     AddPoints(grey, seen.boards.back());
     if (camera_) AddPose(seen.boards.back());
   }
@@ -275,7 +242,6 @@ void BoardFinder::AddPoints(const cv::Mat& grey, SeenBoard& seen) const {
     if (!seen.is_checker_missing) seen.printed = {std::move(corners)};
   }
   if (seen.checker) seen.printed.push_back(PointsOf(*board.checker, *seen.checker));
-  if (seen.outlines.size() == 1) seen.printed.push_back(PointsOf(board, seen.outlines.front()));
 }
 
 void BoardFinder::AddPose(SeenBoard& seen) const {

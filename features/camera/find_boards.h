@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "features/camera/board_pose.h"
 #include "features/camera/edge_refine.h"
-#include "features/camera/plate_outline.h"
 #include "features/camera/tag_detector.h"
 #include "geometry/board.h"
 
@@ -33,10 +32,8 @@ struct SeenBoard {
   std::vector<std::size_t> missing_tags{};  ///< Indices into Board::tags.
   bool is_checker_missing = false;
   std::vector<std::size_t> duplicate_tags{};  ///< Tags seen more than once, which are not used.
-  /// What may be the outline of a board without a print. Only a single one is used.
-  std::vector<PlateOutline> outlines{};
   /// Input of the pose: a group for each tag or checkerboard; of a checkerboard that holds tags
-  /// only its own corners, where they were found; the corners of a plain plate.
+  /// only its own corners, where they were found.
   std::vector<BoardPoints> printed{};
   std::optional<Expected<BoardPose>> pose{};  ///< None without a camera or without any detection.
   PointsInCam corners{};                      ///< Those of BoardCorners; empty without a pose.
@@ -50,13 +47,11 @@ struct SeenBoards {
 /// Finds boards in images. Immutable and thread-safe.
 class BoardFinder {
  public:
-  /// Makes a detector for each family and each size of checkerboard on the boards. One board may be
-  /// plain, without a print, if there is a camera: its outline is searched. `detector` is
+  /// Makes a detector for each family and each size of checkerboard on the boards. `detector` is
   /// the library that detects tags, "aruco" or "apriltag", with options but without the family,
   /// which comes from the boards; empty: AprilTag's library for its families, else OpenCV's.
   /// Errors: kUnknownName for a family, kInvalidOption for a library that does not read it;
-  /// kInvalidInput for a plain board without a camera, for two of them, and for a tag on two
-  /// boards.
+  /// kInvalidInput for boards without tags and checkerboard and for a tag on two boards.
   static Expected<BoardFinder> Make(std::vector<Board> boards, std::optional<Camera> camera,
                                     const std::string& detector = "");
 
@@ -73,9 +68,7 @@ class BoardFinder {
   using Detectors = std::map<std::string, TagDetectorPtr>;
 
   BoardFinder() = default;
-  std::vector<PlateOutline> Outlines(const cv::Mat& grey) const;
-  SeenBoards Assemble(const cv::Mat& grey, Detections found,
-                      const std::vector<PlateOutline>& outlines) const;
+  SeenBoards Assemble(const cv::Mat& grey, Detections found) const;
   SeenBoard Assign(std::size_t index, const cv::Mat& grey, Detections& found) const;
   void AddPoints(const cv::Mat& grey, SeenBoard& seen) const;
   void AddPose(SeenBoard& seen) const;

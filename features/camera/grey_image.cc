@@ -3,8 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
-#include <cstdint>
 #include <opencv2/imgproc.hpp>
 
 namespace sextant {
@@ -12,20 +10,14 @@ namespace {
 
 constexpr int kMinSide = 16;
 
-// The upper eight of the bits that are used, as other programs take them: without rounding.
 cv::Mat ToEightBits(const cv::Mat& image) {
   double brightest = 0.0;
   cv::minMaxLoc(image.reshape(1), nullptr, &brightest);
-  int unused_bits = 0;
-  while (std::ldexp(brightest, -unused_bits) >= 256.0) ++unused_bits;
-  const cv::Mat flat = image.reshape(1);
-  cv::Mat bytes(flat.size(), CV_8U);
-  for (int y = 0; y < flat.rows; ++y) {
-    const auto* from = flat.ptr<std::uint16_t>(y);
-    auto* to = bytes.ptr<std::uint8_t>(y);
-    for (int x = 0; x < flat.cols; ++x) to[x] = static_cast<std::uint8_t>(from[x] >> unused_bits);
-  }
-  return bytes.reshape(image.channels());
+  double scale = 1.0;
+  while (brightest * scale >= 256.0) scale *= 0.5;
+  cv::Mat bytes;
+  image.convertTo(bytes, CV_8U, scale);
+  return bytes;
 }
 
 }  // namespace
@@ -49,18 +41,6 @@ Expected<cv::Mat> ToGrey(const cv::Mat& image) {
   cv::Mat grey;
   cv::cvtColor(bytes, grey, channels == 3 ? cv::COLOR_BGR2GRAY : cv::COLOR_BGRA2GRAY);
   return grey;
-}
-
-double GreyAt(const cv::Mat& grey, const Eigen::Vector2d& pixel) {
-  const int x = static_cast<int>(std::floor(pixel.x()));
-  const int y = static_cast<int>(std::floor(pixel.y()));
-  if (x < 0 || y < 0 || x + 1 >= grey.cols || y + 1 >= grey.rows) return -1.0;
-  const double fx = pixel.x() - x;
-  const double fy = pixel.y() - y;
-  const std::uint8_t* above = grey.ptr<std::uint8_t>(y) + x;
-  const std::uint8_t* below = grey.ptr<std::uint8_t>(y + 1) + x;
-  return (1.0 - fy) * ((1.0 - fx) * above[0] + fx * above[1]) +
-         fy * ((1.0 - fx) * below[0] + fx * below[1]);
 }
 
 }  // namespace sextant

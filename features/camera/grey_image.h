@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 
 #include "base/error.h"
@@ -14,8 +13,5 @@ namespace sextant {
 /// the power of two that brings the brightest pixel under 256, since cameras store 10, 12, 14 or 16
 /// bits in them. Error: kInvalidInput for other types and images under 16 x 16 pixels.
 Expected<cv::Mat> ToGrey(const cv::Mat& image);
-
-/// The grey level at a pixel between others, bilinear; negative outside the image. Requires 8 bits.
-double GreyAt(const cv::Mat& grey, const Eigen::Vector2d& pixel);
 
 }  // namespace sextant

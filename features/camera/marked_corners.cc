@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "features/camera/contrast/contrast_regions.h"
+#include "features/camera/contrast_regions.h"
 #include "features/camera/find_boards.h"
 
 namespace sextant {

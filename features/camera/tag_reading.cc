@@ -4,9 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
-
-#include "features/camera/grey_image.h"
 
 namespace sextant {
 namespace {
@@ -16,6 +15,19 @@ struct Cell {
   bool is_white = false;
   bool is_data = false;
 };
+
+// Bilinear; negative outside the image.
+double GreyAt(const cv::Mat& grey, const Eigen::Vector2d& pixel) {
+  const int x = static_cast<int>(std::floor(pixel.x()));
+  const int y = static_cast<int>(std::floor(pixel.y()));
+  if (x < 0 || y < 0 || x + 1 >= grey.cols || y + 1 >= grey.rows) return -1.0;
+  const double fx = pixel.x() - x;
+  const double fy = pixel.y() - y;
+  const std::uint8_t* above = grey.ptr<std::uint8_t>(y) + x;
+  const std::uint8_t* below = grey.ptr<std::uint8_t>(y + 1) + x;
+  return (1.0 - fy) * ((1.0 - fx) * above[0] + fx * above[1]) +
+         fy * ((1.0 - fx) * below[0] + fx * below[1]);
+}
 
 std::vector<Cell> ReadCells(const cv::Mat& grey, const Eigen::Matrix3d& pixel_from_unit,
                             const TagPattern& pattern) {

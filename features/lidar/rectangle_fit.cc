@@ -170,60 +170,24 @@ struct Sums {
 };
 
 // The displacements along one axis of the board at which all returns lie on it and the rings beyond
-// do not. An error of the beam's growth, or of the size, moves the bounds of the two ends in
-// opposite directions.
+// do not.
 struct AxisInterval {
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::array<double, 2> along = {-kInfinity, kInfinity};  // By the end along the axis: low, high.
-  std::array<double, 2> against = {-kInfinity, kInfinity};
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
 
   // Spots at the ends before the rings beyond, in both directions [m].
   std::array<double, 2> end_spots{};
 
-  struct Estimate {
-    double middle = 0.0;
-    double variance = 0.0;
-  };
-
-  // Mean and variance over the errors of the growth that both ends allow; none for a side without
-  // bounds. `size_sigma_m`: of half the board's size.
-  std::optional<Estimate> Place(double size_sigma_m) const {
-    constexpr int kSteps = 8;  // On each side, up to three sigmas.
-    const double spot = kSlantGrowthSigma * std::max(end_spots[0], end_spots[1]);
-    const double sigma = std::hypot(spot, size_sigma_m);
-    double weights = 0.0;
-    double sum = 0.0;
-    double squares = 0.0;
-    for (int i = -kSteps; i <= kSteps; ++i) {
-      const double sigmas = 3.0 * i / kSteps;
-      const double low = std::max(along[0] - sigmas * sigma, against[0] + sigmas * sigma);
-      const double high = std::min(along[1] - sigmas * sigma, against[1] + sigmas * sigma);
-      if (!std::isfinite(high - low)) return std::nullopt;
-      if (high <= low) continue;
-      const double length = high - low;
-      const double middle = 0.5 * (low + high);
-      const double weight = std::exp(-0.5 * sigmas * sigmas) * length;
-      weights += weight;
-      sum += weight * middle;
-      squares += weight * (middle * middle + length * length / 12.0);
-    }
-    Estimate estimate = FarApart();
-    if (weights > 0.0) {
-      estimate.middle = sum / weights;
-      estimate.variance = squares / weights - estimate.middle * estimate.middle;
-    }
-    // What differs between the spots of the two ends does not cancel.
-    const bool both = end_spots[0] > 0.0 && end_spots[1] > 0.0;
-    const double rest = both ? kSlantGrowthSigma * (end_spots[0] - end_spots[1]) : 0.0;
-    estimate.variance += rest * rest;
-    return estimate;
+  // The growth at two opposite ends cancels.
+  double GrowthVariance() const {
+    const double spot = end_spots[0] - end_spots[1];
+    return kSlantGrowthSigma * kSlantGrowthSigma * spot * spot;
   }
 
-  // Of bounds that no likely error reconciles: each end for itself.
-  Estimate FarApart() const {
-    const double low = std::max(along[0], against[0]);
-    const double high = std::min(along[1], against[1]);
-    return {0.5 * (low + high), (high - low) * (high - low) / 12.0};
+  double Middle() const { return 0.5 * (low + high); }
+  double Variance() const {
+    const double length = std::max(high - low, 0.0);
+    return length * length / 12.0;
   }
 };
 
@@ -336,17 +300,18 @@ class Fitter {
     std::array<bool, 2> bracketed{};
     Eigen::Matrix3d of_intervals = Eigen::Matrix3d::Zero();
     for (Eigen::Index axis = 0; axis < 2; ++axis) {
-      const auto interval = IntervalAlong(axis, pose, turn).Place(excess_sigma_);
-      if (!interval) continue;
+      const AxisInterval interval = IntervalAlong(axis, pose, turn);
+      if (!std::isfinite(interval.Variance())) continue;
       const CrossedSides crossed = CrossedAlong(axis, pose, turn);
       if (crossed.ends >= kMinCrossing) continue;
-      if (crossed.ends >= kMinCrossingOfFew && crossed.information * interval->variance > 1.0) {
+      if (crossed.ends >= kMinCrossingOfFew && crossed.information * interval.Variance() > 1.0) {
         continue;
       }
       bracketed[static_cast<std::size_t>(axis)] = true;
-      pose.head<2>() += turn.col(axis) * interval->middle;
+      pose.head<2>() += turn.col(axis) * interval.Middle();
       const Eigen::Vector3d along(turn(0, axis), turn(1, axis), 0.0);
-      of_intervals += along * along.transpose() / (interval->variance + kMinVariance_m2);
+      of_intervals += along * along.transpose() /
+                      (interval.Variance() + interval.GrowthVariance() + kMinVariance_m2);
     }
     Sums sums;
     for (const EdgePoint& edge : edges_) {
@@ -434,15 +399,13 @@ class Fitter {
       const double step = normal.dot(edge.outward) * edge.step_m;
       const double middle = normal.dot(edge.in_plane - pose.head<2>());
       const double on = middle - 0.5 * step;
-      interval.along[0] = std::max(interval.along[0], on - half_(axis) - growth);
-      interval.against[1] = std::min(interval.against[1], on + half_(axis) + growth);
+      interval.low = std::max(interval.low, on - half_(axis) - growth);
+      interval.high = std::min(interval.high, on + half_(axis) + growth);
       if (!edge.across || AxisOf(place.side) != static_cast<std::size_t>(axis)) continue;
       const double off = middle + 0.5 * step;
       interval.end_spots[step > 0.0 ? 0 : 1] = edge.SpotAcross(normal);
-      if (step > 0.0) interval.along[1] = std::min(interval.along[1], off - half_(axis) - growth);
-      if (step < 0.0) {
-        interval.against[0] = std::max(interval.against[0], off + half_(axis) + growth);
-      }
+      if (step > 0.0) interval.high = std::min(interval.high, off - half_(axis) - growth);
+      if (step < 0.0) interval.low = std::max(interval.low, off + half_(axis) + growth);
     }
     return interval;
   }

@@ -65,30 +65,6 @@ TEST(Diagnose, AFocalLengthThatIsTooShort) {
   EXPECT_THAT(lines[0], HasSubstr("too short"));
 }
 
-TEST(Diagnose, APrintBesideItsStatedPlace) {
-  FakedSession faked = FakeSession(10, [](Eigen::Vector3d&) {});
-  for (SessionView& view : faked.views) {
-    CameraSighting& sighting = view.seen->in_image[0];
-    Rigid3d& pose = sighting.pose.cam_from_board;
-    pose.translation += pose.rotation * Eigen::Vector3d(0.0, -0.03, 0.0);
-    sighting.corners.points.clear();
-    for (const Eigen::Vector3d& corner : BoardCorners(faked.boards[0])) {
-      sighting.corners.points.push_back(pose * corner);
-    }
-  }
-  const std::vector<std::string> lines = DiagnoseIt(faked);
-  ASSERT_EQ(lines.size(), 1U);
-  EXPECT_THAT(lines[0], HasSubstr("the print of board 0 lies"));
-  EXPECT_THAT(lines[0], HasSubstr("nearer to its top"));
-  const Expected<Assembly> assembly = Assemble(faked.views, faked.boards, faked.camera);
-  ASSERT_TRUE(assembly);
-  const std::vector<PrintShift> shifts =
-      FindPrintShifts(assembly->problem, assembly->matching.cam_from_lidar);
-  ASSERT_EQ(shifts.size(), 1U);
-  EXPECT_EQ(shifts[0].axis, 1);
-  EXPECT_NEAR(shifts[0].shift_m, -0.03, 5.0 * shifts[0].sigma_m);
-}
-
 TEST(Diagnose, TheShareOfBothIsRight) {
   const FakedSession faked = FakeSession(12, [](Eigen::Vector3d& place) { place *= 1.05; });
   const Expected<Assembly> assembly = Assemble(faked.views, faked.boards, faked.camera);

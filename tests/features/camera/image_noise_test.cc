@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "features/camera/contrast/image_noise.h"
+#include "features/camera/image_noise.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "features/camera/contrast/contrast_regions.h"
+#include "features/camera/contrast_regions.h"
 
 #include <algorithm>
 #include <cstdint>
