@@ -292,6 +292,16 @@ std::string NamesOf(const std::vector<CameraNode>& cameras) {
   return names;
 }
 
+// Whether a line that is no comment has a key.
+bool HasKeys(std::string_view document) {
+  while (!document.empty()) {
+    const std::string_view line = document.substr(0, document.find('\n'));
+    document.remove_prefix(std::min(line.size() + 1, document.size()));
+    if (!line.starts_with('#') && line.find(':') != std::string_view::npos) return true;
+  }
+  return false;
+}
+
 // The documents of a text that separates them by lines "---", as `rostopic echo` and `ros2 topic
 // echo` end each message; one for any other text.
 std::vector<std::string_view> MessagesOf(std::string_view text) {
@@ -304,10 +314,9 @@ std::vector<std::string_view> MessagesOf(std::string_view text) {
     if (end == std::string_view::npos) break;
     const std::string_view message = text.substr(0, end + 1);
     text.remove_prefix(end + kEnd.size());
-    if (message.find(':') == std::string_view::npos) continue;
-    messages.push_back(message);
+    if (HasKeys(message)) messages.push_back(message);
   }
-  if (messages.empty() || text.find(':') != std::string_view::npos) messages.push_back(text);
+  if (messages.empty() || HasKeys(text)) messages.push_back(text);
   return messages;
 }
 

@@ -82,7 +82,9 @@ Expected<LasHeader> ReadLasHeader(std::string_view bytes, const std::string& fil
   const bool has_long_count =
       WholeAt(bytes, kMinorVersionAt, ScalarType::kUint8) >= 4 && bytes.size() >= kLongHeaderBytes;
   if (has_long_count && header.points == 0) {
-    header.points = WholeAt(bytes, kLongCountAt, ScalarType::kUint64);
+    // In halves: a double does not have all whole numbers of 64 bits.
+    header.points = (WholeAt(bytes, kLongCountAt + 4, ScalarType::kUint32) << 32U) +
+                    WholeAt(bytes, kLongCountAt, ScalarType::kUint32);
   }
   if (header.record < header.format.bytes) {
     return RefuseLas(file, kRecordSizeAt,

@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::size_t kMaxNpyHeader = std::size_t{1} << 16;
 constexpr std::size_t kMaxNpyColumns = 16;
+constexpr std::size_t kMaxSize = std::size_t{1} << 18;  // Of a field; sums of them cannot overflow.
 
 // A number of each point, or bytes that are none (padding, text).
 struct NpyField {
@@ -115,11 +116,10 @@ std::optional<ScalarType> NumberType(char kind, std::size_t size) {
 // NumPy's name of a type, as "<f4"; none for objects and what NumPy does not have.
 std::optional<NpyField> FieldOfType(std::string_view type) {
   constexpr std::string_view kKinds = "fiubcSUVmM";
-  constexpr std::size_t kMaxSize = std::size_t{1} << 16;
   if (type.size() < 3 || kKinds.find(type[1]) == std::string_view::npos) return std::nullopt;
   NpyField field{.big_endian = type[0] == '>'};
   const std::optional<std::size_t> size = PythonReader(type.substr(2)).Number();
-  if (!size || *size > kMaxSize) return std::nullopt;
+  if (!size || *size > kMaxSize / 4) return std::nullopt;
   field.size = type[1] == 'U' ? 4 * *size : *size;
   field.type = NumberType(type[1], field.size);
   return field;
@@ -140,7 +140,10 @@ bool TakeFields(std::string_view descr, NpyArray& array) {
     if (in.Take(',')) {
       const std::optional<std::vector<std::size_t>> shape = in.Shape();
       if (!shape) return false;
-      for (const std::size_t length : *shape) field->size *= std::min<std::size_t>(length, 4096);
+      for (const std::size_t length : *shape) {
+        if (length > kMaxSize / std::max<std::size_t>(field->size, 1)) return false;
+        field->size *= length;
+      }
       field->type.reset();
     }
     if (!in.Take(')')) return false;

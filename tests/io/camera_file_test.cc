@@ -258,7 +258,8 @@ TEST(CameraFile, MessagesAsTheyAreEchoed) {
       "header:\n  frame_id: cam\nheight: 480\nwidth: 640\ndistortion_model: plumb_bob\n"
       "d:\n- -0.1\n- 0.02\n- 0.0\n- 0.0\n- 0.0\nk:\n- 600.0\n- 0.0\n- 320.0\n- 0.0\n- 601.0\n"
       "- 240.0\n- 0.0\n- 0.0\n- 1.0\n---\n";
-  for (const std::string& text : {message, message + message, "---\n" + message}) {
+  for (const std::string& text :
+       {message, message + message, "---\n" + message, "# made by: a program\n---\n" + message}) {
     const Expected<Camera> camera = ParseCamera(text, "info.yaml");
     ASSERT_TRUE(camera) << camera.error().message;
     EXPECT_EQ(camera->fy_px, 601.0);

@@ -121,6 +121,11 @@ TEST(CloudForms, OtherArraysAreRefused) {
            {Npy("<f4", "False", "(3, 3)", numbers), "states the shape '(3, 3)"},
            {NpyText("[('x', '<f4'), ('y', '<f4'), ('w', '<f4')]", "(2,)", numbers), "z is missing"},
            {NpyText("[('x', '<f4'), ('y', '<f4'), ('z', '<f4')]", "(3,)", numbers), "12 bytes a"},
+           // Lengths whose product would not fit in 64 bits.
+           {NpyText("[('x', '<f4'), ('y', '<f4'), ('z', '<f4'), ('w', '<f4', (4096, 4096, 4096)), "
+                    "('v', '<f4', (4096, 4096, 4096, 4096))]",
+                    "(2,)", numbers),
+            "fields with"},
            {NpyText("[('x', '|O'), ('y', '<f4'), ('z', '<f4')]", "(2,)", numbers), "fields with"},
            {std::string(kNpyMagic) + "\1", "expected the header of a .npy file"}}) {
     const Expected<PointCloud> cloud = ParseCloud(bytes, "s.npy");
