@@ -3,7 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -78,8 +80,17 @@ bool Overlap(const Quad& quad, const RoundHole& hole) {
 
 bool IsPositive(double size) { return size > 0.0 && std::isfinite(size); }
 
+std::string InMetres(double size) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", size);
+  return std::string(text.data()) + " m? sizes are in metres";
+}
+
 std::optional<BoardFault> BadSize(Part part, int tag, const char* field, double size) {
-  if (IsPositive(size)) return std::nullopt;
+  if (IsPositive(size)) {
+    const std::optional<std::string> doubt = DoubtfulSize(size);
+    return doubt ? std::optional(BoardFault{part, tag, field, *doubt}) : std::nullopt;
+  }
   return BoardFault{part, tag, field, "expected more than zero, got " + std::to_string(size)};
 }
 
@@ -88,6 +99,9 @@ std::optional<BoardFault> FindSizeFault(const Board& board) {
   if (auto bad = BadSize(Part::kBoard, 0, "right_bottom_m", board.right_bottom_m)) return bad;
   if (!(board.thickness_m >= 0.0) || !std::isfinite(board.thickness_m)) {
     return BoardFault{Part::kBoard, 0, "thickness_m", "expected zero or more"};
+  }
+  if (board.thickness_m > 0.5 * std::max(board.top_right_m, board.right_bottom_m)) {
+    return BoardFault{Part::kBoard, 0, "thickness_m", InMetres(board.thickness_m)};
   }
   return std::nullopt;
 }
@@ -219,6 +233,12 @@ std::optional<BoardFault> FindTagFault(const Board& board, int index) {
 }
 
 }  // namespace
+
+std::optional<std::string> DoubtfulSize(double size_m) {
+  constexpr double kMaxSize_m = 10.0;  // Of anything that people make, print and carry.
+  if (!(size_m > kMaxSize_m)) return std::nullopt;
+  return InMetres(size_m);
+}
 
 std::array<Eigen::Vector2d, 4> TagCorners(const BoardTag& tag) {
   // y points down: a positive angle turns clockwise as seen.

@@ -19,10 +19,13 @@ struct BoardFault {
   std::string message{};
 };
 
-/// The first fault of a board: sizes that are not positive and finite, a hole or print that is not
-/// entirely on the board, prints and holes that overlap each other, an id of one family twice. Tags
-/// of a checkerboard that holds tags must lie within its white squares.
-/// Touching is not an overlap. Whether a family has an id is checked in features/camera.
+/// Why a size is probably not in metres: "600 m? sizes are in metres"; none up to 10 m.
+std::optional<std::string> DoubtfulSize(double size_m);
+
+/// The first fault of a board: sizes that are not positive and finite or over 10 m, a hole or print
+/// that is not entirely on the board, prints and holes that overlap each other, an id of one family
+/// twice. Tags of a checkerboard that holds tags must lie within its white squares. Touching is not
+/// an overlap. Whether a family has an id is checked in features/camera.
 std::optional<BoardFault> FindBoardFault(const Board& board);
 
 /// Corners of a tag in the board frame [m], clockwise as seen from the tag's own top-left.

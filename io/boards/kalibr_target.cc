@@ -15,6 +15,17 @@ namespace sextant {
 namespace {
 
 constexpr int kMaxAlongTarget = 30;
+constexpr double kSidesOnPlate = 5.0;  // A plate is larger than a tag by this and more.
+
+// The side of a tag or a square.
+double SideAt(YamlFields& in, const YamlNode& root, const char* key) {
+  const double side_m = in.RealAt(root, key);
+  const std::optional<std::string> doubt = DoubtfulSize(kSidesOnPlate * side_m);
+  if (in.ok() && doubt) {
+    in.Fail(root.Find(key)->line, key, fmt::format("{} m? sizes are in metres", side_m));
+  }
+  return side_m;
+}
 
 Eigen::Vector2d ReadAprilGridTarget(YamlFields& in, const YamlNode& root, Board& board) {
   static const std::vector<std::string> kKeys = {"target_type",   "tagCols",    "tagRows",
@@ -24,7 +35,7 @@ Eigen::Vector2d ReadAprilGridTarget(YamlFields& in, const YamlNode& root, Board&
   AprilGrid grid;
   grid.columns = in.IntegerAt(root, "tagCols", 1, kMaxAlongTarget);
   grid.rows = in.IntegerAt(root, "tagRows", 1, kMaxAlongTarget);
-  grid.tag_m = in.RealAt(root, "tagSize");
+  grid.tag_m = SideAt(in, root, "tagSize");
   grid.spacing = in.NonNegativeAt(root, "tagSpacing", 0.3);
   if (in.ok()) AddTo(grid, board);
   return grid.Size();
@@ -38,7 +49,7 @@ Eigen::Vector2d ReadCheckerTarget(YamlFields& in, const YamlNode& root, Board& b
   BoardChecker checker;
   checker.inner_columns = in.IntegerAt(root, "targetCols", 2, kMaxAlongTarget);
   checker.inner_rows = in.IntegerAt(root, "targetRows", 2, kMaxAlongTarget);
-  checker.square_m = in.RealAt(root, "rowSpacingMeters");
+  checker.square_m = SideAt(in, root, "rowSpacingMeters");
   if (in.ok() && in.RealAt(root, "colSpacingMeters") != checker.square_m) {
     in.Fail(root.Find("colSpacingMeters")->line, "colSpacingMeters",
             "expected the same as rowSpacingMeters: squares");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/cameras/camera_file.h"
 
+#include "io/cameras/camera_text.h"
 #include "io/cameras/camera_tree.h"
 #include "io/text/line_reader.h"
 #include "io/text/text_file.h"
@@ -37,11 +38,17 @@ Expected<Camera> ParseCamera(std::string_view text, const std::string& file) {
 
 Expected<Camera> ParseNamedCamera(std::string_view text, const std::string& file,
                                   std::string_view name) {
-  if (text.starts_with("<?xml")) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (text.starts_with("<?xml") || text.starts_with("<opencv_storage")) {
     SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseCameraXml(text, file));
     return CameraOfTree(root, file, name);
   }
   if (IsIni(text, file)) return ParseCameraIni(text, file);
+  if (auto colmap = ParseCameraColmap(text, file, name)) return *std::move(colmap);
+  if (const auto assignments = TreeOfAssignments(text)) {
+    return CameraOfTree(*assignments, file, name);
+  }
   return ParseCameraYaml(text, file, name);
 }
 

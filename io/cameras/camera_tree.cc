@@ -14,16 +14,21 @@ constexpr std::string_view kGroups[] = {"projection_parameters", "distortion_par
 
 bool IsMap(const YamlNode& node) { return node.kind == YamlNode::Kind::kMap; }
 
+bool IsSequence(const YamlNode& node) { return node.kind == YamlNode::Kind::kSequence; }
+
 bool HoldsCamera(const YamlNode& map) {
-  if (const YamlNode* matrix =
-          FindCameraKey(map, {"camera_matrix", "K", "k", "cameraMatrix", "cam_K"})) {
-    return matrix->kind != YamlNode::Kind::kNull;
+  if (const YamlNode* matrix = FindCameraKey(map, CameraMatrixKeys())) {
+    // nuScenes lists a LiDAR's empty matrix, too.
+    return matrix->kind != YamlNode::Kind::kNull && !(IsSequence(*matrix) && matrix->items.empty());
   }
-  if (FindCameraKey(map, {"fx", "f_x", "cam_fx", "Camera.fx", "gamma1", "mu"}) != nullptr) {
+  if (FindCameraKey(map, {"fx", "f_x", "cam_fx", "Camera.fx", "Camera1.fx", "gamma1", "mu"})) {
     return true;
   }
-  const YamlNode* list = map.Find("intrinsics");
-  return list != nullptr && list->kind == YamlNode::Kind::kSequence;
+  for (const std::string_view key : {"intrinsics", "intrinsic", "fc", "FocalLength"}) {
+    const YamlNode* list = map.Find(key);
+    if (list != nullptr && IsSequence(*list)) return true;
+  }
+  return false;
 }
 
 // P2, P_rect_02: the projection matrices of KITTI's calibration files.
@@ -33,7 +38,21 @@ bool IsKittiProjection(const std::string& key, const YamlNode& value) {
   return is_name && key.back() >= '0' && key.back() <= '9';
 }
 
+// The name that an item of a list has, else its place.
+std::string NameOfItem(const YamlNode& item, std::size_t place) {
+  for (const std::string_view key : {"camera_name", "name", "channel", "token", "id"}) {
+    const YamlNode* name = item.Find(key);
+    if (name != nullptr && name->kind == YamlNode::Kind::kText) return name->text;
+  }
+  return std::to_string(place);
+}
+
 void AddCameras(const std::string& name, const YamlNode& node, std::vector<CameraNode>& cameras) {
+  if (IsSequence(node)) {
+    for (std::size_t i = 0; i < node.items.size(); ++i) {
+      if (IsMap(node.items[i])) AddCameras(NameOfItem(node.items[i], i), node.items[i], cameras);
+    }
+  }
   if (!IsMap(node)) return;
   if (HoldsCamera(node)) {
     cameras.push_back({name, &node, nullptr});
@@ -61,6 +80,14 @@ void AddNumbers(YamlFields& in, const YamlNode& node, std::string_view name,
 }
 
 }  // namespace
+
+const std::vector<std::string_view>& CameraMatrixKeys() {
+  static const std::vector<std::string_view> keys = {
+      "camera_matrix",    "Camera_Matrix",   "K",         "k",
+      "cameraMatrix",     "cam_K",           "CameraMat", "camera_intrinsic",
+      "intrinsic_matrix", "IntrinsicMatrix", "M1",        "K1"};
+  return keys;
+}
 
 std::vector<CameraNode> FindCameras(const YamlNode& root) {
   std::vector<CameraNode> cameras;

@@ -18,6 +18,9 @@ struct CameraNode {
   const YamlNode* projection = nullptr;
 };
 
+/// The keys of matrices of 9 numbers, the likeliest first.
+const std::vector<std::string_view>& CameraMatrixKeys();
+
 /// All of them, in the order of the file.
 std::vector<CameraNode> FindCameras(const YamlNode& root);
 

@@ -36,6 +36,9 @@ constexpr std::array kKnownNames = {
     KnownName{"points:0", &CloudColumns::x},
     KnownName{"points:1", &CloudColumns::y},
     KnownName{"points:2", &CloudColumns::z},
+    KnownName{"point_x", &CloudColumns::x},
+    KnownName{"point_y", &CloudColumns::y},
+    KnownName{"point_z", &CloudColumns::z},
     KnownName{"intensity", &CloudColumns::intensity},
     KnownName{"reflectivity", &CloudColumns::intensity},
     KnownName{"remission", &CloudColumns::intensity},
@@ -62,6 +65,11 @@ std::string Normalised(std::string_view name) {
   constexpr std::string_view kCloudCompare = "scalar_";
   if (lower.starts_with(kCloudCompare)) lower.erase(0, kCloudCompare.size());
   if (lower.starts_with("//")) lower.erase(0, 2);  // CloudCompare's first line begins so.
+  for (const std::string_view unit : {"[m]", "(m)"}) {
+    if (!lower.ends_with(unit)) continue;
+    lower.resize(lower.size() - unit.size());
+    lower.resize(lower.find_last_not_of(' ') + 1);
+  }
   return lower;
 }
 

@@ -29,7 +29,8 @@ struct CloudColumns {
 };
 
 /// Finds the columns by the names that drivers and tools use, upper or lower case, with or without
-/// CloudCompare's prefix `scalar_`: x y z (VeloView: Points_m_XYZ:0 to 2, Points:0 to 2), intensity
+/// CloudCompare's prefix `scalar_` and the unit [m] or (m): x y z (VeloView: Points_m_XYZ:0 to 2,
+/// Points:0 to 2; point_x), intensity
 /// (reflectivity, remission, i), ring (laser_id, channel, line), time (t, time_us, time_ns,
 /// offset_time [ns], adjustedtime [us], timestamp, time_stamp). If several columns qualify, the
 /// first name in this list is used. Other columns (azimuth, distance, normals, colours) are

@@ -12,6 +12,7 @@
 #include "io/clouds/cloud_builder.h"
 #include "io/clouds/csv_cloud.h"
 #include "io/clouds/float_cloud.h"
+#include "io/clouds/las_cloud.h"
 #include "io/clouds/npy_cloud.h"
 #include "io/clouds/pcd_file.h"
 #include "io/clouds/ply_file.h"
@@ -47,9 +48,22 @@ bool LooksLikeTable(std::string_view bytes) {
   return false;
 }
 
+// What to do with a file of a form that is known but not read.
+std::string_view HintFor(std::string_view bytes) {
+  if (bytes.starts_with("PK")) {
+    return "; this is an archive (.npz, .zip): save one array with numpy.save";
+  }
+  if (bytes.starts_with("\x1f\x8b")) return "; this is compressed: unpack it with gunzip";
+  if (bytes.starts_with("ASTM-E57")) {
+    return "; this is E57: export PLY or PCD, as with CloudCompare";
+  }
+  return "";
+}
+
 Expected<PointCloud> ParseByContent(std::string_view bytes, const std::string& file) {
   const std::string extension = LowerExtension(file);
   if (bytes.starts_with(kNpyMagic)) return ParseNpyCloud(bytes, file);
+  if (bytes.starts_with(kLasMagic)) return ParseLasCloud(bytes, file);
   if (bytes.starts_with("# .PCD") || bytes.starts_with("VERSION") || extension == ".pcd") {
     Expected<PointCloud> cloud = ParsePcd(bytes, file);
     if (cloud && !cloud->ring.empty()) OrderRings(*cloud);
@@ -62,9 +76,9 @@ Expected<PointCloud> ParseByContent(std::string_view bytes, const std::string& f
   if (IsTableExtension(extension) || LooksLikeTable(bytes)) return ParseCsvCloud(bytes, file);
   return MakeError(
       ErrorCode::kParse,
-      fmt::format("{}: expected a scan: .pcd, .ply, .npy, .bin (KITTI, nuScenes), or a table of "
-                  "numbers (.csv, .txt, .xyz, .pts){}",
-                  PathText(file), bytes.starts_with("LASF") ? "; convert LAS to one of them" : ""));
+      fmt::format("{}: expected a scan: .pcd, .ply, .las, .npy, .bin (KITTI, nuScenes), or a table "
+                  "of numbers (.csv, .txt, .xyz, .pts){}",
+                  PathText(file), HintFor(bytes)));
 }
 
 // No sensor measures as far as half of the points of a scan in millimetres.

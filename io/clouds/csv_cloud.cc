@@ -3,9 +3,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "io/clouds/cloud_builder.h"
@@ -18,6 +20,7 @@ namespace {
 // The columns of a table and the number of its values in a line.
 struct TableForm {
   std::vector<NamedColumn> names{};
+  std::size_t fields = 0;  // In a line; one more than names where lines end with a separator.
   bool has_header = false;
   int lines_before = 0;  // Number of the last line before the points.
 };
@@ -30,8 +33,14 @@ std::optional<double> NumberIn(std::string_view field) {
   return value;
 }
 
+// Without the empty one after a separator at the line's end.
+std::size_t NamedFields(const LineReader& in) {
+  const std::size_t count = in.field_count();
+  return count > 3 && in.Field(count - 1).empty() ? count - 1 : count;
+}
+
 bool IsAllNumbers(const LineReader& in) {
-  for (std::size_t i = 0; i < in.field_count(); ++i) {
+  for (std::size_t i = 0; i < NamedFields(in); ++i) {
     if (!NumberIn(in.Field(i))) return false;
   }
   return true;
@@ -51,6 +60,21 @@ LineReader::Separator SeparatorOf(std::string_view text) {
                                                   : LineReader::Separator::kBlanks;
 }
 
+// Whether the numbers have decimal commas, between values that semicolons or tabs separate.
+bool HasDecimalCommas(std::string_view text) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const std::string_view head = text.substr(0, 4096);
+  const bool separated = head.find_first_of(";\t") != std::string_view::npos;
+  for (std::size_t i = 1; separated && i + 1 < head.size(); ++i) {
+    if (head[i] != ',') continue;
+    if (!is_digit(head[i - 1]) || !is_digit(head[i + 1])) return false;
+    const std::size_t line = head.rfind('\n', i) + 1;  // 0 in the first line.
+    const std::string_view row = head.substr(line, head.find('\n', i) - line);
+    if (row.find_first_of(";\t") == std::string_view::npos) return false;
+  }
+  return separated && head.find(',') != std::string_view::npos;
+}
+
 TableForm ReadForm(LineReader& in) {
   TableForm form;
   if (!in.Require("a header line with the names of the columns")) return form;
@@ -60,7 +84,8 @@ TableForm ReadForm(LineReader& in) {
   }
   form.has_header = !IsAllNumbers(in);
   if (form.has_header) form.lines_before = in.line();
-  for (std::size_t i = 0; i < in.field_count(); ++i) {
+  form.fields = in.field_count();
+  for (std::size_t i = 0; i < NamedFields(in); ++i) {
     form.names.push_back({.name = form.has_header ? std::string(in.Field(i)) : std::string()});
   }
   return form;
@@ -78,7 +103,7 @@ bool NextPoint(LineReader& in, const TableForm& form) {
 bool HasRingColumn(LineReader in, const TableForm& form) {
   if (form.names.size() != 5) return false;
   while (NextPoint(in, form)) {
-    if (in.field_count() == 5 && !IsRingNumber(NumberIn(in.Field(4)).value_or(-1.0))) return false;
+    if (in.field_count() >= 5 && !IsRingNumber(NumberIn(in.Field(4)).value_or(-1.0))) return false;
   }
   return true;
 }
@@ -100,6 +125,11 @@ Expected<PointCloud> ReadCsvCloud(const std::filesystem::path& path) {
 }
 
 Expected<PointCloud> ParseCsvCloud(std::string_view text, const std::string& file) {
+  if (HasDecimalCommas(text)) {
+    std::string with_points(text);
+    std::ranges::replace(with_points, ',', '.');
+    return ParseCsvCloud(with_points, file);
+  }
   const LineReader start(file, text, SeparatorOf(text));
   LineReader in = start;
   const TableForm form = ReadForm(in);
@@ -110,10 +140,10 @@ Expected<PointCloud> ParseCsvCloud(std::string_view text, const std::string& fil
     return in.TakeError();
   }
   in = start;
-  const std::string row = fmt::format("{} values as in the {}", form.names.size(),
-                                      form.has_header ? "header" : "first line");
+  const std::string row =
+      fmt::format("{} values as in the {}", form.fields, form.has_header ? "header" : "first line");
   CloudBuilder builder(*columns);
-  while (NextPoint(in, form) && in.HasFields(form.names.size(), row)) {
+  while (NextPoint(in, form) && in.HasFields(form.fields, row)) {
     const Expected<void> added = builder.Add([&](std::size_t column) {
       const std::string& name = form.names[column].name;
       const Place place{.file = file, .line = in.line(), .field = column + 1, .name = name};

@@ -102,7 +102,7 @@ TEST(PrintBoard, RefusesWhatItCannotPrint) {
   EXPECT_EQ(Print(two, "two.png", "--id 1").exit_code, 0);
   EXPECT_EQ(Print(two, "two.png", "--id 5").exit_code, 2);
   EXPECT_EQ(Print(kHollow, "target.bmp").exit_code, 2);
-  EXPECT_THAT(Print("id: 0\ntop_right_m: 90\nright_bottom_m: 90\n", "huge.png").err,
+  EXPECT_THAT(Print("id: 0\ntop_right_m: 9\nright_bottom_m: 9\n", "huge.png").err,
               HasSubstr("lower --dpi"));
   EXPECT_EQ(Print("id: 0\ntop_right_m: 0\nright_bottom_m: 1\n", "zero.pdf").exit_code, 2);
 }

@@ -146,6 +146,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"ThreeCoefficients", kMatrix + "D: [0.1, 0, 0]", kInvalid, "got 3"},
         BadText{"SphereCount", kMatrix + "distortion_model: double_sphere\nxi: 0.1\nD: [0.1]",
                 kInvalid, "xi and alpha alone"},
+        BadText{"Millimetres", "K: [4.2, 0, 3.2, 0, 4.2, 2.4, 0, 0, 1]", kInvalid,
+                "the focal length is 4.2 px? Intrinsics are in pixels"},
+        BadText{"ColmapCount", "1 OPENCV 640 480 600 600 320\n", kParse, "12 values of the model"},
+        BadText{"ColmapModel", "1 FOV 640 480 600 600 320 240 0.9\n", kInvalid, "got 'FOV'"},
+        BadText{"ColmapTwo", "1 PINHOLE 9 9 60 60 4 4\n2 PINHOLE 9 9 60 60 4 4\n", kParse,
+                "name one of them, as in c:2"},
         BadText{"LongList", kMatrix + "D: [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]", kParse,
                 "expected at most 14 numbers, got 15"},
         BadText{"NotANumber", "K: [.nan, 0, 320, 0, 600, 240, 0, 0, 1]", ErrorCode::kNonFinite,
@@ -173,6 +179,106 @@ TEST(CameraFile, OneOfSeveralIsChosenByName) {
   const Expected<Camera> absent = ParseNamedCamera(text, "chain.yaml", "cam2");
   ASSERT_FALSE(absent);
   EXPECT_THAT(absent.error().message, testing::HasSubstr("no camera 'cam2'; it has cam0, cam1"));
+}
+
+struct OtherForm {
+  const char* name;
+  const char* text;
+  const char* camera;
+};
+
+// One camera as nuScenes, Waymo, COLMAP, Matlab, OpenCV's samples and others write it.
+TEST(CameraFile, TheSameCameraInFormsOfOtherPrograms) {
+  const OtherForm forms[] = {
+      {"nuScenes", R"([{"token": "a", "camera_intrinsic": []},
+          {"token": "b", "camera_intrinsic": [[600, 0, 320], [0, 601, 240], [0, 0, 1]],
+           "camera_distortion": [-0.1, 0.02, 0.001, 0.002, 0]}])",
+       ""},
+      {"Waymo", "{name: FRONT, intrinsic: [600, 601, 320, 240, -0.1, 0.02, 0.001, 0.002, 0]}", ""},
+      {"COLMAP",
+       "# Camera list\n1 PINHOLE 9 9 50 50 4 4\n"
+       "2 OPENCV 640 480 600 601 320.5 240.5 -0.1 0.02 0.001 0.002\n",
+       "2"},
+      {"Matlab",
+       "IntrinsicMatrix = [600 0 0; 0 601 0; 321 241 1];\n% a comment = 1\n"
+       "RadialDistortion = [-0.1 0.02];\nTangentialDistortion = [0.001 0.002];\n"
+       "ImageSize = [480 640];\n",
+       ""},
+      {"Bouguet",
+       "fc = [ 600.0 ; 601.0 ];\ncc = [ 320 ; 240 ];\nalpha_c = 0.0;\n"
+       "kc = [ -0.1 ; 0.02 ; 0.001 ; 0.002 ; 0 ];\nnx = 640; ny = 480;\n",
+       ""},
+      {"Python",
+       "K = np.array([[600, 0, 320],\n  [0, 601, 240], [0, 0, 1]])\nD = [-.1, .02, 1e-3, 2e-3]",
+       ""},
+      {"Numbers", "600 0 320\n0 601 240\n0 0 1\n-0.1 0.02 0.001 0.002 0\n", ""},
+      {"Open3D",
+       "{\"width\": 640, \"height\": 480, \"intrinsic_matrix\": [600, 0, 0, 0, 601, 0, 320, "
+       "240, 1], \"D\": [-0.1, 0.02, 0.001, 0.002, 0]}",
+       ""},
+      {"Autoware",
+       "%YAML:1.0\n---\nCameraMat: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+       "   data: [600, 0, 320, 0, 601, 240, 0, 0, 1]\nDistCoeff: !!opencv-matrix\n"
+       "   rows: 1\n   cols: 5\n   dt: d\n   data: [-0.1, 0.02, 0.001, 0.002, 0]\n"
+       "ImageSize: [640, 480]\n",
+       ""},
+      {"OpenCV stereo",
+       "M1: {rows: 3, cols: 3, data: [600, 0, 320, 0, 601, 240, 0, 0, 1]}\n"
+       "D1: {rows: 1, cols: 4, data: [-0.1, 0.02, 0.001, 0.002]}\n",
+       ""},
+      {"RealSense",
+       "{width: 640, height: 480, ppx: 320, ppy: 240, fx: 600, fy: 601, "
+       "coeffs: [-0.1, 0.02, 0.001, 0.002, 0]}",
+       ""},
+      {"byte order mark",
+       "\xef\xbb\xbf"
+       "K: [600, 0, 320, 0, 601, 240, 0, 0, 1]\n"
+       "D: [-0.1, 0.02, 0.001, 0.002, 0]\n",
+       ""}};
+  for (const OtherForm& form : forms) {
+    const Expected<Camera> camera = ParseNamedCamera(form.text, "c", form.camera);
+    ASSERT_TRUE(camera) << form.name << ": " << camera.error().message;
+    EXPECT_EQ(camera->model, CameraModel::kBrownConrady) << form.name;
+    EXPECT_EQ(camera->fx_px, 600.0) << form.name;
+    EXPECT_EQ(camera->fy_px, 601.0) << form.name;
+    EXPECT_EQ(camera->cx_px, 320.0) << form.name;
+    EXPECT_EQ(camera->cy_px, 240.0) << form.name;
+    EXPECT_EQ(camera->distortion[0], -0.1) << form.name;
+    EXPECT_EQ(camera->distortion[1], 0.02) << form.name;
+    EXPECT_EQ(camera->distortion[2], 0.001) << form.name;
+    EXPECT_EQ(camera->distortion[3], 0.002) << form.name;
+    EXPECT_TRUE(camera->width_px == 640 || camera->width_px == 0) << form.name;
+    EXPECT_EQ(camera->height_px == 480, camera->width_px == 640) << form.name;
+  }
+}
+
+// As `rostopic echo` and `ros2 topic echo` print CameraInfo, which people redirect into a file.
+TEST(CameraFile, MessagesAsTheyAreEchoed) {
+  const std::string message =
+      "header:\n  frame_id: cam\nheight: 480\nwidth: 640\ndistortion_model: plumb_bob\n"
+      "d:\n- -0.1\n- 0.02\n- 0.0\n- 0.0\n- 0.0\nk:\n- 600.0\n- 0.0\n- 320.0\n- 0.0\n- 601.0\n"
+      "- 240.0\n- 0.0\n- 0.0\n- 1.0\n---\n";
+  for (const std::string& text :
+       {message, message + message, "---\n" + message, "# made by: a program\n---\n" + message}) {
+    const Expected<Camera> camera = ParseCamera(text, "info.yaml");
+    ASSERT_TRUE(camera) << camera.error().message;
+    EXPECT_EQ(camera->fy_px, 601.0);
+    EXPECT_EQ(camera->distortion[0], -0.1);
+  }
+  std::string other = message;
+  other.replace(other.find("601.0"), 5, "555.0");
+  const Expected<Camera> two = ParseCamera(message + other, "info.yaml");
+  ASSERT_FALSE(two);
+  EXPECT_THAT(two.error().message, testing::HasSubstr("expected one camera"));
+}
+
+TEST(CameraFile, DistortionUnderAnotherNameIsNotIgnored) {
+  const Expected<Camera> camera = ParseCamera(
+      "r3live_vio:\n  image_width: 640\n  camera_intrinsic: [600, 0, 320, 0, 601, 240, 0, 0, 1]\n"
+      "  camera_dist_coeffs: [-0.1, 0.02, 0, 0, 0]\n",
+      "r3live.yaml");
+  ASSERT_TRUE(camera) << camera.error().message;
+  EXPECT_EQ(camera->distortion[0], -0.1);
 }
 
 TEST(CameraFile, ReadsTheRealFilesOfEveryForm) {
