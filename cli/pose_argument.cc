@@ -7,9 +7,11 @@
 #include <optional>
 
 #include "geometry/coordinate_range.h"
+#include "io/export/export_rig.h"
 #include "io/output/standard_output.h"
 #include "io/poses/pose_file.h"
 #include "io/text/number_text.h"
+#include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {
@@ -85,6 +87,35 @@ Expected<Rigid3d> CamFromLidarWithNote(const StatedPose& pose, const std::string
   return cam_from_lidar;
 }
 
+// The named sensor, or the only camera (or LiDAR) of the rig.
+Expected<std::string> ChosenSensor(const RigResult& rig, const std::string& name, bool camera) {
+  if (!name.empty()) return name;
+  std::vector<std::string> found;
+  std::string all;
+  for (const RigResultSensor& sensor : rig.sensors) {
+    all += (all.empty() ? "" : ", ") + sensor.name;
+    if (sensor.camera.has_value() == camera) found.push_back(sensor.name);
+  }
+  if (found.size() == 1) return found.front();
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("the result of a rig with {} {}: choose one with {}; there are: {}",
+                               found.empty() ? "no" : "several",
+                               camera ? "sensors with intrinsics" : "sensors without intrinsics",
+                               camera ? "--camera-name" : "--lidar-name", all));
+}
+
+Expected<CalibrationResult> PairOfRig(const RigResult& rig, const PairNames& names) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::string camera, ChosenSensor(rig, names.camera, true));
+  SEXTANT_ASSIGN_OR_RETURN(const std::string lidar, ChosenSensor(rig, names.lidar, false));
+  return ResultOfPair(rig, camera, lidar);
+}
+
+template <class T>
+Expected<T> InFile(Expected<T> value, const std::string& path) {
+  if (!value) value.error().message.insert(0, path + ": ");
+  return value;
+}
+
 }  // namespace
 
 void DeclarePoseIs(std::string& pose_is, Arguments& arguments) {
@@ -92,6 +123,13 @@ void DeclarePoseIs(std::string& pose_is, Arguments& arguments) {
                 "Direction of a pose whose file does not state it: cam_from_lidar maps points of\n"
                 "the LiDAR into the camera's optical frame",
                 {.choices = {"cam_from_lidar", "lidar_from_cam"}});
+}
+
+void DeclarePairNames(PairNames& names, Arguments& arguments) {
+  arguments.Add("--camera-name", names.camera,
+                "For rig.json of sextant rig: the camera, by its name; default: the only one");
+  arguments.Add("--lidar-name", names.lidar,
+                "For rig.json: the sensor that the scan is of; default: the only LiDAR");
 }
 
 Expected<Rigid3d> PoseOfFile(const std::string& path, const std::string& pose_is) {
@@ -108,7 +146,19 @@ Expected<Rigid3d> PoseFromArgument(const std::string& option,
   return AskedDirection(pose_is) == PoseDirection::kLidarFromCam ? pose.Inverse() : pose;
 }
 
-Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is) {
+Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is,
+                                         const PairNames& names) {
+  const Expected<std::string> text = ReadTextFile(path);
+  if (text && IsRigResult(*text)) {
+    SEXTANT_ASSIGN_OR_RETURN(const RigResult rig, ParseRigResult(*text, path));
+    return InFile(PairOfRig(rig, names), path);
+  }
+  if (!names.camera.empty() || !names.lidar.empty()) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("--camera-name and --lidar-name choose sensors of rig.json, the "
+                                 "result of sextant rig, which {} is not: leave them out",
+                                 path));
+  }
   SEXTANT_ASSIGN_OR_RETURN(const StatedPose pose, ReadPoseFile(path));
   SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_lidar, CamFromLidarWithNote(pose, pose_is, path));
   if (pose.is_result) return ReadCalibrationResult(path);
@@ -117,6 +167,14 @@ Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::str
   if (!pose.camera_frame.empty()) result.camera_frame = pose.camera_frame;
   if (!pose.lidar_frame.empty()) result.lidar_frame = pose.lidar_frame;
   return result;
+}
+
+Expected<RigResult> RigOfFile(const std::string& path, const std::string& option) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
+  if (IsRigResult(text)) return ParseRigResult(text, path);
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("{}: expected rig.json, the result of sextant rig, which {} is not",
+                               option, path));
 }
 
 }  // namespace sextant::cli

@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "geometry/rigid3d.h"
 #include "io/results/calibration_result.h"
+#include "io/results/rig_result.h"
 
 namespace sextant::cli {
 
@@ -30,8 +31,25 @@ Expected<Rigid3d> PoseFromArgument(const std::string& option,
                                    const std::vector<std::string>& values,
                                    const std::string& pose_is);
 
+/// Two sensors of a rig; an empty name is not chosen.
+struct PairNames {
+  std::string camera{};
+  std::string lidar{};
+};
+
+/// --camera-name and --lidar-name: which two sensors of a rig's result are meant.
+void DeclarePairNames(PairNames& names, Arguments& arguments);
+
 /// The result in a file of sextant calibrate; of any other file a result with its pose and the
-/// names of its frames alone. Errors: those of ReadCalibrationResult and PoseOfFile.
-Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is);
+/// names of its frames alone. Of a rig's result the pose of the named sensors, whatever connects
+/// them; a name may be empty where the rig has one sensor of that kind. Errors: those of
+/// ReadCalibrationResult, PoseOfFile and ResultOfPair; kInvalidOption for names with another file,
+/// and where a choice is missing, with the names to choose from.
+Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is,
+                                         const PairNames& names = {});
+
+/// The rig's result in a file. Errors: kIo; those of ParseRigResult; kInvalidOption for any other
+/// file, with the name of the option that needs one.
+Expected<RigResult> RigOfFile(const std::string& path, const std::string& option);
 
 }  // namespace sextant::cli

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "calibrate/observe/photo_file.h"
-#include "cli/pose_argument.h"
 #include "features/camera/grey_image.h"
 #include "io/cameras/camera_file.h"
 #include "io/clouds/cloud_file.h"
@@ -38,6 +37,7 @@ Expected<ScenePair> ReadScenePair(const FilePair& files, const CalibrationResult
 void DeclareSceneInput(SceneInputOptions& options, Arguments& arguments) {
   arguments.Add("POSE", options.pose_path, kPoseHelp, {.required = true});
   DeclarePoseIs(options.pose_is, arguments);
+  DeclarePairNames(options.names, arguments);
   arguments.Add("--image", options.images,
                 "Photos of everyday scenes: one, several, or a quoted pattern such as\n"
                 "'photos/*.png'",
@@ -50,7 +50,8 @@ void DeclareSceneInput(SceneInputOptions& options, Arguments& arguments) {
 
 Expected<SceneInput> ReadSceneInput(const SceneInputOptions& options) {
   SceneInput input;
-  SEXTANT_ASSIGN_OR_RETURN(input.given, ResultOfFile(options.pose_path, options.pose_is));
+  SEXTANT_ASSIGN_OR_RETURN(input.given,
+                           ResultOfFile(options.pose_path, options.pose_is, options.names));
   if (!options.camera_path.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(input.given.camera, ReadCamera(options.camera_path));
   }

@@ -8,6 +8,7 @@
 #include "calibrate/scene/scene_score.h"
 #include "calibrate/session/session.h"
 #include "cli/command.h"
+#include "cli/pose_argument.h"
 #include "io/results/calibration_result.h"
 
 // The input that `check` and `refine-scene` share: a pose, and pairs of everyday scenes.
@@ -16,6 +17,7 @@ namespace sextant::cli {
 struct SceneInputOptions {
   std::string pose_path{};
   std::string pose_is{};
+  PairNames names{};
   std::vector<std::string> images{};
   std::vector<std::string> clouds{};
   std::string camera_path{};  ///< Empty: the result's.
