@@ -9,7 +9,6 @@
 #include "geometry/coordinate_range.h"
 #include "io/export/export_rig.h"
 #include "io/output/standard_output.h"
-#include "io/poses/pose_file.h"
 #include "io/text/number_text.h"
 #include "io/text/text_file.h"
 
@@ -104,16 +103,54 @@ Expected<std::string> ChosenSensor(const RigResult& rig, const std::string& name
                                camera ? "--camera-name" : "--lidar-name", all));
 }
 
-Expected<CalibrationResult> PairOfRig(const RigResult& rig, const PairNames& names) {
+// The pose of two sensors as the statement of a file that leaves no doubt of its direction.
+Expected<GivenPose> PairOfRig(const PoseText& text, const std::string& path,
+                              const std::string& pose_is, const PairNames& names) {
+  SEXTANT_ASSIGN_OR_RETURN(const RigResult rig, ParseRigResult(text.text, path));
   SEXTANT_ASSIGN_OR_RETURN(const std::string camera, ChosenSensor(rig, names.camera, true));
   SEXTANT_ASSIGN_OR_RETURN(const std::string lidar, ChosenSensor(rig, names.lidar, false));
-  return ResultOfPair(rig, camera, lidar);
+  GivenPose given{.basis = "the result of sextant rig states it"};
+  SEXTANT_ASSIGN_OR_RETURN(given.result, ResultOfPair(rig, camera, lidar));
+  const StatedPose stated{.transform = given.result.cam_from_lidar,
+                          .direction = given.direction,
+                          .basis = given.basis,
+                          .camera_frame = camera,
+                          .lidar_frame = lidar,
+                          .is_result = true};
+  SEXTANT_ASSIGN_OR_RETURN(given.result.cam_from_lidar,
+                           CamFromLidarWithNote(stated, pose_is, path));
+  return given;
 }
 
 template <class T>
 Expected<T> InFile(Expected<T> value, const std::string& path) {
-  if (!value) value.error().message.insert(0, path + ": ");
+  if (!value && !value.error().message.starts_with(path)) {
+    value.error().message.insert(0, path + ": ");
+  }
   return value;
+}
+
+Expected<GivenPose> GivenPoseOfText(const PoseText& text, const std::string& path,
+                                    const std::string& pose_is, const PairNames& names) {
+  if (IsRigResult(text.text)) return InFile(PairOfRig(text, path, pose_is, names), path);
+  if (!names.camera.empty() || !names.lidar.empty()) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("--camera-name and --lidar-name choose sensors of rig.json, the "
+                                 "result of sextant rig, which {} is not: leave them out",
+                                 path));
+  }
+  SEXTANT_ASSIGN_OR_RETURN(const StatedPose pose, ParsePose(text.text, text.file, text.name));
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_lidar, CamFromLidarWithNote(pose, pose_is, path));
+  GivenPose given{.direction = pose_is.empty() ? *pose.direction : *AskedDirection(pose_is),
+                  .basis = pose_is.empty() ? pose.basis : "stated by --pose-is"};
+  if (pose.is_result) {
+    SEXTANT_ASSIGN_OR_RETURN(given.result, ParseCalibrationResult(text.text, path));
+    return given;
+  }
+  given.result.cam_from_lidar = cam_from_lidar;
+  if (!pose.camera_frame.empty()) given.result.camera_frame = pose.camera_frame;
+  if (!pose.lidar_frame.empty()) given.result.lidar_frame = pose.lidar_frame;
+  return given;
 }
 
 }  // namespace
@@ -146,27 +183,22 @@ Expected<Rigid3d> PoseFromArgument(const std::string& option,
   return AskedDirection(pose_is) == PoseDirection::kLidarFromCam ? pose.Inverse() : pose;
 }
 
+Expected<GivenPose> GivenPoseOfFile(const std::string& path, const std::string& pose_is,
+                                    const PairNames& names) {
+  SEXTANT_ASSIGN_OR_RETURN(const PoseText text, ReadPoseText(path));
+  return GivenPoseOfText(text, path, pose_is, names);
+}
+
+Expected<CalibrationResult> ResultOfText(const PoseText& text, const std::string& path,
+                                         const std::string& pose_is, const PairNames& names) {
+  SEXTANT_ASSIGN_OR_RETURN(GivenPose given, GivenPoseOfText(text, path, pose_is, names));
+  return std::move(given.result);
+}
+
 Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is,
                                          const PairNames& names) {
-  const Expected<std::string> text = ReadTextFile(path);
-  if (text && IsRigResult(*text)) {
-    SEXTANT_ASSIGN_OR_RETURN(const RigResult rig, ParseRigResult(*text, path));
-    return InFile(PairOfRig(rig, names), path);
-  }
-  if (!names.camera.empty() || !names.lidar.empty()) {
-    return MakeError(ErrorCode::kInvalidOption,
-                     fmt::format("--camera-name and --lidar-name choose sensors of rig.json, the "
-                                 "result of sextant rig, which {} is not: leave them out",
-                                 path));
-  }
-  SEXTANT_ASSIGN_OR_RETURN(const StatedPose pose, ReadPoseFile(path));
-  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_lidar, CamFromLidarWithNote(pose, pose_is, path));
-  if (pose.is_result) return ReadCalibrationResult(path);
-  CalibrationResult result;
-  result.cam_from_lidar = cam_from_lidar;
-  if (!pose.camera_frame.empty()) result.camera_frame = pose.camera_frame;
-  if (!pose.lidar_frame.empty()) result.lidar_frame = pose.lidar_frame;
-  return result;
+  SEXTANT_ASSIGN_OR_RETURN(const PoseText text, ReadPoseText(path));
+  return ResultOfText(text, path, pose_is, names);
 }
 
 Expected<RigResult> RigOfFile(const std::string& path, const std::string& option) {

@@ -50,8 +50,11 @@ void DeclareSceneInput(SceneInputOptions& options, Arguments& arguments) {
 
 Expected<SceneInput> ReadSceneInput(const SceneInputOptions& options) {
   SceneInput input;
-  SEXTANT_ASSIGN_OR_RETURN(input.given,
-                           ResultOfFile(options.pose_path, options.pose_is, options.names));
+  SEXTANT_ASSIGN_OR_RETURN(GivenPose pose,
+                           GivenPoseOfFile(options.pose_path, options.pose_is, options.names));
+  input.given = std::move(pose.result);
+  input.direction = pose.direction;
+  input.direction_basis = std::move(pose.basis);
   if (!options.camera_path.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(input.given.camera, ReadCamera(options.camera_path));
   }

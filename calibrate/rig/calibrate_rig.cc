@@ -94,7 +94,7 @@ RigResultPair PairOf(const RigFile& rig, const RigEstimate& estimate, const Sens
 }
 
 std::vector<RigResultPair> PairsOf(const RigFile& rig, const RigEstimate& estimate,
-                                   bool estimate_time) {
+                                   bool estimate_time, const ProgressCallback& progress) {
   std::vector<SensorPair> connected;
   for (std::size_t a = 0; a < rig.problem.sensors.size(); ++a) {
     for (std::size_t b = a + 1; b < rig.problem.sensors.size(); ++b) {
@@ -102,22 +102,25 @@ std::vector<RigResultPair> PairsOf(const RigFile& rig, const RigEstimate& estima
     }
   }
   std::vector<RigResultPair> pairs(connected.size());
+  ProgressCounter counter(progress, "pairs of sensors", connected.size());
   tbb::parallel_for(std::size_t{0}, connected.size(), [&](std::size_t i) {
     pairs[i] = PairOf(rig, estimate, connected[i], estimate_time);
+    counter.Step();
   });
+  counter.Finish();
   return pairs;
 }
 
 }  // namespace
 
-Expected<RigResult> CalibrateRig(const RigFile& rig, bool estimate_time) {
-  SEXTANT_ASSIGN_OR_RETURN(
-      const RigEstimate estimate,
-      SolveRig(rig.problem, {.root = rig.root, .estimate_time = estimate_time}));
+Expected<RigResult> CalibrateRig(const RigFile& rig, bool estimate_time,
+                                 const ProgressCallback& progress) {
+  const RigOptions options{.root = rig.root, .estimate_time = estimate_time, .progress = progress};
+  SEXTANT_ASSIGN_OR_RETURN(const RigEstimate estimate, SolveRig(rig.problem, options));
   return RigResult{.version = std::string(Version()),
                    .root = rig.problem.sensors[rig.root].name,
                    .sensors = SensorsOf(rig, estimate),
-                   .pairs = PairsOf(rig, estimate, estimate_time),
+                   .pairs = PairsOf(rig, estimate, estimate_time, progress),
                    .views = ViewsOf(rig, estimate),
                    .numbers = NumbersOf(rig, estimate),
                    .unconnected = estimate.unconnected,

@@ -22,6 +22,7 @@
 #include "cli/search_options.h"
 #include "io/boards/board_file.h"
 #include "io/output/output_file.h"
+#include "io/output/output_target.h"
 #include "io/output/standard_output.h"
 #include "io/problems/problem_yaml.h"
 #include "io/results/calibration_result.h"
@@ -99,7 +100,7 @@ void Declare(CalibrateCommandOptions& options, Arguments& arguments) {
                 "Bootstrap samples over the views; 0: neither bootstrap nor cross-validation",
                 {.shows_default = true, .range = {{0, 100'000}}});
   arguments.Add("--out", options.out_path, "Result file (YAML)",
-                {.shows_default = true, .writes = Writes::kFile});
+                {.shows_default = true, .writes = Writes::kCheckedByCommand});
   arguments.Add("--json", options.json_path, "Write the result as JSON too; - for standard output",
                 {.writes = Writes::kFileOrStandardOutput});
   arguments.Add("--problem", options.problem_path,
@@ -202,7 +203,7 @@ Expected<RigResult> CalibrateSensors(const CalibrateCommandOptions& options,
   if (!options.problem_path.empty()) {
     SEXTANT_RETURN_IF_ERROR(WriteFileAtomically(options.problem_path, FormatRigFile(observed.rig)));
   }
-  Expected<RigResult> result = CalibrateRig(observed.rig);
+  Expected<RigResult> result = CalibrateRig(observed.rig, progress.Callback());
   for (const std::string& note : observed.notes) {
     if (!result) result.error().AddLine(note);
     if (result) result->warnings.push_back(note);
@@ -213,6 +214,12 @@ Expected<RigResult> CalibrateSensors(const CalibrateCommandOptions& options,
 // Without a path of its own, the result of a rig is no result.yaml.
 std::string RigPath(const std::string& out_path) {
   return out_path == CalibrateCommandOptions{}.out_path ? "rig.json" : out_path;
+}
+
+Expected<void> ClaimResult(const std::string& path) {
+  const Expected<void> ok = ClaimOutput(path);
+  if (ok) return {};
+  return MakeError(ok.error().code, "--out: " + ok.error().message);
 }
 
 Expected<Calibration> CalibrateWithProgress(const CalibrateCommandOptions& options) {
@@ -254,10 +261,12 @@ int Run(const CalibrateCommandOptions& options) {
     const auto rig = ReadRigSession(options.session);
     if (!rig) return Refuse("calibrate", rig.error());
     if (*rig) {
-      return DeliverRig("calibrate", CalibrateSensors(options, **rig), RigPath(options.out_path),
-                        options.json_path);
+      const std::string path = RigPath(options.out_path);
+      if (const auto ok = ClaimResult(path); !ok) return Refuse("calibrate", ok.error());
+      return DeliverRig("calibrate", CalibrateSensors(options, **rig), path, options.json_path);
     }
   }
+  if (const auto ok = ClaimResult(options.out_path); !ok) return Refuse("calibrate", ok.error());
   const Expected<Calibration> calibration = CalibrateWithProgress(options);
   if (!calibration) return Refuse("calibrate", calibration.error());
   if (Expected<void> ok = WriteFiles(options, *calibration); !ok) {

@@ -37,8 +37,8 @@ void Declare(CheckOptions& options, Arguments& arguments) {
       "A board is in view: the pose is compared with the calibration by it, which is more\n"
       "accurate");
   arguments.Add("--detect", options.limits,
-                "MM,DEG: valid only if a change of this size would have been seen; a smaller one\n"
-                "that is certain is \"moved\" as well",
+                "MM,DEG: valid only if a change of this size would have been seen; a certain\n"
+                "change that is smaller is stated, but still valid",
                 {.shows_default = true,
                  .range = {{1e-3, 1e6}},
                  .min_values = 2,
@@ -61,7 +61,12 @@ Expected<PoseCheck> CheckByBoard(const CheckOptions& options, const SceneInput& 
   Session session = input.session;
   session.boards = options.boards_path;
   session.camera = options.input.camera_path;
-  CalibrateOptions settings{.camera = input.given.camera, .progress = progress};
+  // A change is judged by its own covariance, not by the accuracy that a calibration has to have.
+  const CheckLimits limits = LimitsOf(options);
+  CalibrateOptions settings{
+      .camera = input.given.camera,
+      .need = {.translation_m = limits.translation_m, .rotation_rad = limits.rotation_rad},
+      .progress = progress};
   settings.match.initial = input.given.cam_from_lidar;
   SEXTANT_ASSIGN_OR_RETURN(const Calibration calibration, Calibrate(session, settings));
   if (!calibration.result) return PoseCheck{.reason = calibration.result.error().message};
@@ -71,7 +76,7 @@ Expected<PoseCheck> CheckByBoard(const CheckOptions& options, const SceneInput& 
                          "the calibration by the board is not usable: " + result.verdict->reason};
   }
   return JudgeChange(PoseDifference(result.cam_from_lidar, input.given.cam_from_lidar),
-                     *result.covariance, LimitsOf(options), static_cast<int>(result.views.size()),
+                     *result.covariance, limits, static_cast<int>(result.views.size()),
                      "views of the board");
 }
 
@@ -97,30 +102,37 @@ std::string NowUtc() {
       fmt::gmtime(std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now())));
 }
 
-std::string JsonOf(const PoseCheck& check, std::size_t pairs, const std::string& path) {
+std::string JsonOf(const PoseCheck& check, const SceneInput& input, const std::string& path) {
   const Vector6d sigma = check.covariance.diagonal().cwiseSqrt();
   nlohmann::ordered_json json = {{"pose", path},
-                                 {"pairs", pairs},
+                                 {"pose_read_as", ToString(input.direction)},
+                                 {"pose_read_by", input.direction_basis},
+                                 {"pairs", input.session.files.pairs.size()},
                                  {"state", ToString(check.state)},
+                                 {"change_is_certain", check.is_certain},
                                  {"reason", check.reason},
                                  {"change_deg_mm", InPlainUnits(check.change)},
                                  {"sigma_deg_mm", InPlainUnits(sigma)}};
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-Expected<void> AppendHistory(const std::string& path, const PoseCheck& check, std::size_t pairs) {
+Expected<void> AppendHistory(const std::string& path, const PoseCheck& check,
+                             const SceneInput& input) {
   if (path.empty()) return {};
   const std::string header =
-      "time_utc,state,pairs,x_deg,y_deg,z_deg,x_mm,y_mm,z_mm,sigma_x_deg,sigma_y_deg,sigma_z_deg,"
-      "sigma_x_mm,sigma_y_mm,sigma_z_mm\n";
+      "time_utc,state,pose_read_as,pairs,change_is_certain,x_deg,y_deg,z_deg,x_mm,y_mm,z_mm,"
+      "sigma_x_deg,sigma_y_deg,sigma_z_deg,sigma_x_mm,sigma_y_mm,sigma_z_mm\n";
   SEXTANT_ASSIGN_OR_RETURN(AppendedFile file, AppendedFile::Open(path));
   SEXTANT_ASSIGN_OR_RETURN(const std::string begin, file.ReadBeginning(header.size()));
+  SEXTANT_ASSIGN_OR_RETURN(const std::string end, file.ReadEnd(1));
   if (!begin.empty() && begin != header) {
     return MakeError(ErrorCode::kInvalidOption,
                      path + ": is no history of sextant check; expected one, or a new file");
   }
-  std::string line = begin.empty() ? header : std::string();
-  line += fmt::format("{},{},{}", NowUtc(), ToString(check.state), pairs);
+  // An earlier line that was cut stays a line of its own.
+  std::string line = begin.empty() ? header : std::string(end == "\n" ? "" : "\n");
+  line += fmt::format("{},{},{},{},{}", NowUtc(), ToString(check.state), ToString(input.direction),
+                      input.session.files.pairs.size(), check.is_certain ? "yes" : "no");
   for (const double v : InPlainUnits(check.change)) line += fmt::format(",{:.4f}", v);
   for (const double v : InPlainUnits(check.covariance.diagonal().cwiseSqrt())) {
     line += fmt::format(",{:.4f}", v);
@@ -130,20 +142,23 @@ Expected<void> AppendHistory(const std::string& path, const PoseCheck& check, st
 }
 
 int Run(const CheckOptions& options) {
+  if (!options.history_path.empty()) {
+    const Expected<void> ok = AppendedFile::Claim(options.history_path);
+    if (!ok) return Refuse("check", {ok.error().code, "--history: " + ok.error().message});
+  }
   const Expected<SceneInput> input = ReadSceneInput(options.input);
   if (!input) return Refuse("check", input.error());
   const Expected<PoseCheck> check = CheckPose(options, *input);
   if (!check) return Refuse("check", check.error());
-  const std::size_t pairs = input->session.files.pairs.size();
-  if (const Expected<void> ok = AppendHistory(options.history_path, *check, pairs); !ok) {
-    return Refuse("check", ok.error());
-  }
+  const Expected<void> noted = AppendHistory(options.history_path, *check, *input);
   const int code = check->state == PoseState::kValid   ? kAnswered
                    : check->state == PoseState::kMoved ? kMovedExit
                                                        : kUnknownExit;
-  const std::string text = fmt::format("{}: {}\n", ToString(check->state), check->reason);
-  return Deliver("check", options.json_path, text, JsonOf(*check, pairs, options.input.pose_path),
-                 code);
+  const std::string text = fmt::format("{}: {}. The pose was read as {}.\n", ToString(check->state),
+                                       check->reason, ToString(input->direction));
+  const int delivered = Deliver("check", options.json_path, text,
+                                JsonOf(*check, *input, options.input.pose_path), code);
+  return noted ? delivered : Refuse("check", noted.error());
 }
 
 }  // namespace

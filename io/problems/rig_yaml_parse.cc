@@ -26,6 +26,8 @@ using RigKeys = std::vector<std::string>;
 
 constexpr std::size_t kMaxSensors = 100;
 constexpr std::size_t kMaxNumbers = 2 * kMaxPointsSeen;  // Of the points of one board.
+// Of the covariances of all pixels, which grow with the square of the pixels of one observation.
+constexpr std::size_t kMaxCovarianceNumbers = std::size_t{128} << 20;
 
 class RigReader {
  public:
@@ -43,7 +45,10 @@ class RigReader {
       const YamlNode* tables = root.Find("tables");
       const YamlNode* moments = root.Find("moments");
       if (tables == nullptr && moments == nullptr) in_.Require(root, "moments");
-      if (moments != nullptr) ReadMoments(*moments);
+      if (moments != nullptr) {
+        CheckPixels(*moments);
+        ReadMoments(*moments);
+      }
       if (tables != nullptr) ReadTables(*tables);
     }
     if (!in_.ok()) return in_.TakeError();
@@ -197,6 +202,24 @@ class RigReader {
     in_.Fail(node.line, key,
              fmt::format("expected the name of a sensor ({}), got '{}'", known, name));
     return 0;
+  }
+
+  // Before any covariance is made.
+  void CheckPixels(const YamlNode& moments) {
+    std::size_t numbers = 0;
+    for (const YamlNode& moment : moments.items) {
+      const YamlNode* seen = moment.Find("observations");
+      if (seen == nullptr) continue;
+      for (const YamlNode& node : seen->items) {
+        const YamlNode* pixels = node.Find("pixels");
+        if (pixels != nullptr) numbers += pixels->items.size() * pixels->items.size();
+        if (numbers <= kMaxCovarianceNumbers) continue;
+        return in_.Fail(node.line, "pixels",
+                        fmt::format("expected fewer pixels: the covariances of all observations up "
+                                    "to this one would take more than {} MiB",
+                                    (kMaxCovarianceNumbers * sizeof(double)) >> 20));
+      }
+    }
   }
 
   void ReadMoments(const YamlNode& list) {

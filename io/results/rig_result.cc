@@ -159,6 +159,9 @@ Expected<RigResult> ParseRigResult(std::string_view text, const std::string& fil
   if (in.IsSequence(sensors, "sensors")) {
     for (const YamlNode& node : sensors.items) result.sensors.push_back(ReadSensor(in, node));
   }
+  if (std::ranges::count(result.sensors, result.root, &RigResultSensor::name) != 1 && in.ok()) {
+    in.Fail(root.Find("root")->line, "root", "expected the name of one of the sensors");
+  }
   const YamlNode* refutations = root.Find("not_usable");
   if (refutations != nullptr && in.IsSequence(*refutations, "not_usable")) {
     for (const YamlNode& node : refutations->items) {

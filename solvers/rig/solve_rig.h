@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "geometry/uncertain_pose.h"
 #include "solvers/core/rig_problem.h"
 #include "solvers/rig/rig_model.h"
@@ -24,6 +25,7 @@ struct RigOptions {
   /// Estimates how far the clock of each sensor with times is ahead of the root's
   /// (RigObservation::time_s), as the number time_offset_s.
   bool estimate_time = false;
+  ProgressCallback progress{};  ///< Stage "rig": minima, at most as many as are announced.
 };
 
 /// What became of one observation.

@@ -13,8 +13,10 @@
   X(BoardImage)          \
   X(Fusion)              \
   X(Rig)                 \
+  X(Session)             \
   X(RealPairs)           \
-  X(RealViews)
+  X(RealViews)           \
+  X(Check)
 
 namespace sextant {
 
