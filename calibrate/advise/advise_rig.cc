@@ -15,7 +15,7 @@
 #include "base/units.h"
 #include "calibrate/advise/advise.h"
 #include "geometry/symmetric.h"
-#include "solvers/joint/scaled_inverse.h"
+#include "solvers/blocks/scaled_inverse.h"
 #include "solvers/rig/rig_board_information.h"
 
 namespace sextant {
