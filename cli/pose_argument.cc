@@ -7,8 +7,10 @@
 #include <optional>
 
 #include "geometry/coordinate_range.h"
+#include "io/export/export_rig.h"
 #include "io/output/standard_output.h"
 #include "io/text/number_text.h"
+#include "io/text/text_file.h"
 
 namespace sextant::cli {
 namespace {
@@ -84,8 +86,59 @@ Expected<Rigid3d> CamFromLidarWithNote(const StatedPose& pose, const std::string
   return cam_from_lidar;
 }
 
+// The named sensor, or the only camera (or LiDAR) of the rig.
+Expected<std::string> ChosenSensor(const RigResult& rig, const std::string& name, bool camera) {
+  if (!name.empty()) return name;
+  std::vector<std::string> found;
+  std::string all;
+  for (const RigResultSensor& sensor : rig.sensors) {
+    all += (all.empty() ? "" : ", ") + sensor.name;
+    if (sensor.camera.has_value() == camera) found.push_back(sensor.name);
+  }
+  if (found.size() == 1) return found.front();
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("the result of a rig with {} {}: choose one with {}; there are: {}",
+                               found.empty() ? "no" : "several",
+                               camera ? "sensors with intrinsics" : "sensors without intrinsics",
+                               camera ? "--camera-name" : "--lidar-name", all));
+}
+
+// The pose of two sensors as the statement of a file that leaves no doubt of its direction.
+Expected<GivenPose> PairOfRig(const PoseText& text, const std::string& path,
+                              const std::string& pose_is, const PairNames& names) {
+  SEXTANT_ASSIGN_OR_RETURN(const RigResult rig, ParseRigResult(text.text, path));
+  SEXTANT_ASSIGN_OR_RETURN(const std::string camera, ChosenSensor(rig, names.camera, true));
+  SEXTANT_ASSIGN_OR_RETURN(const std::string lidar, ChosenSensor(rig, names.lidar, false));
+  GivenPose given{.basis = "the result of sextant rig states it"};
+  SEXTANT_ASSIGN_OR_RETURN(given.result, ResultOfPair(rig, camera, lidar));
+  const StatedPose stated{.transform = given.result.cam_from_lidar,
+                          .direction = given.direction,
+                          .basis = given.basis,
+                          .camera_frame = camera,
+                          .lidar_frame = lidar,
+                          .is_result = true};
+  SEXTANT_ASSIGN_OR_RETURN(given.result.cam_from_lidar,
+                           CamFromLidarWithNote(stated, pose_is, path));
+  return given;
+}
+
+template <class T>
+Expected<T> InFile(Expected<T> value, const std::string& path) {
+  if (!value && !value.error().message.starts_with(path)) {
+    value.error().message.insert(0, path + ": ");
+  }
+  return value;
+}
+
 Expected<GivenPose> GivenPoseOfText(const PoseText& text, const std::string& path,
-                                    const std::string& pose_is) {
+                                    const std::string& pose_is, const PairNames& names) {
+  if (IsRigResult(text.text)) return InFile(PairOfRig(text, path, pose_is, names), path);
+  if (!names.camera.empty() || !names.lidar.empty()) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("--camera-name and --lidar-name choose sensors of rig.json, the "
+                                 "result of sextant rig, which {} is not: leave them out",
+                                 path));
+  }
   SEXTANT_ASSIGN_OR_RETURN(const StatedPose pose, ParsePose(text.text, text.file, text.name));
   SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_lidar, CamFromLidarWithNote(pose, pose_is, path));
   GivenPose given{.direction = pose_is.empty() ? *pose.direction : *AskedDirection(pose_is),
@@ -109,6 +162,13 @@ void DeclarePoseIs(std::string& pose_is, Arguments& arguments) {
                 {.choices = {"cam_from_lidar", "lidar_from_cam"}});
 }
 
+void DeclarePairNames(PairNames& names, Arguments& arguments) {
+  arguments.Add("--camera-name", names.camera,
+                "For rig.json of sextant rig: the camera, by its name; default: the only one");
+  arguments.Add("--lidar-name", names.lidar,
+                "For rig.json: the sensor that the scan is of; default: the only LiDAR");
+}
+
 Expected<Rigid3d> PoseOfFile(const std::string& path, const std::string& pose_is) {
   SEXTANT_ASSIGN_OR_RETURN(const StatedPose pose, ReadPoseFile(path));
   return CamFromLidarWithNote(pose, pose_is, path);
@@ -123,20 +183,30 @@ Expected<Rigid3d> PoseFromArgument(const std::string& option,
   return AskedDirection(pose_is) == PoseDirection::kLidarFromCam ? pose.Inverse() : pose;
 }
 
-Expected<GivenPose> GivenPoseOfFile(const std::string& path, const std::string& pose_is) {
+Expected<GivenPose> GivenPoseOfFile(const std::string& path, const std::string& pose_is,
+                                    const PairNames& names) {
   SEXTANT_ASSIGN_OR_RETURN(const PoseText text, ReadPoseText(path));
-  return GivenPoseOfText(text, path, pose_is);
+  return GivenPoseOfText(text, path, pose_is, names);
 }
 
 Expected<CalibrationResult> ResultOfText(const PoseText& text, const std::string& path,
-                                         const std::string& pose_is) {
-  SEXTANT_ASSIGN_OR_RETURN(GivenPose given, GivenPoseOfText(text, path, pose_is));
+                                         const std::string& pose_is, const PairNames& names) {
+  SEXTANT_ASSIGN_OR_RETURN(GivenPose given, GivenPoseOfText(text, path, pose_is, names));
   return std::move(given.result);
 }
 
-Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is) {
+Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is,
+                                         const PairNames& names) {
   SEXTANT_ASSIGN_OR_RETURN(const PoseText text, ReadPoseText(path));
-  return ResultOfText(text, path, pose_is);
+  return ResultOfText(text, path, pose_is, names);
+}
+
+Expected<RigResult> RigOfFile(const std::string& path, const std::string& option) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
+  if (IsRigResult(text)) return ParseRigResult(text, path);
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("{}: expected rig.json, the result of sextant rig, which {} is not",
+                               option, path));
 }
 
 }  // namespace sextant::cli

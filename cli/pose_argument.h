@@ -9,6 +9,7 @@
 #include "geometry/rigid3d.h"
 #include "io/poses/pose_file.h"
 #include "io/results/calibration_result.h"
+#include "io/results/rig_result.h"
 
 namespace sextant::cli {
 
@@ -31,6 +32,15 @@ Expected<Rigid3d> PoseFromArgument(const std::string& option,
                                    const std::vector<std::string>& values,
                                    const std::string& pose_is);
 
+/// Two sensors of a rig; an empty name is not chosen.
+struct PairNames {
+  std::string camera{};
+  std::string lidar{};
+};
+
+/// --camera-name and --lidar-name: which two sensors of a rig's result are meant.
+void DeclarePairNames(PairNames& names, Arguments& arguments);
+
 /// A pose as a file states it, and the direction in which it was read: as --pose-is states, or as
 /// follows from the file.
 struct GivenPose {
@@ -40,13 +50,22 @@ struct GivenPose {
 };
 
 /// As ResultOfFile, with the direction.
-Expected<GivenPose> GivenPoseOfFile(const std::string& path, const std::string& pose_is);
+Expected<GivenPose> GivenPoseOfFile(const std::string& path, const std::string& pose_is,
+                                    const PairNames& names = {});
 
 /// The result in a file of sextant calibrate; of any other file a result with its pose and the
-/// names of its frames alone. Errors: those of ReadCalibrationResult and PoseOfFile.
-Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is);
+/// names of its frames alone. Of a rig's result the pose of the named sensors, whatever connects
+/// them; a name may be empty where the rig has one sensor of that kind. Errors: those of
+/// ReadCalibrationResult, PoseOfFile and ResultOfPair; kInvalidOption for names with another file,
+/// and where a choice is missing, with the names to choose from.
+Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is,
+                                         const PairNames& names = {});
 /// The same of its text, which ReadPoseText has read from `path`.
 Expected<CalibrationResult> ResultOfText(const PoseText& text, const std::string& path,
-                                         const std::string& pose_is);
+                                         const std::string& pose_is, const PairNames& names = {});
+
+/// The rig's result in a file. Errors: kIo; those of ParseRigResult; kInvalidOption for any other
+/// file, with the name of the option that needs one.
+Expected<RigResult> RigOfFile(const std::string& path, const std::string& option);
 
 }  // namespace sextant::cli

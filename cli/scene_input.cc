@@ -37,6 +37,7 @@ Expected<ScenePair> ReadScenePair(const FilePair& files, const CalibrationResult
 void DeclareSceneInput(SceneInputOptions& options, Arguments& arguments) {
   arguments.Add("POSE", options.pose_path, kPoseHelp, {.required = true});
   DeclarePoseIs(options.pose_is, arguments);
+  DeclarePairNames(options.names, arguments);
   arguments.Add("--image", options.images,
                 "Photos of everyday scenes: one, several, or a quoted pattern such as\n"
                 "'photos/*.png'",
@@ -49,7 +50,8 @@ void DeclareSceneInput(SceneInputOptions& options, Arguments& arguments) {
 
 Expected<SceneInput> ReadSceneInput(const SceneInputOptions& options) {
   SceneInput input;
-  SEXTANT_ASSIGN_OR_RETURN(GivenPose pose, GivenPoseOfFile(options.pose_path, options.pose_is));
+  SEXTANT_ASSIGN_OR_RETURN(GivenPose pose,
+                           GivenPoseOfFile(options.pose_path, options.pose_is, options.names));
   input.given = std::move(pose.result);
   input.direction = pose.direction;
   input.direction_basis = std::move(pose.basis);

@@ -17,6 +17,7 @@ namespace sextant::cli {
 struct SceneInputOptions {
   std::string pose_path{};
   std::string pose_is{};
+  PairNames names{};
   std::vector<std::string> images{};
   std::vector<std::string> clouds{};
   std::string camera_path{};  ///< Empty: the result's.

@@ -47,8 +47,15 @@ struct Advice {
 /// without rings; kDegenerate where both sensors see no pose of the grid.
 Expected<Advice> Advise(const CalibrationResult& result, const SensorPair& sensors);
 
-/// "Hold board 1 about 1.8 m in front of the camera, 0.4 m to its right ...".
-std::string DescribePlacement(const Board& board, const Rigid3d& cam_from_board);
+/// Who sees the board that DescribePlacement describes.
+struct PlacementObserver {
+  std::string name = "the camera";
+  bool corner_up = true;  ///< Whether the sentence states that a corner is up.
+};
+
+/// "Hold board 1 1.8 m in front of the camera, 0.4 m to its right ...".
+std::string DescribePlacement(const Board& board, const Rigid3d& cam_from_board,
+                              const PlacementObserver& observer = {});
 
 /// Warnings about degenerate sets of board poses: all parallel (within 10 degrees), all at one
 /// range (within a tenth), all in one direction (within 10 degrees). Empty for fewer than two.

@@ -34,7 +34,8 @@ double SpreadOf(const std::vector<Eigen::Vector3d>& directions) {
 
 }  // namespace
 
-std::string DescribePlacement(const Board& board, const Rigid3d& cam_from_board) {
+std::string DescribePlacement(const Board& board, const Rigid3d& cam_from_board,
+                              const PlacementObserver& observer) {
   const Eigen::Vector3d& t = cam_from_board.translation;
   const Eigen::Vector3d normal = cam_from_board.rotation * Eigen::Vector3d::UnitZ();
   // Angles of the normal, which points away from the camera: about the vertical, then leaning.
@@ -43,19 +44,22 @@ std::string DescribePlacement(const Board& board, const Rigid3d& cam_from_board)
   const std::string name = board.name.empty() ? fmt::format("board {}", board.id)
                                               : fmt::format("board {} ({})", board.id, board.name);
   std::string text =
-      fmt::format("Hold {} {:.1f} m in front of the camera, {} and {}, with one corner up", name,
-                  t.z(), Sideways(t.x(), "to its right", "to its left", "straight ahead"),
-                  Sideways(t.y(), "below it", "above it", "at its height"));
+      fmt::format("Hold {} {:.1f} m in front of {}, {} and {}{}", name, t.z(), observer.name,
+                  Sideways(t.x(), "to its right", "to its left", "straight ahead"),
+                  Sideways(t.y(), "below it", "above it", "at its height"),
+                  observer.corner_up ? ", with one corner up" : "");
   if (std::abs(turn_deg) >= 5.0) {
     text += fmt::format(", turned so that its {} side is farther away by {:.0f} deg",
                         turn_deg > 0.0 ? "left" : "right", std::abs(turn_deg));
   }
   if (std::abs(lean_deg) >= 5.0) {
     text += fmt::format(", its top leaning {} by {:.0f} deg",
-                        lean_deg > 0.0 ? "towards the camera" : "away from the camera",
+                        lean_deg > 0.0 ? "towards " + observer.name : "away from " + observer.name,
                         std::abs(lean_deg));
   }
-  if (std::abs(turn_deg) < 5.0 && std::abs(lean_deg) < 5.0) text += ", facing the camera squarely";
+  if (std::abs(turn_deg) < 5.0 && std::abs(lean_deg) < 5.0) {
+    text += fmt::format(", facing {} squarely", observer.name);
+  }
   return text + ".";
 }
 

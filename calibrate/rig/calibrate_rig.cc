@@ -71,7 +71,8 @@ struct SensorPair {
   std::size_t b = 0;
 };
 
-RigResultPair PairOf(const RigFile& rig, const RigEstimate& estimate, const SensorPair& of) {
+RigResultPair PairOf(const RigFile& rig, const RigEstimate& estimate, const SensorPair& of,
+                     bool estimate_time) {
   const UncertainPose joint = estimate.Between(of.a, of.b);
   RigResultPair pair{.a = rig.problem.sensors[of.a].name,
                      .b = rig.problem.sensors[of.b].name,
@@ -81,7 +82,7 @@ RigResultPair PairOf(const RigFile& rig, const RigEstimate& estimate, const Sens
   const RigProblem part = Restricted(rig.problem, sensors);
   pair.views = static_cast<int>(part.placements.size());
   if (part.placements.empty()) return pair;
-  const Expected<RigEstimate> alone = SolveRig(part);
+  const Expected<RigEstimate> alone = SolveRig(part, {.estimate_time = estimate_time});
   if (!alone) return pair;
   const UncertainPose pose = alone->Between(0, 1);
   pair.alone_a_from_b = pose.b_from_a;
@@ -93,7 +94,7 @@ RigResultPair PairOf(const RigFile& rig, const RigEstimate& estimate, const Sens
 }
 
 std::vector<RigResultPair> PairsOf(const RigFile& rig, const RigEstimate& estimate,
-                                   const ProgressCallback& progress) {
+                                   bool estimate_time, const ProgressCallback& progress) {
   std::vector<SensorPair> connected;
   for (std::size_t a = 0; a < rig.problem.sensors.size(); ++a) {
     for (std::size_t b = a + 1; b < rig.problem.sensors.size(); ++b) {
@@ -103,7 +104,7 @@ std::vector<RigResultPair> PairsOf(const RigFile& rig, const RigEstimate& estima
   std::vector<RigResultPair> pairs(connected.size());
   ProgressCounter counter(progress, "pairs of sensors", connected.size());
   tbb::parallel_for(std::size_t{0}, connected.size(), [&](std::size_t i) {
-    pairs[i] = PairOf(rig, estimate, connected[i]);
+    pairs[i] = PairOf(rig, estimate, connected[i], estimate_time);
     counter.Step();
   });
   counter.Finish();
@@ -112,13 +113,14 @@ std::vector<RigResultPair> PairsOf(const RigFile& rig, const RigEstimate& estima
 
 }  // namespace
 
-Expected<RigResult> CalibrateRig(const RigFile& rig, const ProgressCallback& progress) {
-  SEXTANT_ASSIGN_OR_RETURN(const RigEstimate estimate,
-                           SolveRig(rig.problem, {.root = rig.root, .progress = progress}));
+Expected<RigResult> CalibrateRig(const RigFile& rig, bool estimate_time,
+                                 const ProgressCallback& progress) {
+  const RigOptions options{.root = rig.root, .estimate_time = estimate_time, .progress = progress};
+  SEXTANT_ASSIGN_OR_RETURN(const RigEstimate estimate, SolveRig(rig.problem, options));
   return RigResult{.version = std::string(Version()),
                    .root = rig.problem.sensors[rig.root].name,
                    .sensors = SensorsOf(rig, estimate),
-                   .pairs = PairsOf(rig, estimate, progress),
+                   .pairs = PairsOf(rig, estimate, estimate_time, progress),
                    .views = ViewsOf(rig, estimate),
                    .numbers = NumbersOf(rig, estimate),
                    .unconnected = estimate.unconnected,

@@ -13,9 +13,10 @@ namespace sextant {
 
 /// Solves a rig, and every pair of its sensors alone as a check (the loop test): each pair's own
 /// answer against that of all sensors. Runs on all cores; the same input gives the same result on
-/// any number of them. Progress: the stage of SolveRig, then "pairs of sensors". Errors: those of
-/// SolveRig.
-Expected<RigResult> CalibrateRig(const RigFile& rig, const ProgressCallback& progress = {});
+/// any number of them. `estimate_time`: RigOptions::estimate_time. Progress: the stage of SolveRig,
+/// then "pairs of sensors". Errors: those of SolveRig.
+Expected<RigResult> CalibrateRig(const RigFile& rig, bool estimate_time = false,
+                                 const ProgressCallback& progress = {});
 
 /// A LiDAR and the cameras of rts.txt of the original package (io/problems/transform_list.h), each
 /// of which has cam_from_lidar: "lidar", "camera_1", "camera_2" and so on, without uncertainty.

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/advise/advise.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <filesystem>
 #include <numbers>
 #include <system_error>
 
 #include "base/units.h"
+#include "calibrate/advise/advise_rig.h"
 #include "calibrate/observe/photo_file.h"
 #include "calibrate/trust/information.h"
 #include "cli/commands/commands.h"
@@ -15,12 +16,17 @@
 #include "cli/progress.h"
 #include "eval/metrics/bounds.h"
 #include "io/output/standard_output.h"
+#include "io/problems/rig_yaml.h"
+#include "io/results/rig_result.h"
+#include "io/text/text_file.h"
 #include "report/advice_picture.h"
 #include "report/calibrate_text.h"
 #include "simulator/lidar/lidar_model.h"
 
 namespace sextant::cli {
 namespace {
+
+constexpr std::size_t kRigTextWidth = 100;
 
 struct AdviseCommandOptions {
   std::string result_path{};
@@ -31,9 +37,11 @@ struct AdviseCommandOptions {
 };
 
 void Declare(AdviseCommandOptions& options, Arguments& arguments) {
-  arguments.Add("RESULT", options.result_path,
-                "result.yaml of sextant calibrate, its JSON, or a folder that contains result.yaml",
-                {.required = true});
+  arguments.Add(
+      "RESULT", options.result_path,
+      "result.yaml of sextant calibrate, its JSON, or a folder that contains result.yaml;\n"
+      "or a rig file, of sextant rig or of calibrate --problem",
+      {.required = true});
   arguments.Add("--picture", options.picture_path,
                 "Draw the place from above and as the camera would see it (.png)",
                 {.writes = Writes::kFile});
@@ -147,6 +155,38 @@ Expected<void> CheckPicture(const std::string& path) {
   return CheckImageName(path);
 }
 
+std::string RigAdviceText(const RigAdvice& advice) {
+  std::string text;
+  for (const std::string& warning : advice.warnings) {
+    text += Wrapped("warning: " + warning, kRigTextWidth);
+  }
+  text += Wrapped(
+      fmt::format("The weakest pair is {} and {}, which see {} {} together: 1 sigma {} for points "
+                  "{:.1f} m away.",
+                  advice.weakest.a, advice.weakest.b, advice.weakest.views,
+                  advice.weakest.views == 1 ? "board" : "boards",
+                  SigmaText(advice.weakest.a_from_b.covariance), advice.distance_m),
+      kRigTextWidth);
+  text += Wrapped(advice.sentence, kRigTextWidth);
+  return text + Wrapped(fmt::format("{} would see it there; predicted 1 sigma of the pair then {}",
+                                    fmt::join(advice.seen_by, ", "), SigmaText(advice.covariance)),
+                        kRigTextWidth);
+}
+
+int AdviseOnRig(const AdviseCommandOptions& options, const std::string& text) {
+  if (!options.picture_path.empty() || options.count != 1 || !options.lidar.empty()) {
+    return Refuse("advise", {ErrorCode::kInvalidOption,
+                             "--picture, --count and --lidar are for a result of one camera and "
+                             "one LiDAR; leave them out for a rig"});
+  }
+  const Expected<RigFile> rig = ParseRigFile(text, options.result_path);
+  if (!rig) return Refuse("advise", rig.error());
+  const Expected<RigAdvice> advice = AdviseRig(*rig);
+  if (!advice) return Refuse("advise", advice.error(), kNoAnswer);
+  Print("{}", RigAdviceText(*advice));
+  return kAnswered;
+}
+
 int Run(const AdviseCommandOptions& options) {
   if (const Expected<void> ok = CheckPicture(options.picture_path); !ok) {
     return Refuse("advise", ok.error());
@@ -154,6 +194,16 @@ int Run(const AdviseCommandOptions& options) {
   std::filesystem::path path = options.result_path;
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) path /= "result.yaml";
+  const Expected<std::string> file = ReadTextFile(path);
+  if (file && IsRigFile(*file)) return AdviseOnRig(options, *file);
+  if (file && IsRigResult(*file)) {
+    return Refuse("advise",
+                  {ErrorCode::kInvalidInput,
+                   fmt::format("{} has the poses of a rig, but not what its sensors measured: give "
+                               "the rig file, which sextant rig reads and calibrate --problem "
+                               "writes",
+                               options.result_path)});
+  }
   const Expected<CalibrationResult> result = ReadCalibrationResult(path);
   if (!result) {
     return Refuse("advise", {result.error().code,
@@ -179,8 +229,11 @@ int Run(const AdviseCommandOptions& options) {
 Command AdviseCommand() {
   constexpr const char* kFooter =
       "The proposed place is the one of a grid, visible to both sensors, for which the predicted\n"
-      "covariance is smallest (D-optimal).\n"
-      "Example:\n  sextant advise result.yaml --picture next.png";
+      "covariance is smallest (D-optimal); of a rig, for which that of the pair of sensors known\n"
+      "worst is.\n"
+      "Examples:\n"
+      "  sextant advise result.yaml --picture next.png\n"
+      "  sextant advise rig.yaml";
   return MakeCommand<AdviseCommandOptions>(
       "advise", "How well the views determine the answer, and where to hold a board next", kFooter,
       Declare, Run);

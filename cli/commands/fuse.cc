@@ -18,6 +18,7 @@
 #include "io/output/output_file.h"
 #include "io/output/standard_output.h"
 #include "io/problems/transform_list.h"
+#include "io/results/rig_result.h"
 
 namespace sextant::cli {
 namespace {
@@ -28,13 +29,17 @@ struct FuseOptions {
   std::string to{};                 ///< The file for the last cloud.
   std::string pose_is{};
   std::string rts_path{};  ///< Replaces both.
+  std::string rig_path{};  ///< Replaces both, with the sensor of each cloud.
+  std::vector<std::string> sensors{};
   std::string out = "fused.ply";
 };
 
 void Declare(FuseOptions& options, Arguments& arguments) {
-  arguments.Add("CLOUD", options.clouds,
-                "Clouds, each in the frame of its own camera: PCD, PLY, KITTI .bin or CSV",
-                {.required = true});
+  arguments.Add(
+      "CLOUD", options.clouds,
+      "Clouds, each in the frame of its own camera, or of its sensor of a rig: PCD, PLY,\n"
+      "KITTI .bin or CSV",
+      {.required = true});
   arguments.Add("--from", options.from,
                 std::string("The pose of the camera of each cloud but the last: ") + kPoseHelp);
   arguments.Add("--to", options.to,
@@ -42,6 +47,9 @@ void Declare(FuseOptions& options, Arguments& arguments) {
   DeclarePoseIs(options.pose_is, arguments);
   arguments.Add("--rts", options.rts_path,
                 "Instead: rts.txt of the original package, one 4x4 matrix per cloud");
+  arguments.Add("--result", options.rig_path, "Instead: rig.json of sextant rig, with --sensors");
+  arguments.Add("--sensors", options.sensors,
+                "The sensor of the rig that each cloud is of, by its name, in the order of clouds");
   arguments.Add("--out", options.out,
                 "Cloud to write: .ply (each input cloud in its own colour) or .pcd",
                 {.shows_default = true, .writes = Writes::kFile});
@@ -52,7 +60,46 @@ constexpr std::array<PlyColor, 6> kColors = {
     {{230, 159, 0}, {86, 180, 233}, {0, 158, 115}, {240, 228, 66}, {213, 94, 0}, {204, 121, 167}}};
 constexpr PlyColor kLastColor = {150, 150, 150};
 
-Expected<std::vector<Rigid3d>> SensorsFromLidar(const FuseOptions& options) {
+/// The pose of each cloud's sensor, all from one frame.
+struct CloudPoses {
+  std::vector<Rigid3d> sensor_from_common;
+  std::string caution;  ///< A line about a rig that is NOT USABLE; else empty.
+};
+
+Expected<CloudPoses> PosesOfRig(const FuseOptions& options) {
+  if (!options.from.empty() || !options.to.empty() || !options.rts_path.empty()) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     "--result with --sensors has the pose of every cloud: leave out --from, --to "
+                     "and --rts");
+  }
+  if (options.rig_path.empty()) {
+    return MakeError(ErrorCode::kInvalidOption, "--sensors needs --result, the rig.json of a rig");
+  }
+  SEXTANT_ASSIGN_OR_RETURN(const RigResult rig, RigOfFile(options.rig_path, "--result"));
+  if (options.sensors.size() != options.clouds.size()) {
+    std::string known;
+    for (const RigResultSensor& sensor : rig.sensors) {
+      known += (known.empty() ? "" : ", ") + sensor.name;
+    }
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        fmt::format("--sensors: expected the sensor of each of the {} clouds, in their "
+                    "order, got {}; there are: {}",
+                    options.clouds.size(), options.sensors.size(), known));
+  }
+  CloudPoses poses;
+  for (const std::string& sensor : options.sensors) {
+    SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, rig.Between(sensor, rig.root));
+    poses.sensor_from_common.push_back(pose);
+  }
+  if (!rig.refutations.empty()) {
+    poses.caution = fmt::format("NOT USABLE: {}.\n\n", rig.refutations[0]);
+  }
+  return poses;
+}
+
+Expected<CloudPoses> PosesOf(const FuseOptions& options) {
+  if (!options.rig_path.empty() || !options.sensors.empty()) return PosesOfRig(options);
   const std::size_t clouds = options.clouds.size();
   std::vector<Rigid3d> poses;
   if (!options.rts_path.empty()) {
@@ -71,12 +118,12 @@ Expected<std::vector<Rigid3d>> SensorsFromLidar(const FuseOptions& options) {
     }
   }
   if (poses.size() == clouds && (options.rts_path.empty() ? !options.to.empty() : true)) {
-    return poses;
+    return CloudPoses{std::move(poses), {}};
   }
   return MakeError(ErrorCode::kInvalidOption,
                    fmt::format("expected a transform for each of the {} clouds, in their order: "
-                               "--from for each but the last and --to for that, or --rts with all; "
-                               "got {}",
+                               "--from for each but the last and --to for that, --rts with all, or "
+                               "--result rig.json with --sensors; got {}",
                                clouds, poses.size()));
 }
 
@@ -119,8 +166,9 @@ int Run(const FuseOptions& options) {
     return Refuse("fuse", {ErrorCode::kInvalidOption,
                            options.out + ": expected a name that ends in .ply or .pcd"});
   }
-  const Expected<std::vector<Rigid3d>> sensors = SensorsFromLidar(options);
-  if (!sensors) return Refuse("fuse", sensors.error());
+  const Expected<CloudPoses> poses = PosesOf(options);
+  if (!poses) return Refuse("fuse", poses.error());
+  const std::vector<Rigid3d>& sensors = poses->sensor_from_common;
   std::vector<PointCloud> clouds;
   std::vector<Rigid3d> last_from_cloud;
   Progress progress;
@@ -131,7 +179,7 @@ int Run(const FuseOptions& options) {
     if (!cloud) return Refuse("fuse", cloud.error());
     clouds.push_back(std::move(*cloud));
     counter.Step();
-    last_from_cloud.push_back(sensors->back() * (*sensors)[i].Inverse());
+    last_from_cloud.push_back(sensors.back() * sensors[i].Inverse());
   }
   last_from_cloud.back() = Rigid3d{};  // Its points stay as they are, to the bit.
   const PointCloud fused = FuseClouds(clouds, last_from_cloud);
@@ -141,7 +189,7 @@ int Run(const FuseOptions& options) {
   }
   const std::string text = Describe(options, clouds, last_from_cloud, counter);
   counter.Finish();
-  Print("{}{}", text,
+  Print("{}{}{}", poses->caution, text,
         WroteLine(options.out,
                   fmt::format("{} points of {} clouds in the frame of {}", fused.points.size(),
                               clouds.size(), PathText(options.clouds.back()))));
@@ -156,7 +204,8 @@ Command FuseCommand() {
       "last_from_cloud = T_last * inverse(T).\n"
       "Examples:\n"
       "  sextant fuse front.pcd side.pcd --from front.yaml --to side.yaml --out both.ply\n"
-      "  sextant fuse cam1.pcd cam2.pcd --rts conf/rts.txt";
+      "  sextant fuse cam1.pcd cam2.pcd --rts conf/rts.txt\n"
+      "  sextant fuse rear.pcd top.pcd --result rig.json --sensors rear top";
   return MakeCommand<FuseOptions>("fuse", "Point clouds of calibrated sensors in one frame",
                                   kFooter, Declare, Run);
 }

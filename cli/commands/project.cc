@@ -26,6 +26,7 @@ struct ProjectOptions {
   std::string cloud_path{};
   std::string result_path{};
   std::string pose_is{};
+  PairNames names{};
   std::string camera_path{};  ///< Empty: the result's.
   std::string boards_path{};  ///< Empty: the result's; they are searched for in the image.
   std::string out_path{};
@@ -37,8 +38,10 @@ void Declare(ProjectOptions& options, Arguments& arguments) {
   arguments.Add("--image", options.image_path, "The photo", {.required = true});
   arguments.Add("--cloud", options.cloud_path, "Its scan: PCD, PLY, KITTI .bin or CSV",
                 {.required = true});
-  arguments.Add("--result", options.result_path, kPoseHelp, {.required = true});
+  arguments.Add("--result", options.result_path,
+                std::string(kPoseHelp) + ",\nor rig.json of sextant rig", {.required = true});
   DeclarePoseIs(options.pose_is, arguments);
+  DeclarePairNames(options.names, arguments);
   arguments.Add("--out", options.out_path, "Picture to write (.png or .jpg)",
                 {.required = true, .writes = Writes::kFile});
   arguments.Add("--camera", options.camera_path, "Intrinsics; default: the result's");
@@ -70,7 +73,7 @@ struct Inputs {
 Expected<Inputs> ReadInputs(const ProjectOptions& options) {
   Inputs inputs;
   SEXTANT_ASSIGN_OR_RETURN(CalibrationResult result,
-                           ResultOfFile(options.result_path, options.pose_is));
+                           ResultOfFile(options.result_path, options.pose_is, options.names));
   if (!options.camera_path.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(const Camera camera, ReadCamera(options.camera_path));
     result.camera = camera;
@@ -218,7 +221,9 @@ Command ProjectCommand() {
       "in\n"
       "the image, and the two outlines of a board coincide.\n"
       "Example:\n  sextant project --image photo.png --cloud scan.pcd --result result.yaml --out "
-      "projected.png";
+      "projected.png\n"
+      "  sextant project --image left.png --cloud top.pcd --result rig.json --camera-name left "
+      "--lidar-name top --out projected.png";
   return MakeCommand<ProjectOptions>("project", "A scan drawn on its image with a result", kFooter,
                                      Declare, Run);
 }

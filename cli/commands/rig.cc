@@ -18,6 +18,7 @@ struct RigCommandOptions {
   std::string root{};  ///< Empty: the file's.
   std::string out_path = "rig.json";
   std::string json_path{};  ///< See Deliver.
+  bool estimate_time = false;
 };
 
 void Declare(RigCommandOptions& options, Arguments& arguments) {
@@ -28,6 +29,10 @@ void Declare(RigCommandOptions& options, Arguments& arguments) {
       {.required = true});
   arguments.Add("--root", options.root,
                 "The sensor in whose frame poses are stated; default: the file's, or the first");
+  arguments.Add(
+      "--estimate-time", options.estimate_time,
+      "Estimate how far each sensor's clock is ahead of the root's, from boards that move;\n"
+      "the observations then have times");
   arguments.Add("--out", options.out_path, "Result file (JSON), for sextant export",
                 {.shows_default = true, .writes = Writes::kFile});
   arguments.Add("--json", options.json_path,
@@ -58,7 +63,7 @@ Expected<RigResult> ResultFrom(const RigCommandOptions& options) {
   SEXTANT_ASSIGN_OR_RETURN(RigFile rig, ParseRigFile(text, options.path));
   SEXTANT_RETURN_IF_ERROR(ChooseRoot(options.root, rig));
   Progress progress;
-  return CalibrateRig(rig, progress.Callback());
+  return CalibrateRig(rig, options.estimate_time, progress.Callback());
 }
 
 int Run(const RigCommandOptions& options) {

@@ -3,9 +3,12 @@
 
 #include <fmt/core.h>
 
+#include <set>
+
 #include "base/random.h"
 #include "eval/synthetic/board_observations.h"
 #include "eval/synthetic/typical_sensors.h"
+#include "geometry/so3.h"
 
 namespace sextant {
 namespace {
@@ -62,17 +65,62 @@ class RigSimulator {
     RigPlacement placement{.moment = moment, .board = board_.id, .name = std::to_string(moment)};
     const Rigid3d rig_from_board =
         looking_.Inverse() * DrawBoardPose(simulation_.sensors, looking_, random_);
+    const bool moves = simulation_.speed_m_s > 0.0;
+    if (moves) DrawMotion();
+    std::set<std::size_t> sensors;
     for (std::size_t s = 0; s < rig_.problem.sensors.size(); ++s) {
       if (random_.Uniform() > simulation_.takes_part) continue;
-      RigObservation seen{.sensor = s};
-      if (Observe(s, moment, rig_.sensor_from_rig[s] * rig_from_board, seen)) {
-        placement.seen.push_back(std::move(seen));
+      if (moves ? ObserveMoving(s, rig_from_board, placement)
+                : ObserveAt(s, moment, rig_from_board, placement)) {
+        sensors.insert(s);
       }
     }
-    if (placement.seen.size() < 2) return false;
+    if (sensors.size() < 2) return false;
     rig_.problem.placements.push_back(std::move(placement));
     rig_.rig_from_board.push_back(rig_from_board);
     return true;
+  }
+
+  bool ObserveAt(std::size_t s, int view, const Rigid3d& rig_from_board, RigPlacement& placement) {
+    RigObservation seen{.sensor = s};
+    if (!Observe(s, view, rig_.sensor_from_rig[s] * rig_from_board, seen)) return false;
+    placement.seen.push_back(std::move(seen));
+    return true;
+  }
+
+  Eigen::Vector3d DrawDirection() {
+    Eigen::Vector3d direction;
+    for (double& along : direction) along = random_.Normal();
+    return direction.normalized();
+  }
+
+  void DrawMotion() {
+    velocity_m_s_ = simulation_.speed_m_s * DrawDirection();
+    turn_rad_s_ = simulation_.turn_rad_s * DrawDirection();
+    acceleration_m_s2_ = simulation_.acceleration_m_s2 * DrawDirection();
+  }
+
+  // In the board's frame, after the middle of the moment.
+  Rigid3d MovedBy(double time_s) const {
+    return {ExpSo3(time_s * turn_rad_s_),
+            time_s * velocity_m_s_ + 0.5 * time_s * time_s * acceleration_m_s2_};
+  }
+
+  bool ObserveMoving(std::size_t s, const Rigid3d& rig_from_board, RigPlacement& placement) {
+    constexpr int kScans = 3;
+    const double first = random_.Uniform(-1.5, -0.5) * kScanInterval_s;
+    const double ahead = simulation_.clock_ahead_s.empty() ? 0.0 : simulation_.clock_ahead_s[s];
+    bool any = false;
+    for (int k = 0; k < kScans; ++k) {
+      const double time_s = first + k * kScanInterval_s;
+      if (!ObserveAt(s, kScans * placement.moment + k, rig_from_board * MovedBy(time_s),
+                     placement)) {
+        continue;
+      }
+      placement.seen.back().time_s = placement.moment + time_s + ahead;
+      any = true;
+    }
+    return any;
   }
 
   bool Observe(std::size_t s, int moment, const Rigid3d& sensor_from_board, RigObservation& seen) {
@@ -92,6 +140,9 @@ class RigSimulator {
   Board board_;
   Random random_{DeriveSeed(simulation_.seed, "simulate rig: moments", 0, 0)};
   Rigid3d looking_;
+  Eigen::Vector3d velocity_m_s_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d turn_rad_s_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d acceleration_m_s2_ = Eigen::Vector3d::Zero();
   std::vector<ViewSimulation> own_;
   std::vector<UnitErrors> units_;
   SimulatedRig rig_;

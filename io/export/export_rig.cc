@@ -79,12 +79,21 @@ Expected<std::string> ExportRig(std::string_view format, const RigResult& result
 Expected<CalibrationResult> ResultOfPair(const RigResult& result, std::string_view a,
                                          std::string_view b) {
   SEXTANT_ASSIGN_OR_RETURN(const Rigid3d a_from_b, result.Between(a, b));
+  if (a == b) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     fmt::format("expected two sensors, got {} twice", Quoted(a)));
+  }
   CalibrationResult pair;
   pair.version = result.version;
   pair.camera_frame = a;
   pair.lidar_frame = b;
   pair.cam_from_lidar = a_from_b;
   pair.camera = result.Find(a)->camera;
+  if (!result.refutations.empty()) {
+    pair.verdict = ResultVerdict{.usability = Usability::kNotUsable,
+                                 .reason = result.refutations[0],
+                                 .next = "Correct it and solve the rig again"};
+  }
   return pair;
 }
 

@@ -18,7 +18,8 @@ namespace sextant {
 Expected<std::string> ExportRig(std::string_view format, const RigResult& result);
 
 /// a_from_b of two sensors for ExportTransform, as cam_from_lidar with the sensors' names as
-/// frames. Errors: those of RigResult::Between.
+/// frames, and with the verdict NOT USABLE where the rig is refuted. Errors: those of
+/// RigResult::Between; kInvalidOption where both are one sensor.
 Expected<CalibrationResult> ResultOfPair(const RigResult& result, std::string_view a,
                                          std::string_view b);
 

@@ -53,7 +53,6 @@ const std::map<std::string, std::string, std::less<>>& OtherNames() {
   return kNames;
 }
 
-// Without quotes, blanks, underscores and a unit in brackets.
 std::string Plain(std::string_view name) {
   std::string plain;
   for (const char c : name.substr(0, name.find_first_of("[("))) {
@@ -127,6 +126,8 @@ void NamePointsBesidePixels(CsvHeader& header) {
 }
 
 }  // namespace
+
+std::string PlainColumn(std::string_view name) { return LowerCase(Plain(name)); }
 
 CsvText::CsvText(std::string_view text) : text_(text) {
   LineReader lines({}, text);

@@ -34,6 +34,9 @@ struct CsvHeader {
   std::vector<std::string> notes;  ///< What was assumed, one sentence each.
 };
 
+/// A column's name without capitals, quotes, blanks, underscores and a unit in brackets.
+std::string PlainColumn(std::string_view name);
+
 /// Reads the current line of `in` as the header.
 /// - Capitals, blanks, underscores, quotes and units in brackets do not matter, and names of other
 ///   programs are known: px, pixel_x or col for u; lidar_x, x_lidar or world_x for x. In a file

@@ -60,6 +60,7 @@ void WriteObservation(YamlText& out, const RigProblem& problem, const RigPlaceme
                       const RigObservation& seen) {
   out.Line("      - sensor: {}", YamlQuoted(problem.sensors[seen.sensor].name));
   out.Line("        board: {}", placement.board);
+  if (seen.time_s) out.Line("        time_s: {}", *seen.time_s);
   if (seen.sensor_from_board) {
     out.Line("        sensor_from_board: {}", YamlPose(*seen.sensor_from_board));
   }

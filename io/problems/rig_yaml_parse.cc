@@ -11,6 +11,8 @@
 #include "io/blocks/camera_block.h"
 #include "io/blocks/pose_block.h"
 #include "io/cameras/camera_file.h"
+#include "io/problems/feature_moments.h"
+#include "io/problems/feature_table.h"
 #include "io/problems/rig_yaml.h"
 #include "io/text/max_id.h"
 #include "io/text/text_file.h"
@@ -23,15 +25,9 @@ namespace {
 using RigKeys = std::vector<std::string>;
 
 constexpr std::size_t kMaxSensors = 100;
-constexpr std::size_t kMaxNumbers = 2000;  // Of the points of one board; two each.
+constexpr std::size_t kMaxNumbers = 2 * kMaxPointsSeen;  // Of the points of one board.
 // Of the covariances of all pixels, which grow with the square of the pixels of one observation.
 constexpr std::size_t kMaxCovarianceNumbers = std::size_t{128} << 20;
-
-/// A board with the points on it that observations may refer to.
-struct RigBoard {
-  Board board;
-  std::vector<Eigen::Vector2d> points;  ///< Without points_m its four outer corners.
-};
 
 class RigReader {
  public:
@@ -39,14 +35,21 @@ class RigReader {
       : in_(file), folder_(std::filesystem::path(file).parent_path()) {}
 
   Expected<RigFile> Read(const YamlNode& root) {
-    static const RigKeys kKeys = {"sextant_rig", "comment", "root", "sensors", "boards", "moments"};
+    static const RigKeys kKeys = {"sextant_rig", "comment", "root",   "sensors",
+                                  "boards",      "tables",  "moments"};
     if (in_.IsMap(root, "sextant_rig", kKeys)) {
       in_.IntegerAt(root, "sextant_rig", 1, 1);
       ReadSensors(in_.Require(root, "sensors"));
       ReadBoards(in_.Require(root, "boards"));
       if (const YamlNode* name = root.Find("root")) rig_.root = SensorNamed(*name, "root");
-      CheckPixels(in_.Require(root, "moments"));
-      ReadMoments(in_.Require(root, "moments"));
+      const YamlNode* tables = root.Find("tables");
+      const YamlNode* moments = root.Find("moments");
+      if (tables == nullptr && moments == nullptr) in_.Require(root, "moments");
+      if (moments != nullptr) {
+        CheckPixels(*moments);
+        ReadMoments(*moments);
+      }
+      if (tables != nullptr) ReadTables(*tables);
     }
     if (!in_.ok()) return in_.TakeError();
     if (const Expected<void> ok = CheckRigProblem(rig_.problem); !ok) {
@@ -90,26 +93,87 @@ class RigReader {
   }
 
   void ReadBoards(const YamlNode& list) {
-    static const RigKeys kKeys = {"id", "top_right_m", "right_bottom_m", "hole", "points_m"};
+    static const RigKeys kKeys = {"id",   "top_right_m", "right_bottom_m",
+                                  "hole", "points_m",    "grid"};
     if (!in_.IsSequence(list, "boards", kMaxBoards)) return;
     for (const YamlNode& node : list.items) {
       if (!in_.IsMap(node, "boards", kKeys)) return;
-      RigBoard board;
+      FeatureBoard board;
       board.board.id = in_.IntegerAt(node, "id", 0, kMaxId);
-      board.board.top_right_m = in_.RealAt(node, "top_right_m");
-      board.board.right_bottom_m = in_.RealAt(node, "right_bottom_m");
+      if (node.Find("points_m") != nullptr) board.points = Points2At(node, "points_m");
+      if (const YamlNode* grid = node.Find("grid")) board.points = GridPoints(*grid);
+      ReadSize(node, board);
       if (const YamlNode* hole = node.Find("hole")) board.board.hole = ReadHoleBlock(in_, *hole);
       if (!in_.ok()) return;
       if (!(board.board.top_right_m > 0.0 && board.board.right_bottom_m > 0.0)) {
         return in_.Fail(node.line, "boards", "expected sides longer than 0");
       }
-      const std::vector<Eigen::Vector2d> corners = CornersInBoard(board.board);
-      board.points.assign(corners.begin(), corners.begin() + kCornersPerBoard);
-      if (node.Find("points_m") != nullptr) board.points = Points2At(node, "points_m");
+      if (board.points.empty()) {
+        const std::vector<Eigen::Vector2d> corners = CornersInBoard(board.board);
+        board.points.assign(corners.begin(), corners.begin() + kCornersPerBoard);
+      }
       rig_.problem.boards.push_back(board.board);
       if (!boards_.emplace(board.board.id, std::move(board)).second) {
         return in_.Fail(node.line, "id", "expected another id: an earlier board has it");
       }
+    }
+  }
+
+  // A board whose sides nobody measures needs no size: that of its points will do.
+  void ReadSize(const YamlNode& node, FeatureBoard& board) {
+    const bool none = node.Find("top_right_m") == nullptr && node.Find("right_bottom_m") == nullptr;
+    board.has_size = !none || board.points.empty();
+    if (board.has_size) {
+      board.board.top_right_m = in_.RealAt(node, "top_right_m");
+      board.board.right_bottom_m = in_.RealAt(node, "right_bottom_m");
+      return;
+    }
+    Eigen::Vector2d reach = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& point : board.points) reach = reach.cwiseMax(point.cwiseAbs());
+    board.board.top_right_m = 2.0 * reach.x();
+    board.board.right_bottom_m = 2.0 * reach.y();
+  }
+
+  // Row by row from the top left, as seen from the front.
+  std::vector<Eigen::Vector2d> GridPoints(const YamlNode& node) {
+    static const RigKeys kKeys = {"columns", "rows", "step_m", "center_m"};
+    constexpr int kMaxSide = 100;
+    std::vector<Eigen::Vector2d> points;
+    if (!in_.IsMap(node, "grid", kKeys)) return points;
+    const int columns = in_.IntegerAt(node, "columns", 2, kMaxSide);
+    const int rows = in_.IntegerAt(node, "rows", 2, kMaxSide);
+    const double step_m = in_.RealAt(node, "step_m");
+    const Eigen::Vector2d center = in_.Point2At(node, "center_m", Eigen::Vector2d::Zero());
+    if (in_.ok() && !(step_m > 0.0)) in_.Fail(node.line, "step_m", "expected more than 0");
+    if (columns * rows > kMaxPointsSeen) {
+      in_.Fail(node.line, "grid", fmt::format("expected at most {} points", kMaxPointsSeen));
+    }
+    for (int row = 0; row < rows && in_.ok(); ++row) {
+      for (int column = 0; column < columns; ++column) {
+        points.push_back(center + step_m * Eigen::Vector2d(column - 0.5 * (columns - 1),
+                                                           row - 0.5 * (rows - 1)));
+      }
+    }
+    return points;
+  }
+
+  // Names of tables relative to the rig file: one, or a list.
+  void ReadTables(const YamlNode& node) {
+    constexpr std::size_t kMaxTables = 100;
+    std::vector<const YamlNode*> names = {&node};
+    if (node.kind != YamlNode::Kind::kText) {
+      if (!in_.IsSequence(node, "tables", kMaxTables)) return;
+      names.clear();
+      for (const YamlNode& item : node.items) names.push_back(&item);
+    }
+    for (const YamlNode* name : names) {
+      const std::string file = in_.Text(*name, "tables");
+      if (!in_.ok()) return;
+      const std::filesystem::path path = folder_ / file;
+      const auto rows = ReadFeatureTable(path);
+      if (!rows) return in_.Fail(rows.error());
+      const auto added = AddFeatures(*rows, path.string(), boards_, rig_.problem);
+      if (!added) return in_.Fail(added.error());
     }
   }
 
@@ -186,10 +250,10 @@ class RigReader {
 
   // Fills observation_; returns the board.
   int ReadObservation(const YamlNode& node) {
-    static const RigKeys kKeys = {
-        "sensor",     "board",         "in_board_m", "pixels",  "sigma_px",
-        "points_m",   "plane",         "sigma_m",    "lines",   "face_m",
-        "face_rings", "range_sigma_m", "edges",      "printed", "sensor_from_board"};
+    static const RigKeys kKeys = {"sensor",        "board",  "in_board_m", "pixels",
+                                  "sigma_px",      "time_s", "points_m",   "plane",
+                                  "sigma_m",       "lines",  "face_m",     "face_rings",
+                                  "range_sigma_m", "edges",  "printed",    "sensor_from_board"};
     observation_ = {};
     if (!in_.IsMap(node, "observations", kKeys)) return 0;
     observation_.sensor = SensorNamed(in_.Require(node, "sensor"), "sensor");
@@ -201,10 +265,11 @@ class RigReader {
     if (!in_.ok()) return 0;
     std::vector<Eigen::Vector2d> points = board->second.points;
     if (node.Find("in_board_m") != nullptr) points = Points2At(node, "in_board_m");
+    if (node.Find("time_s") != nullptr) observation_.time_s = in_.RealAt(node, "time_s");
     if (node.Find("pixels") != nullptr) ReadPixels(node, points);
     if (const YamlNode* list = node.Find("points_m")) ReadPoints(node, *list, points);
     if (const YamlNode* plane = node.Find("plane")) ReadPlane(*plane);
-    if (const YamlNode* lines = node.Find("lines")) ReadLines(*lines);
+    if (const YamlNode* lines = node.Find("lines")) ReadLines(*lines, board->second);
     ReadObservations(in_, node, "face_m", observation_.raw);
     if (const YamlNode* pose = node.Find("sensor_from_board")) {
       observation_.sensor_from_board = ReadPoseBlock(in_, *pose, "sensor_from_board");
@@ -223,9 +288,8 @@ class RigReader {
   }
 
   void ReadPixels(const YamlNode& node, const std::vector<Eigen::Vector2d>& points) {
-    constexpr double kUsual_px = 0.3;
     BoardPoints printed{.in_board_m = points, .pixels = Points2At(node, "pixels")};
-    const double sigma = in_.RealAt(node, "sigma_px", kUsual_px);
+    const double sigma = in_.RealAt(node, "sigma_px", kUsualSigma_px);
     if (!(sigma > 0.0)) in_.Fail(node.line, "sigma_px", "expected a sigma above 0");
     if (!IsAsMany(node.line, "pixels", printed.pixels.size(), points.size())) return;
     const auto size = 2 * std::ssize(points);
@@ -257,9 +321,14 @@ class RigReader {
     observation_.plane = plane;
   }
 
-  void ReadLines(const YamlNode& list) {
+  void ReadLines(const YamlNode& list, const FeatureBoard& board) {
     static const RigKeys kKeys = {"side", "point_m", "direction", "sigma_m"};
     if (!in_.IsSequence(list, "lines", 2 * kCornersPerBoard)) return;
+    if (!board.has_size) {
+      return in_.Fail(list.line, "lines",
+                      "lines along sides need the board's size: state top_right_m and "
+                      "right_bottom_m");
+    }
     for (const YamlNode& node : list.items) {
       if (!in_.IsMap(node, "lines", kKeys)) return;
       MeasuredLine line;
@@ -281,7 +350,7 @@ class RigReader {
 
   YamlFields in_;
   std::filesystem::path folder_;
-  std::map<int, RigBoard> boards_;
+  std::map<int, FeatureBoard> boards_;
   RigObservation observation_;
   RigFile rig_;
 };

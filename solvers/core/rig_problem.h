@@ -54,12 +54,16 @@ struct RigObservation {
   std::vector<MeasuredPoint> points{};
   std::optional<MeasuredPlane> plane{};
   std::vector<MeasuredLine> lines{};
+  /// When it was measured, by the sensor's own clock; none: while the board stood still.
+  std::optional<double> time_s{};
   /// A rough pose from this observation alone; needed for face returns and edge rays, which do not
   /// give one in closed form.
   std::optional<Rigid3d> sensor_from_board{};
 };
 
-/// One board at one place: all that sensors measured of it while it stood still.
+/// One board at one place: all that sensors measured of it while it stood still, or, where the
+/// observations have times, while it moved with constant velocity; a sensor may then see it
+/// several times.
 struct RigPlacement {
   int moment = 0;
   int board = 0;       ///< Board::id.

@@ -3,8 +3,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "solvers/core/board_view_check.h"
 
@@ -31,6 +34,9 @@ class ObservationCheck {
       return Wrong("has returns of a LiDAR, and its sensor is a camera");
     }
     SEXTANT_RETURN_IF_ERROR(CheckFeatures());
+    if (seen_.time_s && !std::isfinite(*seen_.time_s)) {
+      return Wrong("has a time that is not finite", ErrorCode::kNonFinite);
+    }
     if (view.printed.empty() && !returns && seen_.points.empty() && !seen_.plane &&
         seen_.lines.empty()) {
       return Wrong("is empty: give pixels, points, a plane, lines or returns");
@@ -120,10 +126,20 @@ Expected<void> CheckRigProblem(const RigProblem& problem) {
                        fmt::format("moment {} has board {}, which is not among the boards",
                                    placement.moment, placement.board));
     }
-    std::set<std::size_t> sensors;
+    const auto timed = std::ranges::count_if(
+        placement.seen, [](const RigObservation& seen) { return seen.time_s.has_value(); });
+    if (timed > 0 && timed < std::ssize(placement.seen)) {
+      return MakeError(
+          ErrorCode::kInvalidInput,
+          fmt::format("moment {}, board {}: expected a time of every observation, or "
+                      "of none",
+                      placement.name.empty() ? std::to_string(placement.moment) : placement.name,
+                      placement.board));
+    }
+    std::set<std::pair<std::size_t, std::optional<double>>> sensors;
     for (const RigObservation& seen : placement.seen) {
       SEXTANT_RETURN_IF_ERROR(ObservationCheck(problem, placement, seen).Run());
-      if (sensors.insert(seen.sensor).second) continue;
+      if (sensors.insert({seen.sensor, seen.time_s}).second) continue;
       return MakeError(ErrorCode::kInvalidInput,
                        fmt::format("moment {} has board {} of sensor '{}' twice", placement.moment,
                                    placement.board, problem.sensors[seen.sensor].name));

@@ -21,20 +21,14 @@ Eigen::Map<RowMajor> DerivativeOf(double** jacobians, std::size_t index, Eigen::
   return map;
 }
 
-// Of the logarithm of a rotation by a perturbation on its left, to the fourth order in the angle,
-// which is small.
-Eigen::Matrix3d LogByTurn(const Eigen::Vector3d& phi) {
-  const Eigen::Matrix3d hat = Hat(phi);
-  return Eigen::Matrix3d::Identity() - 0.5 * hat + (1.0 / 12.0) * hat * hat;
-}
-
 }  // namespace
 
 RigBlockCost::RigBlockCost(const RigBlock& block, const RigPlacementModel& placement,
                            const std::vector<double>& weights)
     : block_(block),
       shift_(placement.shift_of[block.seen]),
-      poses_(1 + static_cast<int>(placement.shifts.size())),
+      poses_(placement.poses()),
+      motion_(placement.moves ? placement.first_of_motion() : -1),
       weights_(weights) {
   // Only returns are shifted: other kinds state all of their error.
   if (block.kind != RigKind::kFace && block.kind != RigKind::kEdges) shift_ = -1;
@@ -42,7 +36,7 @@ RigBlockCost::RigBlockCost(const RigBlock& block, const RigPlacementModel& place
   mutable_parameter_block_sizes()->push_back(kPoseNumbers);
   mutable_parameter_block_sizes()->push_back(kPoseNumbers * poses_);
   mutable_parameter_block_sizes()->insert(mutable_parameter_block_sizes()->end(),
-                                          block.numbers.size(), 1);
+                                          block.numbers.size() + (block.clock ? 1 : 0), 1);
 }
 
 bool RigBlockCost::Evaluate(double const* const* parameters, double* residuals,
@@ -52,7 +46,15 @@ bool RigBlockCost::Evaluate(double const* const* parameters, double* residuals,
   const int shift_at = shift_ < 0 ? 0 : 1 + shift_;
   const Rigid3d board_from_seen =
       shift_ < 0 ? Rigid3d{} : PoseIn(parameters[1] + kPoseNumbers * shift_at);
-  const Rigid3d root_from_seen = root_from_board * board_from_seen;
+  const std::size_t clock = 2 + block_.numbers.size();
+  MovedBoard moved;
+  if (motion_ >= 0) {
+    const double* motion = parameters[1] + kPoseNumbers * motion_;
+    const double time_s = block_.time_s - (block_.clock ? *parameters[clock] : 0.0);
+    moved = MovedAfter({PoseIn(motion), PoseIn(motion + kPoseNumbers)}, time_s);
+  }
+  const Rigid3d board_from_moved_seen = moved.board_from_moved * board_from_seen;
+  const Rigid3d root_from_seen = root_from_board * board_from_moved_seen;
   RigResiduals at;
   if (!block_.residuals(sensor_from_root * root_from_seen, at)) return false;
   for (std::size_t k = 0; k < block_.numbers.size(); ++k) {
@@ -68,12 +70,22 @@ bool RigBlockCost::Evaluate(double const* const* parameters, double* residuals,
   const ProductJacobians outer = JacobiansOfProduct(sensor_from_root, root_from_seen);
   auto by_sensor = DerivativeOf(jacobians, 0, block_.rows(), kPoseNumbers);
   if (by_sensor.size() > 0) by_sensor.leftCols<6>() = by_pose * outer.by_left;
+  const ProductJacobians inner = JacobiansOfProduct(root_from_board, board_from_moved_seen);
+  const ProductJacobians within = JacobiansOfProduct(moved.board_from_moved, board_from_seen);
+  const Eigen::Matrix<double, Eigen::Dynamic, 6> by_root = by_pose * outer.by_right;
+  const Eigen::Matrix<double, Eigen::Dynamic, 6> by_moved_seen = by_root * inner.by_right;
   auto by_placement = DerivativeOf(jacobians, 1, block_.rows(), kPoseNumbers * poses_);
   if (by_placement.size() > 0) {
-    const ProductJacobians inner = JacobiansOfProduct(root_from_board, board_from_seen);
-    const Eigen::Matrix<double, Eigen::Dynamic, 6> by_seen = by_pose * outer.by_right;
-    by_placement.leftCols<6>() = by_seen * inner.by_left;
-    if (shift_ >= 0) by_placement.middleCols<6>(6 * shift_at) = by_seen * inner.by_right;
+    by_placement.leftCols<6>() = by_root * inner.by_left;
+    if (shift_ >= 0) by_placement.middleCols<6>(6 * shift_at) = by_moved_seen * within.by_right;
+    for (int k = 0; k < 2 && motion_ >= 0; ++k) {
+      by_placement.middleCols<6>(6 * (motion_ + k)) =
+          by_moved_seen * within.by_left * moved.by_motion[static_cast<std::size_t>(k)];
+    }
+  }
+  if (block_.clock) {
+    auto by_clock = DerivativeOf(jacobians, clock, block_.rows(), 1);
+    if (by_clock.size() > 0) by_clock.col(0) = -by_moved_seen * within.by_left * moved.by_time;
   }
   for (std::size_t k = 0; k < block_.numbers.size(); ++k) {
     auto by_number = DerivativeOf(jacobians, 2 + k, block_.rows(), 1);
@@ -86,7 +98,7 @@ ShiftCost::ShiftCost(const RigPlacementModel& placement, std::size_t shift,
                      const Vector6d& weights_by_m)
     : shift_(shift),
       lever_m_(placement.shifts[shift].lever_m),
-      poses_(1 + static_cast<int>(placement.shifts.size())),
+      poses_(placement.poses()),
       weights_by_m_(weights_by_m) {
   set_num_residuals(6);
   mutable_parameter_block_sizes()->push_back(kPoseNumbers * poses_);
@@ -105,6 +117,29 @@ bool ShiftCost::Evaluate(double const* const* parameters, double* residuals,
   Matrix6d by_shift = Matrix6d::Identity();
   by_shift.topLeftCorner<3, 3>() = lever_m_ * LogByTurn(turn);
   by.middleCols<6>(6 * at) = weights_by_m_.asDiagonal() * by_shift;
+  return true;
+}
+
+MotionCost::MotionCost(const RigPlacementModel& placement)
+    : first_(placement.first_of_motion()), poses_(placement.poses()) {
+  set_num_residuals(12);
+  mutable_parameter_block_sizes()->push_back(kPoseNumbers * poses_);
+}
+
+bool MotionCost::Evaluate(double const* const* parameters, double* residuals,
+                          double** jacobians) const {
+  auto by = DerivativeOf(jacobians, 0, 12, kPoseNumbers * poses_);
+  for (int k = 0; k < 2; ++k) {
+    const Rigid3d step = PoseIn(parameters[0] + kPoseNumbers * (first_ + k));
+    const MotionSigma& sigma = kMotionSigmas[static_cast<std::size_t>(k)];
+    const Eigen::Vector3d turn = LogSo3(step.rotation);
+    Eigen::Map<Vector6d> of(residuals + 6 * k);
+    of << turn / sigma.turn_rad, step.translation / sigma.shift_m;
+    if (by.size() == 0) continue;
+    const int column = 6 * (first_ + k);
+    by.block<3, 3>(6 * k, column) = LogByTurn(turn) / sigma.turn_rad;
+    by.block<3, 3>(6 * k + 3, column + 3) = Eigen::Matrix3d::Identity() / sigma.shift_m;
+  }
   return true;
 }
 

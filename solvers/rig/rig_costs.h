@@ -9,8 +9,9 @@
 
 namespace sextant {
 
-/// The residuals of a block at sensor_from_root * root_from_board * board_from_seen. Parameters:
-/// the sensor's pose, the placement's (board, then shifts), each shared number.
+/// The residuals of a block at sensor_from_root * root_from_board * board_from_moved *
+/// board_from_seen. Parameters: the sensor's pose, the placement's (board, shifts, motion), each
+/// shared number, and the sensor's time offset where the block has one.
 class RigBlockCost final : public ceres::CostFunction {
  public:
   RigBlockCost(const RigBlock& block, const RigPlacementModel& placement,
@@ -22,6 +23,7 @@ class RigBlockCost final : public ceres::CostFunction {
   const RigBlock& block_;
   int shift_;
   int poses_;
+  int motion_;  ///< Index of its first pose, or -1.
   const std::vector<double>& weights_;
 };
 
@@ -37,6 +39,18 @@ class ShiftCost final : public ceres::CostFunction {
   double lever_m_;
   int poses_;
   const Vector6d& weights_by_m_;
+};
+
+/// The prior of a placement's motion (kMotionSigmas). Parameters: the placement's.
+class MotionCost final : public ceres::CostFunction {
+ public:
+  explicit MotionCost(const RigPlacementModel& placement);
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  int first_;
+  int poses_;
 };
 
 }  // namespace sextant

@@ -143,7 +143,8 @@ std::optional<RigInformation> RigInformationOf(const RigLinearisation& at) {
     for (int i = 0; i < rows.count; ++i) {
       row.Read(at, rows.first + i, rows.placement);
       if (row.values.empty()) continue;
-      const bool in_plane = rows.block < 0 && !kShiftIsOutOfPlane[static_cast<std::size_t>(i)];
+      const bool in_plane =
+          rows.block == kShiftRows && !kShiftIsOutOfPlane[static_cast<std::size_t>(i)];
       RigSum& sum = in_plane ? information.in_plane[k] : information.sums[k];
       const double residual = at.residuals[static_cast<std::size_t>(rows.first + i)];
       sum.squares += residual * residual;

@@ -35,7 +35,7 @@ RigMinimum::RigMinimum(const RigModel& model, std::size_t root, const RigState& 
   }
   for (const RigPlacementModel& placement : model.placements) {
     weights_.shifts_by_m.emplace_back(placement.shifts.size(), Vector6d::Zero());
-    placements_.emplace_back(kPoseNumbers * (1 + placement.shifts.size()));
+    placements_.emplace_back(static_cast<std::size_t>(kPoseNumbers * placement.poses()));
   }
   sensors_.resize(model.sensors);
   Load(start);
@@ -54,6 +54,7 @@ RigMinimum::RigMinimum(const RigModel& model, std::size_t root, const RigState& 
       AddBlock(block);
     }
     AddShifts(i);
+    if (model.placements[i].moves) AddMotion(i);
   }
   AddNumbers();
 }
@@ -65,6 +66,7 @@ void RigMinimum::AddBlock(std::size_t index) {
   for (const RigNumberUse& use : block.numbers) {
     parameters.push_back(&state_.numbers[use.number]);
   }
+  if (block.clock) parameters.push_back(&state_.numbers[*block.clock]);
   auto* cost = new RigBlockCost(block, model_.placements[block.placement], weights_.blocks[index]);
   residuals_.push_back(problem_.AddResidualBlock(cost, nullptr, parameters));
   rows_.push_back({.placement = block.placement,
@@ -82,11 +84,18 @@ void RigMinimum::AddShifts(std::size_t placement) {
     residuals_.push_back(problem_.AddResidualBlock(cost, nullptr, placements_[placement].data()));
     rows_.push_back({.placement = placement,
                      .sensor = model.shifts[s].sensor,
-                     .block = -1,
+                     .block = kShiftRows,
                      .first = row_count_,
                      .count = 6});
     row_count_ += 6;
   }
+}
+
+void RigMinimum::AddMotion(std::size_t placement) {
+  auto* cost = new MotionCost(model_.placements[placement]);
+  residuals_.push_back(problem_.AddResidualBlock(cost, nullptr, placements_[placement].data()));
+  rows_.push_back({.placement = placement, .block = kMotionRows, .first = row_count_, .count = 12});
+  row_count_ += 12;
 }
 
 void RigMinimum::AddNumbers() {
@@ -106,6 +115,9 @@ void RigMinimum::Load(const RigState& state) {
     for (std::size_t s = 0; s < state.shifts[i].size(); ++s) {
       StorePose(state.shifts[i][s], placements_[i].data() + kPoseNumbers * (1 + s));
     }
+    if (!model_.placements[i].moves) continue;
+    double* motion = placements_[i].data() + kPoseNumbers * model_.placements[i].first_of_motion();
+    for (std::size_t k = 0; k < 2; ++k) StorePose(state.motions[i][k], motion + kPoseNumbers * k);
   }
 }
 
@@ -118,6 +130,10 @@ void RigMinimum::Store() {
     for (std::size_t s = 0; s < state_.shifts[i].size(); ++s) {
       state_.shifts[i][s] = PoseIn(placements_[i].data() + kPoseNumbers * (1 + s));
     }
+    if (!model_.placements[i].moves) continue;
+    const double* motion =
+        placements_[i].data() + kPoseNumbers * model_.placements[i].first_of_motion();
+    for (std::size_t k = 0; k < 2; ++k) state_.motions[i][k] = PoseIn(motion + kPoseNumbers * k);
   }
 }
 

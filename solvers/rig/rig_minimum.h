@@ -19,18 +19,22 @@ struct RigWeights {
   std::vector<std::vector<Vector6d>> shifts_by_m;  ///< As ShiftAt has them.
 };
 
-/// Rows of a linearisation: residuals of one block, or of one shift's prior.
+/// RigRows::block of the prior of a shift, and of that of a motion.
+inline constexpr int kShiftRows = -1;
+inline constexpr int kMotionRows = -2;
+
+/// Rows of a linearisation: residuals of one block, or of one shift's or motion's prior.
 struct RigRows {
   std::size_t placement = 0;
   std::size_t sensor = 0;
-  int block = -1;  ///< Index into RigModel::blocks; -1: the prior of a shift.
+  int block = kShiftRows;  ///< Index into RigModel::blocks, or kShiftRows or kMotionRows.
   int first = 0;
   int count = 0;
 };
 
 /// Weighted residuals and their derivative by (dphi, dt) of the poses sensor_from_root of all
 /// sensors but the root, in their order, then the shared numbers, then (dphi, dt) of each
-/// placement's board and shifts.
+/// placement's board, shifts and motion.
 struct RigLinearisation {
   int shared = 0;                 ///< Columns before those of the placements.
   std::vector<int> first_column;  ///< Each placement's, and one past the last.
@@ -39,10 +43,10 @@ struct RigLinearisation {
   std::vector<RigRows> rows;  ///< By placement; those of the numbers' priors are in none.
 };
 
-/// argmin of 1/2 sum |w r|^2 over the poses of the sensors, the boards and their shifts, and the
-/// shared numbers, as a ceres::Problem. A placement's poses are one parameter block, which the
-/// Schur complement eliminates, so that an iteration is linear in the number of placements (Triggs
-/// et al. 2000).
+/// argmin of 1/2 sum |w r|^2 over the poses of the sensors, the boards, their shifts and motions,
+/// and the shared numbers, as a ceres::Problem. A placement's poses are one parameter block, which
+/// the Schur complement eliminates, so that an iteration is linear in the number of placements
+/// (Triggs et al. 2000).
 class RigMinimum {
  public:
   RigMinimum(const RigModel& model, std::size_t root, const RigState& start);
@@ -60,6 +64,7 @@ class RigMinimum {
  private:
   void AddBlock(std::size_t index);
   void AddShifts(std::size_t placement);
+  void AddMotion(std::size_t placement);
   void AddNumbers();
   void Load(const RigState& state);
   void Store();

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -20,6 +21,7 @@ namespace {
 
 /// The numbers that one LiDAR's observations share.
 struct SharedOf {
+  std::optional<std::size_t> clock;
   std::optional<std::size_t> range;
   std::optional<std::size_t> growth_along;  ///< The next one is that across.
   std::map<int, std::size_t> rings;
@@ -27,7 +29,8 @@ struct SharedOf {
 
 class RigModelMaker {
  public:
-  explicit RigModelMaker(const RigProblem& problem) : problem_(problem) {
+  RigModelMaker(const RigProblem& problem, std::optional<std::size_t> clock_root)
+      : problem_(problem), clock_root_(clock_root) {
     model_.sensors = problem.sensors.size();
     shared_.resize(model_.sensors);
     for (const RigSensor& sensor : problem.sensors) {
@@ -38,17 +41,43 @@ class RigModelMaker {
   RigModel Make() {
     for (std::size_t i = 0; i < problem_.placements.size(); ++i) {
       model_.placements.emplace_back();
+      SetTime(problem_.placements[i]);
       for (std::size_t k = 0; k < problem_.placements[i].seen.size(); ++k) AddObservation(i, k);
     }
     return std::move(model_);
   }
 
  private:
+  // A placement's time is the middle of its observations, where its pose is known best.
+  void SetTime(const RigPlacement& placement) {
+    constexpr double kSameTime_s = 1e-6;
+    double first = std::numeric_limits<double>::infinity();
+    double last = -first;
+    for (const RigObservation& seen : placement.seen) {
+      if (!seen.time_s) continue;
+      first = std::min(first, *seen.time_s);
+      last = std::max(last, *seen.time_s);
+    }
+    const bool timed = last >= first;
+    time_s_ = timed ? 0.5 * (first + last) : 0.0;
+    model_.placements.back().moves = timed && (clock_root_ || last - first > kSameTime_s);
+  }
+
+  void AddClock(const RigObservation& of, RigBlock& block) {
+    if (!of.time_s || !model_.placements.back().moves) return;
+    block.time_s = *of.time_s - time_s_;
+    if (!clock_root_ || of.sensor == *clock_root_) return;
+    std::optional<std::size_t>& clock = shared_[of.sensor].clock;
+    if (!clock) clock = AddNumber(of.sensor, kTimeOffset, kClockSigma_s, true);
+    block.clock = clock;
+  }
+
   void AddObservation(std::size_t placement, std::size_t seen) {
     const RigObservation& of = problem_.placements[placement].seen[seen];
     const Board& board = *FindBoard(problem_.boards, problem_.placements[placement].board);
     BoardViewTerms terms = TermsOf(of.raw, board);
     RigBlock block{.placement = placement, .seen = seen, .sensor = of.sensor};
+    AddClock(of, block);
     for (PrintedTerm& term : terms.printed) {
       const int rows = 2 * static_cast<int>(term.pixels.size());
       Add(block, RigKind::kPrinted, 1, rows,
@@ -153,6 +182,8 @@ class RigModelMaker {
   }
 
   const RigProblem& problem_;
+  std::optional<std::size_t> clock_root_;
+  double time_s_ = 0.0;  ///< The current placement's.
   std::vector<std::shared_ptr<const Camera>> cameras_;
   std::vector<SharedOf> shared_;
   RigModel model_;
@@ -160,6 +191,24 @@ class RigModelMaker {
 
 }  // namespace
 
-RigModel RigModelOf(const RigProblem& problem) { return RigModelMaker(problem).Make(); }
+RigModel RigModelOf(const RigProblem& problem, std::optional<std::size_t> clock_root) {
+  return RigModelMaker(problem, clock_root).Make();
+}
+
+double TimeOf(const RigState& state, const RigBlock& block) {
+  return block.time_s - (block.clock ? state.numbers[*block.clock] : 0.0);
+}
+
+Rigid3d SensorFromBoardOf(const RigModel& model, const RigState& state, const RigBlock& block) {
+  const RigPlacementModel& placement = model.placements[block.placement];
+  Rigid3d pose = state.sensor_from_root[block.sensor] * state.root_from_board[block.placement];
+  if (placement.moves) {
+    pose = pose * MovedAfter(state.motions[block.placement], TimeOf(state, block)).board_from_moved;
+  }
+  const int shift = placement.shift_of[block.seen];
+  const bool returns = block.kind == RigKind::kFace || block.kind == RigKind::kEdges;
+  if (shift < 0 || !returns) return pose;
+  return pose * state.shifts[block.placement][static_cast<std::size_t>(shift)];
+}
 
 }  // namespace sextant

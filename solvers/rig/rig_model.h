@@ -5,11 +5,13 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "geometry/rigid3d.h"
 #include "solvers/core/rig_problem.h"
+#include "solvers/rig/rig_motion.h"
 
 namespace sextant {
 
@@ -48,6 +50,10 @@ struct RigBlock {
   std::size_t sensor = 0;
   int rows_per_unit = 1;
   int units = 0;
+  double time_s = 0.0;  ///< By the sensor's clock, after the placement's time.
+  /// The sensor's time offset, an index into RigModel::numbers: how far its clock is ahead of the
+  /// root's. None where it is not estimated.
+  std::optional<std::size_t> clock{};
   /// False where there are none at that pose: a point does not project, a ray misses the plane.
   std::function<bool(const Rigid3d& sensor_from_board, RigResiduals& out)> residuals{};
   std::vector<RigNumberUse> numbers{};
@@ -74,6 +80,11 @@ inline constexpr std::array<bool, 6> kShiftIsOutOfPlane = {true, true, false, fa
 struct RigPlacementModel {
   std::vector<RigShift> shifts;
   std::vector<int> shift_of;  ///< For each observation the index into `shifts`, or -1.
+  bool moves = false;         ///< Whether its board has a motion.
+
+  /// The poses of its parameter block: the board, the shifts, and the motion.
+  int poses() const { return 1 + static_cast<int>(shifts.size()) + (moves ? 2 : 0); }
+  int first_of_motion() const { return 1 + static_cast<int>(shifts.size()); }
 };
 
 struct RigModel {
@@ -83,15 +94,26 @@ struct RigModel {
   std::vector<RigBlock> blocks;  ///< By placement, in ascending order.
 };
 
+/// RigNumber::name of a time offset, and the standard deviation of its prior.
+inline constexpr const char* kTimeOffset = "time_offset_s";
+inline constexpr double kClockSigma_s = 0.1;
+
 /// Requires a problem that passes CheckRigProblem. The model refers to nothing of the problem.
-RigModel RigModelOf(const RigProblem& problem);
+/// `clock_root`: where the time offsets of the sensors are estimated, the one whose clock counts.
+RigModel RigModelOf(const RigProblem& problem, std::optional<std::size_t> clock_root = {});
 
 /// Poses relative to the root's frame.
 struct RigState {
   std::vector<Rigid3d> sensor_from_root;
   std::vector<Rigid3d> root_from_board;      ///< One for each placement.
   std::vector<std::vector<Rigid3d>> shifts;  ///< board_from_seen for RigPlacementModel::shifts.
+  std::vector<RigMotion> motions;            ///< One for each placement; at rest unless it moves.
   std::vector<double> numbers;
 };
+
+/// The pose at which the residuals of a block are those of a state.
+Rigid3d SensorFromBoardOf(const RigModel& model, const RigState& state, const RigBlock& block);
+/// The time of a block after that of its placement.
+double TimeOf(const RigState& state, const RigBlock& block);
 
 }  // namespace sextant

@@ -36,7 +36,8 @@ std::vector<KindSums> SumsByKind(const RigModel& model, const RigLinearisation& 
   };
   for (std::size_t k = 0; k < at.rows.size(); ++k) {
     const RigRows& rows = at.rows[k];
-    if (rows.block < 0) {
+    if (rows.block == kMotionRows) continue;
+    if (rows.block == kShiftRows) {
       add(rows.sensor, RigKind::kShiftOut, information.sums[k]);
       add(rows.sensor, RigKind::kShiftIn, information.in_plane[k]);
     } else {
@@ -76,13 +77,8 @@ RigUnits UnitsAt(const RigModel& model, const RigState& state) {
   RigUnits units;
   RigResiduals at;
   for (const RigBlock& block : model.blocks) {
-    const int shift = model.placements[block.placement].shift_of[block.seen];
-    const bool shifted =
-        shift >= 0 && (block.kind == RigKind::kFace || block.kind == RigKind::kEdges);
-    Rigid3d pose = state.sensor_from_root[block.sensor] * state.root_from_board[block.placement];
-    if (shifted) pose = pose * state.shifts[block.placement][static_cast<std::size_t>(shift)];
     units.emplace_back(static_cast<std::size_t>(block.units), kInfinite);
-    if (!block.residuals(pose, at)) continue;
+    if (!block.residuals(SensorFromBoardOf(model, state, block), at)) continue;
     for (const RigNumberUse& use : block.numbers) at.value += state.numbers[use.number] * use.by;
     for (int i = 0; i < block.units; ++i) {
       const auto rows = at.value.segment(i * block.rows_per_unit, block.rows_per_unit);

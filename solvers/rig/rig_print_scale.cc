@@ -17,7 +17,7 @@ void AddScales(const RigState& at, RigModel& model) {
   RigResiduals residuals;
   for (RigBlock& block : model.blocks) {
     if (block.kind != RigKind::kPrinted) continue;
-    const Rigid3d pose = at.sensor_from_root[block.sensor] * at.root_from_board[block.placement];
+    const Rigid3d pose = SensorFromBoardOf(model, at, block);
     if (!block.residuals(pose, residuals)) continue;
     const auto [number, is_new] = number_of.try_emplace(block.sensor, model.numbers.size());
     if (is_new) model.numbers.push_back({block.sensor, "print_scale", kFreeScale, false});

@@ -144,14 +144,14 @@ class SeenAlone {
     std::vector<SeenByBoth> boards;
     std::vector<std::pair<BoardPlaneAlone, BoardPlaneAlone>> planes;
     for (std::size_t i = 0; i < problem_.placements.size(); ++i) {
-      const auto in_a = IndexOf(i, a);
-      const auto in_b = IndexOf(i, b);
-      if (!in_a || !in_b) continue;
+      const auto nearest = NearestInTime(i, a, b);
+      if (!nearest) continue;
+      const auto& [in_a, in_b] = *nearest;
       pair.placements.push_back(i);
-      SeenByBoth both = BothOf(i, *in_a, *in_b);
+      SeenByBoth both = BothOf(i, in_a, in_b);
       if (!both.choices.empty()) boards.push_back(std::move(both));
-      const auto plane_a = PlaneAlone(problem_.placements[i].seen[*in_a], poses_[i][*in_a]);
-      const auto plane_b = PlaneAlone(problem_.placements[i].seen[*in_b], poses_[i][*in_b]);
+      const auto plane_a = PlaneAlone(problem_.placements[i].seen[in_a], poses_[i][in_a]);
+      const auto plane_b = PlaneAlone(problem_.placements[i].seen[in_b], poses_[i][in_b]);
       if (plane_a && plane_b) planes.emplace_back(*plane_a, *plane_b);
     }
     if (const auto pose = ConsensusOf(boards)) {
@@ -163,12 +163,25 @@ class SeenAlone {
   }
 
  private:
-  std::optional<std::size_t> IndexOf(std::size_t placement, std::size_t sensor) const {
+  // The observations by two sensors between which the board moved least; without times the only
+  // ones.
+  std::optional<std::pair<std::size_t, std::size_t>> NearestInTime(std::size_t placement,
+                                                                   std::size_t a,
+                                                                   std::size_t b) const {
     const auto& seen = problem_.placements[placement].seen;
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-      if (seen[k].sensor == sensor) return k;
+    std::optional<std::pair<std::size_t, std::size_t>> nearest;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      for (std::size_t j = 0; j < seen.size(); ++j) {
+        if (seen[i].sensor != a || seen[j].sensor != b) continue;
+        const double between =
+            std::abs(seen[i].time_s.value_or(0.0) - seen[j].time_s.value_or(0.0));
+        if (nearest && between >= least) continue;
+        least = between;
+        nearest = std::pair(i, j);
+      }
     }
-    return std::nullopt;
+    return nearest;
   }
 
   SeenByBoth BothOf(std::size_t placement, std::size_t in_a, std::size_t in_b) const {
@@ -211,13 +224,13 @@ std::string WhatIsMissing(const RigProblem& problem, const std::vector<RigPair>&
       name, nearest->placements.size(), partner);
 }
 
-double CostAt(const RigModel& model, std::span<const RigBlock> blocks, const RigState& state,
-              const Rigid3d& root_from_board) {
-  (void)model;
+double CostAt(std::span<const RigBlock> blocks, const RigState& state,
+              const Rigid3d& root_from_board, const RigMotion& motion) {
   double cost = 0.0;
   RigResiduals at;
   for (const RigBlock& block : blocks) {
-    if (!block.residuals(state.sensor_from_root[block.sensor] * root_from_board, at)) {
+    const Rigid3d moved = MovedAfter(motion, TimeOf(state, block)).board_from_moved;
+    if (!block.residuals(state.sensor_from_root[block.sensor] * root_from_board * moved, at)) {
       cost += 10.0 * block.units;
       continue;
     }
@@ -234,6 +247,78 @@ Rigid3d AnyPoseIn(const BoardPlaneAlone& plane) {
   return {Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), plane.normal),
           plane.distance_m * plane.normal};
 }
+
+/// A place of a board with what it costs.
+struct PlaceOfBoard {
+  Rigid3d root_from_board;
+  RigMotion motion;
+  double cost = std::numeric_limits<double>::infinity();
+};
+
+/// Finds the place and the motion of one board.
+class BoardStart {
+ public:
+  BoardStart(const RigProblem& problem, const RigPlacement& placement, bool moves,
+             std::span<const RigBlock> blocks, const RigState& state)
+      : placement_(placement), blocks_(blocks), state_(state) {
+    const Board& board = *FindBoard(problem.boards, placement.board);
+    for (const RigObservation& seen : placement.seen) {
+      poses_.push_back(PosesAlone(seen, problem.sensors[seen.sensor], board));
+    }
+    // Blocks are in the order of the observations.
+    times_s_.resize(placement.seen.size(), 0.0);
+    for (const RigBlock& block : blocks) times_s_[block.seen] = block.time_s;
+    motions_.emplace_back();
+    for (std::size_t i = 0; i < poses_.size() && moves; ++i) AddMotionFrom(i);
+  }
+
+  PlaceOfBoard Best() const {
+    PlaceOfBoard best;
+    std::optional<Rigid3d> in_plane;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      const RigObservation& seen = placement_.seen[i];
+      const Rigid3d root_from_sensor = state_.sensor_from_root[seen.sensor].Inverse();
+      for (const Rigid3d& pose : poses_[i]) {
+        for (const RigMotion& motion : motions_) Try(root_from_sensor * pose, i, motion, best);
+      }
+      const auto plane = PlaneAlone(seen, poses_[i]);
+      if (!in_plane && plane) in_plane = root_from_sensor * AnyPoseIn(*plane);
+    }
+    if (!std::isfinite(best.cost)) best.root_from_board = in_plane.value_or(Rigid3d{});
+    return best;
+  }
+
+ private:
+  // By the first and the last time that one sensor sees it.
+  void AddMotionFrom(std::size_t first) {
+    const auto& seen = placement_.seen;
+    std::size_t last = first;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (seen[i].sensor != seen[first].sensor) continue;
+      if (times_s_[i] < times_s_[first]) return;
+      if (times_s_[i] > times_s_[last]) last = i;
+    }
+    if (!(times_s_[last] > times_s_[first])) return;
+    if (poses_[first].empty() || poses_[last].empty()) return;
+    motions_.push_back(
+        MotionBetween(poses_[first][0], poses_[last][0], times_s_[last] - times_s_[first]));
+  }
+
+  void Try(const Rigid3d& root_from_moved, std::size_t seen, const RigMotion& motion,
+           PlaceOfBoard& best) const {
+    const Rigid3d moved = MovedAfter(motion, times_s_[seen]).board_from_moved;
+    const Rigid3d root_from_board = root_from_moved * moved.Inverse();
+    const double cost = CostAt(blocks_, state_, root_from_board, motion);
+    if (cost < best.cost) best = {root_from_board, motion, cost};
+  }
+
+  const RigPlacement& placement_;
+  std::span<const RigBlock> blocks_;
+  const RigState& state_;
+  std::vector<std::vector<Rigid3d>> poses_;  ///< Of each observation alone.
+  std::vector<double> times_s_;
+  std::vector<RigMotion> motions_;
+};
 
 }  // namespace
 
@@ -283,6 +368,7 @@ RigState StateOf(const RigProblem& problem, const RigModel& model,
   RigState state{.sensor_from_root = sensor_from_root,
                  .root_from_board = {},
                  .shifts = {},
+                 .motions = {},
                  .numbers = std::vector<double>(model.numbers.size(), 0.0)};
   std::size_t first = 0;
   for (std::size_t i = 0; i < problem.placements.size(); ++i) {
@@ -291,24 +377,10 @@ RigState StateOf(const RigProblem& problem, const RigModel& model,
     while (end < model.blocks.size() && model.blocks[end].placement == i) ++end;
     const std::span<const RigBlock> blocks(model.blocks.data() + first, end - first);
     first = end;
-    std::optional<Rigid3d> best;
-    std::optional<Rigid3d> in_plane;
-    double lowest = std::numeric_limits<double>::infinity();
-    for (const RigObservation& seen : placement.seen) {
-      const Rigid3d root_from_sensor = sensor_from_root[seen.sensor].Inverse();
-      const auto poses = PosesAlone(seen, problem.sensors[seen.sensor],
-                                    *FindBoard(problem.boards, placement.board));
-      for (const Rigid3d& pose : poses) {
-        const double cost = CostAt(model, blocks, state, root_from_sensor * pose);
-        if (cost < lowest) {
-          lowest = cost;
-          best = root_from_sensor * pose;
-        }
-      }
-      const auto plane = PlaneAlone(seen, poses);
-      if (!in_plane && plane) in_plane = root_from_sensor * AnyPoseIn(*plane);
-    }
-    state.root_from_board.push_back(best ? *best : in_plane.value_or(Rigid3d{}));
+    const PlaceOfBoard start =
+        BoardStart(problem, placement, model.placements[i].moves, blocks, state).Best();
+    state.root_from_board.push_back(start.root_from_board);
+    state.motions.push_back(start.motion);
     state.shifts.emplace_back(model.placements[i].shifts.size());
   }
   return state;

@@ -44,8 +44,8 @@ struct RigTree {
 };
 RigTree TreeOf(const RigProblem& problem, const std::vector<RigPair>& pairs, std::size_t root);
 
-/// Poses of all boards for sensors with these poses: each that of the observation that explains the
-/// others best.
+/// Poses and motions of all boards for sensors with these poses: each that of the observation that
+/// explains the others best.
 RigState StateOf(const RigProblem& problem, const RigModel& model,
                  const std::vector<Rigid3d>& sensor_from_root);
 

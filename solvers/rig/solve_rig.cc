@@ -10,6 +10,7 @@
 
 #include "solvers/core/board_view_check.h"
 #include "solvers/core/rig_problem_check.h"
+#include "solvers/rig/rig_feature_check.h"
 #include "solvers/rig/rig_print_scale.h"
 #include "solvers/rig/rig_search.h"
 #include "solvers/rig/rig_start.h"
@@ -45,6 +46,21 @@ Expected<RigProblem> WithPoses(RigProblem problem) {
   return problem;
 }
 
+std::optional<std::size_t> ClockRoot(const RigOptions& options) {
+  return options.estimate_time ? std::optional(options.root) : std::nullopt;
+}
+
+// Whether at least two of the sensors see a board.
+bool IsShared(const RigPlacement& placement, std::span<const std::size_t> sensors) {
+  std::optional<std::size_t> first;
+  for (const RigObservation& seen : placement.seen) {
+    if (std::ranges::count(sensors, seen.sensor) == 0) continue;
+    if (first && *first != seen.sensor) return true;
+    first = seen.sensor;
+  }
+  return false;
+}
+
 /// The connected part of a problem, solved, and how its sensors are numbered in the whole.
 class RigSolution {
  public:
@@ -56,7 +72,8 @@ class RigSolution {
     for (const std::size_t sensor : sensors_) start.push_back(*tree.sensor_from_root[sensor]);
     options.root =
         static_cast<std::size_t>(std::ranges::find(sensors_, options.root) - sensors_.begin());
-    model_ = RigModelOf(part_);
+    options_ = options;
+    model_ = RigModelOf(part_, ClockRoot(options));
     SEXTANT_ASSIGN_OR_RETURN(answer_, SearchRig(model_, StateOf(part_, model_, start), options));
     scales_ = PrintScalesNear(model_, answer_, options);
     return {};
@@ -86,11 +103,7 @@ class RigSolution {
   std::vector<std::size_t> PlacementsInWhole() const {
     std::vector<std::size_t> indices;
     for (std::size_t i = 0; i < whole_.placements.size(); ++i) {
-      const auto count =
-          std::ranges::count_if(whole_.placements[i].seen, [&](const RigObservation& seen) {
-            return std::ranges::count(sensors_, seen.sensor) > 0;
-          });
-      if (count >= 2) indices.push_back(i);
+      if (IsShared(whole_.placements[i], sensors_)) indices.push_back(i);
     }
     return indices;
   }
@@ -147,9 +160,30 @@ class RigSolution {
           "board stand still, and are its corners in the right order?",
           placement.board, NameOfMoment(placement), whole_.sensors[fit.sensor].name));
     }
+    WarnOfClocks(estimate);
     RefuteByNoise(estimate);
     RefuteByPrints(estimate);
     RefuteByWhatIsLeft(estimate);
+  }
+
+  // An offset that the boards' motion determines is known far better than its prior.
+  void WarnOfClocks(RigEstimate& estimate) const {
+    constexpr double kTold = 0.3;
+    for (std::size_t s = 0; s < sensors_.size() && options_.estimate_time; ++s) {
+      if (s == options_.root) continue;
+      const auto number =
+          std::ranges::find_if(estimate.numbers, [&](const RigEstimatedNumber& one) {
+            return one.sensor == sensors_[s] && one.name == kTimeOffset;
+          });
+      const bool any = number != estimate.numbers.end();
+      if (any && number->sigma < kTold * kClockSigma_s) continue;
+      estimate.warnings.push_back(fmt::format(
+          "the time offset of {} cannot be told{}: move boards, in several directions, while {} "
+          "and another sensor see them, and state times",
+          whole_.sensors[sensors_[s]].name,
+          any ? fmt::format(" (+-{:.0f} ms)", 1e3 * number->sigma) : "",
+          whole_.sensors[sensors_[s]].name));
+    }
   }
 
   void RefuteByNoise(RigEstimate& estimate) const {
@@ -202,6 +236,7 @@ class RigSolution {
 
   const RigProblem& whole_;
   std::vector<std::size_t> sensors_;
+  RigOptions options_;
   RigProblem part_;
   RigModel model_;
   RigAnswer answer_;
@@ -241,13 +276,14 @@ RigProblem Restricted(const RigProblem& problem, std::span<const std::size_t> se
       kept.seen.push_back(seen);
       kept.seen.back().sensor = static_cast<std::size_t>(at - sensors.begin());
     }
-    if (kept.seen.size() >= 2) part.placements.push_back(std::move(kept));
+    if (IsShared(placement, sensors)) part.placements.push_back(std::move(kept));
   }
   return part;
 }
 
 Expected<RigEstimate> SolveRig(const RigProblem& given, const RigOptions& options) {
   SEXTANT_RETURN_IF_ERROR(CheckRigProblem(given));
+  SEXTANT_RETURN_IF_ERROR(CheckRigFeatures(given));
   SEXTANT_ASSIGN_OR_RETURN(const RigProblem problem, WithPoses(given));
   const RigTree tree = TreeOf(problem, PairsOf(problem), options.root);
   std::vector<std::size_t> connected;

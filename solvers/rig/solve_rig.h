@@ -22,6 +22,9 @@ struct RigOptions {
   double cut = 4.0;
   int max_iterations = 100;
   double step_tolerance = 1e-10;
+  /// Estimates how far the clock of each sensor with times is ahead of the root's
+  /// (RigObservation::time_s), as the number time_offset_s.
+  bool estimate_time = false;
   ProgressCallback progress{};  ///< Stage "rig": minima, at most as many as are announced.
 };
 
@@ -83,6 +86,10 @@ struct RigEstimate {
 /// the selection of the observations within `cut` of it. A LiDAR's systematic errors
 /// (RigSensor::lidar_errors) are estimated along with the poses; a number that the data does not
 /// determine stays at its prior.
+///
+/// Where observations have times, a board moves with constant velocity about the middle of its
+/// moment, with priors on velocity and acceleration (rig_motion.h); both are eliminated with its
+/// pose. What moved is data for the poses, and for time offsets.
 ///
 /// Sensors that are not connected with the root are left out and named in `unconnected`. Time and
 /// memory are linear in the placements, and quadratic in the numbers that all of them share.

@@ -8,8 +8,10 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "calibrate/advise/advise_rig.h"
 #include "calibrate/trust/information.h"
 #include "eval/metrics/bounds.h"
+#include "eval/synthetic/simulate_rig.h"
 #include "eval/synthetic/simulate_views.h"
 #include "solvers/joint/board_view_information.h"
 
@@ -248,6 +250,38 @@ TEST(DegenerateSets, EachIsNamedAndASpreadSetIsNot) {
   ASSERT_THAT(one_range, SizeIs(1));
   EXPECT_THAT(one_range[0], HasSubstr("at one range"));
   EXPECT_THAT(DegenerateSets({pose(0, 0.0, 2.0), pose(0, 0.1, 2.0)}), SizeIs(3));
+}
+
+TEST(AdviseRig, NamesTheWeakestPairAndABoardThatHelpsIt) {
+  // The last LiDAR sees the board in three moments only.
+  const SimulatedRig simulated = SimulateRig({.cameras = 2, .lidars = 2, .moments = 10});
+  RigFile rig{.problem = simulated.problem};
+  constexpr std::size_t kRare = 3;
+  for (std::size_t i = 3; i < rig.problem.placements.size(); ++i) {
+    std::erase_if(rig.problem.placements[i].seen,
+                  [](const RigObservation& seen) { return seen.sensor == kRare; });
+  }
+  const auto advice = AdviseRig(rig);
+  ASSERT_TRUE(advice) << advice.error().message;
+  EXPECT_EQ(advice->weakest.b, "lidar_1");
+  EXPECT_LE(advice->weakest.views, 3);
+  EXPECT_THAT(advice->seen_by, testing::Contains("lidar_1"));
+  EXPECT_THAT(advice->sentence, HasSubstr("in front of cam_"));
+  // One more board of as much information as each of three: about 3/4 of the variance.
+  const double before = advice->weakest.a_from_b.covariance.trace();
+  EXPECT_LT(advice->covariance.trace(), 0.9 * before);
+  EXPECT_GT(advice->covariance.trace(), 0.2 * before);
+}
+
+TEST(AdviseRig, ASensorWithoutAPoseIsNamedWithWhatWouldConnectIt) {
+  const SimulatedRig simulated = SimulateRig({.cameras = 1, .lidars = 2, .moments = 5});
+  RigFile rig{.problem = simulated.problem};
+  for (RigPlacement& placement : rig.problem.placements) {
+    std::erase_if(placement.seen, [](const RigObservation& seen) { return seen.sensor == 2; });
+  }
+  const auto advice = AdviseRig(rig);
+  ASSERT_FALSE(advice);
+  EXPECT_THAT(advice.error().message, HasSubstr("'lidar_1' shares no view"));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -9,9 +10,12 @@
 #include "e2e/run_sextant.h"
 #include "e2e/shared_session.h"
 #include "e2e/swinging_scene.h"
+#include "io/clouds/cloud_file.h"
+#include "io/results/rig_result.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
+#include "support/source_tree.h"
 
 namespace sextant {
 namespace {
@@ -94,6 +98,63 @@ TEST(RigCommand, ARigIsExportedAsATreeOrAPair) {
   EXPECT_THAT(none.err, HasSubstr("there are: lidar, left, right"));
 }
 
+TEST(RigCommand, AScanIsDrawnOnTheImageOfANamedCamera) {
+  const std::string& rig = Solved().out;
+  ASSERT_EQ(Solved().run.exit_code, 0);
+  const std::string folder = SessionOfRig().string();
+  const auto project = [&](const std::string& options) {
+    return RunSextant("project --image " + folder + "/right_001.png --cloud " + folder +
+                      "/scan_001.pcd --result " + rig + " --overwrite --out " +
+                      TestPath("seen.png") + " --board " + folder + "/boards.yaml " + options);
+  };
+  // The only LiDAR need not be named. The board's outlines by both sensors lie on each other.
+  const ProgramRun right = project("--camera-name right");
+  ASSERT_EQ(right.exit_code, 0) << right.err;
+  const std::string mark = "(white) ";
+  ASSERT_THAT(right.out, HasSubstr(mark));
+  EXPECT_LT(std::stod(right.out.substr(right.out.find(mark) + mark.size())), 30.0) << right.out;
+  test::ExpectRefused(project(""), "choose one with --camera-name; there are: lidar, left, right");
+  test::ExpectRefused(project("--camera-name middle"),
+                      "no sensor 'middle'; there are: lidar, left, right");
+  test::ExpectRefused(project("--camera-name left --lidar-name left"), "got 'left' twice");
+  test::ExpectRefused(
+      RunSextant("project --image a.png --cloud a.pcd --camera-name left --result " + folder +
+                 "/boards.yaml --out " + TestPath("seen.png")),
+      "leave them out");
+}
+
+TEST(RigCommand, CloudsOfNamedSensorsAreFused) {
+  // top 1 m above the base, turned by 90 degrees about z; rear 2 m behind it.
+  RigResult result{.version = "1", .root = "base"};
+  result.sensors.push_back({.name = "base", .root_from_sensor = Rigid3d{}});
+  result.sensors.push_back(
+      {.name = "top",
+       .root_from_sensor =
+           Rigid3d{Eigen::Quaterniond(std::sqrt(0.5), 0, 0, std::sqrt(0.5)), {0, 0, 1}}});
+  result.sensors.push_back(
+      {.name = "rear", .root_from_sensor = Rigid3d{Eigen::Quaterniond::Identity(), {-2, 0, 0}}});
+  std::ofstream(TestPath("rig.json")) << FormatRigResult(result);
+  std::ofstream(TestPath("top.csv")) << "x,y,z\n1,0,0\n";
+  std::ofstream(TestPath("rear.csv")) << "x,y,z\n5,0,0\n";
+  const std::string fuse = "fuse " + TestPath("top.csv") + " " + TestPath("rear.csv") +
+                           " --overwrite --out " + TestPath("both.pcd");
+  const std::string rig = " --result " + TestPath("rig.json");
+  const ProgramRun run = RunSextant(fuse + rig + " --sensors top rear");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto fused = ReadCloud(TestPath("both.pcd"));
+  ASSERT_TRUE(fused);
+  ASSERT_EQ(fused->points.size(), 2U);
+  EXPECT_LT((fused->points[0] - Eigen::Vector3d(2, 1, 1)).norm(), 1e-6);
+  EXPECT_LT((fused->points[1] - Eigen::Vector3d(5, 0, 0)).norm(), 1e-6);
+  test::ExpectRefused(RunSextant(fuse + rig + " --sensors top front"),
+                      "no sensor 'front'; there are: base, top, rear");
+  test::ExpectRefused(RunSextant(fuse + rig + " --sensors top"),
+                      "expected the sensor of each of the 2 clouds");
+  test::ExpectRefused(RunSextant(fuse + " --sensors top rear"), "--sensors needs --result");
+  test::ExpectRefused(RunSextant(fuse + " --sensors top rear --result " + TestPath("top.csv")),
+                      "expected rig.json");
+}
+
 TEST(RigCommand, AWrongSizeOfTheTagIsNotUsable) {
   const std::string out = TestPath("wrong.json");
   ASSERT_EQ(Solved().run.exit_code, 0);
@@ -113,6 +174,11 @@ TEST(RigCommand, AWrongSizeOfTheTagIsNotUsable) {
   EXPECT_THAT(run.out, HasSubstr("NOT USABLE"));
   EXPECT_EQ(RunSextant("export " + out + " --to ros2").exit_code, 3);
   EXPECT_EQ(RunSextant("export " + out + " --to ros2 --force").exit_code, 0);
+  const std::string folder = SessionOfRig().string();
+  const ProgramRun drawn = RunSextant("project --image " + folder + "/left_001.png --cloud " +
+                                      folder + "/scan_001.pcd --camera-name left --result " + out +
+                                      " --out " + TestPath("seen.png"));
+  EXPECT_THAT(drawn.out, testing::StartsWith("NOT USABLE"));
 }
 
 TEST(RigCommand, OneCameraOfSeveralIsCalibratedAlone) {
@@ -120,6 +186,96 @@ TEST(RigCommand, OneCameraOfSeveralIsCalibratedAlone) {
   const ProgramRun run = RunSextant("calibrate " + SessionOfRig().string() +
                                     " --camera-name left --bootstrap 0 --out " + out);
   EXPECT_THAT(test::ReadText(out), HasSubstr("cam_from_lidar")) << run.err;
+}
+
+TEST(RigCommand, TheExampleOfFeaturesInTablesIsSolved) {
+  // examples/rig has pixels of a camera, corners of one LiDAR, and planes and sides of another.
+  const std::filesystem::path example = test::SourceRoot() / "examples/rig";
+  const std::string out = TestPath("rig.json");
+  const ProgramRun run = RunSextant("rig " + (example / "rig.yaml").string() + " --out " + out);
+  ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+  const json rig = json::parse(test::ReadText(out));
+  // The true positions by which the tables were made, in the frame of top.
+  const Eigen::Vector3d truths[] = {
+      {0.0547, 0.2085, -0.0810}, {0.0, 0.0, 0.0}, {-1.2021, 0.0399, -0.0841}};
+  for (std::size_t s = 0; s < 3; ++s) {
+    const json& sensor = rig["sensors"][s];
+    const auto at = sensor["root_from_sensor"]["translation_m"].get<std::vector<double>>();
+    double sigma = 0.0;
+    if (s != 1) {
+      for (std::size_t k = 3; k < 6; ++k)
+        sigma += std::pow(sensor["sigma_rad_m"][k].get<double>(), 2);
+    }
+    const double off = (Eigen::Vector3d(at[0], at[1], at[2]) - truths[s]).norm();
+    EXPECT_LT(off, 3.5 * std::sqrt(sigma) + 1e-9) << sensor["name"];
+    EXPECT_LT(std::sqrt(sigma), 0.02) << sensor["name"];
+  }
+  // docs/rigs.md shows the files as they are.
+  const std::string page = test::ReadText(test::SourceRoot() / "docs/rigs.md");
+  EXPECT_THAT(page, HasSubstr(test::ReadText(example / "rig.yaml")));
+  for (const char* table : {"pixels.csv", "points.csv", "planes.csv", "sides.csv"}) {
+    const std::string text = test::ReadText(example / table);
+    const std::size_t second = text.find('\n', text.find('\n') + 1);
+    EXPECT_THAT(page, HasSubstr(text.substr(0, second + 1))) << table;
+  }
+}
+
+// Corners of a board that moves, by two LiDARs at 10 Hz; the clock of rear is 15 ms ahead.
+std::string TableOfMovingBoard(double speed_m_s) {
+  std::string table = "time_s,sensor,corner,x,y,z\n";
+  const Eigen::Vector3d corners[] = {
+      {-0.4, -0.3, 0}, {0.4, -0.3, 0}, {0.4, 0.3, 0}, {-0.4, 0.3, 0}};
+  Eigen::Matrix3d facing;
+  facing << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  const Rigid3d rear_from_top{Eigen::Quaterniond(0, 0, 0, 1), {-1.0, 0.1, 0.2}};
+  for (int moment = 0; moment < 8; ++moment) {
+    const Eigen::Vector3d velocity =
+        speed_m_s * Eigen::Vector3d(std::sin(moment), std::cos(moment), 0.5).normalized();
+    const Eigen::Quaterniond turned(
+        Eigen::AngleAxisd(0.4 * std::sin(2.0 * moment), Eigen::Vector3d(0, 0.5, 1).normalized()) *
+        Eigen::Quaterniond(facing));
+    for (int k = 0; k < 6; ++k) {
+      const bool rear = k % 2 == 1;
+      const double time_s = 10.0 * moment + 0.1 * (k / 2) + (rear ? 0.04 : 0.0);
+      const Rigid3d top_from_board{turned, Eigen::Vector3d(3.0 + 0.2 * (moment % 3), 0.3, 0.1) +
+                                               time_s * velocity - 10.0 * moment * velocity};
+      for (int corner = 0; corner < 4; ++corner) {
+        Eigen::Vector3d point = top_from_board * corners[corner];
+        if (rear) point = rear_from_top * point;
+        table += std::to_string(time_s + (rear ? 0.015 : 0.0)) + (rear ? ",rear," : ",top,") +
+                 std::to_string(corner) + "," + std::to_string(point.x()) + "," +
+                 std::to_string(point.y()) + "," + std::to_string(point.z()) + "\n";
+      }
+    }
+  }
+  return table;
+}
+
+TEST(RigCommand, ClocksAreEstimatedFromBoardsThatMove) {
+  test::WriteText(TestPath("rig.yaml"),
+                  "sextant_rig: 1\nsensors: [{name: top}, {name: rear}]\n"
+                  "boards: [{id: 0, top_right_m: 0.8, right_bottom_m: 0.6}]\n"
+                  "tables: corners.csv\n");
+  const std::string command =
+      "rig " + TestPath("rig.yaml") + " --estimate-time --overwrite --out " + TestPath("rig.json");
+  test::WriteText(TestPath("corners.csv"), TableOfMovingBoard(0.4));
+  const ProgramRun run = RunSextant(command);
+  ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+  const json rig = json::parse(test::ReadText(TestPath("rig.json")));
+  EXPECT_EQ(rig["views"].size(), 8U);
+  bool found = false;
+  for (const json& number : rig["numbers"]) {
+    if (number["name"] != "time_offset_s") continue;
+    found = true;
+    EXPECT_EQ(number["sensor"], "rear");
+    EXPECT_NEAR(number["value"].get<double>(), 0.015, 2e-4);
+    EXPECT_LT(number["sigma"].get<double>(), 0.01);
+  }
+  EXPECT_TRUE(found);
+  test::WriteText(TestPath("corners.csv"), TableOfMovingBoard(0.0));
+  const ProgramRun still = RunSextant(command);
+  EXPECT_EQ(still.exit_code, 0) << still.err;
+  EXPECT_THAT(still.out, HasSubstr("the time offset of rear cannot be told"));
 }
 
 TEST(RigCommand, ReadsTheTransformsOfTheOriginalPackage) {

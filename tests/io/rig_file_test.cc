@@ -5,10 +5,12 @@
 
 #include "io/export/export_rig.h"
 #include "io/export/export_transform.h"
+#include "io/problems/feature_table.h"
 #include "io/problems/problem_yaml.h"
 #include "io/problems/rig_yaml.h"
 #include "io/results/rig_result.h"
 #include "support/bad_text.h"
+#include "support/run_program.h"
 
 namespace sextant {
 namespace {
@@ -87,6 +89,122 @@ TEST(RigFile, RefusesWhatIsWrongAndNamesIt) {
       {"unknown key", RigWith("sigma_px", "sigma_pixels"), ErrorCode::kParse, "sigma_px"},
       {"unknown root", RigWith("root: top", "root: roof"), ErrorCode::kParse, "'roof'"}};
   for (const BadText& bad : cases) test::ExpectRefused(ParseRigFile(bad.text, "rig.yaml"), bad);
+}
+
+TEST(FeatureTable, HasTheRowsOfEachKind) {
+  // Names of other programs, semicolons and decimal commas; an empty value is none.
+  const auto rows = ParseFeatureTable(
+      "frame;sensor;board;corner;pixel_x;pixel_y;x [m];y [m];z [m];Sigma px\n"
+      "a;left;3;1;500,5;200;;;;0,2\n"
+      "a;top;3;2;;;3;-0,3;0,4;\n",
+      "f.csv");
+  ASSERT_TRUE(rows) << rows.error().message;
+  ASSERT_EQ(rows->size(), 2U);
+  EXPECT_EQ((*rows)[0].moment, "a");
+  EXPECT_EQ((*rows)[0].pixel, Eigen::Vector2d(500.5, 200));
+  EXPECT_EQ((*rows)[0].sigma_px, 0.2);
+  EXPECT_FALSE((*rows)[0].position_m);
+  EXPECT_EQ((*rows)[1].position_m, Eigen::Vector3d(3, -0.3, 0.4));
+  EXPECT_EQ((*rows)[1].line, 3);
+  const auto planes = ParseFeatureTable("moment,sensor,a,b,c,d\n1,top,0,0,2,-6\n", "f.csv");
+  ASSERT_TRUE(planes) << planes.error().message;
+  EXPECT_EQ((*planes)[0].plane->normal, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ((*planes)[0].plane->distance_m, 3.0);  // 2 z - 6 = 0.
+  const auto sides =
+      ParseFeatureTable("time_s,sensor,side,x,y,z,x2,y2,z2\n0.5,top,2,1,0,0,1,0,2\n", "f.csv");
+  ASSERT_TRUE(sides) << sides.error().message;
+  EXPECT_EQ((*sides)[0].side->direction, Eigen::Vector3d::UnitZ());
+  EXPECT_FALSE((*sides)[0].position_m);
+}
+
+TEST(FeatureTable, RefusesWhatIsWrongAndNamesIt) {
+  const BadText cases[] = {
+      {"unknown column", "moment,sensr,corner,u,v\n", ErrorCode::kParse, "did you mean 'sensor'"},
+      {"no moment", "sensor,corner,u,v\n", ErrorCode::kParse, "moment is missing"},
+      {"half a point", "moment,sensor,corner,x,y\n", ErrorCode::kParse,
+       "expected the column z as well: x, y, z belong together"},
+      {"no corner", "moment,sensor,u,v\n1,left,3,4\n", ErrorCode::kParse,
+       "expected the number of the corner"},
+      {"nothing measured", "moment,sensor,corner,u,v\n1,left,3,,\n", ErrorCode::kParse,
+       "f.csv:2: the row has neither"},
+      {"a side without direction", "moment,sensor,side,x,y,z\n1,top,0,1,2,3\n", ErrorCode::kParse,
+       "a side is a line"},
+      {"nanoseconds", "time,sensor,corner,u,v\n1690000000000000000,left,0,3,4\n", ErrorCode::kParse,
+       "nanoseconds"},
+      {"not a number", "moment,sensor,corner,u,v\n1,left,0,3,four\n", ErrorCode::kParse,
+       "field 5 (v)"}};
+  for (const BadText& bad : cases) test::ExpectRefused(ParseFeatureTable(bad.text, "f.csv"), bad);
+}
+
+constexpr const char* kTableRig = R"(sextant_rig: 1
+sensors:
+  - name: left
+    camera: {model: pinhole, fx_px: 700, fy_px: 700, cx_px: 640, cy_px: 360}
+  - name: top
+boards:
+  - {id: 3, grid: {columns: 3, rows: 2, step_m: 0.1}}
+tables: [pixels.csv, others.csv]
+)";
+
+Expected<RigFile> RigOfTables(const std::string& pixels, const std::string& others,
+                              const std::string& rig = kTableRig) {
+  test::WriteText(test::TestPath("rig.yaml"), rig);
+  test::WriteText(test::TestPath("pixels.csv"), pixels);
+  test::WriteText(test::TestPath("others.csv"), others);
+  return ReadRigFile(test::TestPath("rig.yaml"));
+}
+
+TEST(FeatureTable, RowsOfOneMomentSensorAndBoardAreOneObservation) {
+  const auto rig = RigOfTables(
+      "moment,sensor,corner,u,v\nb,left,0,500,200\nb,left,5,600,300\na,left,0,400,200\n",
+      "moment,sensor,corner,x,y,z,nx,ny,nz,distance\nb,top,4,3,0,0,,,,\nb,top,,,,,1,0,0,3\n");
+  ASSERT_TRUE(rig) << rig.error().message;
+  ASSERT_EQ(rig->problem.placements.size(), 2U);
+  const RigPlacement& first = rig->problem.placements[0];
+  EXPECT_EQ(first.name, "b");
+  ASSERT_EQ(first.seen.size(), 2U);
+  const BoardPoints& printed = first.seen[0].raw.printed.at(0);
+  // Row by row: the last point of 3 x 2 is at the lower right.
+  EXPECT_LT((printed.in_board_m[1] - Eigen::Vector2d(0.1, 0.05)).norm(), 1e-15);
+  EXPECT_EQ(printed.pixels[1], Eigen::Vector2d(600, 300));
+  EXPECT_EQ(first.seen[1].points.at(0).in_sensor_m, Eigen::Vector3d(3, 0, 0));
+  EXPECT_EQ(first.seen[1].plane->distance_m, 3.0);
+  const std::string text = FormatRigFile(*rig);
+  const auto again = ParseRigFile(text, "rig.yaml");
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(FormatRigFile(*again), text);
+}
+
+TEST(FeatureTable, RowsWithTimesAreMomentsOfAFifthOfASecond) {
+  const auto rig = RigOfTables(
+      "time_s,sensor,corner,u,v\n10.1,left,0,5,2\n10,left,0,5,2\n"
+      "10.31,left,0,5,2\n",
+      "time_s,sensor,nx,ny,nz,distance\n10.15,top,1,0,0,3\n");
+  ASSERT_TRUE(rig) << rig.error().message;
+  ASSERT_EQ(rig->problem.placements.size(), 2U);
+  ASSERT_EQ(rig->problem.placements[0].seen.size(), 3U);
+  EXPECT_EQ(rig->problem.placements[0].seen[2].time_s, 10.15);
+  EXPECT_EQ(rig->problem.placements[1].seen.size(), 1U);
+  const std::string text = FormatRigFile(*rig);
+  const auto again = ParseRigFile(text, "rig.yaml");
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(FormatRigFile(*again), text);
+}
+
+TEST(FeatureTable, NamesThatTheRigDoesNotHaveAreRefused) {
+  const std::string good = "moment,sensor,corner,u,v\n1,left,0,5,2\n";
+  const auto refused = [&](const std::string& others, const std::string& reason) {
+    const auto rig = RigOfTables(good, others);
+    ASSERT_FALSE(rig) << reason;
+    EXPECT_THAT(rig.error().message, HasSubstr("others.csv:2: " + reason));
+  };
+  refused("moment,sensor,corner,u,v\n1,right,0,5,2\n",
+          "no sensor 'right' in the rig file; there are: left, top");
+  refused("moment,sensor,board,corner,u,v\n1,left,4,0,5,2\n", "the rig file has no board 4");
+  refused("moment,sensor,corner,u,v\n1,left,6,5,2\n", "corner 6: board 3 has the points 0 to 5");
+  refused("moment,sensor,corner,u,v\n1,left,0,5,2\n", "the pixel of this corner is a second");
+  refused("moment,sensor,side,x,y,z,dx,dy,dz\n1,top,0,3,0,0,0,1,0\n",
+          "the line of a side needs the size of board 3");
 }
 
 TEST(RigFile, IsRecognisedByTheReaderOfProblems) {

@@ -12,6 +12,7 @@
   X(BoardScan)           \
   X(BoardImage)          \
   X(Fusion)              \
+  X(Rig)                 \
   X(Session)             \
   X(RealPairs)           \
   X(RealViews)           \

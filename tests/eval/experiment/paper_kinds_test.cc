@@ -122,5 +122,40 @@ TEST(PaperKinds, RejectsInvalidParameters) {
               testing::Not(testing::HasSubstr("nothing refused")));
 }
 
+TEST(RigKind, EveryPairIsMeasuredAgainstItsBoundItsCovarianceAndItsChain) {
+  const std::string text =
+      "kind: rig\ntrials: 1\nparameters: {cameras: 2, lidars: 1, moments: 8, takes_part: 0.8}\n";
+  constexpr int kTrials = 6;
+  std::map<std::string, std::vector<double>> squares;
+  for (const char* metric : {"nees", "over_bound", "translation_mm", "chained_mm"}) {
+    for (const auto& [pair, values] : Try(text, metric, kTrials)) {
+      for (const double value : values) {
+        const bool squared = std::string(metric) == "nees";
+        squares[metric].push_back(squared ? value : value * value);
+      }
+    }
+    ASSERT_EQ(squares[metric].size(), 3U * kTrials) << metric;
+  }
+  const auto mean = [&](const char* metric) {
+    double sum = 0.0;
+    for (const double value : squares[metric]) sum += value;
+    return sum / static_cast<double>(squares[metric].size());
+  };
+  // chi^2 of 6 trials with 12 independent axes each, over its mean: 0.6 to 1.5 with 0.3 % each.
+  EXPECT_GT(mean("nees"), 0.6);
+  EXPECT_LT(mean("nees"), 1.5);
+  EXPECT_LT(std::sqrt(mean("over_bound")), 1.3);
+  EXPECT_LT(mean("translation_mm"), mean("chained_mm"));
+}
+
+TEST(RigKind, ClocksNeedBoardsThatMove) {
+  const std::string file = (SourceRoot() / "experiments" / "try.yaml").string();
+  const Expected<Experiment> experiment =
+      ParseExperiment("kind: rig\ntrials: 1\nparameters: {clock_sigma_s: 0.01}\n", file,
+                      BuiltinKinds(), BuiltinSolvers());
+  ASSERT_FALSE(experiment);
+  EXPECT_THAT(experiment.error().message, testing::HasSubstr("give speed_m_s"));
+}
+
 }  // namespace
 }  // namespace sextant::test

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "solvers/rig/solve_rig.h"
+
+namespace sextant {
+
+/// What one observation tells of the board's pose.
+struct BoardInformation {
+  std::size_t placement = 0;
+  std::size_t sensor = 0;
+  Rigid3d sensor_from_board;
+  /// On the board's (dphi, dt) along its own axes, about its centre: of the whole observation, at
+  /// the estimated noise.
+  Matrix6d in_board = Matrix6d::Zero();
+};
+
+/// The information of every observation at an estimate, in which all sensors are connected. An
+/// observation at which its residuals cannot be evaluated is left out.
+std::vector<BoardInformation> BoardInformationOf(const RigProblem& problem,
+                                                 const RigEstimate& estimate);
+
+}  // namespace sextant
