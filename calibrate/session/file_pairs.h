@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -21,6 +22,9 @@ struct FilePair {
 /// most the product of the lengths of its name and of the pattern, whatever the stars.
 /// Errors: kIo for a folder that cannot be read; kMissingData where no file matches.
 Expected<std::vector<std::filesystem::path>> ExpandPattern(const std::filesystem::path& pattern);
+
+/// Whether a file name matches a pattern in which each `*` stands for any text.
+bool MatchesPattern(std::string_view name, std::string_view pattern);
 
 struct FilePairs {
   std::vector<FilePair> pairs{};                         ///< In natural order of the names.

@@ -205,10 +205,11 @@ TEST(Outputs, AFileThatWasBeingReplacedSurvivesAKill) {
 }
 
 TEST(Outputs, EveryCommandThatWritesHasOverwrite) {
-  for (const char* command : {"calibrate",      "advise",      "project", "report", "export",
-                              "detect",         "boards",      "mark",    "bag",    "simulate",
-                              "simulate pairs", "print-board", "convert", "fuse",   "solve",
-                              "compare",        "average",     "run",     "merge",  "reproduce"}) {
+  for (const char* command :
+       {"calibrate",   "capture", "advise",   "project", "report",   "export",
+        "detect",      "boards",  "mark",     "bag",     "simulate", "simulate pairs",
+        "print-board", "convert", "fuse",     "solve",   "compare",  "average",
+        "run",         "merge",   "reproduce"}) {
     EXPECT_THAT(RunSextant(std::string(command) + " --help").out, HasSubstr("--overwrite"))
         << command;
   }
