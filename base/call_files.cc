@@ -46,7 +46,8 @@ std::string CallFiles::BeginOutput(const FileId& file, OutputUse use) {
   const std::scoped_lock lock(mutex_);
   if (inputs_.contains(file) && !use.may_be_read) return kIsInput;
   Output& output = outputs_.emplace(file, Output{.use = use}).first->second;
-  if (output.is_begun && !output.use.is_repeated) return kIsOutput;
+  // Whoever replaces a file that this call has begun must know that it is its own.
+  if (output.is_begun && !output.use.is_repeated && !use.is_repeated) return kIsOutput;
   output.is_begun = true;
   return {};
 }

@@ -8,7 +8,6 @@
 
 #include "geometry/coordinate_range.h"
 #include "io/output/standard_output.h"
-#include "io/poses/pose_file.h"
 #include "io/text/number_text.h"
 
 namespace sextant::cli {
@@ -85,6 +84,22 @@ Expected<Rigid3d> CamFromLidarWithNote(const StatedPose& pose, const std::string
   return cam_from_lidar;
 }
 
+Expected<GivenPose> GivenPoseOfText(const PoseText& text, const std::string& path,
+                                    const std::string& pose_is) {
+  SEXTANT_ASSIGN_OR_RETURN(const StatedPose pose, ParsePose(text.text, text.file, text.name));
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_lidar, CamFromLidarWithNote(pose, pose_is, path));
+  GivenPose given{.direction = pose_is.empty() ? *pose.direction : *AskedDirection(pose_is),
+                  .basis = pose_is.empty() ? pose.basis : "stated by --pose-is"};
+  if (pose.is_result) {
+    SEXTANT_ASSIGN_OR_RETURN(given.result, ParseCalibrationResult(text.text, path));
+    return given;
+  }
+  given.result.cam_from_lidar = cam_from_lidar;
+  if (!pose.camera_frame.empty()) given.result.camera_frame = pose.camera_frame;
+  if (!pose.lidar_frame.empty()) given.result.lidar_frame = pose.lidar_frame;
+  return given;
+}
+
 }  // namespace
 
 void DeclarePoseIs(std::string& pose_is, Arguments& arguments) {
@@ -108,15 +123,21 @@ Expected<Rigid3d> PoseFromArgument(const std::string& option,
   return AskedDirection(pose_is) == PoseDirection::kLidarFromCam ? pose.Inverse() : pose;
 }
 
+Expected<GivenPose> GivenPoseOfFile(const std::string& path, const std::string& pose_is) {
+  SEXTANT_ASSIGN_OR_RETURN(const PoseText text, ReadPoseText(path));
+  return GivenPoseOfText(text, path, pose_is);
+}
+
+Expected<CalibrationResult> ResultOfText(const PoseText& text, const std::string& path,
+                                         const std::string& pose_is) {
+  SEXTANT_ASSIGN_OR_RETURN(GivenPose given, GivenPoseOfText(text, path, pose_is));
+  return std::move(given.result);
+}
+
 Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is) {
-  SEXTANT_ASSIGN_OR_RETURN(const StatedPose pose, ReadPoseFile(path));
-  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_lidar, CamFromLidarWithNote(pose, pose_is, path));
-  if (pose.is_result) return ReadCalibrationResult(path);
-  CalibrationResult result;
-  result.cam_from_lidar = cam_from_lidar;
-  if (!pose.camera_frame.empty()) result.camera_frame = pose.camera_frame;
-  if (!pose.lidar_frame.empty()) result.lidar_frame = pose.lidar_frame;
-  return result;
+  SEXTANT_ASSIGN_OR_RETURN(const PoseText text, ReadPoseText(path));
+  return ResultOfText(text, path, pose_is);
+}
 }
 
 }  // namespace sextant::cli

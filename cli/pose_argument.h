@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "cli/command.h"
 #include "geometry/rigid3d.h"
+#include "io/poses/pose_file.h"
 #include "io/results/calibration_result.h"
 
 namespace sextant::cli {
@@ -30,8 +31,22 @@ Expected<Rigid3d> PoseFromArgument(const std::string& option,
                                    const std::vector<std::string>& values,
                                    const std::string& pose_is);
 
+/// A pose as a file states it, and the direction in which it was read: as --pose-is states, or as
+/// follows from the file.
+struct GivenPose {
+  CalibrationResult result{};
+  PoseDirection direction = PoseDirection::kCamFromLidar;
+  std::string basis{};  ///< What the direction follows from; a phrase for people.
+};
+
+/// As ResultOfFile, with the direction.
+Expected<GivenPose> GivenPoseOfFile(const std::string& path, const std::string& pose_is);
+
 /// The result in a file of sextant calibrate; of any other file a result with its pose and the
 /// names of its frames alone. Errors: those of ReadCalibrationResult and PoseOfFile.
 Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::string& pose_is);
+/// The same of its text, which ReadPoseText has read from `path`.
+Expected<CalibrationResult> ResultOfText(const PoseText& text, const std::string& path,
+                                         const std::string& pose_is);
 
 }  // namespace sextant::cli

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "cli/progress.h"
 #include "io/output/output_file.h"
 #include "report/collect/no_pose.h"
 #include "report/collect/utc_text.h"
@@ -10,9 +11,20 @@
 
 namespace sextant::cli {
 
-Expected<void> WriteReport(PageSource source, const std::filesystem::path& path) {
+ReportPage CollectWithProgress(PageSource source) {
   source.written = TodayText();
-  return WritePage(CollectPage(source), path);
+  Progress progress;
+  ProgressCounter counter(progress.Callback(), "report", source.result.views.size());
+  if (source.frames) {
+    source.frames = [frames = source.frames, &counter](const std::vector<ResultView>& views,
+                                                       const FrameVisitor& visit) {
+      return frames(views, [&](std::size_t view, const Expected<Frame>& frame) {
+        visit(view, frame);
+        counter.Step();
+      });
+    };
+  }
+  return CollectPage(source);
 }
 
 Expected<void> WritePage(ReportPage page, const std::filesystem::path& path) {
@@ -25,11 +37,11 @@ Expected<void> WriteCalibrationReport(const Calibration& calibration, double tol
   const FrameSource frames = [&](const std::vector<ResultView>&, const FrameVisitor& visit) {
     return VisitFrames(calibration.observed.session, tolerance_s, visit);
   };
-  return WriteReport(
+  const ReportPage page = CollectWithProgress(
       {.result = calibration.result ? *calibration.result : ResultWithoutPose(calibration),
        .calibration = &calibration,
-       .frames = frames},
-      path);
+       .frames = frames});
+  return WritePage(page, path);
 }
 
 }  // namespace sextant::cli

@@ -12,8 +12,8 @@ namespace sextant::cli {
 /// What WroteLine says about a report.
 inline constexpr const char* kReportWords = "the report, one file that opens in any browser";
 
-/// Collects the report, dates it today and writes it. Errors: those of WriteFileAtomically.
-Expected<void> WriteReport(PageSource source, const std::filesystem::path& path);
+/// CollectPage, dated today, with the progress of reading the views on standard error.
+ReportPage CollectWithProgress(PageSource source);
 
 /// Writes a page, dated today where it has no date. Errors: those of WriteFileAtomically.
 Expected<void> WritePage(ReportPage page, const std::filesystem::path& path);

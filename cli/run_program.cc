@@ -58,8 +58,9 @@ int RunLine(const Program& program, const ParsedLine& line) {
   const Expected<void> finished = FinishOutput();
   if (finished) return exit_code;
   PrintError("{}: {}\n", program.name, finished.error().message);
-  return exit_code == kAnswered || exit_code == kNoAnswer || exit_code == kNotUsable ? kNotWritten
-                                                                                     : exit_code;
+  // Whatever the answer was, as "cannot tell" of check, it is lost.
+  const bool is_failure = exit_code == kWrongUse || exit_code == kFailed;
+  return is_failure ? exit_code : kNotWritten;
 }
 
 int RunProgram(const Program& program, int argc, const char* const* argv) {

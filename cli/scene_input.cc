@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "calibrate/observe/photo_file.h"
-#include "cli/pose_argument.h"
 #include "features/camera/grey_image.h"
 #include "io/cameras/camera_file.h"
 #include "io/clouds/cloud_file.h"
@@ -50,7 +49,10 @@ void DeclareSceneInput(SceneInputOptions& options, Arguments& arguments) {
 
 Expected<SceneInput> ReadSceneInput(const SceneInputOptions& options) {
   SceneInput input;
-  SEXTANT_ASSIGN_OR_RETURN(input.given, ResultOfFile(options.pose_path, options.pose_is));
+  SEXTANT_ASSIGN_OR_RETURN(GivenPose pose, GivenPoseOfFile(options.pose_path, options.pose_is));
+  input.given = std::move(pose.result);
+  input.direction = pose.direction;
+  input.direction_basis = std::move(pose.basis);
   if (!options.camera_path.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(input.given.camera, ReadCamera(options.camera_path));
   }

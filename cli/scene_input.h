@@ -8,6 +8,7 @@
 #include "calibrate/scene/scene_score.h"
 #include "calibrate/session/session.h"
 #include "cli/command.h"
+#include "cli/pose_argument.h"
 #include "io/results/calibration_result.h"
 
 // The input that `check` and `refine-scene` share: a pose, and pairs of everyday scenes.
@@ -26,11 +27,13 @@ void DeclareSceneInput(SceneInputOptions& options, Arguments& arguments);
 /// The pose with its camera, and the pairs of files.
 struct SceneInput {
   CalibrationResult given;
+  PoseDirection direction = PoseDirection::kCamFromLidar;  ///< In which the pose was read.
+  std::string direction_basis;                             ///< What it follows from.
   Session session;
 };
 
-/// Errors: those of ResultOfFile, ReadCamera and SessionOfFiles; kMissingData without a camera or a
-/// pair.
+/// Errors: those of GivenPoseOfFile, ReadCamera and SessionOfFiles; kMissingData without a camera
+/// or a pair.
 Expected<SceneInput> ReadSceneInput(const SceneInputOptions& options);
 
 /// The edges of every pair, on all cores. Errors: those of the readers and of MakeScenePair, with

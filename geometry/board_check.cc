@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 namespace sextant {
@@ -198,12 +199,16 @@ std::optional<BoardFault> FindTagFault(const Board& board, int index) {
   }
   for (int other = 0; other < index; ++other) {
     const BoardTag& before = board.tags[static_cast<std::size_t>(other)];
-    if (before.family == tag.family && before.id == tag.id) {
+    if (before.id == tag.id && before.family == tag.family) {
       return BoardFault{
           Part::kTag, index, "id",
           "the id " + std::to_string(tag.id) + " of " + tag.family +
               " is on this board a second time; a detector cannot distinguish the two"};
     }
+    // Boards have up to 1000 tags: most pairs are farther apart than their diagonals allow.
+    const double reach_m = std::numbers::sqrt2 * 0.5 * (tag.edge_m + before.edge_m);
+    const Eigen::Vector2d apart = tag.center_in_board_m - before.center_in_board_m;
+    if (apart.squaredNorm() > reach_m * reach_m) continue;
     if (Overlap(quad, TagCorners(before))) {
       return BoardFault{
           Part::kTag, index, "center_in_board_m",

@@ -70,6 +70,7 @@ void BindCheck(py::module_& module) {
       .def_property_readonly(
           "state", [](const C& c) { return std::string(ToString(c.state)); },
           "\"still valid\", \"moved\" or \"cannot tell\".")
+      .def_readonly("is_certain", &C::is_certain, "The pose has changed, by however little.")
       .def_readonly("reason", &C::reason, "Why, in one sentence.")
       .def_property_readonly(
           "change", [](const C& c) { return ArrayOf(std::span<const double>(c.change.data(), 6)); },

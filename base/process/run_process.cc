@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <functional>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -49,12 +50,14 @@ class MemoryFile {
     return lseek(fd_, 0, SEEK_SET) == 0;
   }
 
-  // None if it cannot be read or has more bytes.
-  std::optional<std::string> Content(std::size_t max_bytes) const {
+  std::size_t size() const {
     struct stat status {};
-    if (fstat(fd_, &status) != 0) return std::nullopt;
-    std::string text(static_cast<std::size_t>(status.st_size), '\0');
-    if (text.size() > max_bytes) return std::nullopt;
+    return fstat(fd_, &status) == 0 ? static_cast<std::size_t>(status.st_size) : 0;
+  }
+
+  // None if it cannot be read.
+  std::optional<std::string> Content() const {
+    std::string text(size(), '\0');
     for (std::size_t done = 0; done < text.size();) {
       const ssize_t got =
           pread(fd_, text.data() + done, text.size() - done, static_cast<off_t>(done));
@@ -86,8 +89,10 @@ int Spawn(std::vector<std::string> arguments, const MemoryFile& in, const Memory
   return error;
 }
 
-// The status of the ended program; none at the timeout, after which the program is dead too.
-std::optional<int> WaitFor(pid_t pid, std::chrono::milliseconds timeout) {
+// The status of the ended program; none at the timeout, or where it writes too much: then the
+// program is dead too. What it writes is in memory, so it is looked at while it runs.
+std::optional<int> WaitFor(pid_t pid, std::chrono::milliseconds timeout,
+                           const std::function<bool()>& writes_too_much) {
   const auto end = std::chrono::steady_clock::now() + timeout;
   std::chrono::milliseconds pause{1};
   int status = 0;
@@ -95,9 +100,9 @@ std::optional<int> WaitFor(pid_t pid, std::chrono::milliseconds timeout) {
     const pid_t ended = waitpid(pid, &status, WNOHANG);
     if (ended == pid) return status;
     if (ended < 0 && errno != EINTR) return std::nullopt;
-    if (std::chrono::steady_clock::now() > end) break;
+    if (std::chrono::steady_clock::now() > end || writes_too_much()) break;
     std::this_thread::sleep_for(pause);
-    pause = std::min(2 * pause, std::chrono::milliseconds(20));
+    pause = std::min(2 * pause, std::chrono::milliseconds(5));
   }
   kill(pid, SIGKILL);
   while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
@@ -120,18 +125,22 @@ Expected<ProcessEnd> RunProcess(const std::vector<std::string>& arguments,
   if (const int error = Spawn(arguments, in, out, err, pid); error != 0) {
     return SystemFailure(program, "cannot be started", error);
   }
-  const std::optional<int> status = WaitFor(pid, options.timeout);
+  const auto writes_too_much = [&] {
+    return out.size() > options.max_bytes || err.size() > options.max_bytes;
+  };
+  const std::optional<int> status = WaitFor(pid, options.timeout, writes_too_much);
+  if (writes_too_much()) {
+    return MakeError(ErrorCode::kIo,
+                     fmt::format("{}: it wrote more than {} bytes", program, options.max_bytes));
+  }
   if (!status) {
     return MakeError(ErrorCode::kIo,
                      fmt::format("{}: it was stopped after {} s without an end", program,
                                  std::chrono::duration<double>(options.timeout).count()));
   }
-  std::optional<std::string> out_text = out.Content(options.max_bytes);
-  std::optional<std::string> err_text = err.Content(options.max_bytes);
-  if (!out_text || !err_text) {
-    return MakeError(ErrorCode::kIo,
-                     fmt::format("{}: it wrote more than {} bytes", program, options.max_bytes));
-  }
+  std::optional<std::string> out_text = out.Content();
+  std::optional<std::string> err_text = err.Content();
+  if (!out_text || !err_text) return SystemFailure(program, "cannot read what it wrote", errno);
   return ProcessEnd{
       .exit_code = WIFEXITED(*status) ? WEXITSTATUS(*status) : 128 + WTERMSIG(*status),
       .out = std::move(*out_text),

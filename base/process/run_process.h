@@ -27,7 +27,7 @@ struct ProcessEnd {
 /// first is the program, reach it as they are. Memory: input and outputs, held in memory twice.
 ///
 /// Errors: kMissingData if there is no such program, kIo if it cannot be started, runs longer than
-/// the timeout (it is then killed) or writes more than `max_bytes`. A program that fails is no
+/// the timeout or writes more than `max_bytes` (it is then killed). A program that fails is no
 /// error here: see `exit_code`.
 Expected<ProcessEnd> RunProcess(const std::vector<std::string>& arguments,
                                 const ProcessOptions& options = {});

@@ -92,7 +92,8 @@ RigResultPair PairOf(const RigFile& rig, const RigEstimate& estimate, const Sens
   return pair;
 }
 
-std::vector<RigResultPair> PairsOf(const RigFile& rig, const RigEstimate& estimate) {
+std::vector<RigResultPair> PairsOf(const RigFile& rig, const RigEstimate& estimate,
+                                   const ProgressCallback& progress) {
   std::vector<SensorPair> connected;
   for (std::size_t a = 0; a < rig.problem.sensors.size(); ++a) {
     for (std::size_t b = a + 1; b < rig.problem.sensors.size(); ++b) {
@@ -100,19 +101,24 @@ std::vector<RigResultPair> PairsOf(const RigFile& rig, const RigEstimate& estima
     }
   }
   std::vector<RigResultPair> pairs(connected.size());
-  tbb::parallel_for(std::size_t{0}, connected.size(),
-                    [&](std::size_t i) { pairs[i] = PairOf(rig, estimate, connected[i]); });
+  ProgressCounter counter(progress, "pairs of sensors", connected.size());
+  tbb::parallel_for(std::size_t{0}, connected.size(), [&](std::size_t i) {
+    pairs[i] = PairOf(rig, estimate, connected[i]);
+    counter.Step();
+  });
+  counter.Finish();
   return pairs;
 }
 
 }  // namespace
 
-Expected<RigResult> CalibrateRig(const RigFile& rig) {
-  SEXTANT_ASSIGN_OR_RETURN(const RigEstimate estimate, SolveRig(rig.problem, {.root = rig.root}));
+Expected<RigResult> CalibrateRig(const RigFile& rig, const ProgressCallback& progress) {
+  SEXTANT_ASSIGN_OR_RETURN(const RigEstimate estimate,
+                           SolveRig(rig.problem, {.root = rig.root, .progress = progress}));
   return RigResult{.version = std::string(Version()),
                    .root = rig.problem.sensors[rig.root].name,
                    .sensors = SensorsOf(rig, estimate),
-                   .pairs = PairsOf(rig, estimate),
+                   .pairs = PairsOf(rig, estimate, progress),
                    .views = ViewsOf(rig, estimate),
                    .numbers = NumbersOf(rig, estimate),
                    .unconnected = estimate.unconnected,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "geometry/rigid3d.h"
 #include "io/problems/rig_yaml.h"
 #include "io/results/rig_result.h"
@@ -12,8 +13,9 @@ namespace sextant {
 
 /// Solves a rig, and every pair of its sensors alone as a check (the loop test): each pair's own
 /// answer against that of all sensors. Runs on all cores; the same input gives the same result on
-/// any number of them. Errors: those of SolveRig.
-Expected<RigResult> CalibrateRig(const RigFile& rig);
+/// any number of them. Progress: the stage of SolveRig, then "pairs of sensors". Errors: those of
+/// SolveRig.
+Expected<RigResult> CalibrateRig(const RigFile& rig, const ProgressCallback& progress = {});
 
 /// A LiDAR and the cameras of rts.txt of the original package (io/problems/transform_list.h), each
 /// of which has cam_from_lidar: "lidar", "camera_1", "camera_2" and so on, without uncertainty.

@@ -65,25 +65,51 @@ struct EdgeScore {
   Eigen::Vector2d pixel = Eigen::Vector2d::Constant(-1.0);
 };
 
-EdgeScore ScoreEdge(const ScenePair& pair, int level, const Eigen::Matrix3d& rotation,
-                    const Eigen::Vector3d& translation, const ScanEdge& edge) {
+// A model with the rotation as a matrix.
+struct EdgeProjector {
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d translation;
+  double focal_factor;
+  Eigen::Vector2d centre_moved;
+
+  explicit EdgeProjector(const SceneModel& model)
+      : rotation(model.cam_from_lidar.rotation.toRotationMatrix()),
+        translation(model.cam_from_lidar.translation),
+        focal_factor(std::exp(model.intrinsics(0))),
+        centre_moved(model.intrinsics.tail<2>()) {}
+};
+
+EdgeScore ScoreEdge(const ScenePair& pair, int level, const EdgeProjector& model,
+                    const ScanEdge& edge) {
   EdgeScore result;
-  const Eigen::Vector3d turned = rotation * edge.point;
-  const Eigen::Vector3d in_cam = turned + translation;
+  const Eigen::Vector3d turned = model.rotation * edge.point;
+  const Eigen::Vector3d in_cam = turned + model.translation;
   if (in_cam.norm() < kMinDepth_m) return result;
   const auto projected = ProjectWithJacobian(pair.camera, in_cam);
   if (!projected) return result;
-  const Eigen::Vector2d normal = projected->pixel_by_point * (rotation * edge.across);
-  const auto field = pair.fields.At(level, projected->pixel, normal);
+  const double focal_px = pair.camera.fx_px;
+  const Eigen::Vector2d centre(pair.camera.cx_px, pair.camera.cy_px);
+  const Eigen::Vector2d from_centre = model.focal_factor * (projected->pixel - centre);
+  const Eigen::Vector2d pixel = centre + from_centre + focal_px * model.centre_moved;
+  const Eigen::Vector2d normal = projected->pixel_by_point * (model.rotation * edge.across);
+  const auto field = pair.fields.At(level, pixel, normal);
   if (!field) return result;
-  result.pixel = projected->pixel;
-  const double weight = WeightOf(edge, level, pair.camera.fx_px, pair.fields.Sigma_px(level)) /
+  result.pixel = pixel;
+  const double weight = WeightOf(edge, level, focal_px, pair.fields.Sigma_px(level)) /
                         std::sqrt(static_cast<double>(pair.edges.size()));
+  const Eigen::Vector2d by_pixel = weight * field->gradient;
   const Eigen::Vector3d by_point =
-      weight * (projected->pixel_by_point.transpose() * field->gradient);
+      model.focal_factor * (projected->pixel_by_point.transpose() * by_pixel);
   result.score.value = weight * field->value;
-  result.score.gradient << turned.cross(by_point), by_point;
+  result.score.gradient << turned.cross(by_point), by_point, by_pixel.dot(from_centre),
+      focal_px * by_pixel;
   return result;
+}
+
+// -1 outside of the image.
+int ColumnOf(const Camera& camera, const Eigen::Vector2d& pixel) {
+  if (pixel.x() < 0.0) return -1;
+  return std::clamp(static_cast<int>(kColumns * pixel.x() / camera.width_px), 0, kColumns - 1);
 }
 
 }  // namespace
@@ -101,14 +127,19 @@ Expected<ScenePair> MakeScenePair(const cv::Mat& grey, const PointCloud& scan, C
                    .thumbnail = ThumbnailOf(grey)};
 }
 
-SceneScore ScoreScenes(std::span<const ScenePair> pairs, int level, const Rigid3d& cam_from_lidar,
+SceneModel Perturb(const SceneModel& model, const Vector9d& delta) {
+  return {.cam_from_lidar = Perturb(model.cam_from_lidar, Vector6d(delta.head<6>())),
+          .intrinsics = model.intrinsics + delta.tail<3>()};
+}
+
+SceneScore ScoreScenes(std::span<const ScenePair> pairs, int level, const SceneModel& model,
                        std::size_t stride) {
-  const Eigen::Matrix3d rotation = cam_from_lidar.rotation.toRotationMatrix();
+  const EdgeProjector projector(model);
   std::vector<SceneScore> scores(pairs.size());
   tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
     const std::vector<ScanEdge>& edges = pairs[i].edges;
     for (std::size_t k = 0; k < edges.size(); k += stride) {
-      scores[i] += ScoreEdge(pairs[i], level, rotation, cam_from_lidar.translation, edges[k]).score;
+      scores[i] += ScoreEdge(pairs[i], level, projector, edges[k]).score;
     }
   });
   SceneScore sum;
@@ -126,17 +157,16 @@ int DistinctScenes(std::span<const ScenePair> pairs) {
 }
 
 std::vector<SceneScore> ScoreTiles(std::span<const ScenePair> pairs, int level,
-                                   const Rigid3d& cam_from_lidar) {
-  const Eigen::Matrix3d rotation = cam_from_lidar.rotation.toRotationMatrix();
+                                   const SceneModel& model) {
+  const EdgeProjector projector(model);
   std::vector<SceneScore> tiles(pairs.size() * kColumns * kRows);
   const std::vector<std::size_t> scenes = SceneOf(pairs);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Camera& camera = pairs[i].camera;
     for (const ScanEdge& edge : pairs[i].edges) {
-      const EdgeScore one = ScoreEdge(pairs[i], level, rotation, cam_from_lidar.translation, edge);
-      if (one.pixel.x() < 0.0) continue;
-      const int column =
-          std::clamp(static_cast<int>(kColumns * one.pixel.x() / camera.width_px), 0, kColumns - 1);
+      const EdgeScore one = ScoreEdge(pairs[i], level, projector, edge);
+      const int column = ColumnOf(camera, one.pixel);
+      if (column < 0) continue;
       const int row =
           std::clamp(static_cast<int>(kRows * one.pixel.y() / camera.height_px), 0, kRows - 1);
       tiles[scenes[i] * kColumns * kRows + static_cast<std::size_t>(row * kColumns + column)] +=
@@ -144,6 +174,31 @@ std::vector<SceneScore> ScoreTiles(std::span<const ScenePair> pairs, int level,
     }
   }
   return tiles;
+}
+
+std::array<std::vector<ScenePair>, 2> HalvesOf(std::span<const ScenePair> pairs,
+                                               const Rigid3d& cam_from_lidar) {
+  std::array<std::vector<ScenePair>, 2> halves;
+  const std::vector<std::size_t> scenes = SceneOf(pairs);
+  std::vector<std::size_t> half_of(pairs.size(), 0);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    half_of[i] = scenes[i] == i ? count++ % 2 : half_of[scenes[i]];
+  }
+  if (count > 1) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) halves[half_of[i]].push_back(pairs[i]);
+    return halves;
+  }
+  for (std::size_t half = 0; half < 2; ++half) {
+    for (const ScenePair& pair : pairs) {
+      ScenePair& kept = halves[half].emplace_back(pair);
+      std::erase_if(kept.edges, [&](const ScanEdge& edge) {
+        const auto pixel = Project(pair.camera, cam_from_lidar * edge.point);
+        return !pixel || ColumnOf(pair.camera, *pixel) % 2 != static_cast<int>(half);
+      });
+    }
+  }
+  return halves;
 }
 
 int EdgesInView(std::span<const ScenePair> pairs, const Rigid3d& cam_from_lidar) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <opencv2/core/mat.hpp>
 #include <span>
 #include <vector>
@@ -29,10 +31,23 @@ struct ScenePair {
 Expected<ScenePair> MakeScenePair(const cv::Mat& grey, const PointCloud& scan, Camera camera,
                                   const Rigid3d& cam_from_lidar);
 
-/// How well the edges coincide, and its derivative by the perturbation of the pose.
+using Vector9d = Eigen::Matrix<double, 9, 1>;
+
+/// A pose, and by how much the stated intrinsics are off.
+struct SceneModel {
+  Rigid3d cam_from_lidar;
+  /// (s, x, y): the focal lengths are exp(s) times the stated ones, and the principal point is
+  /// moved by x and y stated focal lengths to the right and down.
+  Eigen::Vector3d intrinsics = Eigen::Vector3d::Zero();
+};
+
+/// The model perturbed by (dphi [rad], dt [m], dintrinsics).
+SceneModel Perturb(const SceneModel& model, const Vector9d& delta);
+
+/// How well the edges coincide, and its derivative by the perturbation of the model.
 struct SceneScore {
   double value = 0.0;
-  Vector6d gradient = Vector6d::Zero();
+  Vector9d gradient = Vector9d::Zero();
 
   SceneScore& operator+=(const SceneScore& other) {
     value += other.value;
@@ -46,13 +61,18 @@ struct SceneScore {
 /// the wider the gap between the two beams is compared with the blur. An edge outside of the image
 /// counts 0. `stride`: only every so many edges are used. The same bits on any number of threads.
 /// Time: about 0.2 us for each edge.
-SceneScore ScoreScenes(std::span<const ScenePair> pairs, int level, const Rigid3d& cam_from_lidar,
+SceneScore ScoreScenes(std::span<const ScenePair> pairs, int level, const SceneModel& model,
                        std::size_t stride = 1);
 
 /// The same, separately for 6 x 2 tiles of the images. Pairs of the same scene, as a sensor at rest
 /// records them, share their tiles: their errors are the same and do not average out.
 std::vector<SceneScore> ScoreTiles(std::span<const ScenePair> pairs, int level,
-                                   const Rigid3d& cam_from_lidar);
+                                   const SceneModel& model);
+
+/// Two halves that share no scene; where all pairs show one scene, its edges left and right of each
+/// other in turns, in six columns of the images.
+std::array<std::vector<ScenePair>, 2> HalvesOf(std::span<const ScenePair> pairs,
+                                               const Rigid3d& cam_from_lidar);
 
 /// The number of scenes that differ, by their thumbnails.
 int DistinctScenes(std::span<const ScenePair> pairs);

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/scene/scene_search.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "base/units.h"
+#include "calibrate/scene/scene_climb.h"
 #include "geometry/symmetric.h"
 
 namespace sextant {
 namespace {
 
-constexpr double kTypicalDepth_m = 8.0;  // Turns a rotation into a translation of like effect.
 constexpr double kGridStep_rad = 0.5 * kRadPerDeg;
 constexpr int kGridHalf = 4;
 constexpr int kGridLevel = 2;
@@ -20,125 +23,62 @@ constexpr std::size_t kStarts = 12;
 constexpr int kComparing = 1;  // The level at which optima are compared.
 constexpr double kFloorRotation_rad = 0.05 * kRadPerDeg;
 constexpr double kFloorTranslation_m = 0.012;
-
-// The scenes with a weak prior around the start: it holds directions that they leave open.
-struct Objective {
-  std::span<const ScenePair> pairs;
-  Rigid3d start;
-  std::size_t stride = 1;  // Of the edges, at the coarse levels.
-
-  SceneScore At(int level, const Rigid3d& pose) const {
-    constexpr double kWeight = 0.15;
-    constexpr double kRotation_rad = 2.0 * kRadPerDeg;
-    constexpr double kTranslation_m = 0.1;
-    SceneScore score = ScoreScenes(pairs, level, pose, level > 0 ? stride : 1);
-    Vector6d precision;
-    precision << Eigen::Vector3d::Constant(kWeight / (kRotation_rad * kRotation_rad)),
-        Eigen::Vector3d::Constant(kWeight / (kTranslation_m * kTranslation_m));
-    const Vector6d moved = PoseDifference(pose, start);
-    score.value -= 0.5 * moved.dot(precision.cwiseProduct(moved));
-    score.gradient -= precision.cwiseProduct(moved);
-    return score;
-  }
-  const ScenePair& front() const { return pairs[0]; }
-};
+constexpr double kFloorIntrinsics = 0.002;
 
 struct Climbed {
   Rigid3d pose;
   double score = 0.0;
 };
 
-// A step of one blur of the level at typical depth, per axis.
-Vector6d ScaleOf(const Objective& scenes, int level) {
-  const double angle = scenes.front().fields.Sigma_px(level) / scenes.front().camera.fx_px;
-  Vector6d scale;
-  scale << angle, angle, angle, kTypicalDepth_m * Eigen::Vector3d::Constant(angle);
-  return scale;
+Climbed ClimbFrom(const SceneObjective& scenes, const Rigid3d& pose, int from_level) {
+  const SceneModel model = Climb(scenes, {.cam_from_lidar = pose}, from_level, kComparing);
+  return {model.cam_from_lidar, scenes.At(kComparing, model).value};
 }
 
-// Minus the second derivative of the score in steps of `scale`, by central differences of
-// gradients.
-Matrix6d CurvatureOf(const Objective& scenes, int level, const Rigid3d& pose,
-                     const Vector6d& scale) {
-  constexpr double kStep = 0.7;
-  Matrix6d curvature;
-  for (int i = 0; i < 6; ++i) {
-    const Vector6d delta = kStep * scale(i) * Vector6d::Unit(i);
-    const Vector6d ahead = scenes.At(level, Perturb(pose, delta)).gradient;
-    const Vector6d back = scenes.At(level, Perturb(pose, -delta)).gradient;
-    curvature.col(i) = (back - ahead).cwiseProduct(scale) / (2.0 * kStep);
-  }
-  return 0.5 * (curvature + curvature.transpose());
-}
-
-// The inverse with eigenvalues of at least `least` times the largest.
-Matrix6d BoundedInverse(const Matrix6d& curvature, double least) {
-  const SymmetricEigen<6> eigen = EigenOf<6>(curvature);
-  const double top = std::max(eigen.values.cwiseAbs().maxCoeff(), 1e-12);
-  const Vector6d inverse = eigen.values.cwiseMax(least * top).cwiseInverse();
-  return eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
-}
-
-// Newton's method with bounded steps; a step must raise the score.
-Rigid3d ClimbLevel(const Objective& scenes, int level, Rigid3d pose) {
-  constexpr int kMaxSteps = 6;
-  constexpr double kMaxStep = 1.5;
-  constexpr double kDone = 0.02;
-  const Vector6d scale = ScaleOf(scenes, level);
-  SceneScore here = scenes.At(level, pose);
-  for (int i = 0; i < kMaxSteps; ++i) {
-    const Matrix6d inverse = BoundedInverse(CurvatureOf(scenes, level, pose, scale), 0.02);
-    Vector6d step = inverse * here.gradient.cwiseProduct(scale);
-    if (step.norm() > kMaxStep) step *= kMaxStep / step.norm();
-    bool raised = false;
-    for (int halvings = 0; halvings < 4 && !raised; ++halvings) {
-      const Rigid3d next = Perturb(pose, step.cwiseProduct(scale));
-      const SceneScore there = scenes.At(level, next);
-      raised = there.value > here.value;
-      if (raised) {
-        pose = next;
-        here = there;
-      } else {
-        step *= 0.5;
-      }
-    }
-    if (!raised || step.norm() < kDone) break;
-  }
-  return pose;
-}
-
-Climbed Climb(const Objective& scenes, Rigid3d pose, int from_level, int to_level) {
-  for (int level = from_level; level >= to_level; --level) pose = ClimbLevel(scenes, level, pose);
-  return {pose, scenes.At(kComparing, pose).value};
-}
-
-// The best cells of a grid of rotations, none a neighbour of another.
-std::vector<Rigid3d> GridStarts(const Objective& scenes) {
-  std::vector<Climbed> cells;
+// The cells of a grid of rotations around the start.
+std::vector<Rigid3d> GridCells(const Rigid3d& start) {
+  std::vector<Rigid3d> cells;
   for (int x = -kGridHalf; x <= kGridHalf; ++x) {
     for (int y = -kGridHalf; y <= kGridHalf; ++y) {
       for (int z = -kGridHalf; z <= kGridHalf; ++z) {
         Vector6d delta = Vector6d::Zero();
         delta.head<3>() = kGridStep_rad * Eigen::Vector3d(x, y, z);
-        const Rigid3d pose = Perturb(scenes.start, delta);
-        cells.push_back({pose, scenes.At(kGridLevel, pose).value});
+        cells.push_back(Perturb(start, delta));
       }
     }
   }
+  return cells;
+}
+
+// The best cells of the grid, none a neighbour of another; the start is the first.
+std::vector<Rigid3d> GridStarts(const SceneObjective& scenes, std::size_t count) {
+  const Rigid3d& start = scenes.start.cam_from_lidar;
+  const std::vector<Rigid3d> grid = GridCells(start);
+  std::vector<Climbed> cells(grid.size());
+  tbb::parallel_for(std::size_t{0}, grid.size(), [&](std::size_t i) {
+    cells[i] = {grid[i], scenes.At(kGridLevel, {.cam_from_lidar = grid[i]}).value};
+  });
   std::ranges::stable_sort(cells, std::ranges::greater{}, &Climbed::score);
-  std::vector<Rigid3d> starts = {scenes.start};
+  std::vector<Rigid3d> starts = {start};
   for (const Climbed& cell : cells) {
     const bool is_new = std::ranges::none_of(starts, [&](const Rigid3d& other) {
       return DistanceBetween(cell.pose, other).rotation_rad < 1.5 * kGridStep_rad;
     });
     if (is_new) starts.push_back(cell.pose);
-    if (starts.size() > kStarts) break;
+    if (starts.size() > count) break;
   }
   return starts;
 }
 
 // What edges of the same scenes score where nothing coincides but by chance.
-void MeasureChance(std::span<const ScenePair> pairs, SceneFit& fit) {
+struct Chance {
+  double mean = 0.0;
+  double sigma = 0.0;
+
+  double Contrast(double score) const { return (score - mean) / sigma; }
+};
+
+Chance ChanceAround(std::span<const ScenePair> pairs, const Rigid3d& pose) {
   double sum = 0.0;
   double squares = 0.0;
   int count = 0;
@@ -151,22 +91,21 @@ void MeasureChance(std::span<const ScenePair> pairs, SceneFit& fit) {
     Vector6d delta = Vector6d::Zero();
     delta.head<3>() =
         angle * Eigen::Vector3d(level * std::cos(turn), level * std::sin(turn), height);
-    const double score = ScoreScenes(pairs, kComparing, Perturb(fit.cam_from_lidar, delta)).value;
+    const double score =
+        ScoreScenes(pairs, kComparing, {.cam_from_lidar = Perturb(pose, delta)}).value;
     sum += score;
     squares += score * score;
     ++count;
   }
-  fit.chance_mean = sum / count;
-  fit.chance_sigma =
-      std::sqrt(std::max(1e-12, squares / count - fit.chance_mean * fit.chance_mean));
+  const double mean = sum / count;
+  return {mean, std::sqrt(std::max(1e-12, squares / count - mean * mean))};
 }
 
 // Coarse levels need no more edges than determine the pose.
-std::size_t StrideOf(std::span<const ScenePair> pairs) {
-  constexpr std::size_t kEnough = 3000;
+std::size_t StrideOf(std::span<const ScenePair> pairs, std::size_t enough) {
   std::size_t edges = 0;
   for (const ScenePair& pair : pairs) edges += pair.edges.size();
-  return std::max<std::size_t>(1, edges / kEnough);
+  return std::max<std::size_t>(1, edges / enough);
 }
 
 // What optima that are as good as the best by chance add to the covariance.
@@ -187,25 +126,31 @@ Matrix6d SpreadOfRivals(std::span<const Climbed> optima, const Climbed& highest,
   return spread / weights;
 }
 
+struct TileSpread {
+  Matrix9d covariance = Matrix9d::Zero();
+  int tiles = 0;
+};
+
 // The spread of the optimum over the tiles, with the floor.
-Matrix6d SpreadOfTiles(const Objective& scenes, SceneFit& fit) {
-  const Vector6d scale = ScaleOf(scenes, 0);
-  const Matrix6d inverse = BoundedInverse(CurvatureOf(scenes, 0, fit.cam_from_lidar, scale), 1e-3);
-  Matrix6d spread = Matrix6d::Zero();
-  for (const SceneScore& tile : ScoreTiles(scenes.pairs, 0, fit.cam_from_lidar)) {
+TileSpread SpreadOfTiles(const SceneObjective& scenes, const SceneModel& model) {
+  const Vector9d scale = ScaleOf(scenes, 0);
+  const Matrix9d inverse = BoundedInverse(CurvatureOf(scenes, 0, model, scale), 1e-3);
+  Matrix9d spread = Matrix9d::Zero();
+  TileSpread result;
+  for (const SceneScore& tile : ScoreTiles(scenes.pairs, 0, model)) {
     if (tile.value == 0.0) continue;
-    const Vector6d gradient = tile.gradient.cwiseProduct(scale);
+    const Vector9d gradient = tile.gradient.cwiseProduct(scale);
     spread += gradient * gradient.transpose();
-    ++fit.tiles;
+    ++result.tiles;
   }
-  const double correction = fit.tiles > 8 ? fit.tiles / (fit.tiles - 6.0) : 4.0;
-  const Matrix6d scaled = correction * (inverse * spread * inverse);
-  Matrix6d covariance = scale.asDiagonal() * scaled * scale.asDiagonal();
-  Vector6d floor;
+  const double correction = result.tiles > 8 ? result.tiles / (result.tiles - 6.0) : 4.0;
+  const Matrix9d scaled = correction * (inverse * spread * inverse);
+  Vector9d floor;
   floor << Eigen::Vector3d::Constant(kFloorRotation_rad),
-      Eigen::Vector3d::Constant(kFloorTranslation_m);
-  covariance.diagonal() += floor.cwiseAbs2();
-  return covariance;
+      Eigen::Vector3d::Constant(kFloorTranslation_m), Eigen::Vector3d::Constant(kFloorIntrinsics);
+  result.covariance = scale.asDiagonal() * scaled * scale.asDiagonal();
+  result.covariance.diagonal() += floor.cwiseAbs2();
+  return result;
 }
 
 // The optimum nearest to the start among those that are as good as the best up to chance.
@@ -225,30 +170,97 @@ const Climbed& NearestOfBest(std::span<const Climbed> optima, const Rigid3d& sta
   return *nearest;
 }
 
+// The optimum next to the start, then those from every other one, coarse to fine.
+std::vector<Climbed> OptimaOf(const SceneObjective& scenes, const std::vector<Rigid3d>& starts,
+                              const std::function<void()>& step) {
+  std::vector<Climbed> optima(starts.size() + 1);
+  optima[0] = ClimbFrom(scenes, scenes.start.cam_from_lidar, kComparing);
+  tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
+    optima[i + 1] = ClimbFrom(scenes, starts[i], kGridLevel);
+    if (step) step();
+  });
+  return optima;
+}
+
+// The best pose of some of the scenes, by a search that knows nothing of the others.
+Rigid3d BestOf(std::span<const ScenePair> pairs, const Rigid3d& start) {
+  constexpr std::size_t kEnough = 1000;
+  constexpr std::size_t kFewStarts = 3;
+  const SceneObjective scenes{
+      .pairs = pairs, .start = {.cam_from_lidar = start}, .stride = StrideOf(pairs, kEnough)};
+  const std::vector<Climbed> optima = OptimaOf(scenes, GridStarts(scenes, kFewStarts), {});
+  const Rigid3d& best = std::ranges::max_element(optima, {}, &Climbed::score)->pose;
+  return Climb(scenes, {.cam_from_lidar = best}, 0, 0).cam_from_lidar;
+}
+
+// What the halves of the scenes show of each other.
+void CompareHalves(std::span<const ScenePair> pairs, const Rigid3d& start, SceneFit& fit) {
+  const std::array<std::vector<ScenePair>, 2> halves = HalvesOf(pairs, fit.cam_from_lidar);
+  std::array<Rigid3d, 2> poses;
+  tbb::parallel_for(std::size_t{0}, std::size_t{2},
+                    [&](std::size_t half) { poses[half] = BestOf(halves[half], start); });
+  double sum = 0.0;
+  for (std::size_t half = 0; half < 2; ++half) {
+    const Rigid3d& pose = poses[1 - half];
+    const double score = ScoreScenes(halves[half], kComparing, {.cam_from_lidar = pose}).value;
+    sum += ChanceAround(halves[half], pose).Contrast(score);
+  }
+  fit.held_out = sum / std::sqrt(2.0);
+  fit.halves_distance =
+      SquaredMahalanobis<6>(PoseDifference(poses[0], poses[1]), Matrix6d(4.0 * fit.covariance));
+}
+
+// The best pose and intrinsics from either the start or the fit, and the best intrinsics alone.
+void FitIntrinsics(SceneObjective scenes, SceneFit& fit) {
+  scenes.unknowns = SceneUnknowns::kIntrinsics;
+  const SceneModel only = Climb(scenes, scenes.start, EdgeFields::kLevels - 1, kComparing);
+  fit.only_intrinsics = only.intrinsics;
+  fit.only_intrinsics_score = scenes.At(kComparing, only).value;
+  scenes.unknowns = SceneUnknowns::kBoth;
+  const SceneModel fitted{.cam_from_lidar = fit.cam_from_lidar};
+  for (const SceneModel& from : {only, fitted}) {
+    const SceneModel model = Climb(scenes, from, EdgeFields::kLevels - 1, kComparing);
+    const double score = scenes.At(kComparing, model).value;
+    if (fit.free_score != 0.0 && score <= fit.free_score) continue;
+    fit.free = model;
+    fit.free_score = score;
+  }
+  fit.free = Climb(scenes, fit.free, 0, 0);
+  fit.free_covariance = SpreadOfTiles(scenes, fit.free).covariance;
+}
+
 }  // namespace
 
 SceneFit SearchScenes(std::span<const ScenePair> pairs, const Rigid3d& start,
                       const ProgressCallback& progress) {
-  const Objective scenes{pairs, start, StrideOf(pairs)};
-  const std::vector<Rigid3d> starts = GridStarts(scenes);
-  ProgressCounter counter(progress, "search", starts.size());
-  std::vector<Climbed> optima = {Climb(scenes, start, kComparing, kComparing)};
-  for (const Rigid3d& from : starts) {
-    optima.push_back(Climb(scenes, from, kGridLevel, kComparing));
-    counter.Step();
-  }
-  counter.Finish();
+  constexpr std::size_t kEnough = 3000;
+  const SceneObjective scenes{
+      .pairs = pairs, .start = {.cam_from_lidar = start}, .stride = StrideOf(pairs, kEnough)};
+  const std::vector<Rigid3d> starts = GridStarts(scenes, kStarts);
+  ProgressCounter counter(progress, "search", starts.size() + 2);
+  const std::vector<Climbed> optima = OptimaOf(scenes, starts, [&counter] { counter.Step(); });
   SceneFit fit;
-  fit.cam_from_lidar = std::ranges::max_element(optima, {}, &Climbed::score)->pose;
-  MeasureChance(pairs, fit);
-  const Climbed& best = NearestOfBest(optima, start, fit.chance_sigma);
-  fit.cam_from_lidar = Climb(scenes, best.pose, 0, 0).pose;
+  const Rigid3d highest = std::ranges::max_element(optima, {}, &Climbed::score)->pose;
+  const Chance chance = ChanceAround(pairs, highest);
+  fit.chance_mean = chance.mean;
+  fit.chance_sigma = chance.sigma;
+  const Climbed& best = NearestOfBest(optima, start, chance.sigma);
+  const SceneModel finest = Climb(scenes, {.cam_from_lidar = best.pose}, 0, 0);
+  fit.cam_from_lidar = finest.cam_from_lidar;
   fit.score = best.score;
-  fit.start_score = scenes.At(kComparing, start).value;
+  fit.start_score = scenes.At(kComparing, scenes.start).value;
+  fit.focal_px = pairs.front().camera.fx_px;
   fit.edges = EdgesInView(pairs, fit.cam_from_lidar);
   fit.scenes = DistinctScenes(pairs);
-  fit.own_covariance = SpreadOfTiles(scenes, fit);
-  fit.covariance = fit.own_covariance + SpreadOfRivals(optima, best, fit.chance_sigma);
+  const TileSpread spread = SpreadOfTiles(scenes, finest);
+  fit.tiles = spread.tiles;
+  fit.own_covariance = spread.covariance.topLeftCorner<6, 6>();
+  fit.covariance = fit.own_covariance + SpreadOfRivals(optima, best, chance.sigma);
+  CompareHalves(pairs, start, fit);
+  counter.Step();
+  FitIntrinsics(scenes, fit);
+  counter.Step();
+  counter.Finish();
   return fit;
 }
 

@@ -16,6 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Of one pattern; '/*/*/*/*' would list the whole disk.
+constexpr std::size_t kMaxMatches = 100'000;
+
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
 // Prefixes each number with its length, without leading zeros, so that keys compare by value.
@@ -88,6 +91,12 @@ Expected<void> AppendMatches(const fs::path& folder, const std::string& name, bo
   for (const fs::directory_iterator end; !error && it != end; it.increment(error)) {
     if (MatchesPattern(it->path().filename().string(), name)) {
       files.push_back(named ? it->path() : it->path().filename());
+    }
+    if (files.size() > kMaxMatches) {
+      return MakeError(ErrorCode::kInvalidOption,
+                       fmt::format("more than {} files match '{}'; expected a pattern that means "
+                                   "the files of one session",
+                                   kMaxMatches, PathText(folder / name)));
     }
   }
   if (!error) return {};

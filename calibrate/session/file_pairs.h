@@ -20,7 +20,8 @@ struct FilePair {
 /// The files that match a path with one or more `*` in its parts, in natural order (9 before 10). A
 /// path without `*`, or one that exists literally, gives itself. Time per file of a folder is at
 /// most the product of the lengths of its name and of the pattern, whatever the stars.
-/// Errors: kIo for a folder that cannot be read; kMissingData where no file matches.
+/// Errors: kIo for a folder that cannot be read; kMissingData where no file matches;
+/// kInvalidOption where more than 100,000 do, or that many folders on the way.
 Expected<std::vector<std::filesystem::path>> ExpandPattern(const std::filesystem::path& pattern);
 
 /// Whether a file name matches a pattern in which each `*` stands for any text.

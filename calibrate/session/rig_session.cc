@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "base/text/path_text.h"
 #include "io/blocks/pose_block.h"
 #include "io/text/text_file.h"
 #include "io/text/yaml_fields.h"
@@ -14,6 +15,8 @@ namespace sextant {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxSensors = 100;
 
 bool IsFile(const fs::path& path) {
   std::error_code error;
@@ -48,7 +51,6 @@ class RigSessionReader {
  private:
   void ReadSensors(const YamlNode& list) {
     static const std::vector<std::string> kKeys = {"name", "camera", "images", "clouds"};
-    constexpr std::size_t kMaxSensors = 100;
     if (!in_.IsSequence(list, "sensors", kMaxSensors)) return;
     for (const YamlNode& node : list.items) {
       if (!in_.IsMap(node, "sensors", kKeys)) return;
@@ -117,6 +119,12 @@ std::vector<fs::path> Numbered(const std::vector<fs::path>& images, std::size_t 
 Expected<std::optional<RigSession>> ReadSimulatedRig(const fs::path& folder) {
   SEXTANT_ASSIGN_OR_RETURN(const auto infos, ExpandPattern(folder / "*_info.yaml"));
   if (infos.size() < 2) return std::optional<RigSession>();
+  if (infos.size() > kMaxSensors) {
+    return MakeError(ErrorCode::kMissingData,
+                     fmt::format("the folder '{}' has {} files *_info.yaml, expected at most {} "
+                                 "cameras",
+                                 PathText(folder), infos.size(), kMaxSensors));
+  }
   RigSession session{.boards = folder / "boards.yaml"};
   SessionSensor lidar{.name = "lidar"};
   SEXTANT_ASSIGN_OR_RETURN(lidar.files, ExpandPattern(folder / "scan_*.pcd"));

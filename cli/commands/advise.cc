@@ -12,6 +12,7 @@
 #include "calibrate/trust/information.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
+#include "cli/progress.h"
 #include "eval/metrics/bounds.h"
 #include "io/output/standard_output.h"
 #include "report/advice_picture.h"
@@ -119,6 +120,28 @@ ResultView AsView(const CalibrationResult& result, const Advice& advice) {
   return view;
 }
 
+// Places one after the other. `text` describes those that were found, also before an error.
+Expected<std::vector<BoardProposal>> Propose(const CalibrationResult& result,
+                                             const SensorPair& sensors, int count,
+                                             std::string& text) {
+  Progress progress;
+  ProgressCounter counter(progress.Callback(), "places", static_cast<std::size_t>(count));
+  CalibrationResult growing = result;
+  std::vector<BoardProposal> proposals;
+  for (int i = 0; i < count; ++i) {
+    SEXTANT_ASSIGN_OR_RETURN(const Advice advice, Advise(growing, sensors));
+    if (i == 0) text += ViewsText(result, advice);
+    text += fmt::format("{}\n  {} rings would cross it; predicted 1 sigma then {}\n",
+                        advice.proposal.sentence, advice.proposal.rings,
+                        SigmaText(advice.proposal.covariance));
+    proposals.push_back(advice.proposal);
+    growing.views.push_back(AsView(growing, advice));
+    counter.Step();
+  }
+  counter.Finish();
+  return proposals;
+}
+
 Expected<void> CheckPicture(const std::string& path) {
   if (path.empty()) return {};
   return CheckImageName(path);
@@ -139,21 +162,13 @@ int Run(const AdviseCommandOptions& options) {
   }
   const Expected<SensorPair> sensors = SensorsOf(options, *result);
   if (!sensors) return Refuse("advise", sensors.error());
-  Print("{}", CautionAbout(*result));
-  CalibrationResult growing = *result;
-  std::vector<BoardProposal> proposals;
-  for (int i = 0; i < options.count; ++i) {
-    const Expected<Advice> advice = Advise(growing, *sensors);
-    if (!advice) return Refuse("advise", advice.error(), kNoAnswer);
-    if (i == 0) Print("{}", ViewsText(*result, *advice));
-    Print("{}\n  {} rings would cross it; predicted 1 sigma then {}\n", advice->proposal.sentence,
-          advice->proposal.rings, SigmaText(advice->proposal.covariance));
-    proposals.push_back(advice->proposal);
-    growing.views.push_back(AsView(growing, *advice));
-  }
+  std::string text;
+  const auto proposals = Propose(*result, *sensors, options.count, text);
+  Print("{}{}", CautionAbout(*result), text);
+  if (!proposals) return Refuse("advise", proposals.error(), kNoAnswer);
   if (options.picture_path.empty()) return kAnswered;
   const Expected<void> written =
-      WriteImage(DrawAdvice(*result, *sensors, proposals), options.picture_path);
+      WriteImage(DrawAdvice(*result, *sensors, *proposals), options.picture_path);
   if (!written) return Refuse("advise", written.error());
   Print("{}", WroteLine(options.picture_path, "the place from above and in the camera's image"));
   return kAnswered;

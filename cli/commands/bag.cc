@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/recordings.h"
+#include "io/output/standard_output.h"
 
 namespace sextant::cli {
 namespace {

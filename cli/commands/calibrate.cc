@@ -19,6 +19,7 @@
 #include "cli/rig_output.h"
 #include "io/boards/board_file.h"
 #include "io/output/output_file.h"
+#include "io/output/output_target.h"
 #include "io/output/standard_output.h"
 #include "io/problems/problem_yaml.h"
 #include "io/results/calibration_result.h"
@@ -72,7 +73,7 @@ void Declare(CalibrateCommandOptions& options, Arguments& arguments) {
   DeclareSources(options, arguments);
   DeclareCalibrate(options.how, arguments);
   arguments.Add("--out", options.out_path, "Result file (YAML)",
-                {.shows_default = true, .writes = Writes::kFile});
+                {.shows_default = true, .writes = Writes::kCheckedByCommand});
   arguments.Add("--json", options.json_path, "Write the result as JSON too; - for standard output",
                 {.writes = Writes::kFileOrStandardOutput});
   arguments.Add("--problem", options.problem_path,
@@ -151,7 +152,7 @@ Expected<RigResult> CalibrateSensors(const CalibrateCommandOptions& options,
   if (!options.problem_path.empty()) {
     SEXTANT_RETURN_IF_ERROR(WriteFileAtomically(options.problem_path, FormatRigFile(observed.rig)));
   }
-  Expected<RigResult> result = CalibrateRig(observed.rig);
+  Expected<RigResult> result = CalibrateRig(observed.rig, progress.Callback());
   for (const std::string& note : observed.notes) {
     if (!result) result.error().AddLine(note);
     if (result) result->warnings.push_back(note);
@@ -162,6 +163,12 @@ Expected<RigResult> CalibrateSensors(const CalibrateCommandOptions& options,
 // Without a path of its own, the result of a rig is no result.yaml.
 std::string RigPath(const std::string& out_path) {
   return out_path == CalibrateCommandOptions{}.out_path ? "rig.json" : out_path;
+}
+
+Expected<void> ClaimResult(const std::string& path) {
+  const Expected<void> ok = ClaimOutput(path);
+  if (ok) return {};
+  return MakeError(ok.error().code, "--out: " + ok.error().message);
 }
 
 Expected<Calibration> CalibrateWithProgress(const CalibrateCommandOptions& options) {
@@ -191,10 +198,13 @@ int Run(const CalibrateCommandOptions& options) {
     const auto rig = ReadRigSession(options.session);
     if (!rig) return Refuse("calibrate", rig.error());
     if (*rig) {
+      const std::string path = RigPath(options.out_path);
+      if (const auto ok = ClaimResult(path); !ok) return Refuse("calibrate", ok.error());
       return DeliverRig("calibrate", CalibrateSensors(options, **rig),
-                        {RigPath(options.out_path), options.json_path, options.report_path});
+                        {path, options.json_path, options.report_path});
     }
   }
+  if (const auto ok = ClaimResult(options.out_path); !ok) return Refuse("calibrate", ok.error());
   const Expected<Calibration> calibration = CalibrateWithProgress(options);
   if (!calibration) return Refuse("calibrate", calibration.error());
   if (Expected<void> ok = WriteFiles(options, *calibration); !ok) {

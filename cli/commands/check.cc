@@ -38,8 +38,8 @@ void Declare(CheckOptions& options, Arguments& arguments) {
       "A board is in view: the pose is compared with the calibration by it, which is more\n"
       "accurate");
   arguments.Add("--detect", options.limits,
-                "MM,DEG: valid only if a change of this size would have been seen; a smaller one\n"
-                "that is certain is \"moved\" as well",
+                "MM,DEG: valid only if a change of this size would have been seen; a certain\n"
+                "change that is smaller is stated, but still valid",
                 {.shows_default = true,
                  .range = {{1e-3, 1e6}},
                  .min_values = 2,
@@ -63,7 +63,12 @@ Expected<PoseCheck> CheckByBoard(const CheckOptions& options, const SceneInput& 
   Session session = input.session;
   session.boards = options.boards_path;
   session.camera = options.input.camera_path;
-  CalibrateOptions settings{.camera = input.given.camera, .progress = progress};
+  // A change is judged by its own covariance, not by the accuracy that a calibration has to have.
+  const CheckLimits limits = LimitsOf(options);
+  CalibrateOptions settings{
+      .camera = input.given.camera,
+      .need = {.translation_m = limits.translation_m, .rotation_rad = limits.rotation_rad},
+      .progress = progress};
   settings.match.initial = input.given.cam_from_lidar;
   SEXTANT_ASSIGN_OR_RETURN(const Calibration calibration, Calibrate(session, settings));
   if (!calibration.result) return PoseCheck{.reason = calibration.result.error().message};
@@ -73,7 +78,7 @@ Expected<PoseCheck> CheckByBoard(const CheckOptions& options, const SceneInput& 
                          "the calibration by the board is not usable: " + result.verdict->reason};
   }
   return JudgeChange(PoseDifference(result.cam_from_lidar, input.given.cam_from_lidar),
-                     *result.covariance, LimitsOf(options), static_cast<int>(result.views.size()),
+                     *result.covariance, limits, static_cast<int>(result.views.size()),
                      "views of the board");
 }
 
@@ -103,7 +108,10 @@ std::string JsonOf(const PoseCheck& check, const SceneInput& input, const CheckO
   const CheckLimits limits = LimitsOf(options);
   CheckResult result{.version = std::string(Version()),
                      .pose_path = options.input.pose_path,
+                     .read_as = std::string(ToString(input.direction)),
+                     .read_by = input.direction_basis,
                      .state = std::string(ToString(check.state)),
+                     .is_certain = check.is_certain,
                      .reason = check.reason,
                      .cam_from_lidar = input.given.cam_from_lidar,
                      .camera = input.given.camera,
@@ -118,19 +126,23 @@ std::string JsonOf(const PoseCheck& check, const SceneInput& input, const CheckO
   return FormatCheckResult(result);
 }
 
-Expected<void> AppendHistory(const std::string& path, const PoseCheck& check, std::size_t pairs) {
+Expected<void> AppendHistory(const std::string& path, const PoseCheck& check,
+                             const SceneInput& input) {
   if (path.empty()) return {};
   const std::string header =
-      "time_utc,state,pairs,x_deg,y_deg,z_deg,x_mm,y_mm,z_mm,sigma_x_deg,sigma_y_deg,sigma_z_deg,"
-      "sigma_x_mm,sigma_y_mm,sigma_z_mm\n";
+      "time_utc,state,pose_read_as,pairs,change_is_certain,x_deg,y_deg,z_deg,x_mm,y_mm,z_mm,"
+      "sigma_x_deg,sigma_y_deg,sigma_z_deg,sigma_x_mm,sigma_y_mm,sigma_z_mm\n";
   SEXTANT_ASSIGN_OR_RETURN(AppendedFile file, AppendedFile::Open(path));
   SEXTANT_ASSIGN_OR_RETURN(const std::string begin, file.ReadBeginning(header.size()));
+  SEXTANT_ASSIGN_OR_RETURN(const std::string end, file.ReadEnd(1));
   if (!begin.empty() && begin != header) {
     return MakeError(ErrorCode::kInvalidOption,
                      path + ": is no history of sextant check; expected one, or a new file");
   }
-  std::string line = begin.empty() ? header : std::string();
-  line += fmt::format("{},{},{}", NowUtc(), ToString(check.state), pairs);
+  // An earlier line that was cut stays a line of its own.
+  std::string line = begin.empty() ? header : std::string(end == "\n" ? "" : "\n");
+  line += fmt::format("{},{},{},{},{}", NowUtc(), ToString(check.state), ToString(input.direction),
+                      input.session.files.pairs.size(), check.is_certain ? "yes" : "no");
   for (const double v : InPlainUnits(check.change)) line += fmt::format(",{:.4f}", v);
   for (const double v : InPlainUnits(check.covariance.diagonal().cwiseSqrt())) {
     line += fmt::format(",{:.4f}", v);
@@ -140,19 +152,23 @@ Expected<void> AppendHistory(const std::string& path, const PoseCheck& check, st
 }
 
 int Run(const CheckOptions& options) {
+  if (!options.history_path.empty()) {
+    const Expected<void> ok = AppendedFile::Claim(options.history_path);
+    if (!ok) return Refuse("check", {ok.error().code, "--history: " + ok.error().message});
+  }
   const Expected<SceneInput> input = ReadSceneInput(options.input);
   if (!input) return Refuse("check", input.error());
   const Expected<PoseCheck> check = CheckPose(options, *input);
   if (!check) return Refuse("check", check.error());
-  const std::size_t pairs = input->session.files.pairs.size();
-  if (const Expected<void> ok = AppendHistory(options.history_path, *check, pairs); !ok) {
-    return Refuse("check", ok.error());
-  }
+  const Expected<void> noted = AppendHistory(options.history_path, *check, *input);
   const int code = check->state == PoseState::kValid   ? kAnswered
                    : check->state == PoseState::kMoved ? kMovedExit
                                                        : kUnknownExit;
-  const std::string text = fmt::format("{}: {}\n", ToString(check->state), check->reason);
-  return Deliver("check", options.json_path, text, JsonOf(*check, *input, options), code);
+  const std::string text = fmt::format("{}: {}. The pose was read as {}.\n", ToString(check->state),
+                                       check->reason, ToString(input->direction));
+  const int delivered = Deliver("check", options.json_path, text,
+                                JsonOf(*check, *input, options), code);
+  return noted ? delivered : Refuse("check", noted.error());
 }
 
 }  // namespace

@@ -62,6 +62,17 @@ Expected<std::optional<Rigid3d>> TruthOf(const CompareOptions& options,
   return truth;
 }
 
+// Each is held to every pair, and is a row of the table.
+Expected<std::vector<ImportedPose>> ImportedPosesOf(const std::string& path) {
+  constexpr std::size_t kMaxImported = 1000;
+  if (path.empty()) return std::vector<ImportedPose>();
+  SEXTANT_ASSIGN_OR_RETURN(std::vector<ImportedPose> poses, ReadImportedPoses(path));
+  if (poses.size() <= kMaxImported) return poses;
+  return MakeError(ErrorCode::kInvalidInput,
+                   fmt::format("--import: {} has {} poses, expected at most {} to compare", path,
+                               poses.size(), kMaxImported));
+}
+
 ComparisonRow RowOf(const ImportedPose& imported, const CalibrationProblem& problem,
                     const std::optional<Rigid3d>& truth) {
   ComparisonRow row{imported.solver, SolveReport{}, {}, {}};
@@ -107,8 +118,7 @@ int Run(const CompareOptions& options) {
   if (!solvers) return Refuse("compare", solvers.error());
   const Expected<std::optional<Rigid3d>> truth = TruthOf(options, *input);
   if (!truth) return Refuse("compare", truth.error());
-  Expected<std::vector<ImportedPose>> imported = std::vector<ImportedPose>();
-  if (!options.import_path.empty()) imported = ReadImportedPoses(options.import_path);
+  const Expected<std::vector<ImportedPose>> imported = ImportedPosesOf(options.import_path);
   if (!imported) return Refuse("compare", imported.error());
   Progress progress;
   std::vector<ComparisonRow> others;

@@ -11,7 +11,7 @@
 #include "io/export/export_transform.h"
 #include "io/output/output_file.h"
 #include "io/output/standard_output.h"
-#include "io/text/text_file.h"
+#include "io/poses/pose_file.h"
 
 namespace sextant::cli {
 namespace {
@@ -148,9 +148,11 @@ int RunOnRig(const ExportCommandOptions& options, const std::string& text) {
 
 int Run(const ExportCommandOptions& options) {
   if (const Expected<void> ok = CheckParent(options); !ok) return Refuse("export", ok.error());
-  const Expected<std::string> file = ReadTextFile(options.result_path);
-  if (file && IsRigResult(*file)) return RunOnRig(options, *file);
-  const Expected<CalibrationResult> result = ResultOfFile(options.result_path, options.pose_is);
+  const Expected<PoseText> file = ReadPoseText(options.result_path);
+  if (!file) return Refuse("export", file.error());
+  if (file->name.empty() && IsRigResult(file->text)) return RunOnRig(options, file->text);
+  const Expected<CalibrationResult> result =
+      ResultOfText(*file, options.result_path, options.pose_is);
   if (!result) return Refuse("export", result.error());
   if (const Expected<void> ok = CheckVerdict(options, *result); !ok) {
     return Refuse("export", ok.error(), kNotUsable);

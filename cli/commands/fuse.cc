@@ -10,6 +10,7 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/pose_argument.h"
+#include "cli/progress.h"
 #include "eval/metrics/cloud_fusion.h"
 #include "io/clouds/cloud_file.h"
 #include "io/clouds/pcd_file.h"
@@ -93,10 +94,12 @@ std::string Merged(const FuseOptions& options, const std::vector<PointCloud>& cl
 }
 
 std::string Describe(const FuseOptions& options, const std::vector<PointCloud>& clouds,
-                     const std::vector<Rigid3d>& last_from_cloud) {
+                     const std::vector<Rigid3d>& last_from_cloud, ProgressCounter& counter) {
   std::string text;
+  const ReferenceCloud last(clouds.back());
   for (std::size_t i = 0; i + 1 < clouds.size(); ++i) {
-    const CloudAgreement agreement = CompareClouds(clouds[i], last_from_cloud[i], clouds.back());
+    const CloudAgreement agreement = CompareClouds(clouds[i], last_from_cloud[i], last);
+    counter.Step();
     text += fmt::format("{}: ", options.clouds[i]);
     text += agreement.compared == 0
                 ? std::string("has no surface in common with the last cloud\n")
@@ -120,10 +123,14 @@ int Run(const FuseOptions& options) {
   if (!sensors) return Refuse("fuse", sensors.error());
   std::vector<PointCloud> clouds;
   std::vector<Rigid3d> last_from_cloud;
+  Progress progress;
+  // Each cloud is read, and each but the last one is compared with that.
+  ProgressCounter counter(progress.Callback(), "fuse", 2 * options.clouds.size());
   for (std::size_t i = 0; i < options.clouds.size(); ++i) {
     Expected<PointCloud> cloud = ReadCloud(options.clouds[i]);
     if (!cloud) return Refuse("fuse", cloud.error());
     clouds.push_back(std::move(*cloud));
+    counter.Step();
     last_from_cloud.push_back(sensors->back() * (*sensors)[i].Inverse());
   }
   last_from_cloud.back() = Rigid3d{};  // Its points stay as they are, to the bit.
@@ -132,7 +139,9 @@ int Run(const FuseOptions& options) {
       !ok) {
     return Refuse("fuse", ok.error());
   }
-  Print("{}{}", Describe(options, clouds, last_from_cloud),
+  const std::string text = Describe(options, clouds, last_from_cloud, counter);
+  counter.Finish();
+  Print("{}{}", text,
         WroteLine(options.out,
                   fmt::format("{} points of {} clouds in the frame of {}", fused.points.size(),
                               clouds.size(), PathText(options.clouds.back()))));

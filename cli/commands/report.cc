@@ -15,7 +15,6 @@
 #include "io/text/text_file.h"
 #include "report/collect/check_page.h"
 #include "report/collect/rig_page.h"
-#include "report/collect/utc_text.h"
 
 namespace sextant::cli {
 namespace {
@@ -39,7 +38,7 @@ void Declare(ReportCommandOptions& options, Arguments& arguments) {
 std::string PhotosText(const ReportPage& page) {
   const auto shown = std::ranges::count_if(
       page.views, [](const PageView& view) { return view.photo.has_value(); });
-  if (page.views.empty() || shown == std::ssize(page.views)) return {};
+  if (shown == std::ssize(page.views)) return {};
   const auto why = std::ranges::find_if(
       page.views, [](const PageView& view) { return !view.photo && !view.no_photo.empty(); });
   return fmt::format(
@@ -61,10 +60,8 @@ Expected<ReportPage> PageOfResult(const std::filesystem::path& path) {
   }
   const Expected<CalibrationResult> result = ParseCalibrationResult(text, path.string());
   if (result) {
-    return CollectPage({.result = *result,
-                        .frames = FramesOfFiles(folder),
-                        .folder = folder,
-                        .written = TodayText()});
+    return CollectWithProgress(
+        {.result = *result, .frames = FramesOfFiles(folder), .folder = folder});
   }
   return MakeError(
       result.error().code,

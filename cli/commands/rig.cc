@@ -3,6 +3,7 @@
 
 #include "calibrate/rig/calibrate_rig.h"
 #include "cli/commands/commands.h"
+#include "cli/progress.h"
 #include "cli/rig_output.h"
 #include "io/problems/rig_yaml.h"
 #include "io/problems/transform_list.h"
@@ -60,7 +61,8 @@ Expected<RigResult> ResultFrom(const RigCommandOptions& options) {
   }
   SEXTANT_ASSIGN_OR_RETURN(RigFile rig, ParseRigFile(text, options.path));
   SEXTANT_RETURN_IF_ERROR(ChooseRoot(options.root, rig));
-  return CalibrateRig(rig);
+  Progress progress;
+  return CalibrateRig(rig, progress.Callback());
 }
 
 int Run(const RigCommandOptions& options) {

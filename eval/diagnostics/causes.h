@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
+#include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,16 @@ namespace sextant {
 /// A factor is reported if it halves the RMSE and by an F-test at 100, so that a few bad points do
 /// not pass for one. O(n) time.
 std::vector<std::string> CausesInPoints(const CalibrationProblem& problem);
+
+/// A reflection that leaves less than half the RMSE of the best rotation.
+struct Reflection {
+  double rmse_m = 0.0;
+  bool is_certain = false;  ///< Less than a fifth of it: FitKabsch's kMirrored.
+};
+
+/// The best reflection of the LiDAR's points onto the camera's, if it is such a one.
+std::optional<Reflection> FindReflection(const std::vector<Eigen::Vector3d>& in_cam,
+                                         const std::vector<Eigen::Vector3d>& in_lidar);
 
 /// For 2D-3D pairs, at least six (four for units), whose pose leaves more than a fiftieth of the
 /// spread of the pixels: u and v exchanged, u from the right, v from below, normalised pixels, an

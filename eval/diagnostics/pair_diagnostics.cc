@@ -19,7 +19,6 @@ namespace {
 constexpr double kMinEdgeDifference = 0.05;  // Relative to the edge's length.
 constexpr double kEdgeSigmas = 3.0;
 constexpr double kWeakRatio = 5.0;
-constexpr double kMirroredRatio = 2.0;
 
 struct Edge {
   double in_cam_m = 0.0;
@@ -179,13 +178,11 @@ PairDiagnostics DiagnosePairs(const CalibrationProblem& problem) {
   const std::vector<Pair3d3d>& pairs = ordered.pairs_3d3d;
   const std::vector<double> weights(pairs.size(), 1.0);
   const PointSets points = PointsOf(pairs);
+  if (const auto reflection = FindReflection(points.in_cam, points.in_lidar)) {
+    diagnostics.mirrored_rmse_m = reflection->rmse_m;
+  }
   const Expected<KabschFit> fit = FitKabsch(points.in_cam, points.in_lidar, weights);
   if (!fit) return diagnostics;
-  if (fit->sum_squares > kMirroredRatio * kMirroredRatio * fit->mirrored_sum_squares &&
-      fit->sum_squares > 1e-12 * points.in_cam.front().squaredNorm()) {
-    diagnostics.mirrored_rmse_m =
-        std::sqrt(fit->mirrored_sum_squares / static_cast<double>(pairs.size()));
-  }
   if (const auto covariance = PropagateCovariance(pairs, weights, fit->b_from_a)) {
     diagnostics.weak_rotation = Weakest(covariance->topLeftCorner<3, 3>(), true);
     diagnostics.weak_translation = Weakest(covariance->bottomRightCorner<3, 3>(), false);

@@ -160,12 +160,29 @@ std::optional<std::string> FindExchangedSensors(const CalibrationProblem& proble
                 : "; the camera frame is x right, y down, z forward");
 }
 
-bool IsMirrored(const Points& in_cam, const Points& in_lidar) {
-  const Expected<KabschFit> fit = FitKabsch(in_cam, in_lidar);
-  return !fit && fit.error().code == ErrorCode::kMirrored;
-}
-
 }  // namespace
+
+std::optional<Reflection> FindReflection(const std::vector<Eigen::Vector3d>& in_cam,
+                                         const std::vector<Eigen::Vector3d>& in_lidar) {
+  constexpr double kRatio = 2.0;
+  const auto rmse = [&](double sum_squares) {
+    return std::sqrt(sum_squares / static_cast<double>(in_cam.size()));
+  };
+  const Expected<KabschFit> fit = FitKabsch(in_cam, in_lidar);
+  if (fit) {
+    const bool fits_better = fit->sum_squares > kRatio * kRatio * fit->mirrored_sum_squares &&
+                             fit->sum_squares > 1e-12 * in_cam.front().squaredNorm();
+    if (!fits_better) return std::nullopt;
+    return Reflection{.rmse_m = rmse(fit->mirrored_sum_squares), .is_certain = false};
+  }
+  if (fit.error().code != ErrorCode::kMirrored) return std::nullopt;
+  // A rotation of the points through the origin is a reflection of them.
+  Points negated = in_lidar;
+  for (Eigen::Vector3d& point : negated) point = -point;
+  const Expected<KabschFit> reflected = FitKabsch(in_cam, negated);
+  if (!reflected) return std::nullopt;
+  return Reflection{.rmse_m = rmse(reflected->sum_squares), .is_certain = true};
+}
 
 std::vector<std::string> CausesInPoints(const CalibrationProblem& problem) {
   constexpr double kMaxSpread_m = 200.0;
@@ -190,7 +207,8 @@ std::vector<std::string> CausesInPoints(const CalibrationProblem& problem) {
           spread));
     }
   }
-  if (IsMirrored(in_cam, in_lidar)) {
+  const std::optional<Reflection> reflection = FindReflection(in_cam, in_lidar);
+  if (reflection && reflection->is_certain) {
     causes.emplace_back(
         "mirrored: the LiDAR's points are a mirror image of the camera's: an axis has the wrong "
         "sign, two are exchanged, or the points are in a wrong order; the LiDAR frame is x "

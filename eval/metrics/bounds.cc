@@ -4,11 +4,14 @@
 #include <Eigen/Cholesky>
 #include <cassert>
 #include <cmath>
+#include <vector>
 
 #include "geometry/pair_noise.h"
 #include "geometry/symmetric.h"
 #include "solvers/core/board_view_check.h"
 #include "solvers/joint/board_view_information.h"
+#include "solvers/joint/joint_noise.h"
+#include "solvers/joint/joint_problem.h"
 
 namespace sextant {
 namespace {
@@ -31,6 +34,33 @@ Expected<void> AddInformation(const CalibrationProblem& problem, const Rigid3d& 
   const Eigen::Matrix<double, 2, 6> jacobian = projection->pixel_by_point * PointByPose(arm);
   information += jacobian.transpose() * jacobian / (pair.sigma_px * pair.sigma_px);
   return {};
+}
+
+Expected<void> CheckViews(const CalibrationProblem& problem) {
+  if (problem.board_views.empty()) {
+    return MakeError(ErrorCode::kMissingData,
+                     "the bound of raw data needs views of boards, and the problem has none");
+  }
+  if (!problem.camera) {
+    return MakeError(ErrorCode::kInvalidInput, "the bound of raw data needs the camera");
+  }
+  return CheckBoardViews(problem.board_views, problem.boards);
+}
+
+tl::unexpected<Error> UndeterminedByViews() {
+  return MakeError(ErrorCode::kDegenerate, "the views leave a direction of the pose undetermined");
+}
+
+// Every observation counts as stated, and both sensors see a board in one pose.
+std::vector<JointWeights> StatedWeights(const JointModel& model) {
+  std::vector<JointWeights> weights;
+  for (const JointView& view : model.views) {
+    weights.push_back({std::vector<double>(view.terms.printed.size(), 1.0),
+                       std::vector<double>(view.terms.face.size(), 1.0),
+                       std::vector<double>(view.terms.edges.size(), 1.0),
+                       Vector6d::Constant(1.0 / kNoShift_m), 1.0});
+  }
+  return weights;
 }
 
 }  // namespace
@@ -68,14 +98,7 @@ Expected<Matrix6d> CramerRaoBoundOfViews(const CalibrationProblem& problem,
                                          const Rigid3d& true_cam_from_lidar,
                                          std::span<const Rigid3d> true_cam_from_board) {
   assert(true_cam_from_board.size() == problem.board_views.size());
-  if (problem.board_views.empty()) {
-    return MakeError(ErrorCode::kMissingData,
-                     "the bound of raw data needs views of boards, and the problem has none");
-  }
-  if (!problem.camera) {
-    return MakeError(ErrorCode::kInvalidInput, "the bound of raw data needs the camera");
-  }
-  SEXTANT_RETURN_IF_ERROR(CheckBoardViews(problem.board_views, problem.boards));
+  SEXTANT_RETURN_IF_ERROR(CheckViews(problem));
   Matrix6d sum = Matrix6d::Zero();
   for (std::size_t i = 0; i < problem.board_views.size(); ++i) {
     const BoardView& view = problem.board_views[i];
@@ -86,11 +109,26 @@ Expected<Matrix6d> CramerRaoBoundOfViews(const CalibrationProblem& problem,
     sum += information;
   }
   const std::optional<Matrix6d> bound = InvertSymmetric(sum);
-  if (!bound) {
-    return MakeError(ErrorCode::kDegenerate,
-                     "the views leave a direction of the pose undetermined");
-  }
+  if (!bound) return UndeterminedByViews();
   return *bound;
+}
+
+Expected<Matrix6d> CramerRaoBoundOfSession(const CalibrationProblem& problem,
+                                           const Rigid3d& true_cam_from_lidar,
+                                           std::span<const Rigid3d> true_cam_from_board) {
+  assert(true_cam_from_board.size() == problem.board_views.size());
+  SEXTANT_RETURN_IF_ERROR(CheckViews(problem));
+  SEXTANT_ASSIGN_OR_RETURN(const JointModel model, ModelOf(problem, {}));
+  JointState truth{true_cam_from_lidar, {}, {}};
+  for (const Rigid3d& cam_from_board : true_cam_from_board) {
+    truth.boards.push_back({cam_from_board, true_cam_from_lidar.Inverse() * cam_from_board});
+  }
+  for (const SharedBlock& block : model.shared) truth.shared.push_back(block.mean);
+  JointProblem at_truth(model, truth);
+  at_truth.SetWeights(StatedWeights(model), 1.0);
+  const auto covariance = JointCovariance::Of(at_truth.Linearise());
+  if (!covariance) return UndeterminedByViews();
+  return Matrix6d(covariance->shared().topLeftCorner<6, 6>());
 }
 
 RmsError RmsOf(const Matrix6d& covariance) {

@@ -28,6 +28,13 @@ Expected<Matrix6d> CramerRaoBoundOfViews(const CalibrationProblem& problem,
                                          const Rigid3d& true_cam_from_lidar,
                                          std::span<const Rigid3d> true_cam_from_board);
 
+/// The same where the LiDAR has systematic errors (`problem.lidar_errors`), which are further
+/// unknowns with normal priors, as for the solver joint: the Bayesian bound (van Trees 1968). The
+/// white noise is that stated by the views. Errors: as above.
+Expected<Matrix6d> CramerRaoBoundOfSession(const CalibrationProblem& problem,
+                                           const Rigid3d& true_cam_from_lidar,
+                                           std::span<const Rigid3d> true_cam_from_board);
+
 /// The root mean square errors that a covariance implies.
 struct RmsError {
   double rotation_rad = 0.0;

@@ -62,15 +62,20 @@ PointCloud FuseClouds(std::span<const PointCloud> clouds,
   return fused;
 }
 
-CloudAgreement CompareClouds(const PointCloud& a, const Rigid3d& b_from_a, const PointCloud& b,
+ReferenceCloud::ReferenceCloud(const PointCloud& cloud)
+    : points_(FinitePoints(cloud)), tree_(std::make_unique<const PointTree>(points_)) {}
+// A moved vector keeps its points where they are, which the tree refers to.
+ReferenceCloud::ReferenceCloud(ReferenceCloud&& other) noexcept = default;
+ReferenceCloud& ReferenceCloud::operator=(ReferenceCloud&& other) noexcept = default;
+ReferenceCloud::~ReferenceCloud() = default;
+
+CloudAgreement CompareClouds(const PointCloud& a, const Rigid3d& b_from_a, const ReferenceCloud& b,
                              const AgreementOptions& options) {
   const std::vector<Eigen::Vector3d> queries = FinitePoints(a);
-  const std::vector<Eigen::Vector3d> points = FinitePoints(b);
   CloudAgreement agreement{.median_m = std::numeric_limits<double>::quiet_NaN(),
                            .rms_m = std::numeric_limits<double>::quiet_NaN()};
   const std::size_t step =
       std::max<std::size_t>(1, queries.size() / static_cast<std::size_t>(options.max_points));
-  const PointTree tree(points);
   const auto few = static_cast<std::size_t>(options.neighbours);
   std::vector<unsigned> indices(few);
   std::vector<double> squared(few);
@@ -78,9 +83,9 @@ CloudAgreement CompareClouds(const PointCloud& a, const Rigid3d& b_from_a, const
   for (std::size_t i = 0; i < queries.size(); i += step) {
     ++agreement.points;
     const Eigen::Vector3d query = b_from_a * queries[i];
-    const std::size_t found = tree.NearestFew(query, indices, squared);
+    const std::size_t found = b.tree().NearestFew(query, indices, squared);
     if (found < few || squared[0] > options.reach_m * options.reach_m) continue;
-    const auto distance = DistanceToPatch(points, indices, query, options.flatness);
+    const auto distance = DistanceToPatch(b.points(), indices, query, options.flatness);
     if (distance) distances.push_back(*distance);
   }
   agreement.compared = static_cast<int>(distances.size());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -8,6 +10,8 @@
 #include "geometry/rigid3d.h"
 
 namespace sextant {
+
+class PointTree;
 
 /// All finite points of the clouds in one frame, cloud by cloud. Intensities are kept if every
 /// cloud has them; rings and times are dropped, as they belong to one sensor. Requires one pose
@@ -37,10 +41,27 @@ struct AgreementOptions {
   int max_points = 20'000;
 };
 
+/// A cloud that others are compared with, as often as one likes: it is searched by a tree that is
+/// built once, which takes longer than a comparison.
+class ReferenceCloud {
+ public:
+  explicit ReferenceCloud(const PointCloud& cloud);
+  ReferenceCloud(ReferenceCloud&& other) noexcept;
+  ReferenceCloud& operator=(ReferenceCloud&& other) noexcept;
+  ~ReferenceCloud();
+
+  const std::vector<Eigen::Vector3d>& points() const { return points_; }  ///< The finite ones.
+  const PointTree& tree() const { return *tree_; }
+
+ private:
+  std::vector<Eigen::Vector3d> points_;
+  std::unique_ptr<const PointTree> tree_;
+};
+
 /// Compares each point of `a` with the plane through its nearest points in `b`. Doubled edges and
 /// ghosts ("hallucinations" in the paper) show as large distances; points without a partner are not
 /// counted.
-CloudAgreement CompareClouds(const PointCloud& a, const Rigid3d& b_from_a, const PointCloud& b,
+CloudAgreement CompareClouds(const PointCloud& a, const Rigid3d& b_from_a, const ReferenceCloud& b,
                              const AgreementOptions& options = {});
 
 }  // namespace sextant

@@ -51,18 +51,14 @@ void MeasureEstimate(const Rigid3d& cam_from_lidar, MetricValues& values) {
   values.Set(kEstimatedRollDeg, euler.roll * kDegPerRad);
 }
 
-// Whether the norm of an error is over three times the root mean square that its covariance states.
-bool IsOverconfident(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
+bool IsBeyond(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
   return error.norm() > 3.0 * std::sqrt(std::max(0.0, covariance.trace()));
 }
 
 void MeasureUncertainty(const SolveReport& report, const Rigid3d& truth, MetricValues& values) {
   if (!report.covariance) return;
   const Matrix6d& covariance = *report.covariance;
-  const Vector6d error = PoseDifference(report.cam_from_lidar, truth);
-  const bool overconfident = IsOverconfident(error.head<3>(), covariance.topLeftCorner<3, 3>()) ||
-                             IsOverconfident(error.tail<3>(), covariance.bottomRightCorner<3, 3>());
-  values.Set(kOverconfident, overconfident ? 1.0 : 0.0);
+  values.Set(kOverconfident, IsOverconfident(report.cam_from_lidar, covariance, truth) ? 1.0 : 0.0);
   if (!values.Wants(kNees) && !values.Wants(kCovered)) return;
   constexpr double kChiSquare6 = 12.591587243743977;  // Quantile at 0.95, 6 degrees of freedom.
   const double nees = Nees(report.cam_from_lidar, covariance, truth);
@@ -161,6 +157,13 @@ double Nees(const Rigid3d& cam_from_lidar, const Matrix6d& covariance, const Rig
   const Vector6d difference = PoseDifference(cam_from_lidar, truth);
   const Eigen::LLT<Matrix6d> factor(covariance);
   return factor.info() == Eigen::Success ? difference.dot(factor.solve(difference)) : kNone;
+}
+
+bool IsOverconfident(const Rigid3d& cam_from_lidar, const Matrix6d& covariance,
+                     const Rigid3d& truth) {
+  const Vector6d error = PoseDifference(cam_from_lidar, truth);
+  return IsBeyond(error.head<3>(), covariance.topLeftCorner<3, 3>()) ||
+         IsBeyond(error.tail<3>(), covariance.bottomRightCorner<3, 3>());
 }
 
 }  // namespace sextant

@@ -99,4 +99,9 @@ double NearestNeighbourRmse(const PointSets& sets, const Rigid3d& cam_from_lidar
 /// mean is 6 if the covariance C is right; NaN if C cannot be inverted.
 double Nees(const Rigid3d& cam_from_lidar, const Matrix6d& covariance, const Rigid3d& truth);
 
+/// Whether the error of rotation or translation is over three times the root mean square that the
+/// covariance states.
+bool IsOverconfident(const Rigid3d& cam_from_lidar, const Matrix6d& covariance,
+                     const Rigid3d& truth);
+
 }  // namespace sextant

@@ -21,6 +21,7 @@ class RingScan {
         unit_(unit),
         half_(0.5 * board.top_right_m, 0.5 * board.right_bottom_m),
         lidar_from_board_(lidar_from_board),
+        board_from_lidar_(lidar_from_board.Inverse()),
         axes_(lidar_from_board.rotation.toRotationMatrix()) {}
 
   void AddTo(BoardView& view, Random& random) const {
@@ -28,66 +29,84 @@ class RingScan {
     const double middle = std::atan2(centre.y(), centre.x());
     const double reach = std::asin(std::min(1.0, half_.norm() / centre.norm())) + kRadPerDeg;
     const double step = simulation_.azimuth_step_deg * kRadPerDeg;
-    for (int ring = 0; ring < simulation_.rings; ++ring) {
-      const double elevation =
-          (ring - 0.5 * (simulation_.rings - 1)) * simulation_.ring_step_deg * kRadPerDeg;
+    for (int index = 0; index < simulation_.rings; ++index) {
+      const Ring ring(simulation_, index);
       double before = middle - reach - step * random.Uniform();
+      if (Misses(ring)) continue;
+      bool was_on = IsOn(ring, before);
       for (double azimuth = before + step; azimuth < middle + reach + step; azimuth += step) {
-        if (IsOn(elevation, azimuth)) AddReturn(ring, elevation, azimuth, view, random);
-        if (IsOn(elevation, azimuth) != IsOn(elevation, before)) {
-          AddEdge(elevation, before, azimuth, view, random);
-        }
+        const bool is_on = IsOn(ring, azimuth);
+        if (is_on) AddReturn(ring, azimuth, view, random);
+        if (is_on != was_on) AddEdge(ring, before, azimuth, view, random);
         before = azimuth;
+        was_on = is_on;
       }
     }
   }
 
  private:
-  static Eigen::Vector3d Direction(double elevation, double azimuth) {
-    return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-            std::sin(elevation)};
+  // The beams of one elevation.
+  struct Ring {
+    Ring(const ViewSimulation& simulation, int ring_index)
+        : index(static_cast<std::size_t>(ring_index)),
+          elevation((ring_index - 0.5 * (simulation.rings - 1)) * simulation.ring_step_deg *
+                    kRadPerDeg),
+          cosine(std::cos(elevation)),
+          sine(std::sin(elevation)),
+          origin(0.0, 0.0, -simulation.beam_crossing_m * std::tan(elevation)) {}
+
+    Eigen::Vector3d Direction(double azimuth) const {
+      return {cosine * std::cos(azimuth), cosine * std::sin(azimuth), sine};
+    }
+
+    std::size_t index;
+    double elevation;
+    double cosine;
+    double sine;
+    Eigen::Vector3d origin;  ///< Where the beams cross the axis.
+  };
+
+  // Whether no beam comes near enough to the board's centre: the angle between them is at least the
+  // difference of their elevations.
+  bool Misses(const Ring& ring) const {
+    const Eigen::Vector3d to_centre = lidar_from_board_.translation - ring.origin;
+    const double elevation = std::atan2(to_centre.z(), to_centre.head<2>().norm());
+    const double radius = std::asin(std::min(1.0, half_.norm() / to_centre.norm()));
+    return std::abs(ring.elevation - elevation) > radius + 1e-6;
   }
 
-  // Where a ring's beams cross the axis.
-  Eigen::Vector3d OriginOf(double elevation) const {
-    return {0.0, 0.0, -simulation_.beam_crossing_m * std::tan(elevation)};
-  }
-
-  double RangeOf(double elevation, const Eigen::Vector3d& direction) const {
-    return axes_.col(2).dot(lidar_from_board_.translation - OriginOf(elevation)) /
+  double RangeOf(const Ring& ring, const Eigen::Vector3d& direction) const {
+    return axes_.col(2).dot(lidar_from_board_.translation - ring.origin) /
            axes_.col(2).dot(direction);
   }
 
-  Eigen::Vector2d InBoard(double elevation, double azimuth) const {
-    const Eigen::Vector3d direction = Direction(elevation, azimuth);
-    return (lidar_from_board_.Inverse() *
-            (OriginOf(elevation) + RangeOf(elevation, direction) * direction))
-        .head<2>();
+  Eigen::Vector2d InBoard(const Ring& ring, double azimuth) const {
+    const Eigen::Vector3d direction = ring.Direction(azimuth);
+    return (board_from_lidar_ * (ring.origin + RangeOf(ring, direction) * direction)).head<2>();
   }
 
-  bool IsOn(double elevation, double azimuth) const {
-    const Eigen::Vector2d at = InBoard(elevation, azimuth).cwiseAbs();
+  bool IsOn(const Ring& ring, double azimuth) const {
+    const Eigen::Vector2d at = InBoard(ring, azimuth).cwiseAbs();
     return at.x() < half_.x() && at.y() < half_.y();
   }
 
-  void AddReturn(int ring, double elevation, double azimuth, BoardView& view,
-                 Random& random) const {
-    const Eigen::Vector3d direction = Direction(elevation, azimuth);
+  void AddReturn(const Ring& ring, double azimuth, BoardView& view, Random& random) const {
+    const Eigen::Vector3d direction = ring.Direction(azimuth);
     const double error = random.Normal() * (simulation_.exact ? 0.0 : simulation_.range_sigma_m);
-    const double offset = unit_.ring_offsets_m[static_cast<std::size_t>(ring)];
-    view.face_in_lidar.push_back((RangeOf(elevation, direction) + offset + error) * direction);
-    view.face_rings.push_back(ring);
+    const double offset = unit_.ring_offsets_m[ring.index];
+    view.face_in_lidar.push_back((RangeOf(ring, direction) + offset + error) * direction);
+    view.face_rings.push_back(static_cast<int>(ring.index));
   }
 
   // Adds the edge between two azimuths of which exactly one is on the board.
-  void AddEdge(double elevation, double from, double to, BoardView& view, Random& random) const {
+  void AddEdge(const Ring& ring, double from, double to, BoardView& view, Random& random) const {
     constexpr int kHalvings = 50;
-    const bool from_is_on = IsOn(elevation, from);
+    const bool from_is_on = IsOn(ring, from);
     for (int i = 0; i < kHalvings; ++i) {
       const double middle = 0.5 * (from + to);
-      (IsOn(elevation, middle) == from_is_on ? from : to) = middle;
+      (IsOn(ring, middle) == from_is_on ? from : to) = middle;
     }
-    const Eigen::Vector2d at = InBoard(elevation, from);
+    const Eigen::Vector2d at = InBoard(ring, from);
     const Eigen::Vector2d share = at.cwiseQuotient(half_);
     const bool on_x = std::abs(share.x()) > std::abs(share.y());
     EdgeRay ray;
@@ -97,14 +116,14 @@ class RingScan {
     const double error = simulation_.exact ? 0.0 : std::sqrt(3.0) * ray.sigma_m * uniform;
     Eigen::Vector3d seen(at.x(), at.y(), 0.0);
     const double outward = share[on_x ? 0 : 1] > 0.0 ? 1.0 : -1.0;
-    seen[on_x ? 0 : 1] += error + outward * GrowthOf(elevation, from, on_x);
-    ray.direction = (lidar_from_board_ * seen - OriginOf(elevation)).normalized();
+    seen[on_x ? 0 : 1] += error + outward * GrowthOf(ring, from, on_x);
+    ray.direction = (lidar_from_board_ * seen - ring.origin).normalized();
     view.edges.push_back(ray);
   }
 
   // The distance by which a side normal to the board's x or y axis appears too far out.
-  double GrowthOf(double elevation, double azimuth, bool on_x) const {
-    const Eigen::Vector3d direction = Direction(elevation, azimuth);
+  double GrowthOf(const Ring& ring, double azimuth, bool on_x) const {
+    const Eigen::Vector3d direction = ring.Direction(azimuth);
     const Eigen::Vector3d along = Eigen::Vector3d::UnitZ().cross(direction).normalized();
     const Eigen::Vector3d normal = axes_.col(on_x ? 0 : 1);
     return unit_.growth_m[0] * std::abs(normal.dot(along)) +
@@ -115,6 +134,7 @@ class RingScan {
   const UnitErrors& unit_;
   Eigen::Vector2d half_;
   Rigid3d lidar_from_board_;
+  Rigid3d board_from_lidar_;
   Eigen::Matrix3d axes_;
 };
 

@@ -13,7 +13,7 @@
 namespace sextant {
 
 /// The readers of OpenBag. `owner` keeps the bytes alive; without one, they must outlive the bag.
-/// `file` names them in error messages.
+/// `file` names them in error messages. Time and memory are those that Bag states.
 Expected<std::unique_ptr<Bag>> OpenRosbag1(std::string_view bytes, const std::string& file,
                                            std::shared_ptr<const void> owner);
 Expected<std::unique_ptr<Bag>> OpenMcap(std::string_view bytes, const std::string& file,

@@ -33,7 +33,8 @@ std::vector<double> CameraNumbers(YamlFields& in, const YamlNode& node, std::str
 /// The camera of a tree; `name` chooses one of several. Errors: as ParseCamera.
 Expected<Camera> CameraOfTree(const YamlNode& root, const std::string& file, std::string_view name);
 
-/// An OpenCV FileStorage in XML as a tree. Error: kParse.
+/// An OpenCV FileStorage in XML as a tree. Error: kParse, also for more than 1 MiB. Time and memory
+/// are linear in the size.
 Expected<YamlNode> ParseCameraXml(std::string_view text, const std::string& file);
 
 }  // namespace sextant

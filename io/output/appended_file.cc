@@ -27,11 +27,22 @@ tl::unexpected<Error> AppendedFile::Failed() const {
                        : ""));
 }
 
-Expected<AppendedFile> AppendedFile::Open(const std::filesystem::path& path) {
+Expected<OutputTarget> AppendedFile::Target(const std::filesystem::path& path) {
   SEXTANT_ASSIGN_OR_RETURN(OutputTarget target, FindTarget(path));
-  if (target.is_stream) {
-    return WriteError(ErrorCode::kInvalidOption, path, "it is not a regular file");
-  }
+  if (!target.is_stream) return target;
+  return WriteError(ErrorCode::kInvalidOption, path, "it is not a regular file");
+}
+
+Expected<void> AppendedFile::Claim(const std::filesystem::path& path) {
+  SEXTANT_ASSIGN_OR_RETURN(const OutputTarget target, Target(path));
+  CallFiles* const call = CallFiles::Current();
+  const std::string why = call != nullptr ? call->ClaimOutput(target.id, {}) : "";
+  if (!why.empty()) return WriteError(ErrorCode::kInvalidOption, path, why);
+  return {};
+}
+
+Expected<AppendedFile> AppendedFile::Open(const std::filesystem::path& path) {
+  SEXTANT_ASSIGN_OR_RETURN(OutputTarget target, Target(path));
   CallFiles* const call = CallFiles::Current();
   if (call != nullptr) {
     const std::string why = call->BeginOutput(target.id, {.may_be_read = true});
@@ -53,14 +64,22 @@ Expected<AppendedFile> AppendedFile::Open(const std::filesystem::path& path) {
 Expected<void> AppendedFile::Lock() {
   if (flock(file_.get(), LOCK_EX | LOCK_NB) == 0) return {};
   return WriteError(ErrorCode::kInvalidOption, target_.path,
-                    fmt::format("{} writes it; wait until it ends, or choose another folder with "
-                                "--out",
+                    fmt::format("{} writes it; wait until it ends, or name another one",
                                 DescribeLockers(file_.get())));
 }
 
 Expected<std::string> AppendedFile::ReadBeginning(std::uint64_t count) const {
-  std::string bytes(std::min(count, size_), '\0');
-  const ssize_t got = pread(file_.get(), bytes.data(), bytes.size(), 0);
+  return Read(0, std::min(count, size_));
+}
+
+Expected<std::string> AppendedFile::ReadEnd(std::uint64_t count) const {
+  const std::uint64_t some = std::min(count, size_);
+  return Read(size_ - some, some);
+}
+
+Expected<std::string> AppendedFile::Read(std::uint64_t begin, std::uint64_t count) const {
+  std::string bytes(count, '\0');
+  const ssize_t got = pread(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(begin));
   if (got < 0) return Failed();
   bytes.resize(static_cast<std::size_t>(got));
   return bytes;

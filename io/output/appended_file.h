@@ -20,10 +20,15 @@ class AppendedFile {
  public:
   /// Creates the file, or opens it at its end, whoever wrote it: the caller checks the content.
   static Expected<AppendedFile> Open(const std::filesystem::path& path);
+  /// To be called before long work for a file that is opened after it: checks that it can be one,
+  /// and that it is neither an input nor another output of the call.
+  static Expected<void> Claim(const std::filesystem::path& path);
 
   std::uint64_t size() const { return size_; }
   /// The first bytes of the file, at most `count`.
   Expected<std::string> ReadBeginning(std::uint64_t count) const;
+  /// The last bytes of the file, at most `count`.
+  Expected<std::string> ReadEnd(std::uint64_t count) const;
   /// Cuts off all after the first `size` bytes.
   Expected<void> Truncate(std::uint64_t size);
   /// After an error (such as a full disk) the file is unchanged.
@@ -33,6 +38,8 @@ class AppendedFile {
 
  private:
   explicit AppendedFile(OutputTarget target) : target_(std::move(target)) {}
+  static Expected<OutputTarget> Target(const std::filesystem::path& path);
+  Expected<std::string> Read(std::uint64_t begin, std::uint64_t count) const;
   Expected<void> Lock();
   tl::unexpected<Error> Failed() const;
 

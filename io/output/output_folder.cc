@@ -52,7 +52,7 @@ Expected<void> MakeFolder(const fs::path& path) {
   if (!error && fs::is_directory(path, error)) return {};
   if (!error) error = std::make_error_code(std::errc::not_a_directory);
   return MakeError(ErrorCode::kUnwritable,
-                   fmt::format("cannot make the folder '{}': {}; name another with --out",
+                   fmt::format("cannot make the folder '{}': {}; name another folder",
                                PathText(path), error.message()));
 }
 

@@ -39,16 +39,21 @@ std::string_view ToString(PoseDirection direction) {
   return direction == PoseDirection::kCamFromLidar ? "cam_from_lidar" : "lidar_from_cam";
 }
 
-Expected<StatedPose> ReadPoseFile(const std::filesystem::path& path) {
-  const std::string text = path.string();
-  const std::size_t colon = text.rfind(':');
+Expected<PoseText> ReadPoseText(const std::filesystem::path& path) {
+  PoseText pose{.file = path.string()};
+  const std::size_t colon = pose.file.rfind(':');
   std::error_code ignored;
-  const bool is_named = colon != std::string::npos && !std::filesystem::exists(path, ignored);
-  const std::string name = is_named ? text.substr(colon + 1) : std::string();
-  return ReadWith(is_named ? text.substr(0, colon) : text,
-                  [&](std::string_view content, const std::string& file) {
-                    return ParsePose(content, file, name);
-                  });
+  if (colon != std::string::npos && !std::filesystem::exists(path, ignored)) {
+    pose.name = pose.file.substr(colon + 1);
+    pose.file.resize(colon);
+  }
+  SEXTANT_ASSIGN_OR_RETURN(pose.text, ReadTextFile(pose.file));
+  return pose;
+}
+
+Expected<StatedPose> ReadPoseFile(const std::filesystem::path& path) {
+  SEXTANT_ASSIGN_OR_RETURN(const PoseText pose, ReadPoseText(path));
+  return ParsePose(pose.text, pose.file, pose.name);
 }
 
 Expected<StatedPose> ParsePose(std::string_view text, const std::string& file,

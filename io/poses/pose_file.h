@@ -50,8 +50,18 @@ struct StatedPose {
 /// format. Where a file has only numbers, it is the one in which the camera is upright (its y axis
 /// along -z of the LiDAR), if the other is not. Errors: kIo; kParse with file and line; kNonFinite;
 /// kMissingData where no such pose is found; kInvalidOption where the file must be made
-/// unambiguous. Time and memory are those of ParseYaml; XML is read up to 1 MiB.
+/// unambiguous. Time is that of ParseYaml and O(n log n) in the frames, memory
+/// that of ParseYaml and 1 KiB for each frame; XML is read up to 1 MiB.
 Expected<StatedPose> ReadPoseFile(const std::filesystem::path& path);
+
+/// The text of such a file, and the name that follows its path behind a colon; empty if none does.
+struct PoseText {
+  std::string file{};  ///< Without the name.
+  std::string name{};
+  std::string text{};
+};
+Expected<PoseText> ReadPoseText(const std::filesystem::path& path);
+
 /// `name` chooses the camera of a KITTI file, or the number of a matrix from 1; empty: the only
 /// one.
 Expected<StatedPose> ParsePose(std::string_view text, const std::string& file,

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <initializer_list>
 #include <map>
 #include <set>
 
+#include "base/text/lower_case.h"
 #include "geometry/coordinate_range.h"
 #include "io/poses/pose_parts.h"
 #include "io/text/number_text.h"
@@ -17,8 +16,7 @@ namespace sextant {
 namespace {
 
 bool HasAny(const std::string& name, std::initializer_list<std::string_view> words) {
-  std::string lower = name;
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string lower = LowerCase(name);
   return std::ranges::any_of(
       words, [&](std::string_view word) { return lower.find(word) != std::string::npos; });
 }
@@ -50,57 +48,80 @@ struct Connected {
 };
 using Tree = std::map<std::string, Connected>;
 
-// The pose of every frame that is connected with `from`, in it.
+// The pose of every frame that is connected with `from`, in it; by the fewest transforms, and of
+// several between two frames by the first one.
 Tree PosesIn(const std::string& from, const std::vector<FrameTransform>& transforms) {
+  std::map<std::string, std::vector<const FrameTransform*>> at_frame;
+  for (const FrameTransform& t : transforms) {
+    at_frame[t.parent].push_back(&t);
+    at_frame[t.child].push_back(&t);
+  }
   Tree poses = {{from, Connected{}}};
-  for (bool grew = true; grew;) {
-    grew = false;
-    for (const FrameTransform& t : transforms) {
-      const auto parent = poses.find(t.parent);
-      const auto child = poses.find(t.child);
-      if ((parent == poses.end()) == (child == poses.end())) continue;
-      grew = true;
-      if (child == poses.end()) {
-        const Rigid3d pose = parent->second.pose * t.parent_from_child;
-        poses.emplace(t.child, Connected{pose, t.parent, &t});
-      } else {
-        const Rigid3d pose = child->second.pose * t.parent_from_child.Inverse();
-        poses.emplace(t.parent, Connected{pose, t.child, &t});
-      }
+  std::vector<std::string> reached = {from};
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    const std::string frame = reached[i];
+    const Rigid3d pose = poses.at(frame).pose;
+    for (const FrameTransform* t : at_frame[frame]) {
+      const bool is_parent = t->parent == frame;
+      const std::string& other = is_parent ? t->child : t->parent;
+      const Rigid3d frame_from_other =
+          is_parent ? t->parent_from_child : t->parent_from_child.Inverse();
+      const bool is_new = poses.emplace(other, Connected{pose * frame_from_other, frame, t}).second;
+      if (is_new) reached.push_back(other);
     }
   }
   return poses;
 }
 
-// The transforms from a frame to the root.
-std::set<const FrameTransform*> PathOf(const Tree& tree, const std::string& frame) {
-  std::set<const FrameTransform*> path;
-  for (const Connected* at = &tree.at(frame); at->by != nullptr; at = &tree.at(at->next)) {
-    path.insert(at->by);
+// The transforms on the way from the root to a frame, and how many of them each frame of the tree
+// has on its own way. Those it shares are the first ones.
+struct Way {
+  std::vector<const FrameTransform*> transforms{};
+  std::map<std::string, std::size_t> shared{};
+};
+
+Way WayTo(const std::string& frame, const Tree& tree) {
+  Way way;
+  std::vector<std::string> frames;
+  for (const std::string* at = &frame; tree.at(*at).by != nullptr; at = &tree.at(*at).next) {
+    way.transforms.push_back(tree.at(*at).by);
+    frames.push_back(*at);
   }
-  return path;
+  std::ranges::reverse(way.transforms);
+  std::ranges::reverse(frames);
+  for (std::size_t i = 0; i < frames.size(); ++i) way.shared[frames[i]] = i + 1;
+  // Every other frame shares what the frame before it does.
+  for (const auto& [name, connected] : tree) {
+    std::vector<const std::string*> unknown;
+    const std::string* at = &name;
+    while (!way.shared.contains(*at) && tree.at(*at).by != nullptr) {
+      unknown.push_back(at);
+      at = &tree.at(*at).next;
+    }
+    const std::size_t shared = way.shared[*at];
+    for (const std::string* one : unknown) way.shared[*one] = shared;
+  }
+  return way;
 }
 
 // A transform beside the tree may not contradict one on the way to `frame`; what moves elsewhere
 // (odometry, repeated over time) does not matter.
 Expected<void> CheckContradictions(const Tree& tree, const std::vector<FrameTransform>& transforms,
                                    const std::string& frame, const std::string& file) {
-  const std::set<const FrameTransform*> path = PathOf(tree, frame);
+  const Way way = WayTo(frame, tree);
   for (const FrameTransform& t : transforms) {
     const auto parent = tree.find(t.parent);
     const auto child = tree.find(t.child);
     if (parent == tree.end() || child == tree.end()) continue;
+    const std::size_t first = std::min(way.shared.at(t.parent), way.shared.at(t.child));
+    if (first == std::max(way.shared.at(t.parent), way.shared.at(t.child))) continue;
     if (Agree(parent->second.pose * t.parent_from_child, child->second.pose)) continue;
-    const auto of_parent = PathOf(tree, t.parent);
-    const auto of_child = PathOf(tree, t.child);
-    for (const FrameTransform* on_path : path) {
-      if (of_parent.contains(on_path) == of_child.contains(on_path)) continue;
-      return MakeError(ErrorCode::kParse,
-                       fmt::format("{}: the transform of {} and {} at line {} contradicts that of "
-                                   "{} and {} at line {}; expected one of them",
-                                   file, Quoted(t.parent), Quoted(t.child), t.line,
-                                   Quoted(on_path->parent), Quoted(on_path->child), on_path->line));
-    }
+    const FrameTransform& on_way = *way.transforms[first];
+    return MakeError(ErrorCode::kParse,
+                     fmt::format("{}: the transform of {} and {} at line {} contradicts that of "
+                                 "{} and {} at line {}; expected one of them",
+                                 file, Quoted(t.parent), Quoted(t.child), t.line,
+                                 Quoted(on_way.parent), Quoted(on_way.child), on_way.line));
   }
   return {};
 }
@@ -139,6 +160,18 @@ StatedPose OfSingle(const FrameTransform& t, const std::string& camera, const st
   return pose;
 }
 
+std::string ListOf(const std::set<std::string>& names) {
+  constexpr std::size_t kMaxListed = 12;
+  std::string list;
+  std::size_t listed = 0;
+  for (const std::string& name : names) {
+    if (listed++ == kMaxListed)
+      return list + fmt::format(" and {} more", names.size() - kMaxListed);
+    list += (list.empty() ? "" : ", ") + Quoted(name);
+  }
+  return list;
+}
+
 }  // namespace
 
 Expected<StatedPose> ConnectFrames(const std::vector<FrameTransform>& transforms,
@@ -162,7 +195,7 @@ Expected<StatedPose> ConnectFrames(const std::vector<FrameTransform>& transforms
     return MakeError(ErrorCode::kMissingData,
                      fmt::format("{}: expected the transform of one LiDAR and one camera, by the "
                                  "names of their frames, or a single transform; its frames are {}",
-                                 file, fmt::join(names, ", ")));
+                                 file, ListOf(names)));
   }
   SEXTANT_RETURN_IF_ERROR(CheckContradictions(in_camera, transforms, lidar, file));
   StatedPose pose{

@@ -10,7 +10,8 @@
 #include "geometry/rigid3d.h"
 #include "io/poses/pose_file.h"
 
-// The readers of the formats of ReadPoseFile; io/poses/pose_file.h documents them.
+// The readers of the formats of ReadPoseFile; io/poses/pose_file.h documents them, with their
+// bounds in time and memory.
 namespace sextant {
 
 /// The pose of one frame in another.

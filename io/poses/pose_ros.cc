@@ -163,6 +163,8 @@ Expected<StatedPose> ParsePoseXml(std::string_view text, const std::string& file
 Expected<StatedPose> ParsePoseLaunch(std::string_view text, const std::string& file) {
   std::vector<FrameTransform> transforms;
   std::size_t at = 0;
+  int line = 1;
+  std::size_t counted = 0;  // The lines up to here are counted.
   while ((at = text.find("arguments", at)) != std::string_view::npos) {
     const std::size_t open = text.find('[', at);
     const std::size_t close = text.find(']', at);
@@ -170,7 +172,8 @@ Expected<StatedPose> ParsePoseLaunch(std::string_view text, const std::string& f
     const std::string_view list = text.substr(open + 1, close - open - 1);
     at = close;
     if (list.find("frame-id") == std::string_view::npos && Words(list).size() < 8) continue;
-    const int line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + open, '\n'));
+    line += static_cast<int>(std::count(text.begin() + counted, text.begin() + open, '\n'));
+    counted = open;
     SEXTANT_ASSIGN_OR_RETURN(FrameTransform t, PublishedTransform(list, file, line));
     transforms.push_back(std::move(t));
   }

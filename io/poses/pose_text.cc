@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "geometry/coordinate_range.h"
 #include "io/blocks/rigid_matrix.h"
 #include "io/poses/pose_parts.h"
 #include "io/problems/transform_list.h"
@@ -65,6 +66,12 @@ Expected<Eigen::Vector3d> ChosenOffset(const KittiLines& lines, const std::strin
     if (!IsProjection(key) || numbers.size() != 12) continue;
     if (!name.empty() && key != name) continue;
     const Eigen::Vector3d offset = OffsetOf(numbers);
+    if (!(offset.array().abs() <= kMaxCoordinate_m).all()) {
+      return MakeError(ErrorCode::kParse,
+                       fmt::format("{}: {}: expected the 12 numbers of a projection, with focal "
+                                   "lengths and a place of the camera",
+                                   file, key));
+    }
     if (chosen && (*chosen - offset).norm() > 1e-6) {
       return MakeError(ErrorCode::kInvalidOption,
                        fmt::format("{0}: has several cameras, which are in different places; "

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "base/nearest_name.h"
+#include "base/text/lower_case.h"
 #include "io/text/number_text.h"
 
 namespace sextant {
@@ -61,15 +62,10 @@ std::string Plain(std::string_view name) {
   return plain;
 }
 
-std::string Lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 std::string KnownName(const std::string& plain, bool small_are_pixels) {
   if (small_are_pixels && plain == "x") return "u";
   if (small_are_pixels && plain == "y") return "v";
-  const std::string lower = Lower(plain);
+  const std::string lower = LowerCase(plain);
   const Names& known = KnownColumns();
   if (std::find(known.begin(), known.end(), lower) != known.end()) return lower;
   const auto other = OtherNames().find(lower);
@@ -105,7 +101,7 @@ CsvHeader HeaderOfNumbers(LineReader& in) {
 
 void AddColumn(LineReader& in, std::string_view name, std::string known, CsvHeader& header) {
   if (known.empty()) {
-    const std::string lower = Lower(std::string(name));
+    const std::string lower = LowerCase(std::string(name));
     if (!NearestName(lower, KnownColumns()).empty()) {
       in.Fail(ErrorCode::kParse, fmt::format("unknown column {}; {}", Quoted(name),
                                              SuggestName(lower, KnownColumns())));

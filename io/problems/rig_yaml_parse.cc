@@ -24,6 +24,8 @@ using RigKeys = std::vector<std::string>;
 
 constexpr std::size_t kMaxSensors = 100;
 constexpr std::size_t kMaxNumbers = 2000;  // Of the points of one board; two each.
+// Of the covariances of all pixels, which grow with the square of the pixels of one observation.
+constexpr std::size_t kMaxCovarianceNumbers = std::size_t{128} << 20;
 
 /// A board with the points on it that observations may refer to.
 struct RigBoard {
@@ -43,6 +45,7 @@ class RigReader {
       ReadSensors(in_.Require(root, "sensors"));
       ReadBoards(in_.Require(root, "boards"));
       if (const YamlNode* name = root.Find("root")) rig_.root = SensorNamed(*name, "root");
+      CheckPixels(in_.Require(root, "moments"));
       ReadMoments(in_.Require(root, "moments"));
     }
     if (!in_.ok()) return in_.TakeError();
@@ -135,6 +138,24 @@ class RigReader {
     in_.Fail(node.line, key,
              fmt::format("expected the name of a sensor ({}), got '{}'", known, name));
     return 0;
+  }
+
+  // Before any covariance is made.
+  void CheckPixels(const YamlNode& moments) {
+    std::size_t numbers = 0;
+    for (const YamlNode& moment : moments.items) {
+      const YamlNode* seen = moment.Find("observations");
+      if (seen == nullptr) continue;
+      for (const YamlNode& node : seen->items) {
+        const YamlNode* pixels = node.Find("pixels");
+        if (pixels != nullptr) numbers += pixels->items.size() * pixels->items.size();
+        if (numbers <= kMaxCovarianceNumbers) continue;
+        return in_.Fail(node.line, "pixels",
+                        fmt::format("expected fewer pixels: the covariances of all observations up "
+                                    "to this one would take more than {} MiB",
+                                    (kMaxCovarianceNumbers * sizeof(double)) >> 20));
+      }
+    }
   }
 
   void ReadMoments(const YamlNode& list) {

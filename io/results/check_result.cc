@@ -47,8 +47,11 @@ std::string FormatCheckResult(const CheckResult& result) {
   CheckJson json = {{kCheckKey, 1},
                     {"version", result.version},
                     {"pose", result.pose_path},
+                    {"pose_read_as", result.read_as},
+                    {"pose_read_by", result.read_by},
                     {"pairs", result.pairs.size()},
                     {"state", result.state},
+                    {"change_is_certain", result.is_certain},
                     {"reason", result.reason},
                     {"change_deg_mm", InDegreesAndMm(result.change)}};
   // As an array even where nothing is known, so that readers need no second form.
@@ -75,7 +78,10 @@ Expected<CheckResult> ParseCheckResult(std::string_view text, const std::string&
   in.IntegerAt(root, kCheckKey, 1, 1);
   CheckResult result{.version = OptionalText(in, root, "version"),
                      .pose_path = in.TextAt(root, "pose"),
+                     .read_as = OptionalText(in, root, "pose_read_as"),
+                     .read_by = OptionalText(in, root, "pose_read_by"),
                      .state = in.TextAt(root, "state"),
+                     .is_certain = in.TextAt(root, "change_is_certain") == "true",
                      .reason = in.TextAt(root, "reason")};
   result.cam_from_lidar = ReadPose(in, in.Require(root, "cam_from_lidar"), "cam_from_lidar");
   if (const YamlNode* camera = Present(root, "camera")) {

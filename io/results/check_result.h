@@ -23,7 +23,10 @@ struct CheckedPair {
 struct CheckResult {
   std::string version{};    ///< Version of sextant that wrote it.
   std::string pose_path{};  ///< The file of the given pose.
+  std::string read_as{};    ///< The direction in which it was read: "cam_from_lidar", ...
+  std::string read_by{};    ///< What that follows from; a phrase for people.
   std::string state{};      ///< "still valid", "moved" or "cannot tell".
+  bool is_certain = false;  ///< The pose has changed, by however little.
   std::string reason{};
   Rigid3d cam_from_lidar{};        ///< The given pose.
   std::optional<Camera> camera{};  ///< None: unknown.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "io/blocks/camera_block.h"
 #include "io/results/optional_fields.h"
 #include "io/results/rig_result.h"
@@ -86,6 +88,9 @@ Expected<RigResult> ParseRigResult(std::string_view text, const std::string& fil
   result.root = in.TextAt(root, "root");
   in.Require(root, "sensors");
   ReadList(in, root, "sensors", ReadSensor, result.sensors);
+  if (std::ranges::count(result.sensors, result.root, &RigResultSensor::name) != 1 && in.ok()) {
+    in.Fail(root.Find("root")->line, "root", "expected the name of one of the sensors");
+  }
   ReadList(in, root, "pairs", ReadPair, result.pairs);
   ReadList(in, root, "views", ReadRigView, result.views);
   ReadList(in, root, "numbers", ReadNumber, result.numbers);

@@ -41,6 +41,7 @@ PageVerdict CheckVerdictOf(const CheckResult& check) {
   while (verdict.reason.ends_with('.')) verdict.reason.pop_back();
   if (check.state == "still valid") {
     verdict.tone = PageTone::kGood;
+    if (check.is_certain) verdict.next = "Calibrate again where a change this small matters";
   } else if (check.state == "moved") {
     verdict.tone = PageTone::kBad;
     verdict.next = "Calibrate again; sextant refine-scene gives a start";
@@ -110,6 +111,10 @@ ReportPage CollectCheckPage(const CheckResult& check, const std::filesystem::pat
                   .sections = {ChangeOf(check)},
                   .views = PageViewsOf(result, nullptr, FramesOfFiles(folder))};
   page.diagnostics = {check.reason};
+  if (!check.read_as.empty()) {
+    page.diagnostics.push_back(
+        fmt::format("The pose was read as {}: {}.", check.read_as, check.read_by));
+  }
   page.closing =
       "The transform below is the one that was checked. In each photo, returns must change colour "
       "where the photo has its edges; shifted edges show a calibration that is not valid.";

@@ -2,10 +2,12 @@
 #include "report/collect/file_hash.h"
 
 #include <sha256.h>
+#include <sys/stat.h>
 
 #include <array>
 #include <fstream>
-#include <system_error>
+
+#include "base/call_files.h"
 
 namespace sextant {
 namespace {
@@ -19,8 +21,9 @@ std::string HexOf(SHA256_CTX& state) {
 }  // namespace
 
 std::optional<std::string> HashOfFile(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error) || error) return std::nullopt;
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+  if (!NoteInput(status).empty()) return std::nullopt;
   std::ifstream file(path, std::ios::binary);
   SHA256_CTX state;
   SHA256_Init(&state);

@@ -22,17 +22,6 @@ std::vector<Eigen::Vector3d> PointsInWorld(const SceneBoard& board) {
   return points;
 }
 
-bool CanMeet(const LidarModel& model, const Eigen::Vector3d& in_lidar) {
-  const double range = in_lidar.norm();
-  if (range < model.min_range_m || range > model.max_range_m) return false;
-  const double off_axis = std::atan2(in_lidar.tail<2>().norm(), in_lidar.x());
-  if (model.rosette) return off_axis <= 2.0 * model.rosette->deflection_rad;
-  constexpr double kSlack_rad = 1e-3;
-  const double elevation = std::atan2(in_lidar.z(), in_lidar.head<2>().norm());
-  return elevation >= model.rings.front().elevation_rad - kSlack_rad &&
-         elevation <= model.rings.back().elevation_rad + kSlack_rad;
-}
-
 }  // namespace
 
 std::string WhyUnseen(const SceneBoard& board, const SceneCamera& scene_camera,
@@ -55,11 +44,22 @@ std::string WhyUnseen(const SceneBoard& board, const SceneCamera& scene_camera,
          scene_camera.name + "'";
 }
 
+bool IsReached(const Eigen::Vector3d& in_lidar, const LidarModel& model) {
+  const double range = in_lidar.norm();
+  if (range < model.min_range_m || range > model.max_range_m) return false;
+  const double off_axis = std::atan2(in_lidar.tail<2>().norm(), in_lidar.x());
+  if (model.rosette) return off_axis <= 2.0 * model.rosette->deflection_rad;
+  constexpr double kSlack_rad = 1e-3;
+  const double elevation = std::atan2(in_lidar.z(), in_lidar.head<2>().norm());
+  return elevation >= model.rings.front().elevation_rad - kSlack_rad &&
+         elevation <= model.rings.back().elevation_rad + kSlack_rad;
+}
+
 bool IsReached(const SceneBoard& board, const Rigid3d& world_from_lidar, const LidarModel& model) {
   const Rigid3d lidar_from_world = world_from_lidar.Inverse();
   const std::vector<Eigen::Vector3d> points = PointsInWorld(board);
   return std::any_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
-    return CanMeet(model, lidar_from_world * point);
+    return IsReached(lidar_from_world * point, model);
   });
 }
 

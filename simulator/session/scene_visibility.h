@@ -14,6 +14,9 @@ namespace sextant {
 std::string WhyUnseen(const SceneBoard& board, const SceneCamera& scene_camera,
                       const Camera& camera);
 
+/// Whether a point [m, LiDAR frame] is within the angles and the range of the LiDAR model.
+bool IsReached(const Eigen::Vector3d& in_lidar, const LidarModel& model);
+
 /// Whether a point of the board at rest is within the angles and the range of the LiDAR model.
 bool IsReached(const SceneBoard& board, const Rigid3d& world_from_lidar, const LidarModel& model);
 

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "geometry/symmetric.h"
+#include "solvers/core/mirror_image.h"
 #include "solvers/kernels/p3p.h"
 #include "solvers/kernels/pair_terms.h"
 #include "solvers/least_squares/refine_pose.h"
@@ -73,17 +74,13 @@ struct Shape {
   }
 };
 
-// The reflection of the pose in the plane through the points, seen from the camera.
 Rigid3d MirrorImage(const Shape& shape, const Rigid3d& pose) {
   const Eigen::Vector3d normal = EigenOf(shape.scatter).vectors.col(0);
   const Eigen::Vector3d centre = pose * shape.centre;
-  const Eigen::Vector3d sight = centre.normalized();
-  const Eigen::Matrix3d reflect = Eigen::Matrix3d::Identity() - 2.0 * sight * sight.transpose();
-  const Eigen::Matrix3d flip = Eigen::Matrix3d::Identity() - 2.0 * normal * normal.transpose();
   Rigid3d mirrored;
-  mirrored.rotation =
-      Eigen::Quaterniond(Eigen::Matrix3d(reflect * pose.rotation.toRotationMatrix() * flip))
-          .normalized();
+  mirrored.rotation = Eigen::Quaterniond(MirroredRotation(pose.rotation.toRotationMatrix(), normal,
+                                                          centre.normalized()))
+                          .normalized();
   mirrored.translation = centre - mirrored.rotation * shape.centre;
   return mirrored;
 }

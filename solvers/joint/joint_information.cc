@@ -84,14 +84,13 @@ double LeverageOf(const SparseRow& row, const DynamicMatrix& covariance) {
 
 KindSum SumOf(const JointLinearisation& at, const JointRows& rows,
               const DynamicMatrix& covariance) {
-  KindSum sum;
+  KindSum sum{.redundancy = static_cast<double>(rows.observed)};
   SparseRow row;
   for (int i = rows.first; i < rows.first + rows.count; ++i) {
     row.Read(at, i);
-    if (row.values.empty()) continue;
     const double residual = at.residuals[static_cast<std::size_t>(i)];
     sum.squares += residual * residual;
-    sum.redundancy += 1.0 - LeverageOf(row, covariance);
+    sum.redundancy -= LeverageOf(row, covariance);
   }
   return sum;
 }

@@ -54,7 +54,7 @@ struct ViewSums {
   int freedom = 0;
 };
 
-/// One for each view. Rows of weight 0 do not count.
+/// One for each view. Observations of weight 0 do not count.
 std::vector<ViewSums> SumsOf(const JointLinearisation& at, const JointCovariance& covariance);
 
 /// The sum over the offsets of the rings, over `ratio` times the sigmas of their priors.

@@ -2,8 +2,10 @@
 #include "solvers/joint/joint_problem.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
+#include "solvers/joint/condensed_cost.h"
 #include "solvers/joint/joint_costs.h"
 
 namespace sextant {
@@ -15,6 +17,21 @@ JointWeights NoWeights(const JointView& view) {
   return {std::vector<double>(view.terms.printed.size(), 0.0),
           std::vector<double>(view.terms.face.size(), 0.0),
           std::vector<double>(view.terms.edges.size(), 0.0), Vector6d::Zero(), 0.0};
+}
+
+// The residuals of one sensor depend on one of the two poses in a view's block.
+constexpr int kPoseColumns = 6;
+
+template <class Cost, class... Arguments>
+ceres::CostFunction* OfCamera(Arguments&&... arguments) {
+  return new CondensedCost(std::make_unique<Cost>(std::forward<Arguments>(arguments)...), 0,
+                           kPoseColumns);
+}
+
+template <class Cost, class... Arguments>
+ceres::CostFunction* OfLidar(Arguments&&... arguments) {
+  return new CondensedCost(std::make_unique<Cost>(std::forward<Arguments>(arguments)...),
+                           kPoseColumns, kPoseColumns);
 }
 
 }  // namespace
@@ -51,18 +68,19 @@ void JointProblem::AddViews() {
     for (std::size_t k = 0; k < view.terms.printed.size(); ++k) {
       std::vector<double*> blocks = {board};
       if (!model_.intrinsics.empty()) blocks.push_back(state_.shared.back().data());
-      Add({JointKind::kPrinted, i},
-          new PrintedCost(model_, view.terms.printed[k], weights.printed[k]), blocks);
+      Add({JointKind::kPrinted, i, k},
+          OfCamera<PrintedCost>(model_, view.terms.printed[k], weights.printed[k]), blocks);
     }
-    for (const FaceGroup& group : view.face) {
+    for (std::size_t g = 0; g < view.face.size(); ++g) {
+      const FaceGroup& group = view.face[g];
       std::vector<double*> blocks = {board};
       for (const std::size_t k : group.shared) blocks.push_back(state_.shared[k].data());
-      Add({JointKind::kFace, i}, new FaceCost(view, group, weights.face), blocks);
+      Add({JointKind::kFace, i, g}, OfLidar<FaceCost>(view, group, weights.face), blocks);
     }
     if (!view.terms.edges.empty()) {
       std::vector<double*> blocks = {board};
       for (const EdgeShift& by : view.shifts) blocks.push_back(state_.shared[by.shared].data());
-      Add({JointKind::kEdges, i}, new EdgeCost(model_, view, weights.edges), blocks);
+      Add({JointKind::kEdges, i}, OfLidar<EdgeCost>(model_, view, weights.edges), blocks);
     }
     Add({JointKind::kLink, i}, new LinkCost(view.lever_m, weights.link),
         {cam_from_lidar_.data(), board});
@@ -108,6 +126,27 @@ void JointProblem::StoreState() {
   }
 }
 
+int JointProblem::ObservedIn(const JointRows& rows) const {
+  const JointView& view = model_.views[rows.view];
+  const JointWeights& weights = weights_[rows.view];
+  const auto is_used = [](double weight) { return weight != 0.0; };
+  switch (rows.kind) {
+    case JointKind::kPrinted:
+      return is_used(weights.printed[rows.part])
+                 ? 2 * static_cast<int>(view.terms.printed[rows.part].pixels.size())
+                 : 0;
+    case JointKind::kFace:
+      return static_cast<int>(
+          std::ranges::count_if(view.face[rows.part].members,
+                                [&](std::size_t member) { return is_used(weights.face[member]); }));
+    case JointKind::kEdges:
+      return static_cast<int>(std::ranges::count_if(weights.edges, is_used));
+    case JointKind::kLink:
+      return rows.count;
+  }
+  return rows.count;
+}
+
 JointLinearisation JointProblem::Linearise() {
   JointLinearisation at{.shared = 6,
                         .views = boards_.size(),
@@ -116,6 +155,7 @@ JointLinearisation JointProblem::Linearise() {
                         .rows = rows_,
                         .link_factors = {}};
   for (const JointWeights& weights : weights_) at.link_factors.push_back(weights.link_factor);
+  for (JointRows& rows : at.rows) rows.observed = ObservedIn(rows);
   ceres::Problem::EvaluateOptions options;
   options.residual_blocks = residuals_;
   options.parameter_blocks.push_back(cam_from_lidar_.data());

@@ -28,8 +28,10 @@ enum class JointKind { kPrinted, kFace, kEdges, kLink };
 struct JointRows {
   JointKind kind;
   std::size_t view = 0;
+  std::size_t part = 0;  ///< Which of the view's prints, or groups of face returns.
   int first = 0;
   int count = 0;
+  int observed = 0;  ///< Number of residuals with weight that the rows condense.
 };
 
 /// Weighted residuals and their derivative by (dphi, dt) of cam_from_lidar, then the shared blocks,
@@ -65,6 +67,7 @@ class JointProblem {
   void AddViews();
   void AddShared();
   void StoreState();
+  int ObservedIn(const JointRows& rows) const;
   void Add(JointRows rows, ceres::CostFunction* cost, const std::vector<double*>& blocks);
 
   const JointModel& model_;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "solvers/core/mirror_image.h"
 #include "solvers/core/registry.h"
 #include "solvers/kernels/max_trace_rotation.h"
 #include "solvers/pnp/correspondences.h"
@@ -141,15 +142,12 @@ void SearchFromEigenvectors(const RotationCost& cost, Minima& minima) {
   }
 }
 
-/// A flat set has a second minimum near its mirror image in a plane perpendicular to the line of
-/// sight.
+/// A flat set has a second minimum near its mirror image.
 void SearchFromMirrorImage(Minima& minima) {
   if (minima.found().empty()) return;
   const Minimum& best = minima.found()[0];
-  const Eigen::Vector3d sight = best.centroid.normalized();
-  const Eigen::Matrix3d reflection = Eigen::Matrix3d::Identity() - 2.0 * sight * sight.transpose();
-  const Eigen::Vector3d flip(1.0, 1.0, -1.0);
-  minima.SearchFrom(reflection * best.rotation * flip.asDiagonal());
+  minima.SearchFrom(
+      MirroredRotation(best.rotation, Eigen::Vector3d::UnitZ(), best.centroid.normalized()));
 }
 
 }  // namespace

@@ -28,7 +28,10 @@ constexpr double kMaxShift = 3.0;
 class RigSearch {
  public:
   RigSearch(const RigModel& model, const RigState& start, const RigOptions& options)
-      : model_(model), options_(options), minimum_(model, options.root, start) {
+      : model_(model),
+        options_(options),
+        minimum_(model, options.root, start),
+        counter_(options.progress, "rig", kMaxLossRounds + kMaxCutRounds + 1) {
     for (const RigBlock& block : model.blocks) {
       answer_.selection.emplace_back(static_cast<std::size_t>(block.units), true);
     }
@@ -36,10 +39,12 @@ class RigSearch {
 
   Expected<RigAnswer> Run() {
     SEXTANT_RETURN_IF_ERROR(FollowLoss());
+    CountTo(kMaxLossRounds);
     for (auto& levels : answer_.noise) {
       for (double& level : levels) level = std::max(level, 1.0);
     }
     SEXTANT_RETURN_IF_ERROR(Cut());
+    CountTo(kMaxLossRounds + kMaxCutRounds);
     ClearAbsentShifts(model_, answer_.noise);
     SEXTANT_RETURN_IF_ERROR(Minimise(kNoLoss, options_.step_tolerance));
     const auto information = RigInformationOf(minimum_.Linearise());
@@ -47,10 +52,16 @@ class RigSearch {
     answer_.covariance = information->covariance;
     answer_.state = minimum_.state();
     answer_.units = Units();
+    counter_.Finish();
     return std::move(answer_);
   }
 
  private:
+  // Rounds that are not needed count as done.
+  void CountTo(int rounds) {
+    for (; rounds_ < rounds; ++rounds_) counter_.Step();
+  }
+
   static tl::unexpected<Error> Undetermined() {
     return MakeError(ErrorCode::kDegenerate,
                      "the views leave a direction of a sensor's pose undetermined; record boards "
@@ -144,6 +155,7 @@ class RigSearch {
     const SchurSteps steps = minimum_.Solve(options_.max_iterations, tolerance);
     minimised_with_ = answer_.noise;
     answer_.iterations += steps.count;
+    CountTo(rounds_ + 1);
     if (steps.converged) return {};
     return MakeError(ErrorCode::kNoConvergence,
                      fmt::format("no convergence within {} iterations; do the observations belong "
@@ -156,6 +168,8 @@ class RigSearch {
   RigMinimum minimum_;
   RigNoise minimised_with_;
   std::map<std::pair<std::size_t, std::size_t>, bool> shifted_;
+  ProgressCounter counter_;
+  int rounds_ = 0;
   RigAnswer answer_;
 };
 

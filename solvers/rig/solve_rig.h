@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "geometry/uncertain_pose.h"
 #include "solvers/core/rig_problem.h"
 #include "solvers/rig/rig_model.h"
@@ -21,6 +22,7 @@ struct RigOptions {
   double cut = 4.0;
   int max_iterations = 100;
   double step_tolerance = 1e-10;
+  ProgressCallback progress{};  ///< Stage "rig": minima, at most as many as are announced.
 };
 
 /// What became of one observation.

@@ -68,6 +68,14 @@ TEST(CallFiles, AContinuedFileIsReadAndWrittenRepeatedly) {
   EXPECT_THAT(files.BeginOutput(kOther, {}), IsEmpty());
 }
 
+TEST(CallFiles, AWriterThatKnowsItsFileReplacesIt) {
+  CallFiles files(false);
+  EXPECT_THAT(files.BeginOutput(kFile, {.may_be_read = true}), IsEmpty());
+  files.FinishOutput(kFile, kFile);
+  EXPECT_THAT(files.BeginOutput(kFile, {}), HasSubstr("already an output"));
+  EXPECT_THAT(files.BeginOutput(kFile, {.may_be_read = true, .is_repeated = true}), IsEmpty());
+}
+
 TEST(CallFiles, WithoutAnObjectNothingIsRefused) {
   EXPECT_EQ(CallFiles::Current(), nullptr);
   EXPECT_THAT(NoteInput({}), IsEmpty());

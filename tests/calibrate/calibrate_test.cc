@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -31,15 +32,30 @@ struct SimulatedFrames {
   Rigid3d cam_from_lidar{};
 };
 
+// Place number i, rendered once per process.
+struct SimulatedPlace {
+  explicit SimulatedPlace(int i) {
+    Random random(DeriveSeed(1, "calibrate", 0, static_cast<std::uint64_t>(i)));
+    scene = TaggedBoards(random);
+    const SensorData data = Record(scene, static_cast<std::uint64_t>(i));
+    frame = {"frame " + std::to_string(i), data.image, data.cloud};
+  }
+  Scene scene{};
+  Frame frame{};
+};
+
+const SimulatedPlace& PlaceNumber(int i) {
+  static std::map<int, SimulatedPlace> places;
+  return places.try_emplace(i, i).first->second;
+}
+
 SimulatedFrames SimulateFrames(int count) {
   SimulatedFrames simulated;
   for (int i = 0; i < count; ++i) {
-    Random random(DeriveSeed(1, "calibrate", 0, static_cast<std::uint64_t>(i)));
-    const Scene scene = TaggedBoards(random);
-    const SensorData data = Record(scene, static_cast<std::uint64_t>(i));
-    simulated.frames.push_back({"frame " + std::to_string(i), data.image, data.cloud});
-    simulated.options.boards = BoardsIn(scene);
-    simulated.cam_from_lidar = TrueCamFromLidar(scene);
+    const SimulatedPlace& place = PlaceNumber(i);
+    simulated.frames.push_back(place.frame);
+    simulated.options.boards = BoardsIn(place.scene);
+    simulated.cam_from_lidar = TrueCamFromLidar(place.scene);
   }
   simulated.options.camera = *FindCameraModel("zed_left");
   simulated.options.bootstrap_samples = 20;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "calibrate/match/matched_board.h"
 #include "eval/extractors/board_scenes.h"
@@ -26,7 +27,7 @@ struct Seen {
   Observation observation;
 };
 
-Seen See(std::uint64_t seed) {
+Seen SeeAnew(std::uint64_t seed) {
   Random random(DeriveSeed(1, "observe", 0, seed));
   Seen seen{.scene = TaggedBoards(random), .observation = {}};
   const SensorData data = Record(seen.scene, seed);
@@ -35,6 +36,13 @@ Seen See(std::uint64_t seed) {
   EXPECT_TRUE(observation) << observation.error().message;
   seen.observation = *observation;
   return seen;
+}
+
+// Once per process.
+const Seen& See(std::uint64_t seed) {
+  static std::map<std::uint64_t, Seen> all;
+  const auto known = all.find(seed);
+  return known != all.end() ? known->second : all.emplace(seed, SeeAnew(seed)).first->second;
 }
 
 // The patch and the placement that the truth says.
@@ -57,7 +65,7 @@ MatchedBoard TrueMatch(const Seen& seen, int board) {
 }
 
 TEST(Observe, BothBoardsInEveryWayThatTheirOutlineAllows) {
-  const Seen seen = See(0);
+  const Seen& seen = See(0);
   ASSERT_EQ(seen.observation.in_image.size(), 2U);
   ASSERT_EQ(seen.observation.in_scan.size(), 2U);
   EXPECT_THAT(seen.observation.missing, testing::IsEmpty());
@@ -72,7 +80,7 @@ TEST(Observe, BothBoardsInEveryWayThatTheirOutlineAllows) {
 }
 
 TEST(Observe, EveryPlacementPutsTheCornersWhereItsPoseDoes) {
-  const Seen seen = See(1);
+  const Seen& seen = See(1);
   const std::vector<Board> boards = BoardsIn(seen.scene);
   for (const LidarSighting& patch : seen.observation.in_scan) {
     for (const BoardPlacement& placement : patch.placements) {
@@ -87,7 +95,7 @@ TEST(Observe, EveryPlacementPutsTheCornersWhereItsPoseDoes) {
 }
 
 TEST(Observe, TurnsOfOnePatchAreQuarterTurns) {
-  const Seen seen = See(1);
+  const Seen& seen = See(1);
   for (const LidarSighting& patch : seen.observation.in_scan) {
     for (const BoardPlacement& a : patch.placements) {
       for (const BoardPlacement& b : patch.placements) {
@@ -110,7 +118,7 @@ TEST(Observe, RawObservationsAreTrueToTheirSigmas) {
   double face = 0.0;
   double returns = 0.0;
   for (std::uint64_t view = 0; view < kViews; ++view) {
-    const Seen seen = See(10 + view);
+    const Seen& seen = See(10 + view);
     for (int b = 0; b < 2; ++b) {
       const SceneBoard& truth = seen.scene.boards[static_cast<std::size_t>(b)];
       const BoardView raw =
@@ -143,7 +151,7 @@ TEST(Observe, RawObservationsAreTrueToTheirSigmas) {
 }
 
 TEST(Observe, CornersOfAMatchAgreeUnderTheTruth) {
-  const Seen seen = See(2);
+  const Seen& seen = See(2);
   CalibrationProblem problem;
   problem.camera = *FindCameraModel("zed_left");
   problem.boards = BoardsIn(seen.scene);

@@ -64,6 +64,24 @@ TEST(ExpandPattern, StarsMatchAnyTextAndTakeNoLongerThanOthers) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
 }
 
+// A session file may not list the whole disk.
+TEST(ExpandPattern, RefusesMoreFilesThanASessionHas) {
+  const ScratchFolder folder;
+  fs::create_directory(folder.path() / "f");
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE(WriteFileAtomically(folder.path() / "f" / std::to_string(i), ""));
+  }
+  for (int i = 0; i < 1100; ++i) {
+    fs::create_directory_symlink("f", folder.path() / ("f" + std::to_string(i)));
+  }
+  const auto some = ExpandPattern(folder.path() / "f1*" / "*");
+  ASSERT_TRUE(some);
+  EXPECT_EQ(some->size(), 211U * 100U);
+  const auto all = ExpandPattern(folder.path() / "*" / "*");
+  ASSERT_FALSE(all);
+  EXPECT_THAT(all.error().message, testing::HasSubstr("more than 100000 files match"));
+}
+
 TEST(PairFiles, OneOfEachBelongsTogether) {
   const FilePairs found = PairFiles({"photo.jpg"}, {"turn.pcd"});
   EXPECT_THAT(NamesOf(found), testing::ElementsAre("photo: photo.jpg turn.pcd"));

@@ -13,6 +13,7 @@
 #include "e2e/swinging_scene.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
+#include "support/scratch_folder.h"
 
 namespace sextant {
 namespace {
@@ -54,11 +55,25 @@ std::size_t LongestLine(const std::string& text) {
 
 std::string Out() { return " --out " + (TestFolder() / "result.yaml").string(); }
 
+// The session of four scans calibrated with the defaults and every output, in a folder of its own.
+struct Calibrated {
+  test::ScratchFolder folder{};
+  ProgramRun run =
+      RunSextant("calibrate " + Simulated("--scans 4").string() + " --out " + In("result.yaml") +
+                 " --json " + In("result.json") + " --report " + In("report.html"));
+
+  std::string In(const char* name) const { return (folder.path() / name).string(); }
+};
+
+// Once per process.
+const Calibrated& CalibratedSession() {
+  static const Calibrated calibrated;
+  return calibrated;
+}
+
 TEST(Calibrate, ASimulatedSessionAsItStands) {
-  const fs::path session = test::CopyOfSession(Simulated("--scans 4"));
-  const fs::path out = TestFolder() / "result.json";
-  const ProgramRun run =
-      RunSextant("calibrate " + session.string() + Out() + " --json " + out.string());
+  const Calibrated& calibrated = CalibratedSession();
+  const ProgramRun& run = calibrated.run;
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
   EXPECT_THAT(run.out, HasSubstr("error against the truth"));
   EXPECT_THAT(run.out, HasSubstr("cam_from_lidar maps a point of the LiDAR frame"));
@@ -66,16 +81,18 @@ TEST(Calibrate, ASimulatedSessionAsItStands) {
   EXPECT_THAT(Unbroken(run.out), HasSubstr("It rests on 8 boards in 4 of 4 views"));
   EXPECT_LE(LongestLine(run.out), 100U);
   EXPECT_THAT(run.out, Not(HasSubstr("ambiguous")));
-  const json result = json::parse(ReadText(out));
+  const std::string text = ReadText(calibrated.In("result.json"));
+  const json result = json::parse(text);
   EXPECT_EQ(result["views"].size(), 4U);
   EXPECT_THAT(run.out, StartsWith(result["verdict"]["word"].get<std::string>() + ": "));
-  EXPECT_THAT(ReadText(TestFolder() / "result.yaml"), HasSubstr("cam_from_lidar"));
+  EXPECT_THAT(ReadText(calibrated.In("result.yaml")), HasSubstr("cam_from_lidar"));
   // Again: the same bytes.
-  const fs::path again = TestFolder() / "again.json";
-  RunSextant("calibrate " + session.string() + Out() + " --json " + again.string());
-  EXPECT_EQ(ReadText(out), ReadText(again));
+  RunSextant("calibrate " + Simulated("--scans 4").string() + " --out " +
+             calibrated.In("again.yaml") + " --json " + calibrated.In("again.json"));
+  EXPECT_EQ(text, ReadText(calibrated.In("again.json")));
 
   // With other solvers for comparison.
+  const fs::path session = test::CopyOfSession(Simulated("--scans 4"));
   const ProgramRun compared =
       RunSextant("calibrate " + session.string() + Out() + " --solver 'gnc(kabsch),kabsch,epnp'");
   EXPECT_EQ(compared.exit_code, 0) << compared.err;
@@ -92,20 +109,19 @@ TEST(Calibrate, ASimulatedSessionAsItStands) {
 
 // The same calibration twice: with all that a calibration knows, and from its result alone.
 TEST(Calibrate, TheReportHoldsTheViewsWithPhotosAndScans) {
-  const fs::path session = Simulated("--scans 4");
-  const std::string path = (TestFolder() / "report.html").string();
-  const ProgramRun run = RunSextant("calibrate " + session.string() + Out() + " --report " + path);
+  const Calibrated& calibrated = CalibratedSession();
+  const ProgramRun& run = calibrated.run;
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
   EXPECT_THAT(run.out, HasSubstr("report.html: the report, one file"));
-  const std::string full = ReadText(path);
+  const std::string full = ReadText(calibrated.In("report.html"));
+  const std::string path = (TestFolder() / "report.html").string();
   EXPECT_THAT(full, HasSubstr(run.out.substr(0, run.out.find(':'))));
   for (const char* part :
        {"id=\"view-3\"", "data:image/jpeg;base64,", "data:image/png;base64,", "edge_growth_along_m",
         "gnc(kabsch)", "cam_000.png", "scan_003.pcd", "Hold board", "\"xyz\":"}) {
     EXPECT_THAT(full, HasSubstr(part)) << part;
   }
-  const ProgramRun again =
-      RunSextant("report " + (TestFolder() / "result.yaml").string() + " --out " + path);
+  const ProgramRun again = RunSextant("report " + calibrated.In("result.yaml") + " --out " + path);
   ASSERT_EQ(again.exit_code, 0) << again.err;
   const std::string from_result = ReadText(path);
   EXPECT_THAT(from_result, HasSubstr("data:image/jpeg;base64,"));
@@ -117,7 +133,7 @@ TEST(Calibrate, TheReportHoldsTheViewsWithPhotosAndScans) {
 }
 
 TEST(Calibrate, TheProblemFileGivesTheSameAnswerToSolve) {
-  const fs::path session = Simulated("--scans 3");
+  const fs::path session = Simulated("--scans 4");
   const std::string problem = (TestFolder() / "problem.yaml").string();
   const fs::path calibrated = TestFolder() / "calibrated.json";
   const std::string solver = " --solver 'joint(gnc(kabsch),board_size=scale)'";

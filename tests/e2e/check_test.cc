@@ -2,6 +2,7 @@
 // Poses of other programs, checked with everyday scenes.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
@@ -30,13 +31,25 @@ TEST(Check, KittiByAPoseOfAnotherProgram) {
   EXPECT_THAT(run.err, HasSubstr("read as cam_from_lidar"));
   const Expected<std::string> lines = ReadTextFile(history);
   ASSERT_TRUE(lines);
-  EXPECT_THAT(*lines, HasSubstr("Z,still valid,7,"));
+  EXPECT_THAT(*lines, HasSubstr("Z,still valid,cam_from_lidar,7,"));
+  EXPECT_THAT(run.out, HasSubstr("The pose was read as cam_from_lidar."));
 
-  const ProgramRun one = RunSextant(
-      "check " + gt + " --camera " + gt + " --image " + (folder / "img/000649.png").string() +
-      " --cloud " + (folder / "pcd/000649.pcd").string() + " --json - --history " + history);
+  // As an editor leaves it: the next line does not continue the last one.
+  WriteText(history, lines->substr(0, lines->size() - 1));
+  const std::string check_one = "check " + gt + " --camera " + gt + " --image " +
+                                (folder / "img/000649.png").string() + " --cloud " +
+                                (folder / "pcd/000649.pcd").string() + " --json -";
+  const ProgramRun one = RunSextant(check_one + " --history " + history);
   EXPECT_EQ(one.exit_code, 5) << one.out << one.err;
   EXPECT_THAT(one.out, HasSubstr("\"state\": \"cannot tell\""));
+  EXPECT_THAT(one.out, HasSubstr("\"pose_read_as\": \"cam_from_lidar\""));
+  const Expected<std::string> more = ReadTextFile(history);
+  ASSERT_TRUE(more);
+  EXPECT_THAT(*more, testing::StartsWith(*lines));
+  EXPECT_EQ(std::count(more->begin(), more->end(), '\n'), 3);
+  // An answer that is lost is no answer.
+  const ProgramRun lost = test::RunProgram("{", SEXTANT_BINARY " " + check_one + " >/dev/full; }");
+  EXPECT_EQ(lost.exit_code, 4) << lost.err;
 }
 
 TEST(Check, AsksForWhatIsMissing) {

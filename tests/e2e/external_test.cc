@@ -109,6 +109,11 @@ TEST(External, ImportedPosesAndATruthJoinTheComparison) {
   const ProgramRun bad = RunSextant("compare " + PairsFile() + " --import " + poses);
   EXPECT_EQ(bad.exit_code, 2);
   EXPECT_THAT(bad.err, HasSubstr("poses.csv:2: expected a quaternion of length 1, got 3"));
+  std::string many = "solver,x,y,z,qw,qx,qy,qz\n";
+  for (int i = 0; i < 1001; ++i) many += "s" + std::to_string(i) + ",0,0,0,1,0,0,0\n";
+  WriteText(poses, many);
+  EXPECT_THAT(RunSextant("compare " + PairsFile() + " --import " + poses).err,
+              HasSubstr("has 1001 poses, expected at most 1000 to compare"));
 }
 
 TEST(External, AnExperimentHasPosesThatWereFoundElsewhere) {

@@ -76,6 +76,48 @@ TEST(Outputs, TwoOutputsAreNotOneFile) {
   EXPECT_THAT(NamesIn(TestFolder()), ElementsAre("problem.yaml", "stderr", "stdout"));
 }
 
+TEST(Outputs, ADictionaryOfTagsIsAnInput) {
+  const std::string dictionary = TestPath("tags.yml");
+  WriteText(dictionary,
+            "%YAML:1.0\n---\nnmarkers: 1\nmarkersize: 4\nmaxCorrectionBits: 0\n"
+            "marker_0: \"1010010110100101\"\n");
+  const std::string before = ReadText(dictionary);
+  ExpectRefused(RunSextant("detect none.png --overwrite --detector 'aruco(file=\"" + dictionary +
+                           "\")' --json " + dictionary),
+                "an output of the same command");
+  EXPECT_EQ(ReadText(dictionary), before);
+}
+
+TEST(Outputs, TheHistoryOfChecksIsClaimedBeforeTheWork) {
+  const std::string result = TestPath("result.yaml");
+  const std::string before = "cam_from_lidar: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
+  WriteText(result, before);
+  const std::string check = "check " + result + " --image none.png --cloud none.pcd --history ";
+  ExpectRefused(RunSextant(check + result), "an output of the same command");
+  ExpectRefused(RunSextant(check + TestPath("same") + " --json " + TestPath("same")),
+                "it is already an output of the same command");
+  fs::create_symlink("result.yaml", TestPath("link"));
+  ExpectRefused(RunSextant(check + TestPath("link")), "it is a link to 'result.yaml'");
+  EXPECT_EQ(ReadText(result), before);
+}
+
+// Without --out the result of several sensors is rig.json, not result.yaml.
+TEST(Outputs, TheResultOfARigIsClaimedByItsName) {
+  WriteText(TestPath("a_1.pcd"), "no scan");
+  WriteText(TestPath("b_1.pcd"), "no scan");
+  WriteText(TestPath("session.yaml"),
+            "sextant_session: 1\nboards: none.yaml\nsensors:\n  - {name: a, clouds: a_*.pcd}\n"
+            "  - {name: b, clouds: b_*.pcd}\n");
+  WriteText(TestPath("result.yaml"), "mine");
+  const auto calibrate = [](const std::string& options) {
+    return Shell("cd " + TestFolder().string() + "; $SEXTANT calibrate session.yaml" + options);
+  };
+  ExpectRefused(calibrate(" --json rig.json"), "--out: cannot write 'rig.json': it is already");
+  ExpectRefused(calibrate(""), "none.yaml");
+  WriteText(TestPath("rig.json"), "mine");
+  ExpectRefused(calibrate(""), "rig.json': it exists, and sextant did not write it");
+}
+
 TEST(Outputs, AnEmptyPathIsRefused) {
   const std::string problem = MakeProblem();
   ExpectRefused(RunSextant("solve " + problem + " --json ''"), "--json: expected a path");
@@ -206,10 +248,10 @@ TEST(Outputs, AFileThatWasBeingReplacedSurvivesAKill) {
 
 TEST(Outputs, EveryCommandThatWritesHasOverwrite) {
   for (const char* command :
-       {"calibrate",   "capture", "advise",   "project", "report",   "export",
-        "detect",      "boards",  "mark",     "bag",     "simulate", "simulate pairs",
-        "print-board", "convert", "fuse",     "solve",   "compare",  "average",
-        "run",         "merge",   "reproduce"}) {
+       {"calibrate", "capture", "advise",    "project", "report",   "export",         "detect",
+        "boards",    "mark",      "bag",     "simulate", "simulate pairs", "print-board",
+        "convert",   "fuse",      "solve",   "compare",  "average",        "run",
+        "merge",     "reproduce", "rig",     "check",    "refine-scene"}) {
     EXPECT_THAT(RunSextant(std::string(command) + " --help").out, HasSubstr("--overwrite"))
         << command;
   }

@@ -126,6 +126,18 @@ TEST(ResultFolder, MergeDoesNotReadItsOwnTarget) {
   EXPECT_EQ(RowsIn("parts"), before);
 }
 
+TEST(ResultFolder, TheTrialsOfADamagedBlockRunAgain) {
+  const std::string study = WriteStudy("study.yaml", "", 3000);
+  ASSERT_EQ(RunShard(study, "").exit_code, 0);
+  const std::string before = RowsIn("parts");
+  std::string damaged = before;
+  damaged[damaged.size() / 2] ^= 1;
+  WriteText(TestFolder() / "parts" / "rows.sxtrows", damaged);
+  const ProgramRun again = RunShard(study, "");
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(RowsIn("parts"), before);
+}
+
 TEST(ResultFolder, AForeignReportIsFoundBeforeTheTrials) {
   fs::create_directories(TestFolder() / "parts");
   WriteText(TestFolder() / "parts" / "report.md", "my thesis");

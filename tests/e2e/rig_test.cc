@@ -11,6 +11,7 @@
 #include "e2e/swinging_scene.h"
 #include "support/real_data.h"
 #include "support/run_program.h"
+#include "support/scratch_folder.h"
 
 namespace sextant {
 namespace {
@@ -33,14 +34,26 @@ std::filesystem::path SessionOfRig() {
   return test::SharedSession(test::SwingingScene("rig", kCameras), "--interval 60 --scans 3");
 }
 
+// The session solved as a rig, with the problem that it wrote.
+struct SolvedRig {
+  test::ScratchFolder folder{};
+  std::string out = (folder.path() / "rig.json").string();
+  std::string problem = (folder.path() / "rig.yaml").string();
+  ProgramRun run = RunSextant("calibrate " + SessionOfRig().string() + " --out " + out +
+                              " --problem " + problem);
+};
+
+// Once per process; tests do not change it.
+const SolvedRig& Solved() {
+  static const SolvedRig solved;
+  return solved;
+}
+
 TEST(RigCommand, ASessionOfSeveralCamerasIsSolvedAsOneRig) {
-  const std::string out = TestPath("rig.json");
-  const std::string problem = TestPath("rig.yaml");
-  const ProgramRun run = RunSextant("calibrate " + SessionOfRig().string() + " --out " + out +
-                                    " --problem " + problem);
+  const ProgramRun& run = Solved().run;
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("left_from_right"));
-  const json rig = json::parse(test::ReadText(out));
+  const json rig = json::parse(test::ReadText(Solved().out));
   ASSERT_EQ(rig["sensors"].size(), 3U);
   for (const json& sensor : rig["sensors"]) {
     const auto at = sensor["root_from_sensor"]["translation_m"].get<std::vector<double>>();
@@ -53,7 +66,8 @@ TEST(RigCommand, ASessionOfSeveralCamerasIsSolvedAsOneRig) {
     EXPECT_LT(pair["alone"]["off_sigmas"].get<double>(), 3.0) << pair["a"] << pair["b"];
   }
   // The problem that it wrote has the same answer.
-  const ProgramRun again = RunSextant("rig " + problem + " --out " + TestPath("again.json"));
+  const ProgramRun again =
+      RunSextant("rig " + Solved().problem + " --out " + TestPath("again.json"));
   ASSERT_EQ(again.exit_code, 0) << again.err;
   const json same = json::parse(test::ReadText(TestPath("again.json")));
   for (std::size_t s = 0; s < 3; ++s) {
@@ -66,8 +80,8 @@ TEST(RigCommand, ASessionOfSeveralCamerasIsSolvedAsOneRig) {
 }
 
 TEST(RigCommand, ARigIsExportedAsATreeOrAPair) {
-  const std::string out = TestPath("rig.json");
-  ASSERT_EQ(RunSextant("calibrate " + SessionOfRig().string() + " --out " + out).exit_code, 0);
+  const std::string& out = Solved().out;
+  ASSERT_EQ(Solved().run.exit_code, 0);
   const ProgramRun tree = RunSextant("export " + out + " --to ros2");
   ASSERT_EQ(tree.exit_code, 0) << tree.err;
   EXPECT_THAT(tree.out, HasSubstr("'--child-frame-id', 'right'"));
@@ -81,13 +95,9 @@ TEST(RigCommand, ARigIsExportedAsATreeOrAPair) {
 }
 
 TEST(RigCommand, AWrongSizeOfTheTagIsNotUsable) {
-  const std::string problem = TestPath("rig.yaml");
   const std::string out = TestPath("wrong.json");
-  ASSERT_EQ(RunSextant("calibrate " + SessionOfRig().string() + " --out " + TestPath("rig.json") +
-                       " --problem " + problem)
-                .exit_code,
-            0);
-  std::string text = test::ReadText(problem);
+  ASSERT_EQ(Solved().run.exit_code, 0);
+  std::string text = test::ReadText(Solved().problem);
   // The printed points as if the tags were a quarter larger.
   const std::string corners =
       "[-0.1025, -0.1025, 0.1025, -0.1025, 0.1025, 0.1025, -0.1025, 0.1025]";
@@ -95,7 +105,7 @@ TEST(RigCommand, AWrongSizeOfTheTagIsNotUsable) {
   for (std::size_t at = text.find(corners); at != std::string::npos; at = text.find(corners)) {
     text.replace(at, corners.size(), larger);
   }
-  ASSERT_NE(text, test::ReadText(problem));
+  ASSERT_NE(text, test::ReadText(Solved().problem));
   const std::string wrong = TestPath("wrong.yaml");
   std::ofstream(wrong) << text;
   const ProgramRun run = RunSextant("rig " + wrong + " --out " + out);

@@ -9,12 +9,12 @@
 
 #include "e2e/run_sextant.h"
 #include "io/cameras/camera_file.h"
+#include "support/bag_built.h"
 #include "support/run_program.h"
 
 #ifdef SEXTANT_WITH_BAG
 #include "io/bag/bag.h"
 #include "io/bag/messages.h"
-#include "support/bag_built.h"
 #endif
 
 namespace sextant {

@@ -56,7 +56,7 @@ TEST(CloudFusion, FusesAllCloudsIntoOneFrame) {
 TEST(CloudFusion, DistancesAreTheNoiseUnderTheTruePose) {
   const PointCloud a = Corner({}, 1);
   const PointCloud b = Corner(SomePose(), 2);
-  const CloudAgreement agreement = CompareClouds(a, SomePose(), b);
+  const CloudAgreement agreement = CompareClouds(a, SomePose(), ReferenceCloud(b));
   EXPECT_EQ(agreement.points, 6000);
   EXPECT_GT(agreement.Overlap(), 0.9);
   EXPECT_NEAR(agreement.median_m, 0.6745 * kNoise * std::sqrt(13.0 / 12.0), 0.1 * kNoise);
@@ -64,7 +64,7 @@ TEST(CloudFusion, DistancesAreTheNoiseUnderTheTruePose) {
 
 TEST(CloudFusion, MeasuresTheShiftOfAWall) {
   const PointCloud a = Corner({}, 1);
-  const PointCloud b = Corner({}, 2);
+  const ReferenceCloud b(Corner({}, 2));
   for (const double shift : {0.03, 0.06}) {
     const Rigid3d moved{Eigen::Quaterniond::Identity(), Eigen::Vector3d::Constant(shift)};
     const CloudAgreement agreement = CompareClouds(a, moved, b);
@@ -74,10 +74,10 @@ TEST(CloudFusion, MeasuresTheShiftOfAWall) {
 
 TEST(CloudFusion, ReportsCloudsWithoutOverlap) {
   const Rigid3d far{Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}};
-  const CloudAgreement agreement = CompareClouds(Corner({}, 1), far, Corner({}, 2));
+  const CloudAgreement agreement = CompareClouds(Corner({}, 1), far, ReferenceCloud(Corner({}, 2)));
   EXPECT_EQ(agreement.compared, 0);
   EXPECT_TRUE(std::isnan(agreement.median_m));
-  EXPECT_EQ(CompareClouds({}, far, {}).points, 0);
+  EXPECT_EQ(CompareClouds({}, far, ReferenceCloud({})).points, 0);
 }
 
 }  // namespace

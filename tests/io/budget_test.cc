@@ -8,7 +8,9 @@
 
 #include "base/random.h"
 #include "io/clouds/cloud_file.h"
+#include "io/poses/pose_file.h"
 #include "io/problems/problem_yaml.h"
+#include "io/problems/rig_yaml.h"
 #include "io/results/calibration_result.h"
 #include "io/text/yaml_node.h"
 #include "support/calibration_result.h"
@@ -193,6 +195,61 @@ TEST(Budget, HeadersThatPromiseManyPointsTakeNoMemory) {
     EXPECT_LT(cost.peak_bytes, 8 * kMiB) << name;
     EXPECT_LT(cost.seconds, 1.0) << name;
   }
+}
+
+// A chain of frames from the LiDAR to the camera, and odometry that branches off.
+std::string ChainOfFrames(int frames) {
+  const auto transform = [](const std::string& parent, const std::string& child, int x_m) {
+    return fmt::format(
+        " - {{header: {{frame_id: {}}}, child_frame_id: {}, transform: {{translation: {{x: {}, y: "
+        "0, "
+        "z: 0}}, rotation: {{x: 0, y: 0, z: 0, w: 1}}}}}}\n",
+        parent, child, x_m);
+  };
+  const auto name = [&](int i) {
+    return i == 0 ? std::string("lidar") : i == frames ? "camera_optical" : fmt::format("f{}", i);
+  };
+  std::string text = "transforms:\n";
+  for (int i = 1; i <= frames; ++i) text += transform(name(i - 1), name(i), 0);
+  for (int i = 0; i < frames; ++i) text += transform(name(frames / 2), "odom", i);
+  return text;
+}
+
+TEST(Budget, PosesOfManyFramesTakeNoQuadraticTime) {
+  const std::string text = ChainOfFrames(20'000);
+  const ChildCost cost = CostOf([&text] { return ParsePose(text, "f.yaml").has_value(); });
+  EXPECT_TRUE(cost.ended);
+  EXPECT_LT(cost.seconds, 20.0);
+  EXPECT_LT(cost.peak_bytes, 20 * text.size() + 64 * kMiB);
+  std::string launch = "from launch import LaunchDescription\n# static_transform_publisher\n";
+  while (launch.size() < 8 * kMiB) launch += "arguments=[0 0 0 0 0 0 lidar camera_optical]\n";
+  EXPECT_LT(CostOf([&launch] {
+              static_cast<void>(ParsePose(launch, "f.launch.py"));
+              return true;
+            }).seconds,
+            20.0);
+}
+
+// Each observation of n pixels has a covariance of 32 n^2 bytes.
+TEST(Budget, PixelsOfRigsTakeNoGigabytes) {
+  constexpr int kPoints = 1000;
+  std::string points = "0, 0";
+  for (int i = 1; i < kPoints; ++i) points += fmt::format(", 0.{:03}, 0", i);
+  std::string text =
+      "sextant_rig: 1\nsensors:\n  - name: cam\n    camera: {model: pinhole, fx_px: 700, fy_px: "
+      "700, "
+      "cx_px: 640, cy_px: 360}\n  - name: lidar\nboards:\n  - {id: 0, top_right_m: 2, "
+      "right_bottom_m: 2, points_m: [" +
+      points + "]}\nmoments:\n";
+  for (int i = 0; i < 40; ++i) {
+    text += "  - observations: [{sensor: cam, board: 0, pixels: [" + points + "]}]\n";
+  }
+  const ChildCost cost = CostOf([&text] {
+    const Expected<RigFile> rig = ParseRigFile(text, "f.yaml");
+    return !rig && rig.error().message.find("expected fewer pixels") != std::string::npos;
+  });
+  EXPECT_TRUE(cost.ended);
+  EXPECT_LT(cost.peak_bytes, 20 * text.size() + 64 * kMiB);
 }
 
 }  // namespace

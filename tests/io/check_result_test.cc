@@ -10,7 +10,10 @@ namespace {
 CheckResult SomeCheck() {
   CheckResult check{.version = "1",
                     .pose_path = "result.yaml",
+                    .read_as = "cam_from_lidar",
+                    .read_by = "as --pose-is states",
                     .state = "moved",
+                    .is_certain = true,
                     .reason = "moved by 1.2 deg",
                     .cam_from_lidar = {Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5), {0.1, 0.2, 0.3}},
                     .pairs = {{"7", "photo_7.png", "scan_7.pcd"}},
@@ -32,6 +35,9 @@ TEST(CheckResult, RoundTripsToTheSameText) {
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->sigma.has_value(), has_sigma);
     EXPECT_EQ(read->pairs.size(), 1U);
+    EXPECT_EQ(read->read_as, check.read_as);
+    EXPECT_EQ(read->read_by, check.read_by);
+    EXPECT_TRUE(read->is_certain);
     EXPECT_LT((read->change - check.change).cwiseAbs().maxCoeff(), 1e-15);
     EXPECT_LT((read->cam_from_lidar.translation - check.cam_from_lidar.translation).norm(), 1e-15);
   }

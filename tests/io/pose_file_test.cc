@@ -132,6 +132,10 @@ TEST(PoseFile, ReadsKittiWithItsRectificationAndOffset) {
   EXPECT_EQ(pose->direction, PoseDirection::kCamFromLidar);
   EXPECT_THAT(ErrorOf(p0 + p2 + "Tr: " + tr), HasSubstr("pose.txt:P2"));
   EXPECT_EQ(ErrorOf(p2 + "Tr_velo_to_cam: " + tr), "");
+  for (const char* p : {"0 0 0 1 0 0 0 0 0 0 0 0", "1e-300 0 6 1e300 0 7 1 0 0 0 1 0"}) {
+    EXPECT_THAT(ErrorOf("P0: " + std::string(p) + "\nTr: " + tr),
+                HasSubstr("P0: expected the 12 numbers of a projection"));
+  }
 }
 
 TEST(PoseFile, ConnectsFramesOfARobot) {

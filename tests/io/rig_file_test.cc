@@ -149,6 +149,14 @@ TEST(RigResult, SaysWhyItIsNotUsable) {
   EXPECT_EQ(read->refutations, rig.refutations);
 }
 
+TEST(RigResult, HasItsRootAmongItsSensors) {
+  RigResult rig = ThreeSensors();
+  rig.root = "nobody";
+  const Expected<RigResult> read = ParseRigResult(FormatRigResult(rig), "rig.json");
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().message, HasSubstr("root: expected the name of one of the sensors"));
+}
+
 TEST(ExportRig, EveryFormatHasEverySensor) {
   const RigResult rig = ThreeSensors();
   for (const char* format : {"ros1", "ros2", "ros2_yaml", "urdf", "kitti"}) {

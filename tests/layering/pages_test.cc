@@ -5,6 +5,7 @@
 #include <cctype>
 #include <filesystem>
 #include <regex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -74,6 +75,36 @@ TEST(Pages, EveryLinkLeadsToAFileOfTheProject) {
     }
   }
   EXPECT_GT(links, 20);
+}
+
+// Whether a row of a table names a folder: in full, or its parent and then the names below it.
+bool NamesFolder(const std::string& row, const std::string& folder) {
+  const auto has = [&](const std::string& words) { return row.find(words) != std::string::npos; };
+  if (has("`" + folder + "`")) return true;
+  const std::size_t slash = folder.find('/');
+  if (slash == std::string::npos) return false;
+  const std::string root = folder.substr(0, slash);
+  if (!has("`" + root + "`") && !has("`" + root + "/")) return false;
+  return std::ranges::all_of(fs::path(folder.substr(slash + 1)), [&](const fs::path& part) {
+    return has("`" + part.string() + "`") || has("/" + part.string() + "`");
+  });
+}
+
+TEST(Pages, TheConventionsNameEveryFolderOfSources) {
+  const std::vector<SourceFile> files = ReadSourceTree();
+  const auto page = std::ranges::find(files, "docs/conventions.md", &SourceFile::path);
+  ASSERT_TRUE(page != files.end());
+  std::set<std::string> folders;
+  for (const SourceFile& file : files) {
+    if (IsCpp(file) && !file.folder.starts_with("tests")) folders.insert(file.folder);
+  }
+  EXPECT_GT(folders.size(), 50U);
+  for (const std::string& folder : folders) {
+    const auto names = [&](const std::string& line) {
+      return line.starts_with("| `") && NamesFolder(line, folder);
+    };
+    EXPECT_TRUE(std::ranges::any_of(page->lines, names)) << folder;
+  }
 }
 
 // Whether a file of the tests defines TEST(suite, name), TEST_F or TEST_P; "*" is any name.

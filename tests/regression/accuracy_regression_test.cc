@@ -61,7 +61,7 @@ TEST_P(AccuracyRegression, NoSolverIsWorseThanItWas) {
   for (const std::string& line : CompareWithGolden(ReadGolden(name), now)) ADD_FAILURE() << line;
 }
 
-constexpr const char* kExperiments[] = {"accuracy", "board_views"};
+constexpr const char* kExperiments[] = {"accuracy", "board_views", "sessions"};
 INSTANTIATE_TEST_SUITE_P(Golden, AccuracyRegression, testing::ValuesIn(kExperiments),
                          [](const auto& test) { return std::string(test.param); });
 

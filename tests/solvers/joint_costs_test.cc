@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "eval/synthetic/simulate_views.h"
+#include "solvers/joint/condensed_cost.h"
 #include "solvers/joint/pose_manifold.h"
 
 namespace sextant {
@@ -148,6 +149,55 @@ TEST(JointCosts, Priors) {
     ExpectItsDerivatives(PriorCost(block, weight),
                          {{{block.mean.begin(), block.mean.end()}, nullptr}});
   }
+}
+
+// r^2, J^T r and J^T J with all parameter blocks side by side.
+struct NormalEquations {
+  double squares = 0.0;
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd matrix;
+};
+
+NormalEquations NormalOf(const ceres::CostFunction& cost, const std::vector<CostBlock>& blocks) {
+  std::vector<Derivative> derivatives;
+  std::vector<double*> places;
+  Eigen::Index columns = 0;
+  for (const CostBlock& block : blocks) {
+    derivatives.emplace_back(cost.num_residuals(), std::ssize(block.numbers));
+    columns += std::ssize(block.numbers);
+  }
+  for (Derivative& of : derivatives) places.push_back(of.data());
+  Eigen::VectorXd values(cost.num_residuals());
+  EXPECT_TRUE(cost.Evaluate(PointersOf(blocks).data(), values.data(), places.data()));
+  Eigen::MatrixXd all(cost.num_residuals(), columns);
+  Eigen::Index at = 0;
+  for (const Derivative& of : derivatives) {
+    all.middleCols(at, of.cols()) = of;
+    at += of.cols();
+  }
+  return {values.squaredNorm(), all.transpose() * values, all.transpose() * all};
+}
+
+TEST(JointCosts, CondensedIsTheSameProblem) {
+  const CostCase of;
+  const JointView& view = of.model.views[0];
+  const std::vector<double> weights(view.terms.edges.size(), 0.7);
+  std::vector<CostBlock> blocks = {of.board};
+  for (const EdgeShift& by : view.shifts) {
+    blocks.push_back(of.Shared(by.shared));
+    blocks.back().numbers[0] += 0.01;
+  }
+  const EdgeCost all(of.model, view, weights);
+  const CondensedCost condensed(std::make_unique<EdgeCost>(of.model, view, weights), 6, 6);
+  EXPECT_LT(condensed.num_residuals(), all.num_residuals());
+  const NormalEquations expected = NormalOf(all, blocks);
+  const NormalEquations normal = NormalOf(condensed, blocks);
+  constexpr double kRounding = 1e-12;
+  EXPECT_NEAR(normal.squares, expected.squares, kRounding * expected.squares);
+  EXPECT_LT((normal.gradient - expected.gradient).norm(), kRounding * expected.gradient.norm());
+  EXPECT_LT((normal.matrix - expected.matrix).norm(), kRounding * expected.matrix.norm());
+  EXPECT_NEAR(ValuesOf(condensed, blocks).squaredNorm(), expected.squares,
+              kRounding * expected.squares);
 }
 
 TEST(JointCosts, WhatIsLeftOutHasNoResidual) {

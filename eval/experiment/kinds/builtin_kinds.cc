@@ -12,8 +12,10 @@
   X(BoardScan)           \
   X(BoardImage)          \
   X(Fusion)              \
+  X(Session)             \
   X(RealPairs)           \
-  X(RealViews)
+  X(RealViews)           \
+  X(Check)
 
 namespace sextant {
 

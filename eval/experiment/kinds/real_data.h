@@ -27,7 +27,7 @@ struct RealDataSet {
 };
 
 /// Reads the manifest, relative to the experiment file, and checks its files. Errors: those of
-/// ReadManifest and CheckFiles, kMissingData where data is absent.
+/// ReadManifest and CheckFiles, kMissingData where data is absent. Time and memory are theirs.
 Expected<RealDataSet> OpenRealData(const std::string& manifest,
                                    const std::filesystem::path& experiments);
 

@@ -2,6 +2,7 @@
 #include "features/camera/tags/aruco_dictionary.h"
 
 #include <fmt/core.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +10,8 @@
 #include <fstream>
 #include <opencv2/core/persistence.hpp>
 #include <string>
+
+#include "base/call_files.h"
 
 namespace sextant {
 namespace {
@@ -92,6 +95,11 @@ Expected<cv::aruco::Dictionary> ReadArucoDictionary(const std::string& path) {
   // Checked first because OpenCV prints a message of its own for a missing file.
   if (std::error_code error; !std::filesystem::is_regular_file(path, error)) {
     return MakeError(ErrorCode::kIo, fmt::format("{}: there is no dictionary file", path));
+  }
+  struct stat status {};
+  if (stat(path.c_str(), &status) == 0) {
+    const std::string why = NoteInput(status);
+    if (!why.empty()) return MakeError(ErrorCode::kInvalidOption, fmt::format("{}: {}", path, why));
   }
   std::error_code ignored;
   if (std::filesystem::file_size(path, ignored) > kMaxBytes || MayNestDeeply(path)) {

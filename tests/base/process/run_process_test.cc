@@ -71,5 +71,13 @@ TEST(RunProcess, LimitsTheOutput) {
   EXPECT_THAT(end.error().message, HasSubstr("more than 999 bytes"));
 }
 
+TEST(RunProcess, StopsAProgramThatWritesWithoutEnd) {
+  const Expected<ProcessEnd> end =
+      RunProcess({"yes"}, {.timeout = std::chrono::seconds(5), .max_bytes = 1 << 20});
+  ASSERT_FALSE(end);
+  EXPECT_EQ(end.error().code, ErrorCode::kIo);
+  EXPECT_THAT(end.error().message, HasSubstr("yes: it wrote more than 1048576 bytes"));
+}
+
 }  // namespace
 }  // namespace sextant

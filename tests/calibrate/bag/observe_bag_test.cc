@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <map>
 #include <memory>
+#include <utility>
 
 #include "calibrate/bag/bag_streams.h"
 #include "calibrate/calibrate.h"
@@ -59,15 +61,20 @@ TEST(ReadStreams, PairsTheFirstHundredPairsOfTopics) {
 
 class Recording : public testing::Test {
  protected:
-  // The scene with its boards moved sideways by so much, for each.
+  // The scene with its boards moved sideways by so much, for each; rendered once per process.
   void Record(const std::vector<double>& moved_m) {
+    static std::map<std::pair<std::size_t, double>, SensorData> recorded;
     Random random(DeriveSeed(1, "observe_bag", 0, 0));
     const Scene scene = TaggedBoards(random);
     boards_ = BoardsIn(scene);
     for (std::size_t i = 0; i < moved_m.size(); ++i) {
-      Scene now = scene;
-      for (SceneBoard& board : now.boards) board.world_from_board.translation.y() += moved_m[i];
-      data_.push_back(test::Record(now, i));
+      const auto [entry, is_new] = recorded.try_emplace({i, moved_m[i]});
+      if (is_new) {
+        Scene now = scene;
+        for (SceneBoard& board : now.boards) board.world_from_board.translation.y() += moved_m[i];
+        entry->second = test::Record(now, i);
+      }
+      data_.push_back(entry->second);
     }
   }
 

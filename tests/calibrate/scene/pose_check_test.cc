@@ -84,16 +84,61 @@ TEST(PoseCheck, KittiIsStillValidAndMovedWhereItMoved) {
               HasSubstr("moved"));
 }
 
-TEST(PoseCheck, AFitAtTheLimitOfTheSearchStatesNoSigma) {
+// A clear fit at the given pose.
+SceneFit ClearFit() {
   SceneFit fit;
-  fit.cam_from_lidar.translation = {0.0, 0.0, -0.102};
   fit.own_covariance = 1e-6 * Matrix6d::Identity();
-  fit.covariance = 1e-4 * Matrix6d::Identity();
+  fit.covariance = fit.own_covariance;
   fit.score = 100.0;
+  fit.start_score = 100.0;
   fit.chance_sigma = 1.0;
+  fit.held_out = 20.0;
+  fit.focal_px = 700.0;
   fit.edges = 1000;
   fit.scenes = 7;
   fit.tiles = 60;
+  fit.free_covariance = 1e-6 * Matrix9d::Identity();
+  return fit;
+}
+
+TEST(PoseCheck, HalvesThatDoNotConfirmEachOtherTellNothing) {
+  SceneFit fit = ClearFit();
+  EXPECT_EQ(CheckScenes(fit, Rigid3d{}, kLimits).state, PoseState::kValid);
+  fit.held_out = 2.0;
+  fit.cam_from_lidar.translation.x() = 0.09;
+  const PoseCheck check = CheckScenes(fit, Rigid3d{}, kLimits);
+  EXPECT_EQ(check.state, PoseState::kUnknown);
+  EXPECT_THAT(check.reason, HasSubstr("the halves of the scenes do not confirm each other"));
+}
+
+TEST(PoseCheck, ASmallChangeThatIsCertainIsStatedButValid) {
+  SceneFit fit = ClearFit();
+  fit.cam_from_lidar.translation.x() = 0.03;
+  const PoseCheck small = CheckScenes(fit, Rigid3d{}, kLimits);
+  EXPECT_EQ(small.state, PoseState::kValid);
+  EXPECT_TRUE(small.is_certain);
+  EXPECT_THAT(small.reason, HasSubstr("it has changed by"));
+  EXPECT_THAT(small.reason, HasSubstr("30 +- 1 mm along x, which is certain"));
+  // What may be as large as --detect has moved.
+  fit.cam_from_lidar.translation.x() = 0.079;
+  EXPECT_EQ(CheckScenes(fit, Rigid3d{}, kLimits).state, PoseState::kMoved);
+}
+
+TEST(PoseCheck, WrongIntrinsicsAreNamedInsteadOfAMotion) {
+  SceneFit fit = ClearFit();
+  fit.cam_from_lidar.translation.z() = 0.09;
+  fit.free.intrinsics = {0.0296, 0.0, 0.01};
+  const PoseCheck check = CheckScenes(fit, Rigid3d{}, kLimits);
+  EXPECT_EQ(check.state, PoseState::kUnknown);
+  EXPECT_THAT(check.reason, HasSubstr("focal length +3.0 +- 0.1 %"));
+  EXPECT_THAT(check.reason, HasSubstr("7 +- 1 px down"));
+  EXPECT_THAT(check.reason, HasSubstr("with better ones the pose may be the given one"));
+}
+
+TEST(PoseCheck, AFitAtTheLimitOfTheSearchStatesNoSigma) {
+  SceneFit fit = ClearFit();
+  fit.cam_from_lidar.translation = {0.0, 0.0, -0.102};
+  fit.covariance = 1e-4 * Matrix6d::Identity();
   const PoseCheck far = CheckScenes(fit, Rigid3d{}, kLimits);
   EXPECT_EQ(far.state, PoseState::kMoved);
   EXPECT_THAT(far.reason, HasSubstr("by more than 0.1 m or 2 deg, the limit of the search"));
@@ -131,6 +176,30 @@ TEST(PoseCheck, KittiIsRefinedFromTwoDegreesAndTenCentimetres) {
     EXPECT_LT(off.rotation_rad, 0.25 * kRadPerDeg);
     EXPECT_LT(off.translation_m, 0.06);
   }
+}
+
+TEST(PoseCheck, KittiWithAWrongFocalLengthIsNotMoved) {
+  SEXTANT_REAL_DATA(folder, "field/kitti");
+  Drive drive = KittiDrive(folder);
+  for (ScenePair& pair : drive.pairs) {
+    pair.camera.fx_px *= 1.03;
+    pair.camera.fy_px *= 1.03;
+  }
+  const PoseCheck check =
+      CheckScenes(SearchScenes(drive.pairs, drive.cam_from_lidar), drive.cam_from_lidar, kLimits);
+  EXPECT_EQ(check.state, PoseState::kUnknown);
+  EXPECT_THAT(check.reason, HasSubstr("intrinsics do not suit the images (focal length -"));
+}
+
+TEST(PoseCheck, KittiWithScansOfOtherMomentsTellsNothing) {
+  SEXTANT_REAL_DATA(folder, "field/kitti");
+  Drive drive = KittiDrive(folder);
+  for (std::size_t i = 0; i + 1 < drive.pairs.size(); ++i) {
+    std::swap(drive.pairs[i].edges, drive.pairs[i + 1].edges);
+  }
+  const PoseCheck check =
+      CheckScenes(SearchScenes(drive.pairs, drive.cam_from_lidar), drive.cam_from_lidar, kLimits);
+  EXPECT_EQ(check.state, PoseState::kUnknown) << check.reason;
 }
 
 TEST(PoseCheck, JudgesAChangeByItsCovarianceAndTheLimits) {

@@ -2,6 +2,7 @@
 #include "eval/experiment/definition/experiment.h"
 
 #include "eval/experiment/run/configuration.h"
+#include "io/problems/data_manifest.h"
 #include "solvers/all/all_solvers.h"
 #include "tests/fuzz/entry_point.h"
 #include "tests/fuzz/outcome.h"
@@ -34,7 +35,9 @@ std::vector<TrialKind> KindsThatRunNothing() {
 
 }  // namespace
 
+// An experiment, or the data set that one of real data names.
 SEXTANT_FUZZ_TARGET(experiment, bytes) {
+  CheckOutcome(ParseManifest(bytes, "f"));
   static const std::vector<TrialKind> kinds = KindsThatRunNothing();
   static const SolverRegistry registry = AllSolvers();
   const Expected<Experiment> experiment = ParseExperiment(bytes, "f", kinds, registry);

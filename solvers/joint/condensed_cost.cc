@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solvers/joint/condensed_cost.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace sextant {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMajorMap = Eigen::Map<RowMajor>;
+
+}  // namespace
+
+CondensedCost::CondensedCost(std::unique_ptr<ceres::CostFunction> all, int first, int count)
+    : all_(std::move(all)), first_(first), count_(count) {
+  *mutable_parameter_block_sizes() = all_->parameter_block_sizes();
+  columns_ = count;
+  for (std::size_t b = 1; b < parameter_block_sizes().size(); ++b) {
+    columns_ += parameter_block_sizes()[b];
+  }
+  set_num_residuals(std::min(all_->num_residuals(), columns_ + 1));
+}
+
+bool CondensedCost::Evaluate(double const* const* parameters, double* residuals,
+                             double** jacobians) const {
+  if (num_residuals() == all_->num_residuals()) {
+    return all_->Evaluate(parameters, residuals, jacobians);
+  }
+  if (jacobians != nullptr) return Condense(parameters, residuals, jacobians);
+  Eigen::VectorXd values(all_->num_residuals());
+  if (!all_->Evaluate(parameters, values.data(), nullptr)) return false;
+  Eigen::Map<Eigen::VectorXd> condensed(residuals, num_residuals());
+  condensed.setZero();
+  condensed[0] = values.norm();
+  return true;
+}
+
+bool CondensedCost::Condense(double const* const* parameters, double* residuals,
+                             double** jacobians) const {
+  const Eigen::Index rows = all_->num_residuals();
+  const std::vector<int>& sizes = parameter_block_sizes();
+  Eigen::VectorXd values(rows);
+  std::vector<RowMajor> derivatives(sizes.size());
+  std::vector<double*> places(sizes.size(), nullptr);
+  for (std::size_t b = 0; b < sizes.size(); ++b) {
+    if (jacobians[b] == nullptr) continue;
+    derivatives[b].resize(rows, sizes[b]);
+    places[b] = derivatives[b].data();
+  }
+  if (!all_->Evaluate(parameters, values.data(), places.data())) return false;
+  Eigen::MatrixXd joined = Eigen::MatrixXd::Zero(rows, columns_ + 1);
+  Eigen::Index at = 0;
+  for (std::size_t b = 0; b < sizes.size(); ++b) {
+    const Eigen::Index width = b == 0 ? count_ : sizes[b];
+    if (places[b] != nullptr) {
+      joined.middleCols(at, width) = derivatives[b].middleCols(b == 0 ? first_ : 0, width);
+    }
+    at += width;
+  }
+  joined.col(at) = values;
+  const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> qr(joined);
+  const Eigen::MatrixXd triangle = joined.topRows(num_residuals()).triangularView<Eigen::Upper>();
+  at = 0;
+  for (std::size_t b = 0; b < sizes.size(); ++b) {
+    const Eigen::Index width = b == 0 ? count_ : sizes[b];
+    if (jacobians[b] != nullptr) {
+      RowMajorMap to(jacobians[b], num_residuals(), sizes[b]);
+      to.setZero();
+      to.middleCols(b == 0 ? first_ : 0, width) = triangle.middleCols(at, width);
+    }
+    at += width;
+  }
+  Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = triangle.col(at);
+  return true;
+}
+
+}  // namespace sextant
