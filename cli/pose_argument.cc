@@ -138,6 +138,5 @@ Expected<CalibrationResult> ResultOfFile(const std::string& path, const std::str
   SEXTANT_ASSIGN_OR_RETURN(const PoseText text, ReadPoseText(path));
   return ResultOfText(text, path, pose_is);
 }
-}
 
 }  // namespace sextant::cli
