@@ -166,8 +166,8 @@ int Run(const CheckOptions& options) {
                                                        : kUnknownExit;
   const std::string text = fmt::format("{}: {}. The pose was read as {}.\n", ToString(check->state),
                                        check->reason, ToString(input->direction));
-  const int delivered = Deliver("check", options.json_path, text,
-                                JsonOf(*check, *input, options), code);
+  const int delivered =
+      Deliver("check", options.json_path, text, JsonOf(*check, *input, options), code);
   return noted ? delivered : Refuse("check", noted.error());
 }
 
