@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/joint/condensed_cost.h"
+#include "solvers/blocks/condensed_cost.h"
 
 #include <Eigen/QR>
 #include <algorithm>
