@@ -18,18 +18,10 @@
 #include <utility>
 
 namespace sextant::cli {
-namespace {
 
-namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = boost::beast::http;
-using asio::ip::tcp;
-using Clock = std::chrono::steady_clock;
-
-constexpr std::size_t kMaxRequestBytes = 8192;
-
-// The page that is shown, and when its state was last read.
-class Shelf {
+// The page that is shown, and when its state was last read. In no unnamed namespace, as
+// the server has one as a member.
+class PageShelf {
  public:
   void Put(ServedPage page) {
     const auto next = std::make_shared<const ServedPage>(std::move(page));
@@ -44,26 +36,35 @@ class Shelf {
 
   void NoteStateRead() {
     const std::scoped_lock lock(mutex_);
-    last_read_ = Clock::now();
+    last_read_ = std::chrono::steady_clock::now();
   }
 
   bool WasStateReadWithin(std::chrono::seconds time) const {
     const std::scoped_lock lock(mutex_);
-    return last_read_ && Clock::now() - *last_read_ <= time;
+    return last_read_ && std::chrono::steady_clock::now() - *last_read_ <= time;
   }
 
  private:
   mutable std::mutex mutex_;
   std::shared_ptr<const ServedPage> page_ = std::make_shared<const ServedPage>();
-  std::optional<Clock::time_point> last_read_;
+  std::optional<std::chrono::steady_clock::time_point> last_read_;
 };
+
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using asio::ip::tcp;
+
+constexpr std::size_t kMaxRequestBytes = 8192;
 
 std::string_view ViewOf(beast::string_view text) { return {text.data(), text.size()}; }
 
 // One browser's connection; it lives as long as an operation of it is outstanding.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(tcp::socket socket, std::uint16_t port, Shelf& shelf, std::atomic<int>& count)
+  Connection(tcp::socket socket, std::uint16_t port, PageShelf& shelf, std::atomic<int>& count)
       : stream_(std::move(socket)), port_(port), shelf_(shelf), count_(count) {
     ++count_;
   }
@@ -121,7 +122,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   beast::flat_buffer buffer_{kMaxRequestBytes};
   std::optional<http::request_parser<http::empty_body>> parser_;
   std::uint16_t port_;
-  Shelf& shelf_;
+  PageShelf& shelf_;
   std::atomic<int>& count_;
 };
 
@@ -150,7 +151,7 @@ class PageServer::Impl {
   }
 
   std::uint16_t port() const { return port_; }
-  Shelf& shelf() { return shelf_; }
+  PageShelf& shelf() { return shelf_; }
 
  private:
   void Accept() {
@@ -174,7 +175,7 @@ class PageServer::Impl {
     }
   }
 
-  Shelf shelf_;
+  PageShelf shelf_;
   std::atomic<int> connections_ = 0;
   asio::io_context context_{1};
   tcp::acceptor acceptor_{context_};
