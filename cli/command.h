@@ -47,6 +47,7 @@ struct ArgumentRules {
   int max_values = 0;                    ///< The same as min_values if 0.
   char separator = '\0';                 ///< Splits one value into several.
   std::vector<std::string> choices{};    ///< The only values allowed, in any case.
+  std::vector<std::string> offers{};     ///< What shells complete where there are no choices.
   std::string excludes{};                ///< Name of an option that may not be given as well.
   Writes writes = Writes::kNothing;      ///< Only for strings.
 };

@@ -2,13 +2,14 @@
 #include "cli/rig_output.h"
 
 #include "cli/output.h"
+#include "cli/report_file.h"
 #include "io/output/output_file.h"
+#include "report/collect/rig_page.h"
 #include "report/rig_text.h"
 
 namespace sextant::cli {
 
-int DeliverRig(const char* command, const Expected<RigResult>& result, const std::string& out_path,
-               const std::string& json_path) {
+int DeliverRig(const char* command, const Expected<RigResult>& result, const RigOutputs& outputs) {
   if (!result) {
     const ErrorCode code = result.error().code;
     const bool no_answer = code == ErrorCode::kDegenerate || code == ErrorCode::kNoConvergence ||
@@ -16,13 +17,16 @@ int DeliverRig(const char* command, const Expected<RigResult>& result, const std
     return Refuse(command, result.error(), no_answer ? kNoAnswer : kWrongUse);
   }
   const std::string json = FormatRigResult(*result);
-  if (const Expected<void> ok = WriteFileAtomically(out_path, json); !ok) {
-    return Refuse(command, ok.error());
+  Expected<void> written = WriteFileAtomically(outputs.result_path, json);
+  std::string text = DescribeRig(*result) + "\n" +
+                     WroteLine(outputs.result_path, "the result, for sextant export and report");
+  if (written && !outputs.report_path.empty()) {
+    written = WritePage(CollectRigPage(*result), outputs.report_path);
+    text += WroteLine(outputs.report_path, kReportWords);
   }
-  const std::string text =
-      DescribeRig(*result) + "\n" + WroteLine(out_path, "the result, for sextant export");
+  if (!written) return Refuse(command, written.error());
   const bool whole = result->refutations.empty() && result->unconnected.empty();
-  return Deliver(command, json_path, text, json, whole ? kAnswered : kNotUsable);
+  return Deliver(command, outputs.json_path, text, json, whole ? kAnswered : kNotUsable);
 }
 
 }  // namespace sextant::cli

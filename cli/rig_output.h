@@ -8,9 +8,15 @@
 
 namespace sextant::cli {
 
-/// Writes a rig's result, and prints it or its JSON (Deliver); prints the error where there is
-/// none. Returns the exit code.
-int DeliverRig(const char* command, const Expected<RigResult>& result, const std::string& out_path,
-               const std::string& json_path);
+/// Where the result of a rig goes.
+struct RigOutputs {
+  std::string result_path{};
+  std::string json_path{};    ///< See Deliver.
+  std::string report_path{};  ///< The report in HTML; empty: not written.
+};
+
+/// Writes a rig's result and its report, and prints it or its JSON (Deliver); prints the error
+/// where there is none. Returns the exit code.
+int DeliverRig(const char* command, const Expected<RigResult>& result, const RigOutputs& outputs);
 
 }  // namespace sextant::cli

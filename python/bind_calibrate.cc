@@ -44,6 +44,7 @@ CalibrateOptions OptionsOf(const CalibrateRequest& request) {
   options.bootstrap_samples = request.bootstrap;
   options.need = {.translation_m = 1e-3 * request.need_mm,
                   .rotation_rad = kRadPerDeg * request.need_deg};
+  options.progress = [](std::string_view, std::size_t, std::size_t) { EndIfInterrupted(); };
   if (!request.initial.is_none()) options.match.initial = PoseFrom(request.initial, "initial");
   const std::shared_ptr<const SolverRegistry> registry = Catalogue();
   for (const std::string& spec : request.solvers) {

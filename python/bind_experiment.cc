@@ -44,12 +44,6 @@ Experiment LoadExperimentOf(const RunRequest& request, const SolverRegistry& reg
   return experiment;
 }
 
-// Python's interrupt ends the run between two blocks; the rows that are written stay.
-void EndIfInterrupted() {
-  const py::gil_scoped_acquire gil;
-  RaiseInterrupt();
-}
-
 FinishedRun RunExperiment(const Experiment& experiment, const RunRequest& request) {
   const std::filesystem::path folder = request.folder;
   const std::filesystem::path rows = folder / "rows.sxtrows";
@@ -58,6 +52,7 @@ FinishedRun RunExperiment(const Experiment& experiment, const RunRequest& reques
     lock.emplace(ValueOf(OutputFolder::Open(folder)));
     ValueOf(ClaimReportFiles(experiment, folder, {}));
   }
+  // An interrupt ends the run between two blocks; the rows that are written stay.
   ValueOf(RunTrials(experiment,
                     {.rows_path = rows,
                      .threads = request.threads,

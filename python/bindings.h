@@ -15,5 +15,6 @@ void BindExperiment(pybind11::module_& module);
 void BindBoards(pybind11::module_& module);
 void BindSimulate(pybind11::module_& module);
 void BindCalibrate(pybind11::module_& module);
+void BindCheck(pybind11::module_& module);
 
 }  // namespace sextant::python

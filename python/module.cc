@@ -45,4 +45,5 @@ PYBIND11_MODULE(_core, module) {
   BindBoards(module);
   BindSimulate(module);
   BindCalibrate(module);
+  BindCheck(module);
 }

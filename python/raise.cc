@@ -20,4 +20,9 @@ void RaiseInterrupt() {
   if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
 }
 
+void EndIfInterrupted() {
+  const pybind11::gil_scoped_acquire gil;
+  RaiseInterrupt();
+}
+
 }  // namespace sextant::python

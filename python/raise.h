@@ -37,6 +37,9 @@ void NoteInterrupt();
 /// the GIL; from any thread.
 void RaiseInterrupt();
 
+/// The same without the GIL, for the callbacks of long computations: the exception ends them.
+void EndIfInterrupted();
+
 /// Runs the computation while other Python threads run. It may touch no Python object.
 template <class Computation>
 auto WithoutGil(Computation&& computation) {

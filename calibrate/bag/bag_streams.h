@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "base/pair_by_stamp.h"
 #include "io/bag/bag.h"
 #include "io/bag/messages.h"
-#include "io/bag/pair_by_stamp.h"
 
 namespace sextant {
 

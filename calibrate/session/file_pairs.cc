@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <string_view>
 #include <system_error>
 
 #include "base/text/path_text.h"
@@ -36,31 +35,6 @@ std::string NaturalKey(std::string_view text) {
     key += fmt::format("{:04}:{}", i - first, text.substr(first, i - first));
   }
   return key;
-}
-
-// Whether the name matches a pattern in which each `*` matches any text. When a part after a star
-// does not fit, only the last star needs to take more: an earlier one would leave less to match.
-bool Matches(std::string_view name, std::string_view pattern) {
-  constexpr std::size_t kNoStar = std::string_view::npos;
-  std::size_t at = 0;
-  std::size_t in_pattern = 0;
-  std::size_t last_star = kNoStar;
-  std::size_t taken_until = 0;  // The last star has taken the name up to here.
-  while (at < name.size()) {
-    if (in_pattern < pattern.size() && pattern[in_pattern] == '*') {
-      last_star = in_pattern++;
-      taken_until = at;
-    } else if (in_pattern < pattern.size() && pattern[in_pattern] == name[at]) {
-      ++in_pattern;
-      ++at;
-    } else if (last_star != kNoStar) {
-      in_pattern = last_star + 1;
-      at = ++taken_until;
-    } else {
-      return false;
-    }
-  }
-  return pattern.find_first_not_of('*', in_pattern) == std::string_view::npos;
 }
 
 // The distinguishing part of each name: without the beginning and the end that all share.
@@ -115,7 +89,7 @@ Expected<void> AppendMatches(const fs::path& folder, const std::string& name, bo
   std::error_code error;
   fs::directory_iterator it(folder, error);
   for (const fs::directory_iterator end; !error && it != end; it.increment(error)) {
-    if (Matches(it->path().filename().string(), name)) {
+    if (MatchesPattern(it->path().filename().string(), name)) {
       files.push_back(named ? it->path() : it->path().filename());
     }
     if (files.size() > kMaxMatches) {
@@ -144,6 +118,31 @@ Expected<std::vector<fs::path>> FoldersOf(const fs::path& pattern) {
 }
 
 }  // namespace
+
+bool MatchesPattern(std::string_view name, std::string_view pattern) {
+  // When a part after a star does not fit, only the last star needs to take more: an earlier one
+  // would leave less to match.
+  constexpr std::size_t kNoStar = std::string_view::npos;
+  std::size_t at = 0;
+  std::size_t in_pattern = 0;
+  std::size_t last_star = kNoStar;
+  std::size_t taken_until = 0;  // The last star has taken the name up to here.
+  while (at < name.size()) {
+    if (in_pattern < pattern.size() && pattern[in_pattern] == '*') {
+      last_star = in_pattern++;
+      taken_until = at;
+    } else if (in_pattern < pattern.size() && pattern[in_pattern] == name[at]) {
+      ++in_pattern;
+      ++at;
+    } else if (last_star != kNoStar) {
+      in_pattern = last_star + 1;
+      at = ++taken_until;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', in_pattern) == std::string_view::npos;
+}
 
 Expected<std::vector<fs::path>> ExpandPattern(const fs::path& pattern) {
   const std::string name = pattern.filename().string();

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -22,6 +23,9 @@ struct FilePair {
 /// Errors: kIo for a folder that cannot be read; kMissingData where no file matches;
 /// kInvalidOption where more than 100,000 do, or that many folders on the way.
 Expected<std::vector<std::filesystem::path>> ExpandPattern(const std::filesystem::path& pattern);
+
+/// Whether a file name matches a pattern in which each `*` stands for any text.
+bool MatchesPattern(std::string_view name, std::string_view pattern);
 
 struct FilePairs {
   std::vector<FilePair> pairs{};                         ///< In natural order of the names.

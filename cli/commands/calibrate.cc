@@ -7,19 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "base/units.h"
 #include "calibrate/rig/calibrate_rig.h"
 #include "calibrate/rig/observe_rig.h"
 #include "calibrate/session/rig_session.h"
 #include "calibrate/session/session.h"
+#include "cli/calibrate_arguments.h"
 #include "cli/commands/commands.h"
-#include "cli/need_option.h"
 #include "cli/output.h"
-#include "cli/pose_argument.h"
 #include "cli/progress.h"
 #include "cli/report_file.h"
 #include "cli/rig_output.h"
-#include "cli/search_options.h"
 #include "io/boards/board_file.h"
 #include "io/output/output_file.h"
 #include "io/output/output_target.h"
@@ -27,8 +24,6 @@
 #include "io/problems/problem_yaml.h"
 #include "io/results/calibration_result.h"
 #include "report/calibrate_text.h"
-#include "report/collect/no_pose.h"
-#include "solvers/all/all_solvers.h"
 
 namespace sextant::cli {
 namespace {
@@ -40,17 +35,10 @@ struct CalibrateCommandOptions {
   std::string boards_path{};  ///< Empty: the session's.
   std::string camera_path{};  ///< Empty: the session's.
   std::string camera_name{};  ///< For a simulated session with several; empty: all, as a rig.
-  std::string solvers{};      ///< The first gives the result, the others are compared with it.
   std::string image_topic{};  ///< For a recording; empty: the only one.
   std::string cloud_topic{};
   double tolerance_s = 0.05;  ///< Between the stamps of an image and its scan.
-  std::string pose_is{};
-  std::vector<std::string> initial{};  ///< A file, or X Y Z QW QX QY QZ; empty: along the axes.
-  std::string detector{};
-  std::string extractor = "rectangle";
-  SearchArguments search{};
-  std::vector<double> need = {10.0, 0.1};  ///< mm and degrees.
-  int bootstrap = 100;                     ///< Samples; 0: neither bootstrap nor cross-validation.
+  CalibrateArguments how{};
   std::string out_path = "result.yaml";
   std::string json_path{};     ///< See Deliver.
   std::string problem_path{};  ///< The solvers' problem; empty: not written.
@@ -83,22 +71,7 @@ void DeclareSources(CalibrateCommandOptions& options, Arguments& arguments) {
 
 void Declare(CalibrateCommandOptions& options, Arguments& arguments) {
   DeclareSources(options, arguments);
-  arguments.Add("--solver", options.solvers,
-                "Solvers, separated by commas: the answer of the first is written, the others are\n"
-                "compared with it; see sextant list solvers");
-  arguments.Add("--initial", options.initial,
-                "Rough cam_from_lidar, used only to choose if the views allow several: a file of\n"
-                "any form of sextant check, or X Y Z QW QX QY QZ; default: a camera that looks\n"
-                "along the LiDAR's x",
-                {.min_values = 1, .max_values = 7});
-  DeclarePoseIs(options.pose_is, arguments);
-  arguments.Add("--detector", options.detector, "See sextant detect");
-  arguments.Add("--extractor", options.extractor, "See sextant boards", {.shows_default = true});
-  DeclareSearch(options.search, arguments);
-  DeclareNeed(options.need, arguments);
-  arguments.Add("--bootstrap", options.bootstrap,
-                "Bootstrap samples over the views; 0: neither bootstrap nor cross-validation",
-                {.shows_default = true, .range = {{0, 100'000}}});
+  DeclareCalibrate(options.how, arguments);
   arguments.Add("--out", options.out_path, "Result file (YAML)",
                 {.shows_default = true, .writes = Writes::kCheckedByCommand});
   arguments.Add("--json", options.json_path, "Write the result as JSON too; - for standard output",
@@ -144,41 +117,17 @@ Expected<Session> SessionFrom(const CalibrateCommandOptions& options) {
   return session;
 }
 
-Expected<std::vector<SolverPtr>> SolversFrom(const std::string& list) {
-  std::vector<SolverPtr> solvers;
-  if (list.empty()) return solvers;
-  SEXTANT_ASSIGN_OR_RETURN(const std::vector<SpecNode> specs, ParseSpecList(list));
-  const SolverRegistry registry = AllSolvers(Commands::kAllowed);
-  for (const SpecNode& spec : specs) {
-    SEXTANT_ASSIGN_OR_RETURN(SolverPtr solver, registry.Make(spec));
-    solvers.push_back(std::move(solver));
-  }
-  return solvers;
-}
-
 Expected<CalibrateOptions> SettingsFrom(const CalibrateCommandOptions& options) {
-  CalibrateOptions settings{
-      .observe = {.detector = options.detector, .extractor = options.extractor},
-      .tolerance_s = options.tolerance_s,
-      .bootstrap_samples = options.bootstrap,
-      .need = {.translation_m = 1e-3 * options.need[0],
-               .rotation_rad = kRadPerDeg * options.need[1]},
-      .search_description = ConfigurationOf(options.search)};
-  SEXTANT_ASSIGN_OR_RETURN(settings.solvers, SolversFrom(options.solvers));
-  if (!options.initial.empty()) {
-    SEXTANT_ASSIGN_OR_RETURN(settings.match.initial,
-                             PoseFromArgument("--initial", options.initial, options.pose_is));
-  }
-  SEXTANT_ASSIGN_OR_RETURN(settings.observe.search, SearchOptionsFrom(options.search));
+  SEXTANT_ASSIGN_OR_RETURN(CalibrateOptions settings, CalibrateOptionsFrom(options.how));
+  settings.tolerance_s = options.tolerance_s;
   return settings;
 }
 
 // What the options that do not apply to several sensors would change.
 Expected<void> CheckRigOptions(const CalibrateCommandOptions& options) {
-  const std::pair<bool, const char*> given[] = {{!options.solvers.empty(), "--solver"},
-                                                {!options.initial.empty(), "--initial"},
-                                                {!options.camera_path.empty(), "--camera"},
-                                                {!options.report_path.empty(), "--report"}};
+  const std::pair<bool, const char*> given[] = {{!options.how.solvers.empty(), "--solver"},
+                                                {!options.how.initial.empty(), "--initial"},
+                                                {!options.camera_path.empty(), "--camera"}};
   for (const auto& [is_given, name] : given) {
     if (!is_given) continue;
     return MakeError(ErrorCode::kInvalidOption,
@@ -230,19 +179,6 @@ Expected<Calibration> CalibrateWithProgress(const CalibrateCommandOptions& optio
   return Calibrate(session, settings);
 }
 
-Expected<void> WriteReportOf(const CalibrateCommandOptions& options,
-                             const Calibration& calibration) {
-  if (options.report_path.empty()) return {};
-  const FrameSource frames = [&](const std::vector<ResultView>&, const FrameVisitor& visit) {
-    return VisitFrames(calibration.observed.session, options.tolerance_s, visit);
-  };
-  return WriteReport(
-      {.result = calibration.result ? *calibration.result : ResultWithoutPose(calibration),
-       .calibration = &calibration,
-       .frames = frames},
-      options.report_path);
-}
-
 Expected<void> WriteFiles(const CalibrateCommandOptions& options, const Calibration& calibration) {
   const bool has_problem = !calibration.assembly.rows.empty();
   if (has_problem && !options.problem_path.empty()) {
@@ -253,7 +189,8 @@ Expected<void> WriteFiles(const CalibrateCommandOptions& options, const Calibrat
     SEXTANT_RETURN_IF_ERROR(
         WriteFileAtomically(options.out_path, FormatCalibrationResult(*calibration.result)));
   }
-  return WriteReportOf(options, calibration);
+  if (options.report_path.empty()) return {};
+  return WriteCalibrationReport(calibration, options.tolerance_s, options.report_path);
 }
 
 int Run(const CalibrateCommandOptions& options) {
@@ -263,7 +200,8 @@ int Run(const CalibrateCommandOptions& options) {
     if (*rig) {
       const std::string path = RigPath(options.out_path);
       if (const auto ok = ClaimResult(path); !ok) return Refuse("calibrate", ok.error());
-      return DeliverRig("calibrate", CalibrateSensors(options, **rig), path, options.json_path);
+      return DeliverRig("calibrate", CalibrateSensors(options, **rig),
+                        {path, options.json_path, options.report_path});
     }
   }
   if (const auto ok = ClaimResult(options.out_path); !ok) return Refuse("calibrate", ok.error());

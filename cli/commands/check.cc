@@ -4,9 +4,9 @@
 
 #include <chrono>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/units.h"
+#include "base/version.h"
 #include "calibrate/calibrate.h"
 #include "calibrate/scene/pose_check.h"
 #include "cli/commands/commands.h"
@@ -14,6 +14,7 @@
 #include "cli/progress.h"
 #include "cli/scene_input.h"
 #include "io/output/appended_file.h"
+#include "io/results/check_result.h"
 #include "io/text/number_text.h"
 
 namespace sextant::cli {
@@ -44,7 +45,8 @@ void Declare(CheckOptions& options, Arguments& arguments) {
                  .min_values = 2,
                  .max_values = 2,
                  .separator = ','});
-  arguments.Add("--json", options.json_path, "Write the check as JSON; - for standard output",
+  arguments.Add("--json", options.json_path,
+                "Write the check as JSON, for sextant report, too; - for standard output",
                 {.writes = Writes::kFileOrStandardOutput});
   arguments.Add("--history", options.history_path,
                 "Append a line to this CSV file, for checks at regular times",
@@ -102,18 +104,26 @@ std::string NowUtc() {
       fmt::gmtime(std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now())));
 }
 
-std::string JsonOf(const PoseCheck& check, const SceneInput& input, const std::string& path) {
+std::string JsonOf(const PoseCheck& check, const SceneInput& input, const CheckOptions& options) {
+  const CheckLimits limits = LimitsOf(options);
+  CheckResult result{.version = std::string(Version()),
+                     .pose_path = options.input.pose_path,
+                     .read_as = std::string(ToString(input.direction)),
+                     .read_by = input.direction_basis,
+                     .state = std::string(ToString(check.state)),
+                     .is_certain = check.is_certain,
+                     .reason = check.reason,
+                     .cam_from_lidar = input.given.cam_from_lidar,
+                     .camera = input.given.camera,
+                     .change = check.change,
+                     .detect_rad = limits.rotation_rad,
+                     .detect_m = limits.translation_m};
+  for (const FilePair& pair : input.session.files.pairs) {
+    result.pairs.push_back({pair.name, pair.image.string(), pair.cloud.string()});
+  }
   const Vector6d sigma = check.covariance.diagonal().cwiseSqrt();
-  nlohmann::ordered_json json = {{"pose", path},
-                                 {"pose_read_as", ToString(input.direction)},
-                                 {"pose_read_by", input.direction_basis},
-                                 {"pairs", input.session.files.pairs.size()},
-                                 {"state", ToString(check.state)},
-                                 {"change_is_certain", check.is_certain},
-                                 {"reason", check.reason},
-                                 {"change_deg_mm", InPlainUnits(check.change)},
-                                 {"sigma_deg_mm", InPlainUnits(sigma)}};
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  if (sigma.allFinite() && sigma.minCoeff() > 0.0) result.sigma = sigma;
+  return FormatCheckResult(result);
 }
 
 Expected<void> AppendHistory(const std::string& path, const PoseCheck& check,
@@ -156,8 +166,8 @@ int Run(const CheckOptions& options) {
                                                        : kUnknownExit;
   const std::string text = fmt::format("{}: {}. The pose was read as {}.\n", ToString(check->state),
                                        check->reason, ToString(input->direction));
-  const int delivered = Deliver("check", options.json_path, text,
-                                JsonOf(*check, *input, options.input.pose_path), code);
+  const int delivered =
+      Deliver("check", options.json_path, text, JsonOf(*check, *input, options), code);
   return noted ? delivered : Refuse("check", noted.error());
 }
 

@@ -11,6 +11,7 @@ Command AverageCommand();
 Command BagCommand();
 Command BoardsCommand();
 Command CalibrateCommand();
+Command CaptureCommand();
 Command CheckCommand();
 Command CompareCommand();
 Command CompletionCommand();

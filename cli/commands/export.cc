@@ -36,11 +36,17 @@ std::string FormatsHelp() {
   return help;
 }
 
+std::vector<std::string> FormatNames() {
+  std::vector<std::string> names;
+  for (const ExportFormat& format : ExportFormats()) names.emplace_back(format.name);
+  return names;
+}
+
 void Declare(ExportCommandOptions& options, Arguments& arguments) {
   arguments.Add("RESULT", options.result_path,
                 std::string(kPoseHelp) + ",\nor rig.json of sextant rig", {.required = true});
   DeclarePoseIs(options.pose_is, arguments);
-  arguments.Add("--to", options.format, FormatsHelp(), {.required = true});
+  arguments.Add("--to", options.format, FormatsHelp(), {.required = true, .offers = FormatNames()});
   arguments.Add("--out", options.out, "File to write; - for standard output",
                 {.shows_default = true, .writes = Writes::kFileOrStandardOutput});
   arguments.Add("--lidar-frame", options.lidar_frame, "Default: the name in the result");

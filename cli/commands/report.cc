@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
 #include <system_error>
 
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/report_file.h"
 #include "io/output/standard_output.h"
+#include "io/results/check_result.h"
+#include "io/results/rig_result.h"
+#include "io/text/text_file.h"
+#include "report/collect/check_page.h"
+#include "report/collect/rig_page.h"
 
 namespace sextant::cli {
 namespace {
@@ -18,27 +25,58 @@ struct ReportCommandOptions {
 };
 
 void Declare(ReportCommandOptions& options, Arguments& arguments) {
-  arguments.Add("RESULT", options.result_path,
-                "result.yaml of sextant calibrate, its JSON, or a folder that contains result.yaml",
-                {.required = true});
+  arguments.Add(
+      "RESULT", options.result_path,
+      "result.yaml of sextant calibrate, its JSON, or a folder that contains result.yaml;\n"
+      "rig.json of sextant rig; or the JSON of sextant check",
+      {.required = true});
   arguments.Add("--out", options.out_path, "The report (HTML)",
                 {.shows_default = true, .writes = Writes::kFile});
+}
+
+// A calibration's own photos are worth a line, as a page without any of them shows little.
+std::string PhotosText(const ReportPage& page) {
+  const auto shown = std::ranges::count_if(
+      page.views, [](const PageView& view) { return view.photo.has_value(); });
+  if (shown == std::ssize(page.views)) return {};
+  const auto why = std::ranges::find_if(
+      page.views, [](const PageView& view) { return !view.photo && !view.no_photo.empty(); });
+  return fmt::format(
+      "warning: {} of {} views have their photo and scan in the report; view {}: {}\n",
+      shown == 0 ? std::string("none") : std::to_string(shown), page.views.size(), why->name,
+      why->no_photo);
+}
+
+Expected<ReportPage> PageOfResult(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.parent_path();
+  SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
+  if (IsRigResult(text)) {
+    SEXTANT_ASSIGN_OR_RETURN(const RigResult rig, ParseRigResult(text, path.string()));
+    return CollectRigPage(rig);
+  }
+  if (IsCheckResult(text)) {
+    SEXTANT_ASSIGN_OR_RETURN(const CheckResult check, ParseCheckResult(text, path.string()));
+    return CollectCheckPage(check, folder);
+  }
+  const Expected<CalibrationResult> result = ParseCalibrationResult(text, path.string());
+  if (result) {
+    return CollectWithProgress(
+        {.result = *result, .frames = FramesOfFiles(folder), .folder = folder});
+  }
+  return MakeError(
+      result.error().code,
+      fmt::format("{}; for a session, run sextant calibrate --report", result.error().message));
 }
 
 int Run(const ReportCommandOptions& options) {
   std::filesystem::path path = options.result_path;
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) path /= "result.yaml";
-  const Expected<CalibrationResult> result = ReadCalibrationResult(path);
-  if (!result) {
-    return Refuse("report", {result.error().code,
-                             fmt::format("{}; for a session, run sextant calibrate --report",
-                                         result.error().message)});
-  }
-  const std::filesystem::path folder = path.parent_path();
-  const Expected<void> written = WriteReport(
-      {.result = *result, .frames = FramesOfFiles(folder), .folder = folder}, options.out_path);
+  const Expected<ReportPage> page = PageOfResult(path);
+  if (!page) return Refuse("report", page.error());
+  const Expected<void> written = WritePage(*page, options.out_path);
   if (!written) return Refuse("report", written.error());
+  PrintError("{}", PhotosText(*page));
   Print("{}", WroteLine(options.out_path, kReportWords));
   return kAnswered;
 }
@@ -54,7 +92,11 @@ Command ReportCommand() {
       "photos and scans that the result names, from the working folder or beside the result. "
       "Noise\n"
       "and the comparison of solvers are in the report of sextant calibrate --report only.\n"
-      "Example:\n  sextant report result.yaml --out report.html";
+      "Examples:\n"
+      "  sextant report result.yaml --out report.html\n"
+      "  sextant report rig.json --out rig.html\n"
+      "  sextant check result.yaml --image a.png --cloud a.pcd --json check.json; sextant report "
+      "check.json";
   return MakeCommand<ReportCommandOptions>(
       "report", "A calibration for people who did not run it: one file of HTML", kFooter, Declare,
       Run);

@@ -17,7 +17,8 @@ struct RigCommandOptions {
   std::string path{};
   std::string root{};  ///< Empty: the file's.
   std::string out_path = "rig.json";
-  std::string json_path{};  ///< See Deliver.
+  std::string json_path{};    ///< See Deliver.
+  std::string report_path{};  ///< The report in HTML; empty: not written.
   bool estimate_time = false;
 };
 
@@ -38,6 +39,9 @@ void Declare(RigCommandOptions& options, Arguments& arguments) {
   arguments.Add("--json", options.json_path,
                 "Write the same to another file; - for standard output",
                 {.writes = Writes::kFileOrStandardOutput});
+  arguments.Add("--report", options.report_path,
+                "Write a report for people who did not run this: one file of HTML",
+                {.writes = Writes::kFile});
 }
 
 Expected<void> ChooseRoot(const std::string& name, RigFile& rig) {
@@ -67,7 +71,8 @@ Expected<RigResult> ResultFrom(const RigCommandOptions& options) {
 }
 
 int Run(const RigCommandOptions& options) {
-  return DeliverRig("rig", ResultFrom(options), options.out_path, options.json_path);
+  return DeliverRig("rig", ResultFrom(options),
+                    {options.out_path, options.json_path, options.report_path});
 }
 
 }  // namespace

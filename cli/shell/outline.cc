@@ -21,12 +21,13 @@ struct Traits<std::vector<Value>> : Traits<Value> {
 // Texts complete as paths: most of them are.
 std::string ValueName(const ArgumentRules& rules, bool is_number) {
   if (is_number) return "NUMBER";
-  return rules.choices.empty() ? "FILE" : "TEXT";
+  return rules.choices.empty() && rules.offers.empty() ? "FILE" : "TEXT";
 }
 
 OutlinedArgument OutlineOf(const Argument& argument) {
   OutlinedArgument outlined{.name = argument.name, .value = {}, .help = argument.help};
-  outlined.choices = argument.rules.choices;
+  outlined.choices =
+      argument.rules.choices.empty() ? argument.rules.offers : argument.rules.choices;
   outlined.required = argument.rules.required;
   std::visit(
       [&](const auto* target) {

@@ -56,6 +56,12 @@ void DrawOnTerminal(std::string_view text) {
   static_cast<void>(ignored);
 }
 
+void FlushOutput() {
+  const std::scoped_lock lock(g_printing);
+  errno = 0;
+  if (g_failure == 0 && std::fflush(stdout) != 0) NoteFailure();
+}
+
 Expected<void> FinishOutput() {
   const std::scoped_lock lock(g_printing);
   errno = 0;

@@ -34,6 +34,10 @@ void PrintError(fmt::format_string<Values...> format, Values&&... values) {
   PrintErrorText(fmt::format(format, std::forward<Values>(values)...));
 }
 
+/// Shows what was printed so far, for commands that run until they are stopped. A failure is
+/// reported by FinishOutput.
+void FlushOutput();
+
 /// Flushes standard output. Error: kUnwritable if any of what was printed is lost. If its reader
 /// has closed the pipe, that is no error: the reader wanted no more.
 Expected<void> FinishOutput();

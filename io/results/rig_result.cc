@@ -8,11 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text/printable.h"
-#include "io/blocks/camera_block.h"
 #include "io/blocks/json_blocks.h"
-#include "io/blocks/pose_block.h"
-#include "io/text/text_file.h"
-#include "io/text/yaml_fields.h"
 
 namespace sextant {
 namespace {
@@ -77,24 +73,6 @@ RigJson ViewJson(const RigResultView& view) {
   return {{"moment", view.moment}, {"board", view.board}, {"seen", std::move(seen)}};
 }
 
-RigResultSensor ReadSensor(YamlFields& in, const YamlNode& node) {
-  RigResultSensor sensor;
-  sensor.name = in.FileName(in.Require(node, "name"), "name");
-  if (const YamlNode* camera = node.Find("camera")) sensor.camera = ReadCameraBlock(in, *camera);
-  const YamlNode* pose = node.Find("root_from_sensor");
-  if (pose == nullptr || pose->kind != YamlNode::Kind::kMap) return sensor;
-  Eigen::Vector4d wxyz = Eigen::Vector4d::Zero();
-  Rigid3d root_from_sensor;
-  root_from_sensor.translation = in.PointAt(*pose, "translation_m");
-  in.Reals(in.Require(*pose, "quaternion_wxyz"), "quaternion_wxyz", {wxyz.data(), 4});
-  if (in.ok() && !(std::abs(wxyz.norm() - 1.0) < 1e-5)) {
-    in.Fail(pose->line, "quaternion_wxyz", "expected length 1");
-  }
-  root_from_sensor.rotation = Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
-  sensor.root_from_sensor = root_from_sensor;
-  return sensor;
-}
-
 }  // namespace
 
 const RigResultSensor* RigResult::Find(std::string_view name) const {
@@ -143,33 +121,6 @@ std::string FormatRigResult(const RigResult& result) {
   json["warnings"] = result.warnings;
   json["not_usable"] = result.refutations;
   return json.dump(2, ' ', false, RigJson::error_handler_t::replace) + "\n";
-}
-
-Expected<RigResult> ParseRigResult(std::string_view text, const std::string& file) {
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
-  YamlFields in(file);
-  RigResult result;
-  if (root.kind != YamlNode::Kind::kMap || root.Find(kFirstKey) == nullptr) {
-    in.Fail(root.line, {}, "expected the result of a rig, with the key sextant_rig_result");
-    return in.TakeError();
-  }
-  in.IntegerAt(root, kFirstKey, 1, 1);
-  result.root = in.TextAt(root, "root");
-  const YamlNode& sensors = in.Require(root, "sensors");
-  if (in.IsSequence(sensors, "sensors")) {
-    for (const YamlNode& node : sensors.items) result.sensors.push_back(ReadSensor(in, node));
-  }
-  if (std::ranges::count(result.sensors, result.root, &RigResultSensor::name) != 1 && in.ok()) {
-    in.Fail(root.Find("root")->line, "root", "expected the name of one of the sensors");
-  }
-  const YamlNode* refutations = root.Find("not_usable");
-  if (refutations != nullptr && in.IsSequence(*refutations, "not_usable")) {
-    for (const YamlNode& node : refutations->items) {
-      result.refutations.push_back(in.Text(node, "not_usable"));
-    }
-  }
-  if (!in.ok()) return in.TakeError();
-  return result;
 }
 
 bool IsRigResult(std::string_view text) {

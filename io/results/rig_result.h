@@ -79,9 +79,8 @@ struct RigResult {
 /// rig.json; docs/formats.md documents its keys.
 std::string FormatRigResult(const RigResult& result);
 
-/// Reads the sensors, the root and the refutations, all that other commands need. Errors: kParse
-/// and kNonFinite with file, line and key. Time is linear in the file's size; memory is that
-/// of ParseYaml (io/text/yaml_node.h).
+/// Reads all of it. Errors: kParse and kNonFinite with file, line and key. Time is linear in the
+/// file's size; memory is that of ParseYaml (io/text/yaml_node.h).
 Expected<RigResult> ParseRigResult(std::string_view text, const std::string& file);
 
 /// Whether a text is that of a rig's result.

@@ -7,17 +7,17 @@ is of (dphi [rad], dt [m]) with R = Exp(dphi) R_hat, t = t_hat + dt.
 """
 
 from ._error import Error
-from ._core import (Board, Calibration, Camera, Comparison, Estimate, Problem, Session, Solution,
-                    __version__, parse_boards, solvers)
+from ._core import (Board, Calibration, Camera, Comparison, Estimate, PoseCheck, Problem, Session,
+                    Solution, __version__, parse_boards, solvers)
 from ._experiment import ExperimentResult, run
 from ._own import register, solver
-from ._sensors import (Found, boards, calibrate, detect, read_boards, read_cloud, read_image,
+from ._sensors import (Found, boards, calibrate, check, detect, read_boards, read_cloud, read_image,
                        read_session, simulate)
 from ._solving import compare, project, solve
 
 __all__ = [
     "Board", "Calibration", "Camera", "Comparison", "Error", "Estimate", "ExperimentResult",
-    "Found", "Problem", "Session", "Solution", "boards", "calibrate", "compare", "detect",
-    "parse_boards", "project", "read_boards", "read_cloud", "read_image", "read_session",
-    "register", "run", "simulate", "solve", "solver", "solvers",
+    "Found", "PoseCheck", "Problem", "Session", "Solution", "boards", "calibrate", "check",
+    "compare", "detect", "parse_boards", "project", "read_boards", "read_cloud", "read_image",
+    "read_session", "register", "run", "simulate", "solve", "solver", "solvers",
 ]

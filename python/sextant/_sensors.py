@@ -130,6 +130,22 @@ def calibrate(session=None, *, images=None, clouds=None, boards=None, camera=Non
                                   list(() if clouds is None else clouds), request)
 
 
+def check(pose, images, clouds, camera, *, detect=(80.0, 0.5)):
+    """Whether a pose is still valid, by everyday scenes without a board, as `sextant check`.
+
+    pose: cam_from_lidar (4, 4). images and clouds: one of each per moment, paths or arrays (H, W)
+    or (H, W, 3), and (N, 3) to (N, 6) as read_cloud gives them. camera: a Camera or a file.
+    detect: (mm, degrees); "still valid" only if a change of this size would have been seen.
+
+    Returns a PoseCheck: state ("still valid", "moved", "cannot tell"), reason, change (6,) and its
+    sigma (6,), or None where it is unknown.
+    """
+    images = [read_image(item) if _is_path(item) else item for item in images]
+    clouds = [read_cloud(item) if _is_path(item) else item for item in clouds]
+    return _core.check_arrays(pose, images, clouds, _camera_of(camera), float(detect[0]),
+                              float(detect[1]))
+
+
 def simulate(scene, out, *, scans=1, seed=1, level="full", interval_s=1.0, ideal=False):
     """Simulates a session of a scene file into the folder `out`, as `sextant simulate`: a Session.
 

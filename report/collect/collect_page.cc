@@ -118,27 +118,28 @@ std::vector<PageTransform> TransformsOf(const CalibrationResult& result) {
 
 ReportPage CollectPage(const PageSource& source) {
   const CalibrationResult& result = source.result;
-  ReportPage page{.title = fmt::format("{} and {}", result.camera_frame, result.lidar_frame),
-                  .date = DateOf(source),
-                  .version = result.version,
-                  .verdict = VerdictOf(result),
-                  .figures = FiguresFor(result),
-                  .transforms = TransformsOf(result),
-                  .sensors = PageSensorsOf(result),
-                  .views = PageViewsOf(result, source.calibration, source.frames),
-                  .coverage = CoverageOf(result),
-                  .coverage_plots = CoveragePlots(result),
-                  .residual_plots = ResidualPlots(result),
-                  .sigma_plots = SigmaPlots(result),
-                  .sigmas = SigmaTable(result),
-                  .correlation = CorrelationOf(result),
-                  .noise = NoiseTable(result, source.calibration),
-                  .comparison = ComparisonTable(source.calibration),
-                  .diagnostics = result.warnings,
-                  .next = NextOf(result),
-                  .closing = result.closing,
-                  .inputs = InputsOf(result, source.calibration, source.folder),
-                  .configuration = result.configuration};
+  ReportPage page{
+      .title = fmt::format("{} and {}", result.camera_frame, result.lidar_frame),
+      .date = DateOf(source),
+      .version = result.version,
+      .verdict = VerdictOf(result),
+      .figures = FiguresFor(result),
+      .transforms = TransformsOf(result),
+      .sensors = PageSensorsOf(result),
+      .views = PageViewsOf(result, source.calibration, source.frames),
+      .coverage = CoverageOf(result),
+      .coverage_plots = CoveragePlots(result),
+      .residual_plots = ResidualPlots(result),
+      .sigma_plots = SigmaPlots(result),
+      .sigmas = SigmaTable(result),
+      .correlation = CorrelationOf(result),
+      .noise = NoiseTable(result, source.calibration),
+      .comparison = source.compares_solvers ? ComparisonTable(source.calibration) : PageTable{},
+      .diagnostics = result.warnings,
+      .next = NextOf(result),
+      .closing = result.closing,
+      .inputs = InputsOf(result, source.calibration, source.folder),
+      .configuration = result.configuration};
   if (result.trust) page.sigma_text = result.trust->comparison;
   if (!result.solver.empty()) {
     page.configuration.insert(page.configuration.begin(), "solver: " + result.solver);

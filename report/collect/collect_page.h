@@ -20,6 +20,8 @@ struct PageSource {
   FrameSource frames{};            ///< Photos and scans of the views.
   std::filesystem::path folder{};  ///< Where relative paths of the result may start, too.
   std::string written{};           ///< The date of the report.
+  /// Run a few other solvers where the calibration has one alone, which takes about a second.
+  bool compares_solvers = true;
 };
 
 /// Collects the content of the report: reads the photos and scans of the views, on all cores, and

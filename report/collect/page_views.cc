@@ -194,16 +194,18 @@ std::vector<Eigen::Vector2d> OutlineInImage(const Camera& camera, const Board& b
   return outline;
 }
 
-std::vector<PageSensor> PageSensorsOf(const CalibrationResult& result) {
-  PageSensor camera{.name = result.camera_frame,
-                    .is_camera = true,
-                    .base_from_sensor = result.cam_from_lidar.Inverse()};
-  if (result.camera) {
-    camera.facts = FactsOf(*result.camera);
-    for (const Eigen::Vector2d& pixel : BorderOf(*result.camera)) {
-      if (const auto ray = Unproject(*result.camera, pixel)) camera.frustum.push_back(0.5 * *ray);
-    }
+PageSensor PageCameraOf(const std::string& name, const Camera& camera) {
+  PageSensor page{.name = name, .is_camera = true, .facts = FactsOf(camera)};
+  for (const Eigen::Vector2d& pixel : BorderOf(camera)) {
+    if (const auto ray = Unproject(camera, pixel)) page.frustum.push_back(0.5 * *ray);
   }
+  return page;
+}
+
+std::vector<PageSensor> PageSensorsOf(const CalibrationResult& result) {
+  PageSensor camera{.name = result.camera_frame, .is_camera = true};
+  if (result.camera) camera = PageCameraOf(result.camera_frame, *result.camera);
+  camera.base_from_sensor = result.cam_from_lidar.Inverse();
   PageSensor lidar{.name = result.lidar_frame, .base_from_sensor = Rigid3d{}};
   if (result.lidar) lidar.facts = FactsOf(*result.lidar);
   return {std::move(lidar), std::move(camera)};

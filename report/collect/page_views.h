@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "calibrate/calibrate.h"
+#include "geometry/camera.h"
 #include "io/results/calibration_result.h"
 #include "report/collect/frame_source.h"
 #include "report/page/page.h"
 
 namespace sextant {
+
+/// A camera with its facts and its frustum, without a pose.
+PageSensor PageCameraOf(const std::string& name, const Camera& camera);
 
 /// The camera and the LiDAR, with the camera's pose in the LiDAR frame.
 std::vector<PageSensor> PageSensorsOf(const CalibrationResult& result);

@@ -155,7 +155,25 @@ struct PageNext {
   std::string png{};  ///< A picture; empty: none.
 };
 
+/// A part under a heading of its own, which only some pages have.
+struct PageSection {
+  std::string id{};  ///< For links within the page: letters alone.
+  std::string title{};
+  std::string label{};  ///< Its name in the contents.
+  std::vector<std::string> sentences{};
+  PageTable table{};
+};
+
+/// What the page of a capture shows while it runs.
+struct PageLive {
+  std::string revision{};            ///< Differs whenever the page does; the browser compares it.
+  std::string state{};               ///< "Waiting for the next photo and scan".
+  bool has_ended = false;            ///< The page does not change any more.
+  std::vector<std::string> found{};  ///< What each sensor saw, the newest first.
+};
+
 struct ReportPage {
+  std::string kind = "Calibration report";  ///< Above the title.
   std::string title{};
   std::string date{};     ///< The only text that is not a function of the inputs.
   std::string version{};  ///< The version of the program.
@@ -163,7 +181,10 @@ struct ReportPage {
   std::vector<PageFigure> figures{};
   std::vector<PageTransform> transforms{};
   std::vector<PageSensor> sensors{};
+  std::vector<PageSection> sections{};  ///< Before the views.
   std::vector<PageView> views{};
+  /// The view that is shown first; none: the first that was kept.
+  std::optional<std::size_t> selected{};
   std::vector<PageCoverage> coverage{};
   std::vector<PagePlot> coverage_plots{};
   std::vector<PagePlot> residual_plots{};
@@ -178,6 +199,7 @@ struct ReportPage {
   std::string closing{};
   PageInputs inputs{};
   std::vector<std::string> configuration{};
+  std::optional<PageLive> live{};  ///< Only while a capture runs.
 };
 
 }  // namespace sextant

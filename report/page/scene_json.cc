@@ -90,6 +90,7 @@ std::string SceneJson(const ReportPage& page) {
     if (sensor.base_from_sensor) json["sensors"].push_back(SensorJson(sensor));
   }
   for (const PageView& view : page.views) json["views"].push_back(ViewJson(view));
+  if (page.selected) json["selected"] = *page.selected;
   return ScriptJson(json);
 }
 

@@ -105,11 +105,13 @@ std::string HashHtml(const std::string& hash) {
 
 std::string SummaryHtml(const ReportPage& page) {
   std::string html = fmt::format(
-      "<header>\n<p class=\"kicker\">Calibration report</p>\n<h1>{}</h1>\n<p class=\"note\">{}{}"
+      "<header>\n<p class=\"kicker\">{}</p>\n<h1>{}</h1>\n<p class=\"note\">{}{}"
       "sextant {}{}</p>\n</header>\n",
-      HtmlText(page.title), HtmlText(page.date), page.date.empty() ? "" : " · ",
-      HtmlText(page.version), HashHtml(page.inputs.hash));
-  html += VerdictHtml(page.verdict) + "<dl class=\"figures\">\n";
+      HtmlText(page.kind), HtmlText(page.title), HtmlText(page.date),
+      page.date.empty() ? "" : " · ", HtmlText(page.version), HashHtml(page.inputs.hash));
+  html += VerdictHtml(page.verdict);
+  if (page.figures.empty()) return html;
+  html += "<dl class=\"figures\">\n";
   for (const PageFigure& figure : page.figures) {
     html += fmt::format("<div><dt>{}</dt><dd><b>{}</b><span>{}</span></dd></div>\n",
                         HtmlText(figure.label), HtmlText(figure.value), HtmlText(figure.note));
@@ -126,7 +128,9 @@ std::string TransformHtml(const PageTransform& transform) {
   };
   const std::string& to = transform.to;
   const std::string& from = transform.from;
-  std::string html = fmt::format("<p class=\"lead\">{}</p>\n", HtmlText(transform.in_words));
+  std::string html = transform.in_words.empty()
+                         ? fmt::format("<h3>{}</h3>\n", HtmlText(name(to, from)))
+                         : fmt::format("<p class=\"lead\">{}</p>\n", HtmlText(transform.in_words));
   if (transform.sigma) {
     const Vector6d& s = *transform.sigma;
     html += TableHtml(

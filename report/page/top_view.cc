@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "base/text/escape.h"
 
@@ -14,6 +15,16 @@ namespace {
 
 constexpr double kTopWidth = 720.0;
 constexpr double kTopMargin = 34.0;
+
+constexpr std::string_view kBoardsCaption =
+    "<p class=\"legend\"><span><i class=\"line by-camera\"></i>boards by the camera</span><span><i "
+    "class=\"line by-lidar\"></i>boards by the LiDAR</span></p><figcaption>From above; the forward "
+    "direction of the LiDAR is up. Grey dots: returns of one scan.</figcaption>";
+constexpr std::string_view kSensorsCaption =
+    "<p class=\"legend\"><span><i class=\"line by-camera\"></i>cameras</span><span><i class=\"line "
+    "by-lidar\"></i>LiDARs</span></p><figcaption>From above; the forward direction of the first "
+    "LiDAR "
+    "is up.</figcaption>";
 
 /// The floor: x of the base frame up in the picture, y to the left.
 class Floor {
@@ -138,11 +149,8 @@ std::string TopViewHtml(const ReportPage& page) {
   for (const PageSensor& sensor : page.sensors) svg += SensorSvg(floor, sensor);
   return fmt::format(
       "<figure class=\"top-view\"><svg viewBox=\"0 0 {} {:.0f}\" role=\"img\" "
-      "aria-label=\"Sensors and boards from above\">\n{}</svg>\n<p class=\"legend\"><span><i "
-      "class=\"line by-camera\"></i>boards by the camera</span><span><i class=\"line by-lidar\">"
-      "</i>boards by the LiDAR</span></p><figcaption>From above; the forward direction of the "
-      "LiDAR is up. Grey dots: returns of one scan.</figcaption></figure>\n",
-      kTopWidth, floor.height_px(), svg);
+      "aria-label=\"Sensors and boards from above\">\n{}</svg>\n{}</figure>\n",
+      kTopWidth, floor.height_px(), svg, page.views.empty() ? kSensorsCaption : kBoardsCaption);
 }
 
 }  // namespace sextant

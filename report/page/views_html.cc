@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <string_view>
@@ -46,7 +47,22 @@ std::string ViewRow(const PageView& view, std::size_t index) {
       NumberHtml(SigmaOf(view, false), 1e3, 1), NumberHtml(SigmaOf(view, true), kDegPerRad, 3));
 }
 
+// Without boards, as in a check, a view has a name alone.
+std::string NamesTable(const std::vector<PageView>& views) {
+  std::string html =
+      "<div class=\"wide views\"><table><thead><tr><th>View</th></tr></thead><tbody>\n";
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    html += fmt::format("<tr data-view=\"{0}\"><td><a href=\"#view-{0}\">{1}</a></td></tr>\n", i,
+                        HtmlText(views[i].name));
+  }
+  return html + "</tbody></table></div>\n";
+}
+
 std::string ViewsTable(const std::vector<PageView>& views) {
+  const bool has_boards = std::ranges::any_of(views, [](const PageView& view) {
+    return !view.boards.empty() || !view.is_kept || view.rmse_m.has_value();
+  });
+  if (!has_boards) return NamesTable(views);
   std::string html =
       "<div class=\"wide views\"><table><thead><tr><th>View</th><th>Status</th>"
       "<th class=\"n\">Range [m]</th><th class=\"n\">Off [mm]</th><th class=\"n\">Off [px]</th>"

@@ -67,9 +67,9 @@ TEST(Cli, HelpTeachesEveryCommand) {
   const ProgramRun top = RunSextant("--help");
   EXPECT_EQ(top.exit_code, 0);
   for (const char* command :
-       {"calibrate", "advise",  "project",  "report",      "export",  "detect",   "boards",
-        "mark",      "bag",     "simulate", "print-board", "convert", "fuse",     "solve",
-        "compare",   "average", "list",     "run",         "merge",   "reproduce"}) {
+       {"calibrate", "capture", "advise",  "project",  "report",      "export",  "detect",
+        "boards",    "mark",    "bag",     "simulate", "print-board", "convert", "fuse",
+        "solve",     "compare", "average", "list",     "run",         "merge",   "reproduce"}) {
     EXPECT_THAT(top.out, HasSubstr(std::string("\n  ") + command + " "));
     const ProgramRun help = RunSextant(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0);

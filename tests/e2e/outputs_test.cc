@@ -248,10 +248,10 @@ TEST(Outputs, AFileThatWasBeingReplacedSurvivesAKill) {
 
 TEST(Outputs, EveryCommandThatWritesHasOverwrite) {
   for (const char* command :
-       {"calibrate", "advise",    "project", "report",   "export",         "detect",
-        "boards",    "mark",      "bag",     "simulate", "simulate pairs", "print-board",
-        "convert",   "fuse",      "solve",   "compare",  "average",        "run",
-        "merge",     "reproduce", "rig",     "check",    "refine-scene"}) {
+       {"calibrate",   "capture", "advise",    "project", "report",   "export",
+        "detect",      "boards",  "mark",      "bag",     "simulate", "simulate pairs",
+        "print-board", "convert", "fuse",      "solve",   "compare",  "average",
+        "run",         "merge",   "reproduce", "rig",     "check",    "refine-scene"}) {
     EXPECT_THAT(RunSextant(std::string(command) + " --help").out, HasSubstr("--overwrite"))
         << command;
   }

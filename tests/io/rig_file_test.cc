@@ -239,6 +239,26 @@ TEST(RigResult, IsReadBack) {
   EXPECT_THAT(read->Between("right", "top").error().message, HasSubstr("top, left, lost"));
 }
 
+TEST(RigResult, RoundTripsToTheSameText) {
+  RigResult rig = ThreeSensors();
+  rig.sensors[1].covariance = 1e-6 * Matrix6d::Identity();
+  rig.sensors[1].views = 7;
+  rig.sensors[1].used = 6;
+  rig.pairs = {{.a = "top", .b = "left", .covariance = 2e-6 * Matrix6d::Identity(), .views = 5}};
+  rig.pairs[0].alone_a_from_b = Rigid3d{};
+  rig.pairs[0].alone_sigmas = 1.25;
+  rig.views = {{.moment = "000",
+                .board = 3,
+                .seen = {{.sensor = "top", .used = true, .rms = 0.9}, {.sensor = "left"}}}};
+  rig.numbers = {{.sensor = "top", .name = "range_offset_m", .value = 0.01, .sigma = 0.002}};
+  rig.unconnected = {"lost sees no board with another sensor"};
+  rig.warnings = {"a warning"};
+  const std::string text = FormatRigResult(rig);
+  const Expected<RigResult> read = ParseRigResult(text, "rig.json");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(FormatRigResult(*read), text);
+}
+
 TEST(RigResult, SaysWhyItIsNotUsable) {
   RigResult rig = ThreeSensors();
   rig.refutations = {"the print is \"small\""};

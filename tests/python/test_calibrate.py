@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
+import os
+import signal
 import subprocess
 import sys
+import threading
 
 import numpy as np
 import pytest
@@ -137,3 +140,17 @@ def test_the_example_of_a_session_runs(session, tmp_path):
     assert "view 003, board 0: kept" in out
     assert out.count("It rests on 4 boards in 4 of 4 views") >= 1
     assert (tmp_path / "result.yaml").exists()
+
+
+def test_an_interrupt_ends_a_calibration(session):
+    # A process that a shell started in the background ignores interrupts.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    try:
+        # Without an end within the timeout of any test.
+        with pytest.raises(KeyboardInterrupt):
+            sextant.calibrate(folder_of(session), bootstrap=100000)
+    finally:
+        timer.join()
+        signal.signal(signal.SIGINT, before)

@@ -44,6 +44,8 @@
     stage = window.SextantScene(data, select);
     if (!stage) root.classList.remove('gl');
   }
-  var first = data.views.findIndex(function (view) { return view.kept; });
+  var first = 'selected' in data
+    ? data.selected
+    : data.views.findIndex(function (view) { return view.kept; });
   if (rows.length > 0) select(Math.max(0, first));
 })();

@@ -139,6 +139,51 @@ TEST(PageHtml, StatesTheVerdictInWordsAndMarks) {
   EXPECT_THAT(FormatPage(page), HasSubstr("<strong>NOT USABLE</strong>\n<p>one view.</p>"));
 }
 
+ReportPage LivePage(const std::string& text) {
+  ReportPage page = test::SomePage(2, text, "jpeg");
+  page.selected = 1;
+  page.live = PageLive{.revision = text, .state = text, .found = {text, text}};
+  page.sections = {{"own", text, text, {text}, {.header = {text}, .rows = {{text}}}}};
+  return page;
+}
+
+TEST(PageHtml, ACaptureShowsTheNextPlacementFirstAndAsksItsServerAlone) {
+  ReportPage page = LivePage("text");
+  page.live->state = "Waiting for the next photo";
+  page.live->revision = "r-7";
+  const std::string html = FormatPage(page);
+  const std::string own = WithoutScripts(html);
+  EXPECT_LT(own.find("Hold the board here next"), own.find("id=\"diagnostics\""));
+  EXPECT_THAT(own, Not(HasSubstr("id=\"next\"")));
+  EXPECT_THAT(own, HasSubstr("Waiting for the next photo"));
+  EXPECT_THAT(own, HasSubstr("data-revision=\"r-7\""));
+  EXPECT_THAT(own, HasSubstr("connect-src 'self'"));
+  EXPECT_THAT(own, HasSubstr("http-equiv=\"refresh\""));
+  EXPECT_EQ(nlohmann::json::parse(SceneOf(html))["selected"], 1);
+  EXPECT_THAT(html, HasSubstr(std::string(LiveScript())));
+
+  page.live->has_ended = true;
+  const std::string last = FormatPage(page);
+  EXPECT_THAT(last, Not(HasSubstr(std::string(LiveScript()))));
+  EXPECT_THAT(last, Not(HasSubstr("http-equiv=\"refresh\"")));
+  EXPECT_THAT(FormatPage(test::SomePage(2, "text", "jpeg")), Not(HasSubstr("connect-src")));
+}
+
+TEST(PageHtml, HostileTextsStayTextInACaptureAndInOwnSections) {
+  const std::vector<std::string> plain = Skeleton(FormatPage(LivePage("text")));
+  for (const std::string& text : test::HostileTexts()) {
+    if (text.empty()) continue;
+    EXPECT_EQ(Skeleton(FormatPage(LivePage(text))), plain) << text.substr(0, 60);
+  }
+}
+
+TEST(PageHtml, PartsWithoutContentAreLeftOut) {
+  const std::string html = FormatPage({.title = "a rig", .diagnostics = {"a line"}});
+  for (const char* part : {"id=\"views\"", "id=\"residuals\"", "id=\"solvers\"", "#views"}) {
+    EXPECT_THAT(html, Not(HasSubstr(part))) << part;
+  }
+}
+
 TEST(PageHtml, ManagesWithoutViewsSensorsAndFigures) {
   const std::string html = FormatPage(ReportPage{.title = "empty"});
   EXPECT_THAT(html, HasSubstr("<h1>empty</h1>"));
@@ -146,7 +191,7 @@ TEST(PageHtml, ManagesWithoutViewsSensorsAndFigures) {
 }
 
 TEST(PageHtml, OurScriptsCannotEndTheirElement) {
-  for (const std::string_view script : {PageScript(), SceneScript(), ThreeScript()}) {
+  for (const std::string_view script : {PageScript(), LiveScript(), SceneScript(), ThreeScript()}) {
     EXPECT_EQ(script.find("</script"), std::string_view::npos);
     EXPECT_EQ(script.find("<!--"), std::string_view::npos);
   }

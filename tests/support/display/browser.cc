@@ -40,7 +40,11 @@ ProcessEnd RunChromium(const std::filesystem::path& profile,
 bool Browser::IsInstalled() { return RunProcess({"chromium", "--version"}).has_value(); }
 
 Browser::Page Browser::Load(const std::filesystem::path& page) const {
-  const ProcessEnd end = RunChromium(profile_, {"--dump-dom", "file://" + page.string()});
+  return LoadAddress("file://" + page.string());
+}
+
+Browser::Page Browser::LoadAddress(const std::string& address) const {
+  const ProcessEnd end = RunChromium(profile_, {"--dump-dom", address});
   Page loaded{.dom = end.out, .console = {}};
   std::istringstream lines(end.err);
   for (std::string line; std::getline(lines, line);) {

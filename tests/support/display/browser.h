@@ -23,6 +23,8 @@ class Browser {
     std::string console;
   };
   Page Load(const std::filesystem::path& page) const;
+  /// The same of an address, such as "http://127.0.0.1:8735/".
+  Page LoadAddress(const std::string& address) const;
 
   /// Writes a PNG of the page's first `height` pixels.
   void Shoot(const std::filesystem::path& page, int width, int height,

@@ -54,6 +54,10 @@ BackgroundProgram::~BackgroundProgram() {
   }
 }
 
+void BackgroundProgram::Interrupt() const {
+  if (pid_ > 0) kill(pid_, SIGINT);
+}
+
 int BackgroundProgram::Wait(double seconds) {
   int status = 0;
   const bool ended = Eventually(seconds, [&] { return waitpid(pid_, &status, WNOHANG) == pid_; });

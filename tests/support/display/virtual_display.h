@@ -20,6 +20,9 @@ class BackgroundProgram {
   BackgroundProgram(const BackgroundProgram&) = delete;
   BackgroundProgram& operator=(const BackgroundProgram&) = delete;
 
+  /// Ctrl-C.
+  void Interrupt() const;
+
   /// Waits for the end and returns the exit code; -1 after a timeout or if it is killed by a
   /// signal.
   int Wait(double seconds);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/bag/pair_by_stamp.h"
+#include "base/pair_by_stamp.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/capture/folder_watch.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "base/text/path_text.h"
+#include "calibrate/session/file_pairs.h"
+
+namespace sextant {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <std::size_t Count>
+bool HasExtension(const fs::path& path, const std::array<std::string_view, Count>& extensions) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::ranges::find(extensions, extension) != extensions.end();
+}
+
+}  // namespace
+
+FolderWatch::FolderWatch(fs::path folder, std::string image_pattern, std::string cloud_pattern)
+    : folder_(std::move(folder)),
+      image_pattern_(std::move(image_pattern)),
+      cloud_pattern_(std::move(cloud_pattern)) {}
+
+bool FolderWatch::IsImage(const fs::path& path) const {
+  static constexpr std::array<std::string_view, 9> kExtensions = {
+      ".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm", ".ppm", ".webp"};
+  if (!image_pattern_.empty()) return MatchesPattern(path.filename().string(), image_pattern_);
+  return HasExtension(path, kExtensions);
+}
+
+bool FolderWatch::IsCloud(const fs::path& path) const {
+  static constexpr std::array<std::string_view, 5> kExtensions = {".pcd", ".ply", ".bin", ".csv",
+                                                                  ".npy"};
+  if (!cloud_pattern_.empty()) return MatchesPattern(path.filename().string(), cloud_pattern_);
+  return HasExtension(path, kExtensions);
+}
+
+Expected<void> FolderWatch::AddFolder(const fs::path& folder, bool with_folders,
+                                      State& found) const {
+  std::error_code error;
+  fs::directory_iterator it(folder, error);
+  for (const fs::directory_iterator end; !error && it != end; it.increment(error)) {
+    if (it->path().filename().string().starts_with('.')) continue;
+    std::error_code gone;  // A file may disappear at any time; it is then no file of this look.
+    if (it->is_directory(gone)) {
+      if (with_folders) SEXTANT_RETURN_IF_ERROR(AddFolder(it->path(), false, found));
+      continue;
+    }
+    if (!it->is_regular_file(gone) || (!IsImage(it->path()) && !IsCloud(it->path()))) continue;
+    WatchedFile file{.path = it->path(), .bytes = it->file_size(gone)};
+    if (gone) continue;
+    file.changed = it->last_write_time(gone);
+    if (!gone) found.emplace(file.path, file);
+  }
+  // A folder within the folder may disappear, too.
+  if (!error || !with_folders) return {};
+  return MakeError(ErrorCode::kIo, fmt::format("cannot read the folder '{}': {}", PathText(folder),
+                                               error.message()));
+}
+
+Expected<FolderFiles> FolderWatch::Look() {
+  State found;
+  SEXTANT_RETURN_IF_ERROR(AddFolder(folder_, true, found));
+  FolderFiles files;
+  for (const auto& [path, file] : found) {
+    const auto before = last_.find(path);
+    if (file.bytes == 0 || before == last_.end() || before->second != file) {
+      ++files.unsettled;
+    } else {
+      (IsImage(path) ? files.images : files.clouds).push_back(file);
+    }
+  }
+  last_ = std::move(found);
+  return files;
+}
+
+}  // namespace sextant

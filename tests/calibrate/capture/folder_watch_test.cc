@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/capture/folder_watch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "support/scratch_folder.h"
+
+namespace sextant {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+class FolderWatchTest : public testing::Test {
+ protected:
+  void Write(const std::string& name, const std::string& text) {
+    std::filesystem::create_directories((folder_.path() / name).parent_path());
+    std::ofstream(folder_.path() / name, std::ios::binary) << text;
+  }
+
+  FolderFiles Look() {
+    const Expected<FolderFiles> files = watch_.Look();
+    EXPECT_TRUE(files) << files.error().message;
+    return files ? *files : FolderFiles{};
+  }
+
+  static std::vector<std::string> Names(const std::vector<WatchedFile>& files) {
+    std::vector<std::string> names;
+    for (const WatchedFile& file : files) names.push_back(file.path.filename().string());
+    return names;
+  }
+
+  test::ScratchFolder folder_;
+  FolderWatch watch_{folder_.path()};
+};
+
+TEST_F(FolderWatchTest, AFileIsCompleteWhenItNoLongerChanges) {
+  EXPECT_THAT(Look().images, IsEmpty());
+  Write("a.png", "half");
+  FolderFiles files = Look();
+  EXPECT_THAT(files.images, IsEmpty());
+  EXPECT_EQ(files.unsettled, 1U);
+  Write("a.png", "half and the rest");
+  files = Look();
+  EXPECT_THAT(files.images, IsEmpty());
+  EXPECT_EQ(files.unsettled, 1U);
+  files = Look();
+  EXPECT_THAT(Names(files.images), ElementsAre("a.png"));
+  EXPECT_EQ(files.unsettled, 0U);
+  // Written again: it is new once more.
+  Write("a.png", "another");
+  EXPECT_THAT(Look().images, IsEmpty());
+  EXPECT_THAT(Names(Look().images), ElementsAre("a.png"));
+}
+
+TEST_F(FolderWatchTest, EmptyHiddenAndOtherFilesDoNotCount) {
+  Write("empty.pcd", "");
+  Write(".partial.png", "x");
+  Write("result.yaml", "x");
+  Write("report.html", "x");
+  Look();
+  const FolderFiles files = Look();
+  EXPECT_THAT(files.images, IsEmpty());
+  EXPECT_THAT(files.clouds, IsEmpty());
+  EXPECT_EQ(files.unsettled, 1U);
+}
+
+TEST_F(FolderWatchTest, FoldersWithinItAreWatchedToo) {
+  Write("images/b.PNG", "x");
+  Write("scans/b.pcd", "x");
+  Write("scans/deeper/c.pcd", "x");
+  Look();
+  const FolderFiles files = Look();
+  EXPECT_THAT(Names(files.images), ElementsAre("b.PNG"));
+  EXPECT_THAT(Names(files.clouds), ElementsAre("b.pcd"));
+}
+
+TEST_F(FolderWatchTest, PatternsChooseAmongSeveralSensors) {
+  FolderWatch left(folder_.path(), "left_*.png", "*.txt");
+  Write("left_1.png", "x");
+  Write("right_1.png", "x");
+  Write("scan.txt", "x");
+  Write("scan.pcd", "x");
+  ASSERT_TRUE(left.Look());
+  const Expected<FolderFiles> files = left.Look();
+  ASSERT_TRUE(files);
+  EXPECT_THAT(Names(files->images), ElementsAre("left_1.png"));
+  EXPECT_THAT(Names(files->clouds), ElementsAre("scan.txt"));
+}
+
+TEST_F(FolderWatchTest, AFolderThatIsNotThereIsAnError) {
+  FolderWatch nowhere(folder_.path() / "nowhere");
+  const Expected<FolderFiles> files = nowhere.Look();
+  ASSERT_FALSE(files);
+  EXPECT_EQ(files.error().code, ErrorCode::kIo);
+}
+
+}  // namespace
+}  // namespace sextant
