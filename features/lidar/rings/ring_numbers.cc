@@ -13,7 +13,6 @@
 #include "base/units.h"
 #include "features/lidar/rings/ring_following.h"
 #include "features/lidar/rings/ring_order.h"
-#include "features/lidar/rings/ring_turns.h"
 #include "geometry/symmetric.h"
 
 namespace sextant {
@@ -202,10 +201,6 @@ RingNumbers RecoverRings(std::span<const UnsortedReturn> returns, std::size_t cl
     return rings;
   }
   if (std::vector<int> numbers = RingsByOrder(returns, cloud_size); !numbers.empty()) {
-    rings = CheckRings(returns, std::move(numbers));
-    if (!rings.of_return.empty()) return rings;
-  }
-  if (std::vector<int> numbers = RingsByTurns(returns); !numbers.empty()) {
     rings = CheckRings(returns, std::move(numbers));
     if (!rings.of_return.empty()) return rings;
   }

@@ -227,21 +227,6 @@ TEST(ScanRings, OfAFieldOfZerosAreRecovered) {
   EXPECT_EQ(rings->rings(), 16);
 }
 
-// KITTI lists the turns of a Velodyne of 64 rings one after the other, without the rays that had no
-// return, and the elevations of neighbouring rings overlap near the sensor.
-TEST(ScanRings, OfTurnsListedOneAfterTheOther) {
-  SEXTANT_REAL_DATA(folder, "field/kitti/pcd");
-  for (const char* name : {"000000", "000649", "001297", "001946", "002595", "003244", "003892"}) {
-    const Expected<PointCloud> cloud = ReadPcd(folder / (std::string(name) + ".pcd"));
-    ASSERT_TRUE(cloud) << cloud.error().message;
-    const Expected<ScanRings> rings = ScanRings::Build(*cloud);
-    ASSERT_TRUE(rings);
-    EXPECT_TRUE(rings->has_rings()) << name;
-    EXPECT_GE(rings->rings(), 63) << name;
-    EXPECT_LE(rings->rings(), 64) << name;
-  }
-}
-
 // The number of rings with returns in one scan of each sensor.
 TEST(ScanRings, OfRealSensorsWithoutARingField) {
   SEXTANT_REAL_DATA(folder, "field/rings");
