@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "solvers/joint/condensed_cost.h"
+#include "solvers/blocks/condensed_cost.h"
 #include "solvers/joint/joint_costs.h"
 
 namespace sextant {

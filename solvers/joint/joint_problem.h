@@ -7,9 +7,9 @@
 #include <array>
 #include <vector>
 
+#include "solvers/blocks/pose_manifold.h"
+#include "solvers/blocks/schur_minimum.h"
 #include "solvers/joint/joint_model.h"
-#include "solvers/joint/pose_manifold.h"
-#include "solvers/joint/schur_minimum.h"
 
 namespace sextant {
 

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "geometry/uncertain_pose.h"
-#include "solvers/joint/pose_manifold.h"
+#include "solvers/blocks/pose_manifold.h"
 
 namespace sextant {
 namespace {

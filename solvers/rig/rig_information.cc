@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "geometry/symmetric.h"
-#include "solvers/joint/scaled_inverse.h"
+#include "solvers/blocks/scaled_inverse.h"
 
 namespace sextant {
 namespace {

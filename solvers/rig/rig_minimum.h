@@ -7,8 +7,8 @@
 #include <array>
 #include <vector>
 
-#include "solvers/joint/pose_manifold.h"
-#include "solvers/joint/schur_minimum.h"
+#include "solvers/blocks/pose_manifold.h"
+#include "solvers/blocks/schur_minimum.h"
 #include "solvers/rig/rig_model.h"
 
 namespace sextant {

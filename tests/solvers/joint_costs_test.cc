@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "eval/synthetic/simulate_views.h"
-#include "solvers/joint/condensed_cost.h"
-#include "solvers/joint/pose_manifold.h"
+#include "solvers/blocks/condensed_cost.h"
+#include "solvers/blocks/pose_manifold.h"
 
 namespace sextant {
 namespace {
@@ -151,7 +151,7 @@ TEST(JointCosts, Priors) {
   }
 }
 
-// r^2, J^T r and J^T J with all parameter blocks side by side.
+// r^2, J^T r and J^T J over all parameter blocks.
 struct NormalEquations {
   double squares = 0.0;
   Eigen::VectorXd gradient;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/joint/scaled_inverse.h"
+#include "solvers/blocks/scaled_inverse.h"
 
 #include <cmath>
 

@@ -12,8 +12,8 @@ namespace sextant {
 /// J^T J are the same to rounding, at every state.
 class CondensedCost final : public ceres::CostFunction {
  public:
-  /// Of the first parameter block, only the columns [first, first + count) of the derivative may
-  /// differ from 0; of the others, all.
+  /// For the first parameter block, only the columns [first, first + count) of the derivative may
+  /// differ from 0; for the others, all may.
   CondensedCost(std::unique_ptr<ceres::CostFunction> all, int first, int count);
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
@@ -24,7 +24,7 @@ class CondensedCost final : public ceres::CostFunction {
   std::unique_ptr<ceres::CostFunction> all_;
   int first_;
   int count_;
-  int columns_ = 0;  ///< Of J, all blocks together.
+  int columns_ = 0;  ///< The width of J over all blocks.
 };
 
 }  // namespace sextant

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/joint/pose_manifold.h"
+#include "solvers/blocks/pose_manifold.h"
 
 namespace sextant {
 namespace {

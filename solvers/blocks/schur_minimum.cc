@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solvers/joint/schur_minimum.h"
+#include "solvers/blocks/schur_minimum.h"
 
 #include <ceres/ceres.h>
 
