@@ -13,7 +13,6 @@
 #include "base/units.h"
 #include "features/lidar/rings/ring_following.h"
 #include "features/lidar/rings/ring_order.h"
-#include "features/lidar/rings/ring_turns.h"
 #include "geometry/symmetric.h"
 
 namespace sextant {
@@ -161,20 +160,6 @@ bool SomeAreSplit(std::span<const UnsortedReturn> returns, const std::vector<int
   return false;
 }
 
-// Rings of a sensor that lies on its side: elevations about x or y repeat. Only many rings count,
-// because those of a wall or a floor may be few.
-RingNumbers RingsOfSideways(std::span<const UnsortedReturn> returns) {
-  constexpr int kMinSideways = 8;
-  for (const Eigen::Vector3d& axis :
-       {Eigen::Vector3d(Eigen::Vector3d::UnitX()), Eigen::Vector3d(Eigen::Vector3d::UnitY())}) {
-    const std::vector<double> elevations = ElevationsAbout(returns, axis);
-    std::vector<int> rings = RingsOfElevations(elevations, OrderOf(elevations));
-    if (rings.empty() || *std::ranges::max_element(rings) + 1 < kMinSideways) continue;
-    return {std::move(rings), axis};
-  }
-  return {};
-}
-
 }  // namespace
 
 RingNumbers CheckRings(std::span<const UnsortedReturn> returns, std::vector<int> numbers) {
@@ -204,13 +189,6 @@ RingNumbers RecoverRings(std::span<const UnsortedReturn> returns, std::size_t cl
   if (std::vector<int> numbers = RingsByOrder(returns, cloud_size); !numbers.empty()) {
     rings = CheckRings(returns, std::move(numbers));
     if (!rings.of_return.empty()) return rings;
-  }
-  if (std::vector<int> numbers = RingsByTurns(returns); !numbers.empty()) {
-    rings = CheckRings(returns, std::move(numbers));
-    if (!rings.of_return.empty()) return rings;
-  }
-  if (RingNumbers sideways = RingsOfSideways(returns); !sideways.of_return.empty()) {
-    return sideways;
   }
   rings.of_return = RingsByFollowing(returns);
   if (rings.of_return.empty()) rings.of_return = std::move(repeating);

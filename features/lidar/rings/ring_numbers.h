@@ -30,9 +30,7 @@ RingNumbers CheckRings(std::span<const UnsortedReturn> returns, std::vector<int>
 /// 1. elevations that repeat exactly, as for beams that start at the origin;
 /// 2. the order of the points: an organised cloud (one row per ring or per column), or returns that
 ///    are listed ring by ring in each column, where invalid returns keep their place;
-/// 3. turns that are listed one after the other, without the rays that had no return;
-/// 4. elevations about x or y that repeat exactly, of a sensor that lies on its side;
-/// 5. elevations that change slowly from far returns to near ones, as for beams that start beside
+/// 3. elevations that change slowly from far returns to near ones, as for beams that start beside
 ///    the origin, or along the azimuth, as for mirrors that tilt the fan.
 /// `cloud_size` includes invalid points. Time: O(n (log n + rings)).
 RingNumbers RecoverRings(std::span<const UnsortedReturn> returns, std::size_t cloud_size);

@@ -96,10 +96,7 @@ RingNumbers RingsOf(const PointCloud& cloud, const std::vector<UnsortedReturn>& 
   std::vector<int> numbers;
   numbers.reserve(returns.size());
   for (const UnsortedReturn& point : returns) numbers.push_back(cloud.ring[point.index]);
-  RingNumbers rings = CheckRings(returns, std::move(numbers));
-  // Converters leave zeros in the field.
-  if (rings.of_return.empty()) return RecoverRings(returns, cloud.points.size());
-  return rings;
+  return CheckRings(returns, std::move(numbers));
 }
 
 // The rotation that takes the axis to z; x stays as it is as far as possible.

@@ -195,53 +195,6 @@ TEST(ScanRings, OfARotatedCloudTurnAboutItsOwnAxis) {
   }
 }
 
-// The same without an order of the points: a sensor upside down, and on either side.
-TEST(ScanRings, OfAShuffledCloudOfASensorOnItsSide) {
-  for (const Eigen::Vector3d& turn :
-       {Eigen::Vector3d(180.0, 0.0, 0.0), Eigen::Vector3d(90.0, 0.0, 0.0),
-        Eigen::Vector3d(0.0, 90.0, 0.0), Eigen::Vector3d(0.0, -90.0, 0.0)}) {
-    PointCloud cloud = RoomSeenBy({EvenFan(16, 2.0)}, 400);
-    const Eigen::Matrix3d rotation =
-        Eigen::AngleAxisd(turn.norm() * kRadPerDeg, turn.normalized()).toRotationMatrix();
-    for (Eigen::Vector3d& point : cloud.points) point = rotation * point;
-    cloud.ring.clear();
-    Random random(3);
-    for (std::size_t i = cloud.points.size(); i > 1; --i) {
-      const auto k = static_cast<std::size_t>(random.Uniform(0.0, static_cast<double>(i)));
-      std::swap(cloud.points[i - 1], cloud.points[k]);
-    }
-    const Expected<ScanRings> rings = ScanRings::Build(cloud);
-    ASSERT_TRUE(rings);
-    EXPECT_TRUE(rings->has_rings()) << turn.transpose();
-    EXPECT_EQ(rings->rings(), 16) << turn.transpose();
-    EXPECT_NEAR(std::abs(rings->axis().dot(rotation.col(2))), 1.0, 1e-9) << turn.transpose();
-  }
-}
-
-TEST(ScanRings, OfAFieldOfZerosAreRecovered) {
-  PointCloud cloud = RoomSeenBy({EvenFan(16, 2.0)}, 400);
-  cloud.ring.assign(cloud.points.size(), 0);
-  const Expected<ScanRings> rings = ScanRings::Build(cloud);
-  ASSERT_TRUE(rings);
-  EXPECT_TRUE(rings->has_rings());
-  EXPECT_EQ(rings->rings(), 16);
-}
-
-// KITTI lists the turns of a Velodyne of 64 rings one after the other, without the rays that had no
-// return, and the elevations of neighbouring rings overlap near the sensor.
-TEST(ScanRings, OfTurnsListedOneAfterTheOther) {
-  SEXTANT_REAL_DATA(folder, "field/kitti/pcd");
-  for (const char* name : {"000000", "000649", "001297", "001946", "002595", "003244", "003892"}) {
-    const Expected<PointCloud> cloud = ReadPcd(folder / (std::string(name) + ".pcd"));
-    ASSERT_TRUE(cloud) << cloud.error().message;
-    const Expected<ScanRings> rings = ScanRings::Build(*cloud);
-    ASSERT_TRUE(rings);
-    EXPECT_TRUE(rings->has_rings()) << name;
-    EXPECT_GE(rings->rings(), 63) << name;
-    EXPECT_LE(rings->rings(), 64) << name;
-  }
-}
-
 // The number of rings with returns in one scan of each sensor.
 TEST(ScanRings, OfRealSensorsWithoutARingField) {
   SEXTANT_REAL_DATA(folder, "field/rings");
