@@ -9,8 +9,8 @@
 namespace sextant {
 namespace {
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using RowMajorMap = Eigen::Map<RowMajor>;
+using AnyRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using CondensedRows = Eigen::Map<AnyRows>;
 
 }  // namespace
 
@@ -43,7 +43,7 @@ bool CondensedCost::Condense(double const* const* parameters, double* residuals,
   const Eigen::Index rows = all_->num_residuals();
   const std::vector<int>& sizes = parameter_block_sizes();
   Eigen::VectorXd values(rows);
-  std::vector<RowMajor> derivatives(sizes.size());
+  std::vector<AnyRows> derivatives(sizes.size());
   std::vector<double*> places(sizes.size(), nullptr);
   for (std::size_t b = 0; b < sizes.size(); ++b) {
     if (jacobians[b] == nullptr) continue;
@@ -67,7 +67,7 @@ bool CondensedCost::Condense(double const* const* parameters, double* residuals,
   for (std::size_t b = 0; b < sizes.size(); ++b) {
     const Eigen::Index width = b == 0 ? count_ : sizes[b];
     if (jacobians[b] != nullptr) {
-      RowMajorMap to(jacobians[b], num_residuals(), sizes[b]);
+      CondensedRows to(jacobians[b], num_residuals(), sizes[b]);
       to.setZero();
       to.middleCols(b == 0 ? first_ : 0, width) = triangle.middleCols(at, width);
     }

@@ -75,7 +75,7 @@ TEST(SessionKind, RefusesWhatCannotBeRecorded) {
     return experiment ? std::string() : experiment.error().message;
   };
   EXPECT_THAT(message(", nearest_m: 3.0, farthest_m: 2.0"), HasSubstr("is below nearest_m"));
-  EXPECT_THAT(message(", nearest_m: 0.01, farthest_m: 0.02"), HasSubstr("found no place"));
+  EXPECT_THAT(message(", nearest_m: 0.3, farthest_m: 0.31"), HasSubstr("found no place"));
   EXPECT_THAT(message(", fault: broken"), HasSubstr("broken"));
 }
 
