@@ -152,7 +152,8 @@ Expected<RigResult> CalibrateSensors(const CalibrateCommandOptions& options,
   if (!options.problem_path.empty()) {
     SEXTANT_RETURN_IF_ERROR(WriteFileAtomically(options.problem_path, FormatRigFile(observed.rig)));
   }
-  Expected<RigResult> result = CalibrateRig(observed.rig, progress.Callback());
+  Expected<RigResult> result =
+      CalibrateRig(observed.rig, /*estimate_time=*/false, progress.Callback());
   for (const std::string& note : observed.notes) {
     if (!result) result.error().AddLine(note);
     if (result) result->warnings.push_back(note);
