@@ -49,7 +49,12 @@ std::string PhotosText(const ReportPage& page) {
 
 Expected<ReportPage> PageOfResult(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.parent_path();
-  SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
+  const auto with_advice = [](const Error& error) {
+    return MakeError(error.code, error.message + "; for a session, run sextant calibrate --report");
+  };
+  const Expected<std::string> read = ReadTextFile(path);
+  if (!read) return with_advice(read.error());
+  const std::string& text = *read;
   if (IsRigResult(text)) {
     SEXTANT_ASSIGN_OR_RETURN(const RigResult rig, ParseRigResult(text, path.string()));
     return CollectRigPage(rig);
@@ -59,13 +64,9 @@ Expected<ReportPage> PageOfResult(const std::filesystem::path& path) {
     return CollectCheckPage(check, folder);
   }
   const Expected<CalibrationResult> result = ParseCalibrationResult(text, path.string());
-  if (result) {
-    return CollectWithProgress(
-        {.result = *result, .frames = FramesOfFiles(folder), .folder = folder});
-  }
-  return MakeError(
-      result.error().code,
-      fmt::format("{}; for a session, run sextant calibrate --report", result.error().message));
+  if (!result) return with_advice(result.error());
+  return CollectWithProgress(
+      {.result = *result, .frames = FramesOfFiles(folder), .folder = folder});
 }
 
 int Run(const ReportCommandOptions& options) {

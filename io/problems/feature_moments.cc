@@ -20,9 +20,9 @@ constexpr double kJitter_s = 0.02;
 /// Puts the rows into the observations of a problem.
 class FeatureCollector {
  public:
-  FeatureCollector(const std::vector<FeatureRow>& rows, const std::string& file,
-                   const std::map<int, FeatureBoard>& boards, RigProblem& problem)
-      : rows_(rows), file_(file), boards_(boards), problem_(problem) {
+  FeatureCollector(const FeatureTable& table, const std::map<int, FeatureBoard>& boards,
+                   RigProblem& problem)
+      : rows_(table.rows), file_(table.file), boards_(boards), problem_(problem) {
     for (std::size_t i = 0; i < problem.placements.size(); ++i) {
       const RigPlacement& placement = problem.placements[i];
       placements_[{placement.moment, placement.board}] = i;
@@ -33,8 +33,9 @@ class FeatureCollector {
   }
 
   Expected<void> Run() {
-    NameTimes();
-    for (std::size_t i = 0; i < rows_.size() && !error_; ++i) Add(rows_[i], names_[i]);
+    for (const FeatureRow& row : rows_) {
+      if (!error_) Add(row);
+    }
     for (auto& [key, pixels] : pixels_) Store(key, std::move(pixels));
     if (error_) return tl::unexpected<Error>(*error_);
     std::ranges::stable_sort(problem_.placements, [](const RigPlacement& a, const RigPlacement& b) {
@@ -69,24 +70,6 @@ class FeatureCollector {
         Error{ErrorCode::kParse, ToString(Place{.file = file_, .line = row.line}) + ": " + message};
   }
 
-  // A moment's name is the first time of it.
-  void NameTimes() {
-    std::vector<std::size_t> timed;
-    names_.resize(rows_.size());
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      names_[i] = rows_[i].moment;
-      if (rows_[i].moment.empty()) timed.push_back(i);
-    }
-    std::ranges::stable_sort(
-        timed, [&](std::size_t a, std::size_t b) { return *rows_[a].time_s < *rows_[b].time_s; });
-    std::optional<double> first;
-    for (const std::size_t i : timed) {
-      const double time = *rows_[i].time_s;
-      if (!first || time > *first + kMoment_s + kJitter_s) first = time;
-      names_[i] = fmt::format("{:.3f} s", *first);
-    }
-  }
-
   std::optional<std::size_t> SensorOf(const FeatureRow& row) {
     std::vector<std::string> names;
     for (std::size_t s = 0; s < problem_.sensors.size(); ++s) {
@@ -110,12 +93,12 @@ class FeatureCollector {
     return nullptr;
   }
 
-  Spot SpotOf(const FeatureRow& row, const std::string& moment, int board, std::size_t sensor) {
-    const auto [number, is_new] = moments_.try_emplace(moment, next_moment_);
+  Spot SpotOf(const FeatureRow& row, int board, std::size_t sensor) {
+    const auto [number, is_new] = moments_.try_emplace(row.moment, next_moment_);
     if (is_new) ++next_moment_;
     const auto [at, is_first] =
         placements_.try_emplace({number->second, board}, problem_.placements.size());
-    if (is_first) problem_.placements.push_back({number->second, board, moment, {}});
+    if (is_first) problem_.placements.push_back({number->second, board, row.moment, {}});
     auto& seen = problem_.placements[at->second].seen;
     const auto same = std::ranges::find_if(seen, [&](const RigObservation& one) {
       return one.sensor == sensor && one.time_s == row.time_s;
@@ -135,12 +118,12 @@ class FeatureCollector {
     return std::nullopt;
   }
 
-  void Add(const FeatureRow& row, const std::string& moment) {
+  void Add(const FeatureRow& row) {
     const auto sensor = SensorOf(row);
     if (!sensor) return;
     const FeatureBoard* board = BoardOf(row);
     if (board == nullptr) return;
-    const Spot spot = SpotOf(row, moment, board->board.id, *sensor);
+    const Spot spot = SpotOf(row, board->board.id, *sensor);
     if (row.pixel || row.position_m) AddPoint(row, *board, spot);
     RigObservation& seen = problem_.placements[spot.first].seen[spot.second];
     if (row.plane) {
@@ -204,7 +187,6 @@ class FeatureCollector {
   const std::string& file_;
   const std::map<int, FeatureBoard>& boards_;
   RigProblem& problem_;
-  std::vector<std::string> names_;  ///< The moment of each row.
   std::map<std::string, int, std::less<>> moments_;
   int next_moment_ = 0;
   std::map<std::pair<int, int>, std::size_t> placements_;
@@ -214,11 +196,32 @@ class FeatureCollector {
   std::optional<Error> error_;
 };
 
+// Names the moments of rows that only have a time: by the first time of each moment.
+void NameMoments(std::vector<FeatureTable>& tables) {
+  std::vector<FeatureRow*> timed;
+  for (FeatureTable& table : tables) {
+    for (FeatureRow& row : table.rows) {
+      if (row.moment.empty()) timed.push_back(&row);
+    }
+  }
+  std::ranges::stable_sort(
+      timed, [](const FeatureRow* a, const FeatureRow* b) { return *a->time_s < *b->time_s; });
+  std::optional<double> first;
+  for (FeatureRow* row : timed) {
+    if (!first || *row->time_s > *first + kMoment_s + kJitter_s) first = *row->time_s;
+    row->moment = fmt::format("{:.3f} s", *first);
+  }
+}
+
 }  // namespace
 
-Expected<void> AddFeatures(const std::vector<FeatureRow>& rows, const std::string& file,
+Expected<void> AddFeatures(std::vector<FeatureTable> tables,
                            const std::map<int, FeatureBoard>& boards, RigProblem& problem) {
-  return FeatureCollector(rows, file, boards, problem).Run();
+  NameMoments(tables);
+  for (const FeatureTable& table : tables) {
+    SEXTANT_RETURN_IF_ERROR(FeatureCollector(table, boards, problem).Run());
+  }
+  return {};
 }
 
 }  // namespace sextant

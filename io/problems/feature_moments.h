@@ -27,11 +27,17 @@ inline constexpr int kMaxPointsSeen = 1000;
 /// What is recorded within this time is one moment, in which a board moves with constant velocity.
 inline constexpr double kMoment_s = 0.2;
 
-/// Adds the observations of a table to a problem. Rows of one moment, board, sensor and time are
-/// one observation; rows without a moment are taken together by their times, kMoment_s each.
+struct FeatureTable {
+  std::string file;  ///< For messages.
+  std::vector<FeatureRow> rows;
+};
+
+/// Adds the observations of tables to a problem. Rows of one moment, board, sensor and time are one
+/// observation; rows without a moment are taken together by their times, kMoment_s each, over all
+/// tables.
 /// Errors: kParse with file and line, for names, corners and sides that do not exist, and for what
 /// is stated twice.
-Expected<void> AddFeatures(const std::vector<FeatureRow>& rows, const std::string& file,
+Expected<void> AddFeatures(std::vector<FeatureTable> tables,
                            const std::map<int, FeatureBoard>& boards, RigProblem& problem);
 
 }  // namespace sextant

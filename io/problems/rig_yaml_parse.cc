@@ -166,15 +166,17 @@ class RigReader {
       names.clear();
       for (const YamlNode& item : node.items) names.push_back(&item);
     }
+    std::vector<FeatureTable> tables;
     for (const YamlNode* name : names) {
       const std::string file = in_.Text(*name, "tables");
       if (!in_.ok()) return;
       const std::filesystem::path path = folder_ / file;
-      const auto rows = ReadFeatureTable(path);
+      auto rows = ReadFeatureTable(path);
       if (!rows) return in_.Fail(rows.error());
-      const auto added = AddFeatures(*rows, path.string(), boards_, rig_.problem);
-      if (!added) return in_.Fail(added.error());
+      tables.push_back({path.string(), std::move(*rows)});
     }
+    const auto added = AddFeatures(std::move(tables), boards_, rig_.problem);
+    if (!added) return in_.Fail(added.error());
   }
 
   // x0, y0, x1, y1, ...

@@ -87,11 +87,12 @@ std::vector<Reader> Readers() {
        RefusalOf(ParseDetectedMarkers)},
       {"Transforms", identity + "\n" + identity, RefusalOf(ParseTransformList)},
       {"CameraYaml",
-       "%YAML:1.0\n---\nimage_width: 640\ncamera_matrix: !!opencv-matrix\n  rows: 3\n  data: [6, "
-       "0, 3, 0, 6, 2, 0, 0, 1]\nD: [0.1, 0, 0, 0]\n",
+       "%YAML:1.0\n---\nimage_width: 640\ncamera_matrix: !!opencv-matrix\n  rows: 3\n  data: [600, "
+       "0, 320, 0, 600, 240, 0, 0, 1]\nD: [0.1, 0, 0, 0]\n",
        RefusalOf(ParseCamera)},
       {"CameraIni",
-       "[image]\n\nwidth\n640\n\n[camera]\ncamera matrix\n6 0 3\n0 6 2\n0 0 1\n\ndistortion\n0 0 0 "
+       "[image]\n\nwidth\n640\n\n[camera]\ncamera matrix\n600 0 320\n0 600 240\n0 0 "
+       "1\n\ndistortion\n0 0 0 "
        "0 0\n",
        RefusalOf(ParseCamera)},
       {"Boards",

@@ -15,7 +15,7 @@ SEXTANT_FUZZ_TARGET(feature_table, bytes) {
   RigProblem problem{.boards = {board}};
   problem.sensors.push_back({.name = "left"});
   problem.sensors.push_back({.name = "top"});
-  CheckOutcome(AddFeatures(*rows, "f", {{0, {board, {{0.3, 0.4}, {-0.3, 0.4}}}}}, problem));
+  CheckOutcome(AddFeatures({{"f", *rows}}, {{0, {board, {{0.3, 0.4}, {-0.3, 0.4}}}}}, problem));
 }
 
 }  // namespace sextant::test
