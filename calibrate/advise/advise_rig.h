@@ -25,7 +25,7 @@ struct RigAdvice {
   double distance_m = 0.0;             ///< At which pairs are compared: that of the boards so far.
   std::vector<std::string> seen_by{};  ///< The sensors that would see the proposed board.
   Rigid3d root_from_board{};
-  Matrix6d covariance{};   ///< Of the weakest pair with that board.
+  Matrix6d covariance{};   ///< What the weakest pair has with that board.
   std::string sentence{};  ///< As one of the sensors that would see it sees it.
   int considered = 0;      ///< Places of the grid that two sensors or more would see.
   std::vector<std::string> warnings{};

@@ -23,7 +23,7 @@ struct LocalRequest {
 struct LocalAnswer {
   unsigned status = 200;
   std::string_view type{};  ///< Content-Type.
-  std::string_view body{};  ///< Of the served page, or a constant.
+  std::string_view body{};  ///< Part of the served page, or a constant.
 };
 
 /// The answer to a request at a port of 127.0.0.1. There are two addresses, `/` and `/state`, and

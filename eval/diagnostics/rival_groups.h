@@ -17,7 +17,7 @@ namespace sextant {
 struct PairGroup {
   Rigid3d cam_from_lidar;
   std::vector<int> members;  ///< Indices of the pairs, ascending.
-  double rmse = 0.0;         ///< Of the members [m or px].
+  double rmse = 0.0;         ///< Over the members [m or px].
 };
 
 /// Two groups of about the same size, each of which contradicts the pose of the other. Least
@@ -25,7 +25,7 @@ struct PairGroup {
 /// of them: nothing in the data says which is right.
 struct RivalGroups {
   bool in_pixels = false;
-  std::size_t pairs = 0;  ///< Of this kind, in either group or none.
+  std::size_t pairs = 0;  ///< All of this kind, in either group or none.
   std::array<PairGroup, 2> groups;
 };
 

@@ -20,9 +20,9 @@ struct RigSimulation {
   int moments = 12;
   /// Probability that a sensor takes part in a moment. At least two do.
   double takes_part = 1.0;
-  /// Of the board in each moment, in a random direction; 0: it stands still, and observations have
-  /// no times. Otherwise every sensor sees it three times, kScanInterval_s apart, from a time of
-  /// its own on.
+  /// Speed of the board in each moment, in a random direction; 0: it stands still, and observations
+  /// have no times. Otherwise every sensor sees it three times, kScanInterval_s apart, from a time
+  /// of its own on.
   double speed_m_s = 0.0;
   double turn_rad_s = 0.5;         ///< About a random axis, where the board moves.
   double acceleration_m_s2 = 0.0;  ///< In a random direction, where the board moves.

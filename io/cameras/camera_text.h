@@ -10,6 +10,8 @@
 
 namespace sextant {
 
+// Time and memory are linear in the size of the text.
+
 /// The cameras of COLMAP's cameras.txt; `name` chooses one by its number. COLMAP's first pixel is
 /// centred at (0.5, 0.5), which is subtracted. None for a text of another form. Errors: as
 /// ParseNamedCamera; kInvalidInput for models that Camera does not have.

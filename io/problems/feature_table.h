@@ -24,8 +24,8 @@ struct FeatureRow {
   std::optional<double> time_s{};               ///< The sensor's stamp.
   std::optional<Eigen::Vector2d> pixel{};
   std::optional<double> sigma_px{};
-  std::optional<Eigen::Vector3d> position_m{};  ///< Of that corner, in the sensor frame.
-  std::optional<double> sigma_m{};              ///< Of `position_m`.
+  std::optional<Eigen::Vector3d> position_m{};  ///< Where that corner is, in the sensor frame.
+  std::optional<double> sigma_m{};              ///< For each axis of `position_m`.
   std::optional<MeasuredPlane> plane{};
   std::optional<MeasuredLine> side{};
 };

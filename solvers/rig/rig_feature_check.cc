@@ -15,10 +15,10 @@ namespace {
 /// What the observations of one sensor show, one value each.
 struct SensorFeatures {
   std::vector<double> scales;       ///< Size of the measured points over that of the board's.
-  std::vector<double> misfits;      ///< Of the points to a rigid pose, over their size.
+  std::vector<double> misfits;      ///< How far the points are from a rigid pose, over their size.
   std::vector<double> faces;        ///< 1 where the points show the front, -1 where the back.
   std::vector<double> ahead;        ///< 1 where a camera's plane is in front of it, -1 behind.
-  std::vector<double> off_m;        ///< Of points and lines from the plane.
+  std::vector<double> off_m;        ///< Distances of points and lines from the plane.
   std::vector<double> off_other_m;  ///< The same with the other sign of the distance.
 };
 

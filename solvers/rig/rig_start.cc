@@ -315,7 +315,7 @@ class BoardStart {
   const RigPlacement& placement_;
   std::span<const RigBlock> blocks_;
   const RigState& state_;
-  std::vector<std::vector<Rigid3d>> poses_;  ///< Of each observation alone.
+  std::vector<std::vector<Rigid3d>> poses_;  ///< From each observation alone.
   std::vector<double> times_s_;
   std::vector<RigMotion> motions_;
 };

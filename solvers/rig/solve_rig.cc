@@ -50,6 +50,13 @@ std::optional<std::size_t> ClockRoot(const RigOptions& options) {
   return options.estimate_time ? std::optional(options.root) : std::nullopt;
 }
 
+std::string ClockWarning(const std::string& sensor, const std::string& uncertainty) {
+  return fmt::format(
+      "the time offset of {} cannot be told{}: move boards, in several directions, while {} and "
+      "another sensor see them, and state times",
+      sensor, uncertainty, sensor);
+}
+
 // Whether at least two of the sensors see a board.
 bool IsShared(const RigPlacement& placement, std::span<const std::size_t> sensors) {
   std::optional<std::size_t> first;
@@ -177,12 +184,9 @@ class RigSolution {
           });
       const bool any = number != estimate.numbers.end();
       if (any && number->sigma < kTold * kClockSigma_s) continue;
-      estimate.warnings.push_back(fmt::format(
-          "the time offset of {} cannot be told{}: move boards, in several directions, while {} "
-          "and another sensor see them, and state times",
-          whole_.sensors[sensors_[s]].name,
-          any ? fmt::format(" (+-{:.0f} ms)", 1e3 * number->sigma) : "",
-          whole_.sensors[sensors_[s]].name));
+      estimate.warnings.push_back(
+          ClockWarning(whole_.sensors[sensors_[s]].name,
+                       any ? fmt::format(" (+-{:.0f} ms)", 1e3 * number->sigma) : ""));
     }
   }
 
@@ -281,7 +285,9 @@ RigProblem Restricted(const RigProblem& problem, std::span<const std::size_t> se
   return part;
 }
 
-Expected<RigEstimate> SolveRig(const RigProblem& given, const RigOptions& options) {
+namespace {
+
+Expected<RigEstimate> SolveOnce(const RigProblem& given, const RigOptions& options) {
   SEXTANT_RETURN_IF_ERROR(CheckRigProblem(given));
   SEXTANT_RETURN_IF_ERROR(CheckRigFeatures(given));
   SEXTANT_ASSIGN_OR_RETURN(const RigProblem problem, WithPoses(given));
@@ -302,6 +308,65 @@ Expected<RigEstimate> SolveRig(const RigProblem& given, const RigOptions& option
   RigSolution solution(problem, connected);
   SEXTANT_RETURN_IF_ERROR(solution.Solve(tree, options));
   solution.Report(estimate);
+  return estimate;
+}
+
+// The boards as they are at rest: no time passes within a moment.
+RigProblem AtRest(RigProblem problem) {
+  constexpr double kNoTime = 1e-6;
+  for (RigPlacement& placement : problem.placements) {
+    std::optional<double> first;
+    for (RigObservation& seen : placement.seen) {
+      if (!seen.time_s) continue;
+      if (!first) first = seen.time_s;
+      seen.time_s = *first + kNoTime * (*seen.time_s - *first);
+    }
+  }
+  return problem;
+}
+
+/// What the residuals in use amount to, each unit taken as two numbers.
+struct RigMisfit {
+  explicit RigMisfit(const RigEstimate& estimate) {
+    for (const RigObservationFit& fit : estimate.fits) {
+      count += fit.used ? 2.0 * fit.units : 0.0;
+      squares += fit.used ? 2.0 * fit.units * fit.rms * fit.rms : 0.0;
+    }
+  }
+  double squares = 0.0;
+  double count = 0.0;
+};
+
+// An offset follows from the boards' velocities, and the noise of these would count as motion: it
+// would make the offset's stated sigma too small by the factor 1 / (1 - 1 / F). F is the mean
+// square of the six numbers of a motion over their variance.
+bool BoardsMove(const RigProblem& problem, RigOptions options) {
+  constexpr double kMinF = 10.0;
+  constexpr double kMaxLeftOut = 0.05;
+  options.estimate_time = false;
+  options.progress = {};
+  const Expected<RigEstimate> at_rest = SolveOnce(AtRest(problem), options);
+  const Expected<RigEstimate> moving = SolveOnce(problem, options);
+  if (!at_rest || !moving) return true;
+  const RigMisfit rest(*at_rest);
+  const RigMisfit motion(*moving);
+  if (rest.count < (1.0 - kMaxLeftOut) * motion.count) return true;
+  const double moved = 6.0 * static_cast<double>(problem.placements.size());
+  const double redundant = std::max(1.0, motion.count - 2.0 * moved);
+  return (rest.squares - motion.squares) / moved > kMinF * motion.squares / redundant;
+}
+
+}  // namespace
+
+Expected<RigEstimate> SolveRig(const RigProblem& problem, const RigOptions& options) {
+  if (!options.estimate_time || BoardsMove(problem, options)) return SolveOnce(problem, options);
+  RigOptions without_clocks = options;
+  without_clocks.estimate_time = false;
+  SEXTANT_ASSIGN_OR_RETURN(RigEstimate estimate, SolveOnce(problem, without_clocks));
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+    if (s == options.root || !estimate.sensor_from_root[s]) continue;
+    estimate.warnings.push_back(ClockWarning(problem.sensors[s].name, ""));
+  }
   return estimate;
 }
 

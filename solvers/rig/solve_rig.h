@@ -23,7 +23,8 @@ struct RigOptions {
   int max_iterations = 100;
   double step_tolerance = 1e-10;
   /// Estimates how far the clock of each sensor with times is ahead of the root's
-  /// (RigObservation::time_s), as the number time_offset_s.
+  /// (RigObservation::time_s), as the number time_offset_s; not where the boards' motion is lost in
+  /// the noise, which a warning states.
   bool estimate_time = false;
   ProgressCallback progress{};  ///< Stage "rig": minima, at most as many as are announced.
 };

@@ -61,7 +61,7 @@ TEST(PairSoFar, ByTheLastNumbersWhateverHasArrived) {
 
 TEST(PairSoFar, NamesWithoutTellingNumbersArePairedAsCalibrateDoes) {
   EXPECT_THAT(PairsOf({"near.png", "far.png"}, {"near.pcd", "far.pcd"}),
-              ElementsAre("fa: far.png far.pcd", "nea: near.png near.pcd"));
+              ElementsAre("f: far.png far.pcd", "ne: near.png near.pcd"));
   // The last numbers are those of versions.
   EXPECT_THAT(PairsOf({"p1_v2.png", "p2_v2.png"}, {"s1.pcd", "s2.pcd"}),
               ElementsAre("1: p1_v2.png s1.pcd", "2: p2_v2.png s2.pcd"));
