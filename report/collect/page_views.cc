@@ -147,7 +147,9 @@ PageTable FactsOf(const Camera& camera) {
   const auto model = static_cast<std::size_t>(camera.model);
   return {
       .rows = {{"model", model < kModels.size() ? kModels[model] : "other"},
-               {"image", fmt::format("{} x {} px", camera.width_px, camera.height_px)},
+               {"image", camera.width_px > 0
+                             ? fmt::format("{} x {} px", camera.width_px, camera.height_px)
+                             : std::string("size not stated")},
                {"focal lengths", fmt::format("{:.1f}, {:.1f} px", camera.fx_px, camera.fy_px)},
                {"principal point", fmt::format("{:.1f}, {:.1f} px", camera.cx_px, camera.cy_px)}},
       .words = 2};
