@@ -123,13 +123,13 @@ TEST_F(CaptureRun, FilesThatAppearAreProcessedUntilTheAccuracyIsReached) {
   for (int view = 2; view < 6 && !fs::exists(TestPath("result.yaml")); ++view) {
     Drop(view);
     const std::string line = "\n00" + std::to_string(view) + ": ";
+    // An answer without this view may have been good enough.
     EXPECT_TRUE(Eventually(kPatience_s, [&] {
-      return ReadText(log_).find(line) != std::string::npos;
+      const std::string log = ReadText(log_);
+      const std::size_t at = log.find(line);
+      const bool is_answered = at != std::string::npos && log.find("known to", at) != log.npos;
+      return is_answered || fs::exists(TestPath("result.yaml"));
     })) << ReadText(log_);
-    Eventually(kPatience_s, [&] {
-      const std::size_t at = ReadText(log_).find(line);
-      return ReadText(log_).find("known to", at) != std::string::npos;
-    });
   }
   EXPECT_EQ(program_->Wait(kPatience_s), 0) << ReadText(log_);
   EXPECT_THAT(ReadText(log_), HasSubstr("GOOD: "));
