@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/units.h"
+#include "eval/experiment/kinds/board_scale.h"
 #include "features/lidar/corner_extractor.h"
 #include "geometry/random_vectors.h"
 #include "geometry/scan_marks.h"
@@ -34,28 +35,6 @@ Expected<std::vector<double>> ParseNumbers(const std::string& name, const std::s
   if (numbers.size() == count) return numbers;
   return MakeError(ErrorCode::kInvalidOption,
                    fmt::format("option {}={}: expected {} numbers", name, text, count));
-}
-
-void Enlarge(double scale, Board& board) {
-  board.top_right_m *= scale;
-  board.right_bottom_m *= scale;
-  for (BoardTag& tag : board.tags) {
-    tag.edge_m *= scale;
-    tag.center_in_board_m *= scale;
-  }
-  if (board.hole) {
-    board.hole->width_m *= scale;
-    board.hole->height_m *= scale;
-    board.hole->center_in_board_m *= scale;
-  }
-  for (RoundHole& hole : board.round_holes) {
-    hole.radius_m *= scale;
-    hole.center_in_board_m *= scale;
-  }
-  if (board.checker) {
-    board.checker->square_m *= scale;
-    board.checker->center_in_board_m *= scale;
-  }
 }
 
 // cam_from_lidar of the scene, overridden by the settings.
@@ -105,7 +84,10 @@ Expected<SceneObserver> SceneObserver::Make(const SceneSettings& settings,
   observer.settings_ = settings;
   observer.camera_index_ = camera;
   SEXTANT_ASSIGN_OR_RETURN(observer.scene_, ReadScene(folder / settings.scene));
-  for (SceneBoard& board : observer.scene_.boards) Enlarge(settings.board_scale, board.board);
+  for (SceneBoard& board : observer.scene_.boards) {
+    ScaleOutline(settings.board_scale, board.board);
+    ScalePrint(settings.board_scale, board.board);
+  }
   if (!settings.lidar_model.empty()) observer.scene_.lidar.model = settings.lidar_model;
   if (static_cast<int>(observer.scene_.cameras.size()) <= camera) {
     return MakeError(ErrorCode::kInvalidOption,

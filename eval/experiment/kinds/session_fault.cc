@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "eval/experiment/kinds/board_scale.h"
+
 namespace sextant {
 namespace {
 
@@ -10,31 +12,6 @@ constexpr double kBoardExcess = 0.02;
 constexpr double kPrintExcess = 0.03;
 constexpr double kFocalExcess = 0.01;
 constexpr double kPrintShift_m = 0.03;
-
-void ScaleOutline(double scale, Board& board) {
-  board.top_right_m *= scale;
-  board.right_bottom_m *= scale;
-  if (board.hole) {
-    board.hole->width_m *= scale;
-    board.hole->height_m *= scale;
-    board.hole->center_in_board_m *= scale;
-  }
-  for (RoundHole& hole : board.round_holes) {
-    hole.radius_m *= scale;
-    hole.center_in_board_m *= scale;
-  }
-}
-
-void ScalePrint(double scale, Board& board) {
-  for (BoardTag& tag : board.tags) {
-    tag.edge_m *= scale;
-    tag.center_in_board_m *= scale;
-  }
-  if (board.checker) {
-    board.checker->square_m *= scale;
-    board.checker->center_in_board_m *= scale;
-  }
-}
 
 void ShiftPrint(const Eigen::Vector2d& by_m, Board& board) {
   for (BoardTag& tag : board.tags) tag.center_in_board_m += by_m;
