@@ -91,13 +91,6 @@ Expected<PoseCheck> CheckPose(const CheckOptions& options, const SceneInput& inp
   return CheckScenes(SearchScenes(pairs, given, progress.Callback()), given, LimitsOf(options));
 }
 
-// (dphi [deg], dt [mm]).
-std::vector<double> InPlainUnits(const Vector6d& value) {
-  std::vector<double> plain;
-  for (int i = 0; i < 6; ++i) plain.push_back(i < 3 ? value(i) / kRadPerDeg : 1e3 * value(i));
-  return plain;
-}
-
 std::string NowUtc() {
   return fmt::format(
       "{:%FT%TZ}",
@@ -143,8 +136,8 @@ Expected<void> AppendHistory(const std::string& path, const PoseCheck& check,
   std::string line = begin.empty() ? header : std::string(end == "\n" ? "" : "\n");
   line += fmt::format("{},{},{},{},{}", NowUtc(), ToString(check.state), ToString(input.direction),
                       input.session.files.pairs.size(), check.is_certain ? "yes" : "no");
-  for (const double v : InPlainUnits(check.change)) line += fmt::format(",{:.4f}", v);
-  for (const double v : InPlainUnits(check.covariance.diagonal().cwiseSqrt())) {
+  for (const double v : InDegreesAndMm(check.change)) line += fmt::format(",{:.4f}", v);
+  for (const double v : InDegreesAndMm(check.covariance.diagonal().cwiseSqrt())) {
     line += fmt::format(",{:.4f}", v);
   }
   SEXTANT_RETURN_IF_ERROR(file.Append(line + "\n"));

@@ -17,13 +17,6 @@ using CheckJson = nlohmann::ordered_json;
 
 constexpr const char* kCheckKey = "sextant_check";
 
-// (dphi [deg], dt [mm]).
-CheckJson InDegreesAndMm(const Vector6d& value) {
-  CheckJson plain = CheckJson::array();
-  for (int i = 0; i < 6; ++i) plain.push_back(i < 3 ? kDegPerRad * value(i) : 1e3 * value(i));
-  return plain;
-}
-
 Vector6d FromDegreesAndMm(Vector6d value) {
   value.head<3>() *= kRadPerDeg;
   value.tail<3>() *= 1e-3;
@@ -43,6 +36,12 @@ void ReadCheckedPairs(YamlFields& in, const YamlNode& root, CheckResult& result)
 
 }  // namespace
 
+std::array<double, 6> InDegreesAndMm(const Vector6d& value) {
+  const Vector6d plain =
+      (Vector6d() << kDegPerRad * value.head<3>(), 1e3 * value.tail<3>()).finished();
+  return {plain[0], plain[1], plain[2], plain[3], plain[4], plain[5]};
+}
+
 std::string FormatCheckResult(const CheckResult& result) {
   CheckJson json = {{kCheckKey, 1},
                     {"version", result.version},
@@ -55,8 +54,8 @@ std::string FormatCheckResult(const CheckResult& result) {
                     {"reason", result.reason},
                     {"change_deg_mm", InDegreesAndMm(result.change)}};
   // As an array even where nothing is known, so that readers need no second form.
-  json["sigma_deg_mm"] =
-      result.sigma ? InDegreesAndMm(*result.sigma) : CheckJson(std::vector<CheckJson>(6, nullptr));
+  json["sigma_deg_mm"] = result.sigma ? CheckJson(InDegreesAndMm(*result.sigma))
+                                      : CheckJson(std::vector<CheckJson>(6, nullptr));
   json["detect_deg_mm"] = {kDegPerRad * result.detect_rad, 1e3 * result.detect_m};
   json["cam_from_lidar"] = PoseJson(result.cam_from_lidar);
   if (result.camera) json["camera"] = CameraJson(*result.camera);

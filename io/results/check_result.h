@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,6 +38,9 @@ struct CheckResult {
   double detect_rad = 0.0;          ///< The change that has to be seen.
   double detect_m = 0.0;
 };
+
+/// (dphi [rad], dt [m]) in degrees and millimetres.
+std::array<double, 6> InDegreesAndMm(const Vector6d& value);
 
 /// The JSON of `sextant check --json`; docs/formats.md documents its keys.
 std::string FormatCheckResult(const CheckResult& result);
