@@ -195,8 +195,14 @@ int Run(const AdviseCommandOptions& options) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) path /= "result.yaml";
   const Expected<std::string> file = ReadTextFile(path);
-  if (file && IsRigFile(*file)) return AdviseOnRig(options, *file);
-  if (file && IsRigResult(*file)) {
+  const auto after_calibrate = [](const Error& error) {
+    return Refuse(
+        "advise",
+        {error.code, fmt::format("{}; for a session, run sextant calibrate first", error.message)});
+  };
+  if (!file) return after_calibrate(file.error());
+  if (IsRigFile(*file)) return AdviseOnRig(options, *file);
+  if (IsRigResult(*file)) {
     return Refuse("advise",
                   {ErrorCode::kInvalidInput,
                    fmt::format("{} has the poses of a rig, but not what its sensors measured: give "
@@ -204,12 +210,8 @@ int Run(const AdviseCommandOptions& options) {
                                "writes",
                                options.result_path)});
   }
-  const Expected<CalibrationResult> result = ReadCalibrationResult(path);
-  if (!result) {
-    return Refuse("advise", {result.error().code,
-                             fmt::format("{}; for a session, run sextant calibrate first",
-                                         result.error().message)});
-  }
+  const Expected<CalibrationResult> result = ParseCalibrationResult(*file, path.string());
+  if (!result) return after_calibrate(result.error());
   const Expected<SensorPair> sensors = SensorsOf(options, *result);
   if (!sensors) return Refuse("advise", sensors.error());
   std::string text;
