@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "base/text/lower_case.h"
 #include "base/text/path_text.h"
 #include "calibrate/session/file_pairs.h"
 
@@ -20,10 +20,7 @@ namespace fs = std::filesystem;
 
 template <std::size_t Count>
 bool HasExtension(const fs::path& path, const std::array<std::string_view, Count>& extensions) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::ranges::find(extensions, extension) != extensions.end();
+  return std::ranges::find(extensions, LowerCase(path.extension().string())) != extensions.end();
 }
 
 }  // namespace
