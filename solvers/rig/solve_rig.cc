@@ -337,9 +337,9 @@ struct RigMisfit {
   double count = 0.0;
 };
 
-// An offset follows from the boards' velocities, and the noise of these would count as motion: it
-// would make the offset's stated sigma too small by the factor 1 / (1 - 1 / F). F is the mean
-// square of the six numbers of a motion over their variance.
+// An offset follows from the boards' velocities, and the noise of these counts as motion: it makes
+// the information on the offset too large by the factor 1 / (1 - 1 / F). F is the mean square of
+// the six numbers of a motion over their variance.
 bool BoardsMove(const RigProblem& problem, RigOptions options) {
   constexpr double kMinF = 10.0;
   constexpr double kMaxLeftOut = 0.05;
