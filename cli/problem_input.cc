@@ -17,6 +17,7 @@
 #include "io/cameras/camera_file.h"
 #include "io/output/standard_output.h"
 #include "io/problems/read_problem.h"
+#include "report/wrapped_text.h"
 #include "solvers/all/all_solvers.h"
 
 namespace sextant::cli {
@@ -71,7 +72,7 @@ std::string DiagnosticsText(const LoadedProblem& input, const std::vector<Compar
   }
   if (reordered) text += "  " + DescribeReordering(input.diagnostics.order) + "\n";
   if (text.empty()) return text;
-  return "\nData diagnostics:\n" + text;
+  return "\nData diagnostics:\n" + Narrow(text);
 }
 
 std::string ResultsJson(const LoadedProblem& input, const std::vector<ComparisonRow>& rows) {
@@ -99,8 +100,10 @@ std::string RefutingVerdict(const ProblemInputOptions& options, const LoadedProb
   }
   if (!(least > kMaxUnexplainedShare) || std::isinf(least)) return "";
   return fmt::format(
-      "NOT USABLE: no pose explains these pairs: what it leaves is {:.0f} percent of their spread "
-      "(at most {:.0f} in measurements that belong together). Check which point belongs to which\n",
+      "NOT USABLE: no pose explains these pairs: what it leaves is {:.0f} percent of their spread, "
+      "or "
+      "of 11 deg where pixels spread more (at most {:.0f} in measurements that belong together). "
+      "Check which point belongs to which\n",
       100.0 * least, 100.0 * kMaxUnexplainedShare);
 }
 
@@ -168,7 +171,7 @@ int DeliverAnswers(const char* command, const ProblemInputOptions& options,
                    const LoadedProblem& input, const std::vector<ComparisonRow>& rows,
                    const std::string& text, bool answered) {
   const std::string diagnostics = DiagnosticsText(input, rows, options.reorder);
-  const std::string verdict = answered ? RefutingVerdict(options, input, rows) : "";
+  const std::string verdict = answered ? Narrow(RefutingVerdict(options, input, rows)) : "";
   if (options.json_path == "-") PrintError("{}{}", verdict, diagnostics);
   const int answer = verdict.empty() ? kAnswered : kNotUsable;
   return Deliver(command, options.json_path, verdict + text + diagnostics, ResultsJson(input, rows),

@@ -63,6 +63,9 @@ Expected<void> CheckShape(const Camera& camera) {
   return {};
 }
 
+// A flat lens of a shorter focal length would see 178 degrees; no lens of another model has one.
+constexpr double kMinFocalPerWidth = 0.02;
+
 // The coefficients of Camera::distortion that a model has are the first ones.
 std::size_t CoefficientsOf(CameraModel model) {
   switch (model) {
@@ -96,6 +99,13 @@ Expected<void> ValidateCamera(const Camera& camera) {
                      fmt::format("the camera's image is {} x {} px, expected positive, or 0 for "
                                  "unknown",
                                  camera.width_px, camera.height_px));
+  }
+  if (camera.fx_px < kMinFocalPerWidth * camera.width_px) {
+    return MakeError(ErrorCode::kInvalidInput,
+                     fmt::format("the focal length is {} px in an image {} px wide? Intrinsics are "
+                                 "in pixels: divide millimetres by the size of a pixel, multiply "
+                                 "shares of the image by its width and height",
+                                 camera.fx_px, camera.width_px));
   }
   const auto beyond =
       camera.distortion.begin() + static_cast<std::ptrdiff_t>(CoefficientsOf(camera.model));

@@ -43,10 +43,10 @@ struct Camera {
   double alpha = 0.0;  ///< Double sphere, 0 to 1.
 };
 
-/// Errors: kNonFinite; kInvalidInput for focal lengths that are not positive, a negative image
-/// size, distortion or skew of a pinhole, xi or alpha of a model that has none or out of range, and
-/// distortion that folds near the centre: within half of the shorter half side of the image, or
-/// within 0.05 rad of the axis where the image size is unknown.
+/// Errors: kNonFinite; kInvalidInput for focal lengths that are not positive or below 0.02 widths
+/// of the image, a negative image size, distortion or skew of a pinhole, xi or alpha of a model
+/// that has none or out of range, and distortion that folds near the centre: within half of the
+/// shorter half side of the image, or within 0.05 rad of the axis where the image size is unknown.
 Expected<void> ValidateCamera(const Camera& camera);
 
 /// Pixel of a point in the camera frame [m]; none outside the model's domain.

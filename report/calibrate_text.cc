@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -14,11 +13,10 @@
 #include "eval/statistics/text_table.h"
 #include "io/text/number_text.h"
 #include "report/report_text.h"
+#include "report/wrapped_text.h"
 
 namespace sextant {
 namespace {
-
-constexpr std::size_t kLineWidth = 100;
 
 std::string HeldOutText(const Calibration& calibration, int view) {
   if (!calibration.result) return "-";
@@ -83,27 +81,6 @@ std::string ErrorAgainstTruth(const ComparisonRow& row) {
   return text + "\n";
 }
 
-// Each line that is too long is broken at blanks, with a hanging indent.
-std::string Narrow(const std::string& text) {
-  std::string narrow;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.size() <= kLineWidth) {
-      narrow += line + "\n";
-      continue;
-    }
-    const std::size_t indent = line.find_first_not_of(' ');
-    const std::string first(indent, ' ');
-    const std::string hanging(indent == 0 ? 0 : indent + 2, ' ');
-    std::istringstream parts(Wrapped(line.substr(indent), kLineWidth - hanging.size()));
-    bool is_first = true;
-    for (std::string part; std::getline(parts, part); is_first = false) {
-      narrow += (is_first ? first : hanging) + part + "\n";
-    }
-  }
-  return narrow;
-}
-
 std::string WarningsText(const std::vector<std::string>& warnings) {
   std::string text;
   for (const std::string& line : warnings) text += "  " + line + "\n";
@@ -115,7 +92,7 @@ std::string WarningsText(const std::vector<std::string>& warnings) {
 std::string DescribeVerdict(const ResultVerdict& verdict) {
   return Wrapped(
       fmt::format("{}: {}. {}.", ToString(verdict.usability), verdict.reason, verdict.next),
-      kLineWidth);
+      kTextWidth);
 }
 
 std::string CautionAbout(const CalibrationResult& result) {
@@ -139,26 +116,6 @@ std::string DescribeCalibration(const Calibration& calibration) {
   std::string conclusion = WarningsText(result.warnings) + "\n" + result.closing + "\n";
   if (result.trust) conclusion += "\n" + result.trust->comparison + "\n";
   return text + Narrow(conclusion);
-}
-
-std::string Wrapped(const std::string& text, std::size_t width) {
-  std::string wrapped;
-  std::size_t column = 0;
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t end = std::min(text.find(' ', i), text.size());
-    const std::size_t length = end - i;
-    if (column > 0 && column + 1 + length > width) {
-      wrapped += '\n';
-      column = 0;
-    } else if (column > 0) {
-      wrapped += ' ';
-      ++column;
-    }
-    wrapped += text.substr(i, length);
-    column += length;
-    i = end + 1;
-  }
-  return wrapped + "\n";
 }
 
 }  // namespace sextant

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <string>
 
 #include "calibrate/calibrate.h"
@@ -19,8 +18,5 @@ std::string CautionAbout(const CalibrationResult& result);
 /// the other solvers' answers, the warnings, and the summary. Without a result: the status of the
 /// boards, and the warnings.
 std::string DescribeCalibration(const Calibration& calibration);
-
-/// The text in lines of at most `width` characters, broken at blanks.
-std::string Wrapped(const std::string& text, std::size_t width);
 
 }  // namespace sextant

@@ -10,6 +10,7 @@
 
 #include "base/units.h"
 #include "eval/statistics/text_table.h"
+#include "report/wrapped_text.h"
 
 namespace sextant {
 namespace {
@@ -298,7 +299,7 @@ std::string DescribeAnswer(const SolveReport& report) {
   if (report.camera) text += DescribeNumbers("camera, also estimated", report.camera->estimated);
   if (!report.extras.empty()) text += DescribeNumbers("also estimated", report.extras);
   for (const std::string& warning : report.warnings) {
-    text += fmt::format("  note: {}\n", warning);
+    text += Narrow("  note: " + warning);
   }
   text += fmt::format("  {}, {} iterations, {:.1f} us\n", ToString(report.termination),
                       report.iterations, report.wall_time_us);

@@ -9,12 +9,11 @@
 #include "base/units.h"
 #include "eval/statistics/text_table.h"
 #include "geometry/symmetric.h"
-#include "report/calibrate_text.h"
+#include "report/wrapped_text.h"
 
 namespace sextant {
 namespace {
 
-constexpr std::size_t kRigWidth = 100;
 constexpr std::size_t kMaxViewRows = 40;
 
 std::string Millimetres(const Eigen::Vector3d& metres) {
@@ -68,7 +67,7 @@ std::string SensorTable(const RigResult& result) {
     }
     table.AddRow(std::move(row));
   }
-  return table.Plain(kRigWidth);
+  return table.Plain(kTextWidth);
 }
 
 std::string PairTable(const RigResult& result) {
@@ -82,7 +81,7 @@ std::string PairTable(const RigResult& result) {
                   alone ? Distance(*pair.alone_a_from_b, pair.a_from_b) : "",
                   pair.alone_sigmas ? Fixed(*pair.alone_sigmas, 1) : ""});
   }
-  return table.Plain(kRigWidth);
+  return table.Plain(kTextWidth);
 }
 
 // x: used, with the residual; -: left out; blank: not seen.
@@ -99,7 +98,7 @@ std::string ViewTable(const RigResult& result) {
     }
     table.AddRow(std::move(row));
   }
-  std::string text = table.Plain(kRigWidth);
+  std::string text = table.Plain(kTextWidth);
   if (result.views.size() > kMaxViewRows) {
     text += fmt::format("and {} more boards; the result file has all\n",
                         result.views.size() - kMaxViewRows);
@@ -148,10 +147,10 @@ std::string DescribeRig(const RigResult& result) {
   for (std::string& line : LoopWarnings(result)) warnings.push_back(std::move(line));
   if (!warnings.empty() || !result.refutations.empty()) text += "\n";
   for (const std::string& warning : warnings) {
-    text += Wrapped("warning: " + warning, kRigWidth);
+    text += Wrapped("warning: " + warning, kTextWidth);
   }
   for (const std::string& reason : result.refutations) {
-    text += Wrapped("NOT USABLE: " + reason, kRigWidth);
+    text += Wrapped("NOT USABLE: " + reason, kTextWidth);
   }
   return text;
 }

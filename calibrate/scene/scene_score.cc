@@ -118,6 +118,7 @@ Expected<ScenePair> MakeScenePair(const cv::Mat& grey, const PointCloud& scan, C
                                   const Rigid3d& cam_from_lidar) {
   camera.width_px = grey.cols;
   camera.height_px = grey.rows;
+  SEXTANT_RETURN_IF_ERROR(ValidateCamera(camera));
   SEXTANT_ASSIGN_OR_RETURN(std::vector<ScanEdge> edges, FindScanEdges(scan));
   std::erase_if(
       edges, [&](const ScanEdge& edge) { return !MayBeSeen(camera, cam_from_lidar * edge.point); });

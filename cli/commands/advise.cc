@@ -21,12 +21,11 @@
 #include "io/text/text_file.h"
 #include "report/advice_picture.h"
 #include "report/calibrate_text.h"
+#include "report/wrapped_text.h"
 #include "simulator/lidar/lidar_model.h"
 
 namespace sextant::cli {
 namespace {
-
-constexpr std::size_t kRigTextWidth = 100;
 
 struct AdviseCommandOptions {
   std::string result_path{};
@@ -158,7 +157,7 @@ Expected<void> CheckPicture(const std::string& path) {
 std::string RigAdviceText(const RigAdvice& advice) {
   std::string text;
   for (const std::string& warning : advice.warnings) {
-    text += Wrapped("warning: " + warning, kRigTextWidth);
+    text += Wrapped("warning: " + warning, kTextWidth);
   }
   text += Wrapped(
       fmt::format("The weakest pair is {} and {}, which see {} {} together: 1 sigma {} for points "
@@ -166,11 +165,11 @@ std::string RigAdviceText(const RigAdvice& advice) {
                   advice.weakest.a, advice.weakest.b, advice.weakest.views,
                   advice.weakest.views == 1 ? "board" : "boards",
                   SigmaText(advice.weakest.a_from_b.covariance), advice.distance_m),
-      kRigTextWidth);
-  text += Wrapped(advice.sentence, kRigTextWidth);
+      kTextWidth);
+  text += Wrapped(advice.sentence, kTextWidth);
   return text + Wrapped(fmt::format("{} would see it there; predicted 1 sigma of the pair then {}",
                                     fmt::join(advice.seen_by, ", "), SigmaText(advice.covariance)),
-                        kRigTextWidth);
+                        kTextWidth);
 }
 
 int AdviseOnRig(const AdviseCommandOptions& options, const std::string& text) {

@@ -11,6 +11,7 @@
 #include "eval/diagnostics/complete_boards.h"
 #include "geometry/pair_noise.h"
 #include "geometry/symmetric.h"
+#include "solvers/core/local_frame.h"
 #include "solvers/kernels/kabsch.h"
 
 namespace sextant {
@@ -180,7 +181,10 @@ PairDiagnostics DiagnosePairs(const CalibrationProblem& problem) {
   diagnostics.edges = DiagnoseEdges(ordered);
   diagnostics.contradiction = FindContradiction(ordered.pairs_3d3d);
 
-  const std::vector<Pair3d3d>& pairs = ordered.pairs_3d3d;
+  // At a far origin every translation is weak, as the rotation's error moves it.
+  const auto frame = LocalFrame::For(ordered, {.pairs_3d3d = 3});
+  const std::vector<Pair3d3d> pairs =
+      frame ? frame->Localised(ordered).pairs_3d3d : ordered.pairs_3d3d;
   const std::vector<double> weights(pairs.size(), 1.0);
   const PointSets points = PointsOf(pairs);
   if (const auto reflection = FindReflection(points.in_cam, points.in_lidar)) {

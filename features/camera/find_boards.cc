@@ -139,6 +139,12 @@ bool HasAllTags(const SeenBoards& seen) {
   });
 }
 
+Camera WithSize(Camera camera, const cv::Mat& image) {
+  camera.width_px = image.cols;
+  camera.height_px = image.rows;
+  return camera;
+}
+
 }  // namespace
 
 Expected<BoardFinder> BoardFinder::Make(std::vector<Board> boards, std::optional<Camera> camera,
@@ -173,6 +179,9 @@ Expected<SeenBoards> BoardFinder::Find(const cv::Mat& image) const {
     return MakeError(ErrorCode::kInvalidInput,
                      fmt::format("the image has {} x {} pixels, expected {} x {} as in the camera",
                                  grey.cols, grey.rows, camera_->width_px, camera_->height_px));
+  }
+  if (camera_ && camera_->width_px == 0) {
+    SEXTANT_RETURN_IF_ERROR(ValidateCamera(WithSize(*camera_, grey)));
   }
   Detections checkers;
   SEXTANT_RETURN_IF_ERROR(DetectAll(grey, checkers_, checkers));

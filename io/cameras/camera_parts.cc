@@ -84,14 +84,6 @@ Expected<Camera> CameraFromParts(const CameraParts& parts) {
     return MakeError(ErrorCode::kInvalidInput,
                      "expected a camera matrix fx skew cx 0 fy cy 0 0 1, row by row");
   }
-  constexpr double kMinFocal_px = 10.0;
-  if (k[0] > 0.0 && k[0] < kMinFocal_px) {
-    return MakeError(ErrorCode::kInvalidInput,
-                     fmt::format("the focal length is {} px? Intrinsics are in pixels: divide "
-                                 "millimetres by the size of a pixel, multiply shares of the image "
-                                 "by its width and height",
-                                 k[0]));
-  }
   SEXTANT_ASSIGN_OR_RETURN(const CameraModel model, ModelOf(parts));
   Camera camera;
   camera.model = model;

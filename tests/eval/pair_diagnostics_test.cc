@@ -39,6 +39,15 @@ TEST(PairDiagnostics, ReportsNothingForGoodData) {
   EXPECT_THAT(diagnostics.edges, testing::IsEmpty());
 }
 
+TEST(PairDiagnostics, AFarOriginChangesNothing) {
+  const CalibrationProblem near = CleanProblem(2);
+  CalibrationProblem far = near;
+  for (Pair3d3d& pair : far.pairs_3d3d) pair.point_in_lidar += Eigen::Vector3d(4e5, 6e6, 3e2);
+  EXPECT_EQ(DiagnosePairs(far).weak_translation.has_value(),
+            DiagnosePairs(near).weak_translation.has_value());
+  EXPECT_EQ(Describe(DiagnosePairs(far)).size(), Describe(DiagnosePairs(near)).size());
+}
+
 TEST(PairDiagnostics, FindsRotatedLabelsOfOneBoard) {
   for (int turns = 1; turns < 4; ++turns) {
     const CalibrationProblem truth = CleanProblem(1);

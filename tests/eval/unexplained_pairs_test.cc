@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "geometry/camera.h"
 #include "solvers/builtin_solvers.h"
 
 namespace sextant {
@@ -39,6 +40,36 @@ TEST(UnexplainedShare, IsSmallForMeasurementsAndLargeForUnrelatedPoints) {
       EXPECT_GT(*unrelated, kMaxUnexplainedShare) << seed;
     }
   }
+}
+
+// Four corners of a wide image, of which one is another point's.
+CalibrationProblem WidePixels(double wrong_px) {
+  CalibrationProblem problem;
+  problem.camera = Camera{.width_px = 6000,
+                          .height_px = 4000,
+                          .fx_px = 4000.0,
+                          .fy_px = 4000.0,
+                          .cx_px = 3000.0,
+                          .cy_px = 2000.0};
+  const Rigid3d pose;
+  for (const Eigen::Vector3d& point :
+       {Eigen::Vector3d(-2.0, -1.0, 4.0), Eigen::Vector3d(2.0, -1.0, 3.5),
+        Eigen::Vector3d(2.0, 1.0, 4.0), Eigen::Vector3d(-2.0, 1.0, 5.0)}) {
+    problem.pairs_2d3d.push_back(
+        {.pixel = *Project(*problem.camera, pose * point), .point_in_lidar = point});
+  }
+  problem.pairs_2d3d.back().pixel.x() += wrong_px;
+  return problem;
+}
+
+TEST(UnexplainedShare, OfAWideImageIsAnAngle) {
+  const auto share = [](double wrong_px) {
+    const CalibrationProblem problem = WidePixels(wrong_px);
+    const auto report = BuiltinSolvers().Make("refine(sqpnp)").value()->Solve(problem);
+    return UnexplainedShare(problem, report.value()).value();
+  };
+  EXPECT_LT(share(4.0), 0.02);
+  EXPECT_GT(share(800.0), kMaxUnexplainedShare);
 }
 
 TEST(UnexplainedShare, NeedsFourPairs) {

@@ -146,8 +146,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"ThreeCoefficients", kMatrix + "D: [0.1, 0, 0]", kInvalid, "got 3"},
         BadText{"SphereCount", kMatrix + "distortion_model: double_sphere\nxi: 0.1\nD: [0.1]",
                 kInvalid, "xi and alpha alone"},
-        BadText{"Millimetres", "K: [4.2, 0, 3.2, 0, 4.2, 2.4, 0, 0, 1]", kInvalid,
-                "the focal length is 4.2 px? Intrinsics are in pixels"},
+        BadText{"Millimetres",
+                "image_width: 640\nimage_height: 480\n"
+                "K: [4.2, 0, 3.2, 0, 4.2, 2.4, 0, 0, 1]",
+                kInvalid,
+                "the focal length is 4.2 px in an image 640 px wide? Intrinsics are in pixels"},
         BadText{"ColmapCount", "1 OPENCV 640 480 600 600 320\n", kParse, "12 values of the model"},
         BadText{"ColmapModel", "1 FOV 640 480 600 600 320 240 0.9\n", kInvalid, "got 'FOV'"},
         BadText{"ColmapTwo", "1 PINHOLE 9 9 60 60 4 4\n2 PINHOLE 9 9 60 60 4 4\n", kParse,

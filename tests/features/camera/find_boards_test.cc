@@ -221,6 +221,14 @@ MissingTag Explain(const cv::Mat& image, const BoardTag& tag, const Camera* came
   return ExplainMissing(trials, tag, camera, pose);
 }
 
+TEST(FindBoards, RefusesAFocalLengthInMillimetres) {
+  const Camera camera{.fx_px = 4.2, .fy_px = 4.2, .cx_px = 3.2, .cy_px = 2.4};
+  const cv::Mat image(480, 640, CV_8U, cv::Scalar(128));
+  const auto seen = BoardFinder::Make({CheckerBoard()}, camera)->Find(image);
+  ASSERT_FALSE(seen);
+  EXPECT_THAT(seen.error().message, HasSubstr("4.2 px in an image 640 px wide"));
+}
+
 TEST(ExplainMissing, NamesTheCause) {
   const Board board = HollowBoard();
   const Rigid3d pose = HeldByACorner({0.0, 0.0, 1.5}, 0.2);
