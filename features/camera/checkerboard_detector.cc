@@ -2,6 +2,7 @@
 #include "features/camera/checkerboard_detector.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
@@ -80,28 +81,46 @@ void RefineBySubpix(const cv::Mat& grey, int columns, std::vector<cv::Point2f>& 
   cv::cornerSubPix(grey, corners, cv::Size(half, half), cv::Size(-1, -1), until);
 }
 
+constexpr int kThorough = cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE;
+
 // OpenCV's detector, whose time grows with the number of pixels.
 bool FindCorners(const cv::Mat& grey, const cv::Size& size, int flags,
                  std::vector<cv::Point2f>& corners) {
   // Normalising the image loses boards of low contrast but finds others in uneven light, so it
   // is the second attempt.
-  const int thorough = flags | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE;
   return cv::findChessboardCornersSB(grey, size, corners, flags) ||
-         cv::findChessboardCornersSB(grey, size, corners, thorough);
+         cv::findChessboardCornersSB(grey, size, corners, flags | kThorough);
 }
 
-// Corners to about a pixel, from a large image at half its size; false where it has none, or where
-// the squares are so small there that they should be searched for in the whole image.
-bool FindInHalf(const cv::Mat& grey, const cv::Size& size, std::vector<cv::Point2f>& corners) {
-  constexpr int kLarge_px = 1'000'000;
-  constexpr double kMinSpacing_px = 10.0;
-  if (grey.rows * grey.cols < kLarge_px) return false;
-  cv::Mat half;
-  cv::resize(grey, half, {}, 0.5, 0.5, cv::INTER_AREA);
-  if (!cv::findChessboardCornersSB(half, size, corners, 0)) return false;
-  if (SmallestSpacing(size.width, corners) < kMinSpacing_px) return false;
-  for (cv::Point2f& corner : corners) corner = 2.0F * corner + cv::Point2f(0.5F, 0.5F);
+struct Reduced {
+  double scale = 0.5;  // Of the sides.
+  int flags = 0;
+  double min_spacing_px = 10.0;
+};
+
+// Corners to about a pixel, from a smaller image; false where it has none, or where the squares are
+// so small there that they should be searched for in the whole image.
+bool FindReduced(const cv::Mat& grey, const cv::Size& size, const Reduced& reduced,
+                 std::vector<cv::Point2f>& corners) {
+  cv::Mat smaller;
+  cv::resize(grey, smaller, {}, reduced.scale, reduced.scale, cv::INTER_AREA);
+  if (!cv::findChessboardCornersSB(smaller, size, corners, reduced.flags)) return false;
+  if (SmallestSpacing(size.width, corners) < reduced.min_spacing_px) return false;
+  const auto scale = static_cast<float>(reduced.scale);
+  const float shift = 0.5F / scale - 0.5F;
+  for (cv::Point2f& corner : corners) corner = corner / scale + cv::Point2f(shift, shift);
   return true;
+}
+
+// Much detail, in which the detector loses a board, is gone in a small image.
+bool FindAmongDetail(const cv::Mat& grey, const cv::Size& size, std::vector<cv::Point2f>& corners) {
+  for (const double pixels : {360e3, 180e3}) {
+    const Reduced reduced{.scale = std::sqrt(pixels / static_cast<double>(grey.total())),
+                          .flags = kThorough,
+                          .min_spacing_px = 5.0};
+    if (reduced.scale < 0.8 && FindReduced(grey, size, reduced, corners)) return true;
+  }
+  return false;
 }
 
 class CheckerboardDetector final : public TagDetector {
@@ -115,11 +134,13 @@ class CheckerboardDetector final : public TagDetector {
     std::vector<cv::Point2f> corners;
     const cv::Size size(options_.columns, options_.rows);
     // The grey levels of the whole image give the corners in the end.
-    const bool may_halve = options_.subpix && !options_.accurate;
-    if (!(may_halve && FindInHalf(grey, size, corners)) &&
-        !FindCorners(grey, size, accuracy, corners)) {
-      return {};
-    }
+    constexpr std::size_t kLarge_px = 1'000'000;
+    const bool may_reduce = options_.subpix && !options_.accurate;
+    const bool is_found =
+        (may_reduce && grey.total() >= kLarge_px && FindReduced(grey, size, {}, corners)) ||
+        FindCorners(grey, size, accuracy, corners) ||
+        (may_reduce && FindAmongDetail(grey, size, corners));
+    if (!is_found) return {};
     if (options_.subpix) RefineBySubpix(grey, options_.columns, corners);
     CheckerDetection found{.inner_columns = options_.columns, .inner_rows = options_.rows};
     for (const cv::Point2f& corner : corners) found.corners_px.emplace_back(corner.x, corner.y);

@@ -165,7 +165,7 @@ TEST(FieldSessions, YardWithACameraThatLooksBackwards) {
   for (const Board& described : {board, Exchanged(board)}) {
     const Expected<Calibration> calibration = Calibrate(session, OptionsFor(described, camera));
     ASSERT_TRUE(calibration) << calibration.error().message;
-    EXPECT_GE(KeptIn(*calibration), 5U) << RowsOf(*calibration);
+    EXPECT_EQ(KeptIn(*calibration), 6U) << RowsOf(*calibration);
     ExpectPose(*calibration, expected, {.translation_m = 0.04, .rotation_deg = 0.6});
   }
 }
