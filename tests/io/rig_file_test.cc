@@ -286,6 +286,15 @@ TEST(ExportRig, EveryFormatHasEverySensor) {
   EXPECT_THAT(ExportRig("png", rig).error().message, HasSubstr("--sensors"));
 }
 
+// Two dashes would end the comment of a launch file.
+TEST(ExportRig, RefusesANameThatNeedsAnEscape) {
+  RigResult rig = ThreeSensors();
+  rig.sensors.back().name = "to--p";
+  const Expected<std::string> text = ExportRig("ros1", rig);
+  ASSERT_FALSE(text);
+  EXPECT_THAT(text.error().message, HasSubstr("the sensor's frame is named 'to--p'"));
+}
+
 TEST(ExportRig, APairIsInEveryFormat) {
   const Expected<CalibrationResult> pair = ResultOfPair(ThreeSensors(), "left", "top");
   ASSERT_TRUE(pair);
