@@ -252,6 +252,16 @@ TEST(LivoxMessage, OfRos2IsReadWithItsPadding) {
   EXPECT_THAT(scan->cloud.points, ElementsAre(Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(1, 2, 4)));
   EXPECT_THAT(scan->cloud.intensity, ElementsAre(40.0F, 41.0F));
   EXPECT_THAT(scan->cloud.time_s, ElementsAre(0.0, 1e-6));
+  // No sensor measures that far: a ray without a return.
+  const float far = 1e30F;
+  std::string beyond = data;
+  beyond.replace(beyond.size() - 19 + 4, sizeof(far), reinterpret_cast<const char*>(&far),
+                 sizeof(far));
+  message.data = beyond;
+  const Expected<CloudMessage> without = DecodePointCloud(message);
+  ASSERT_TRUE(without) << without.error().message;
+  EXPECT_TRUE(without->cloud.points[0].allFinite());
+  EXPECT_FALSE(without->cloud.points[1].allFinite());
   message.data = std::string_view(data).substr(0, data.size() - 12);
   EXPECT_THAT(DecodePointCloud(message).error().message, HasSubstr("points"));
 }
