@@ -10,6 +10,7 @@
 #include "eval/extractors/board_scenes.h"
 #include "features/lidar/board_agreement.h"
 #include "features/lidar/corner_extractor.h"
+#include "geometry/board_check.h"
 #include "geometry/symmetric.h"
 #include "simulator/lidar/lidar_model.h"
 #include "simulator/lidar/scan.h"
@@ -121,6 +122,28 @@ std::vector<double> WorstCorners(const Scene& scene, const BoardSearch& search) 
     }
   }
   return worst;
+}
+
+// An opening beside the middle tells both halves of a turn apart, without the image.
+TEST(BoardsInScans, AnOpeningBesideTheMiddleTellsWhichWayRoundABoardIs) {
+  Random random(1);
+  Scene scene = TwoBoardsInRoom({}, random);
+  Board board = scene.boards[0].board;
+  board.tags.clear();
+  board.checker.reset();
+  board.top_right_m = 0.9;
+  board.right_bottom_m = 0.7;
+  board.hole =
+      BoardHole{.width_m = 0.4, .height_m = 0.3, .center_in_board_m = Eigen::Vector2d(0.12, 0.08)};
+  EXPECT_FALSE(HolesAllowHalfTurn(board));
+  for (const double turn_deg : {40.0, 220.0}) {
+    scene.boards = {PlaceBoard(board, {.distance_m = 2.2, .turn_deg = turn_deg})};
+    const BoardSearch search = SearchScan(scene, {board}, *FindLidarModel("os1_64"), 1);
+    ASSERT_EQ(search.found.size(), 1U) << turn_deg;
+    EXPECT_LT(WorstCorners(scene, search).at(0), 0.03) << turn_deg;
+  }
+  board.hole->center_in_board_m.setZero();
+  EXPECT_TRUE(HolesAllowHalfTurn(board));
 }
 
 class EveryLidar : public testing::TestWithParam<std::string> {
