@@ -273,10 +273,14 @@ int SideAfterTurn(const Board& board, int side, int quarter_turns) {
   return kFirstRim + static_cast<int>(there - board.round_holes.begin());
 }
 
-bool HolesAllowHalfTurn(const Board& board) {
-  if (board.hole && 2.0 * board.hole->center_in_board_m.norm() >= kSamePlace_m) return false;
+bool HolesAllowTurns(const Board& board, int quarter_turns) {
+  if (board.hole) {
+    const bool is_oblong = std::abs(board.hole->width_m - board.hole->height_m) >= kSamePlace_m;
+    if (2.0 * board.hole->center_in_board_m.norm() >= kSamePlace_m) return false;
+    if (quarter_turns % 2 != 0 && is_oblong) return false;
+  }
   for (int i = 0; i < static_cast<int>(board.round_holes.size()); ++i) {
-    if (SideAfterTurn(board, kFirstRim + i, 2) < 0) return false;
+    if (SideAfterTurn(board, kFirstRim + i, quarter_turns) < 0) return false;
   }
   return true;
 }

@@ -75,7 +75,7 @@ std::optional<RectangleFit> UprightFit(const BoardPatch& patch, int index, const
 
 // Quarter turns that need a fit of their own. The same after half a turn, unless the openings are
 // not; after a quarter turn, the sides are exchanged.
-int TurnsToFit(const Board& board) { return HolesAllowHalfTurn(board) ? 2 : 4; }
+int TurnsToFit(const Board& board) { return HolesAllowTurns(board, 2) ? 2 : 4; }
 
 // Rim numbers after half a turn.
 void RenumberRims(const Board& board, std::vector<int>& sides) {

@@ -35,15 +35,19 @@ bool IsSamePlacement(const RectangleFit& a, const RectangleFit& b) {
          (a.center - b.center).norm() < kSamePlace_m;
 }
 
-// Those by the outline, both ways round where the holes tell them apart, and the given ones.
+// Those by the outline, turned every way that it allows and the openings tell apart, and the given
+// ones.
 std::vector<Eigen::Vector3d> AllStarts(std::span<const EdgePoint> edges, const Board& board,
                                        const Eigen::Vector2d& half,
                                        std::span<const Eigen::Vector3d> given) {
   std::vector<Eigen::Vector3d> starts = RectangleStarts(edges, half, kStarts);
-  if (!HolesAllowHalfTurn(board)) {
-    for (std::size_t i = starts.size(); i-- > 0;) {
-      starts.push_back(starts[i] + Eigen::Vector3d(0.0, 0.0, std::numbers::pi));
-    }
+  const std::size_t count = starts.size();
+  for (int turns = 1; turns < 4; ++turns) {
+    const bool is_allowed = turns == 2 || IsSquare(half);
+    const bool is_as_one = turns == 3 && HolesAllowTurns(board, 2);
+    if (!is_allowed || is_as_one || HolesAllowTurns(board, turns)) continue;
+    const Eigen::Vector3d turn(0.0, 0.0, 0.5 * std::numbers::pi * turns);
+    for (std::size_t i = 0; i < count; ++i) starts.push_back(starts[i] + turn);
   }
   starts.insert(starts.end(), given.begin(), given.end());
   return starts;

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "features/lidar/rectangle_starts.h"
 #include "geometry/board_check.h"
 #include "geometry/symmetric.h"
 
@@ -33,7 +34,6 @@ constexpr std::size_t kMaxSides = kFirstRim;  // Straight ones.
 constexpr std::size_t kRimParts = 4;          // Of a rim, to tell how much of it is seen.
 constexpr std::size_t kMinRimParts = 3;
 constexpr int kMinRimPoints = 4;
-constexpr double kSameSides = 1e-6;  // Relative; the sides of a square.
 // Prior sigma of the distance of all sides beyond where the board's size has them, relative to half
 // the mean side: boards are measured to that, and ranges are off by as much.
 constexpr double kExcessSigma = 0.01;
@@ -335,9 +335,8 @@ class Fitter {
 
   // Of the angles at which the outline looks the same, the one with corner 0 highest.
   double UprightAngle(double angle) const {
-    const bool square = std::abs(half_.x() - half_.y()) < kSameSides * half_.x() && !board_.hole &&
-                        board_.round_holes.empty();
-    const double half_turn = HolesAllowHalfTurn(board_) ? 1.0 : 2.0;
+    const bool square = IsSquare(half_) && !board_.hole && board_.round_holes.empty();
+    const double half_turn = HolesAllowTurns(board_, 2) ? 1.0 : 2.0;
     const double period = (square ? 0.5 : half_turn) * std::numbers::pi;
     const double corner_up = AngleWithCornerUp(board_);
     return corner_up + std::remainder(angle - corner_up, period);
