@@ -18,6 +18,7 @@ using Part = BoardFault::Part;
 
 // Files have decimal numbers: parts that touch exactly there may overlap by rounding.
 constexpr double kTouch_m = 1e-9;
+constexpr double kSamePlace_m = 1e-3;  // Of openings, after a turn of their board.
 
 Quad Rectangle(const Eigen::Vector2d& center, double width, double height) {
   const double a = 0.5 * width;
@@ -259,7 +260,6 @@ std::vector<Eigen::Vector2d> CornersInBoard(const Board& board) {
 }
 
 int SideAfterTurn(const Board& board, int side, int quarter_turns) {
-  constexpr double kSamePlace_m = 1e-3;
   if (side < 0) return side;
   if (side < kFirstRim) return side / 4 * 4 + ((side - quarter_turns) % 4 + 4) % 4;
   const RoundHole& hole = board.round_holes[static_cast<std::size_t>(side - kFirstRim)];
@@ -273,9 +273,14 @@ int SideAfterTurn(const Board& board, int side, int quarter_turns) {
   return kFirstRim + static_cast<int>(there - board.round_holes.begin());
 }
 
-bool HolesAllowHalfTurn(const Board& board) {
+bool HolesAllowTurns(const Board& board, int quarter_turns) {
+  if (board.hole) {
+    const bool is_oblong = std::abs(board.hole->width_m - board.hole->height_m) >= kSamePlace_m;
+    if (2.0 * board.hole->center_in_board_m.norm() >= kSamePlace_m) return false;
+    if (quarter_turns % 2 != 0 && is_oblong) return false;
+  }
   for (int i = 0; i < static_cast<int>(board.round_holes.size()); ++i) {
-    if (SideAfterTurn(board, kFirstRim + i, 2) < 0) return false;
+    if (SideAfterTurn(board, kFirstRim + i, quarter_turns) < 0) return false;
   }
   return true;
 }

@@ -38,7 +38,7 @@ std::vector<Eigen::Vector2d> CornersInBoard(const Board& board);
 /// as seen, on the same board; -1 for a rim where the turned board has no hole.
 int SideAfterTurn(const Board& board, int side, int quarter_turns);
 
-/// Whether the round holes are at the same places after half a turn; true without any.
-bool HolesAllowHalfTurn(const Board& board);
+/// Whether all openings are at the same places after 1 to 3 quarter turns; true without any.
+bool HolesAllowTurns(const Board& board, int quarter_turns);
 
 }  // namespace sextant

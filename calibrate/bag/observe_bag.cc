@@ -228,9 +228,10 @@ Expected<BagPlan> PlanBag(const Bag& bag, const BagSource& source) {
                             .stamp_ns = scans.stamps_ns[pair.first],
                             .difference_ns = pair.difference_ns});
   }
-  SEXTANT_ASSIGN_OR_RETURN(const std::optional<Camera> camera,
-                           CameraIn(bag, bag.topics()[plan.image_topic].name));
-  plan.camera = camera;
+  // A camera that was never calibrated fills its messages with zeros: the user may have a file.
+  const auto camera = CameraIn(bag, bag.topics()[plan.image_topic].name);
+  if (camera) plan.camera = *camera;
+  if (!camera) plan.camera_fault = camera.error().message;
   return plan;
 }
 

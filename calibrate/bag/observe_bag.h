@@ -38,6 +38,7 @@ struct BagPlan {
   std::size_t cloud_topic = 0;
   std::vector<BagMoment> moments{};  ///< In ascending order of the scans' stamps.
   std::optional<Camera> camera{};    ///< From CameraInfo messages beside the images, where present.
+  std::string camera_fault{};        ///< Why those that are present give no camera; else empty.
 };
 
 /// Chooses topics and pairs their messages. Errors: kMissingData without images or scans, with

@@ -16,9 +16,12 @@ Expected<RecordedViews> ObserveRecording(const std::filesystem::path& path,
     return MakeError(plan.error().code, fmt::format("{}: {}", path.string(), plan.error().message));
   }
   if (!options.camera && !plan->camera) {
+    const std::string why =
+        plan->camera_fault.empty()
+            ? fmt::format("no CameraInfo beside {}", bag->topics()[plan->image_topic].name)
+            : plan->camera_fault;
     return MakeError(ErrorCode::kMissingData,
-                     fmt::format("{}: no CameraInfo beside {}: give the intrinsics with --camera",
-                                 path.string(), bag->topics()[plan->image_topic].name));
+                     fmt::format("{}: {}: give the intrinsics with --camera", path.string(), why));
   }
   RecordedViews recorded{.camera = options.camera ? *options.camera : *plan->camera};
   SEXTANT_ASSIGN_OR_RETURN(const Observer observer,

@@ -73,9 +73,9 @@ std::optional<RectangleFit> UprightFit(const BoardPatch& patch, int index, const
   return FitRectangle(patch.edges, board, {&placed, 1});
 }
 
-// Quarter turns that need a fit of their own. The same after half a turn, unless the round holes
-// are not; after a quarter turn, the sides are exchanged.
-int TurnsToFit(const Board& board) { return HolesAllowHalfTurn(board) ? 2 : 4; }
+// Quarter turns that need a fit of their own. The same after half a turn, unless the openings are
+// not; after a quarter turn, the sides are exchanged.
+int TurnsToFit(const Board& board) { return HolesAllowTurns(board, 2) ? 2 : 4; }
 
 // Rim numbers after half a turn.
 void RenumberRims(const Board& board, std::vector<int>& sides) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/scene/scene_score.h"
 
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -12,7 +13,8 @@
 namespace sextant {
 namespace {
 
-constexpr double kFocal_px = 720.0;  // Larger images are reduced to this resolution.
+constexpr double kFocal_px = 720.0;   // Larger images are reduced to this resolution.
+constexpr double kMinSide_px = 16.0;  // Of the reduced image, which the fields halve three times.
 constexpr double kMargin_rad = 4.0 * kRadPerDeg;
 constexpr double kMinDepth_m = 0.3;
 // Between sweeps a beam that grazes an edge still returns the nearer surface, which moves the edge
@@ -119,12 +121,20 @@ Expected<ScenePair> MakeScenePair(const cv::Mat& grey, const PointCloud& scan, C
   camera.width_px = grey.cols;
   camera.height_px = grey.rows;
   SEXTANT_RETURN_IF_ERROR(ValidateCamera(camera));
+  const double scale = std::min(1.0, kFocal_px / camera.fx_px);
+  if (scale * std::min(grey.cols, grey.rows) < kMinSide_px) {
+    return MakeError(
+        ErrorCode::kInvalidInput,
+        fmt::format("an image of {} x {} pixels shows too little of a scene where fx is "
+                    "{:.6g} px; does the camera file belong to it?",
+                    grey.cols, grey.rows, camera.fx_px));
+  }
   SEXTANT_ASSIGN_OR_RETURN(std::vector<ScanEdge> edges, FindScanEdges(scan));
   std::erase_if(
       edges, [&](const ScanEdge& edge) { return !MayBeSeen(camera, cam_from_lidar * edge.point); });
   return ScenePair{.camera = camera,
                    .edges = std::move(edges),
-                   .fields = EdgeFields(grey, std::min(1.0, kFocal_px / camera.fx_px)),
+                   .fields = EdgeFields(grey, scale),
                    .thumbnail = ThumbnailOf(grey)};
 }
 

@@ -26,8 +26,9 @@ struct ScenePair {
 };
 
 /// `grey`: 8 bits. Keeps the edges within 4 degrees of the view of `cam_from_lidar`.
-/// Errors: those of FindScanEdges and ValidateCamera. Time: 0.5 s for an image of two megapixels
-/// and a scan of 120k points.
+/// Errors: those of FindScanEdges and ValidateCamera; kInvalidInput if the image shows hardly more
+/// than one degree by its camera. Time: 0.5 s for an image of two megapixels and a scan of 120k
+/// points.
 Expected<ScenePair> MakeScenePair(const cv::Mat& grey, const PointCloud& scan, Camera camera,
                                   const Rigid3d& cam_from_lidar);
 

@@ -57,19 +57,23 @@ std::vector<cv::Rect> BoundsOfParts(const cv::Mat& ranges) {
   return bounds;
 }
 
-// Replaces overlapping rectangles by their common bounds until none overlap.
+// Replaces overlapping rectangles by their common bounds until none overlap. Those before `i` are
+// disjoint from all others; one that has grown is compared with them again. O(n^2), as for each
+// comparison with all others a rectangle is passed or removed.
 void Merge(std::vector<cv::Rect>& rectangles) {
   for (std::size_t i = 0; i < rectangles.size();) {
-    const auto overlaps = [&](const cv::Rect& other) { return (rectangles[i] & other).area() > 0; };
-    const auto other = std::find_if(rectangles.begin() + static_cast<std::ptrdiff_t>(i) + 1,
-                                    rectangles.end(), overlaps);
-    if (other == rectangles.end()) {
+    std::size_t other = 0;
+    while (other < rectangles.size() &&
+           (other == i || (rectangles[i] & rectangles[other]).area() == 0)) {
+      ++other;
+    }
+    if (other == rectangles.size()) {
       ++i;
       continue;
     }
-    rectangles[i] |= *other;
-    rectangles.erase(other);
-    i = 0;
+    rectangles[i] |= rectangles[other];
+    rectangles.erase(rectangles.begin() + static_cast<std::ptrdiff_t>(other));
+    if (other < i) --i;
   }
 }
 

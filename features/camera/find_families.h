@@ -19,7 +19,7 @@ struct FamilyMatch {
 /// kReliableMargin, by the family's default detector. Dictionaries that share their first tags
 /// (4x4_50 and 4x4_1000) are all listed. The image is reduced to 1600 px. It is searched once for
 /// each size of OpenCV's dictionaries, in the largest one, and once for all families of AprilTag's
-/// library, in parallel: 10 searches for 30 families, which bounds the time for cluttered images.
+/// library, in parallel: 11 searches for 31 families, which bounds the time for cluttered images.
 std::vector<FamilyMatch> FindFamilies(const cv::Mat& grey);
 
 /// The families except `except`, ordered by the number of wanted ids, then of tags, then of cells

@@ -246,11 +246,11 @@ class Finder {
   int RingsOf(const std::vector<std::size_t>& places) const {
     int rings = 0;
     int ring = 0;
-    std::size_t last = scan_.points().size();
+    int last = -1;
     for (const std::size_t place : places) {
       while (place >= scan_.first(ring + 1)) ++ring;
-      rings += static_cast<std::size_t>(ring) != last ? 1 : 0;
-      last = static_cast<std::size_t>(ring);
+      rings += ring != last ? 1 : 0;
+      last = ring;
     }
     return rings;
   }

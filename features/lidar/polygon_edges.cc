@@ -196,6 +196,11 @@ class MarkedPatch {
                       "3 (left) to corner 0 (top) first, then clockwise",
                       board_.top_right_m, board_.right_bottom_m));
     }
+    if (turns == 2 && !HolesAllowTurns(board_, 2)) {
+      return Fail(ErrorCode::kInvalidInput,
+                  "its openings are where they are only if it is turned by half a turn: mark the "
+                  "edge from corner 3 (left) to corner 0 (top) first, then clockwise");
+    }
     patch.fit.angle_rad += turns * 0.5 * std::numbers::pi;
     for (std::size_t i = 0; i < patch.fit.sides.size(); ++i) {
       int& side = patch.fit.sides[i];

@@ -46,7 +46,7 @@ struct RectangleFit {
 /// The points of round holes' rims are treated alike: the excess makes a hole smaller.
 ///
 /// Returns distinct fits by ascending cost, at most `max_count`. A rectangle looks the same after
-/// half a turn, unless its round holes do not, and a square after a quarter; of these angles, the
+/// half a turn, unless its openings do not, and a square after a quarter; of these angles, the
 /// one is stated at which corner 0 is highest. `starts`: further placements to start from. Empty
 /// for fewer than four edge points and where they leave a direction undetermined by more than 15 %
 /// of half the board's diagonal (1 sigma).

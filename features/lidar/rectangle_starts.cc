@@ -15,7 +15,6 @@ constexpr int kAnglesPerQuarter = 20;
 constexpr double kMinOutwardCosine = 0.12;  // A ring along a side does not cross it.
 constexpr double kSlack_m = 0.02;
 constexpr std::size_t kPlacesPerAxis = 2;
-constexpr double kSameSize = 1e-6;
 
 struct Vote {
   double center = 0.0;
@@ -115,8 +114,7 @@ class Voting {
 std::vector<Eigen::Vector3d> RectangleStarts(std::span<const EdgePoint> edges,
                                              const Eigen::Vector2d& half, std::size_t max_count) {
   const Voting voting(edges, half);
-  const bool square = std::abs(half.x() - half.y()) < kSameSize * half.x();
-  const int angles = square ? kAnglesPerQuarter : 2 * kAnglesPerQuarter;
+  const int angles = IsSquare(half) ? kAnglesPerQuarter : 2 * kAnglesPerQuarter;
   std::vector<Voting::Start> starts;
   for (int i = 0; i < angles; ++i) {
     voting.AddStarts((i + 0.5) * 0.5 * std::numbers::pi / kAnglesPerQuarter, starts);

@@ -94,9 +94,7 @@ class Mcap final : public Bag {
     } else if (!end.is_marked) {
       cut_ = {.byte = bytes_.size(), .reason = "its recorder did not close it"};
     }
-    if (!cut_ || CountMessages(topics_) > 0) return {};
-    return Fail(file_, cut_->byte,
-                cut_->reason + ", before its first message: nothing can be recovered");
+    return cut_ ? RequireMessages(file_, *cut_, topics_) : Expected<void>();
   }
 
   Expected<void> Read(const std::vector<std::size_t>& topic_indices,

@@ -116,17 +116,21 @@ PointCloud ReadLivoxPoints(MessageReader& in) {
   in.Take<std::uint8_t>("lidar_id");
   for (int i = 0; i < 3; ++i) in.Take<std::uint8_t>("rsvd");
   const std::size_t count = in.Length(kPointSize, "points");
-  PointCloud cloud;
+  CloudBuilder builder({.x = 0, .y = 1, .z = 2, .intensity = 3, .time = 4}, count);
   for (std::size_t i = 0; i < count && in.ok(); ++i) {
-    cloud.time_s.push_back(in.Take<std::uint32_t>("points.offset_time") / 1e9);
-    Eigen::Vector3d point;
-    for (double& value : point) value = static_cast<double>(in.Take<float>("points.xyz"));
-    cloud.points.push_back(point);
-    cloud.intensity.push_back(in.Take<std::uint8_t>("points.reflectivity"));
+    const double time_s = in.Take<std::uint32_t>("points.offset_time") / 1e9;
+    std::array<double, 5> values{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      values[k] = static_cast<double>(in.Take<float>("points.xyz"));
+    }
+    values[3] = in.Take<std::uint8_t>("points.reflectivity");
+    values[4] = time_s;
     in.Take<std::uint8_t>("points.tag");
     in.Take<std::uint8_t>("points.line");
+    const Expected<void> added = builder.Add([&](std::size_t column) { return values[column]; });
+    if (!added) in.Fail(added.error().code, "points", added.error().message);
   }
-  return cloud;
+  return std::move(builder).Take();
 }
 
 bool IsLivox(std::string_view type) {
@@ -234,8 +238,20 @@ Expected<CameraInfoMessage> DecodeCameraInfo(const BagMessage& message) {
     in.Fail(camera.error().code, "camera", camera.error().message);
     return in.TakeError();
   }
+  if (!HasPlaceFor(*camera)) {
+    in.Fail(
+        ErrorCode::kInvalidInput, "distortion_model",
+        fmt::format("is {}, whose xi this message does not have; take the intrinsics from a file",
+                    model));
+    return in.TakeError();
+  }
   decoded.camera = *camera;
   return decoded;
+}
+
+bool HasPlaceFor(const Camera& camera) {
+  return camera.model != CameraModel::kOmnidirectional &&
+         camera.model != CameraModel::kDoubleSphere;
 }
 
 std::string ExtensionOf(const EncodedImageMessage& image) {

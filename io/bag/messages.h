@@ -51,8 +51,8 @@ struct CameraInfoMessage {
 /// Each decodes a message of its kind, of ROS 1 or ROS 2.
 /// Errors, which name the topic, the time and the field: kParse for a message that does not match
 /// its type (lengths beyond its end, fields beyond a point, inconsistent sizes); kInvalidInput for
-/// an invalid camera (never calibrated: K is zero). Time is linear in the message; memory is at
-/// most 40 times it.
+/// an invalid camera (never calibrated: K is zero; of a model with xi). Time is linear in the
+/// message; memory is at most 40 times it.
 Expected<CloudMessage> DecodePointCloud(const BagMessage& message);
 Expected<ImageMessage> DecodeImage(const BagMessage& message);
 Expected<EncodedImageMessage> DecodeEncodedImage(const BagMessage& message);
@@ -60,6 +60,9 @@ Expected<CameraInfoMessage> DecodeCameraInfo(const BagMessage& message);
 
 /// Decodes only the header, of a message of any of the four kinds.
 Expected<MessageHeader> DecodeHeader(const BagMessage& message);
+
+/// Whether CameraInfo can state the camera: it has no xi and no alpha.
+bool HasPlaceFor(const Camera& camera);
 
 /// "jpg" or "png" according to the first bytes; "bin" for anything else.
 std::string ExtensionOf(const EncodedImageMessage& image);

@@ -68,6 +68,15 @@ Expected<std::unique_ptr<Bag>> OpenBag(const std::filesystem::path& path) {
                                PathText(path), hint));
 }
 
+Expected<void> RequireMessages(const std::string& file, const BagCut& cut,
+                               const std::vector<BagTopic>& topics) {
+  if (CountMessages(topics) > 0) return {};
+  return MakeError(
+      ErrorCode::kParse,
+      fmt::format("{}: byte {}: {}, before its first message: nothing can be recovered", file,
+                  cut.byte, cut.reason));
+}
+
 std::string DescribeCut(const Bag& bag) {
   if (!bag.cut()) return {};
   return fmt::format("{} (byte {}): the {} messages before it are read", bag.cut()->reason,

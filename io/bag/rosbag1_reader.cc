@@ -48,7 +48,6 @@ class Rosbag1 final : public Bag {
   Expected<void> AddConnection(const BagRecords& records, const BagRecord& record);
   Expected<void> CountIndex(const BagRecords& records);
   Expected<void> CountContents();
-  Expected<void> CheckCut() const;
   // Calls `take(records, record)` for each record in the chunk.
   template <class Take>
   Expected<void> ForEachRecord(const Chunk& chunk, Take take) const;
@@ -105,7 +104,7 @@ Expected<void> Rosbag1::Open() {
   }
   if (!cut_) return CountIndex(records);
   SEXTANT_RETURN_IF_ERROR(CountContents());
-  return CheckCut();
+  return RequireMessages(file_, *cut_, topics_);
 }
 
 // The file ends within the last record; if that is a chunk, its beginning is read.
@@ -118,14 +117,6 @@ Expected<void> Rosbag1::TakeCut(const BagRecords& records) {
   return {};
 }
 
-Expected<void> Rosbag1::CheckCut() const {
-  if (CountMessages(topics_) > 0) return {};
-  return MakeError(
-      ErrorCode::kParse,
-      fmt::format("{}: byte {}: {}, before its first message: nothing can be recovered", file_,
-                  cut_->byte, cut_->reason));
-}
-
 Expected<void> Rosbag1::CountIndex(const BagRecords& records) {
   for (const auto& [id, counted] : indexed_) {
     const auto connection = connections_.find(id);
@@ -133,11 +124,7 @@ Expected<void> Rosbag1::CountIndex(const BagRecords& records) {
       return records.Fail(
           fmt::format("the index refers to the connection {}, which is missing", id));
     }
-    BagTopic& topic = topics_[connection->second];
-    const bool first = topic.count == 0;
-    topic.first_ns = first ? counted.first_ns : std::min(topic.first_ns, counted.first_ns);
-    topic.last_ns = first ? counted.last_ns : std::max(topic.last_ns, counted.last_ns);
-    topic.count += counted.count;
+    AddMessages(topics_[connection->second], counted.count, counted.first_ns, counted.last_ns);
   }
   return {};
 }

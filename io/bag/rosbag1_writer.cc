@@ -12,6 +12,7 @@
 #include "io/bag/decompress.h"
 #include "io/bag/message_writer.h"
 #include "io/bag/rosbag1_records.h"
+#include "io/cameras/camera_parts.h"
 #include "io/output/output_file.h"
 #include "io/text/number_text.h"
 
@@ -266,6 +267,12 @@ Expected<void> Rosbag1Writer::Write(std::string_view topic, std::int64_t time_ns
 
 Expected<void> Rosbag1Writer::Write(std::string_view topic, std::int64_t time_ns,
                                     const CameraInfoMessage& message) {
+  if (!HasPlaceFor(message.camera)) {
+    return MakeError(ErrorCode::kInvalidInput,
+                     fmt::format("topic {}: CameraInfo cannot state a camera of the model {}: it "
+                                 "has no place for xi",
+                                 Quoted(topic), RosDistortionOf(message.camera).model));
+  }
   return impl_->Write(topic, time_ns, message.header.stamp_ns, kCameraInfoType,
                       Ros1Message(message));
 }

@@ -19,7 +19,8 @@ enum class BagCompression { kNone, kBz2, kLz4 };
 ///
 /// A topic has one type. `time_ns` is the recording time since 1970, from 0 to 2^32 s.
 /// Errors: those of OutputFile; kInvalidInput for a time or stamp outside this range, an image
-/// whose data does not match its size, and a topic with messages of two types. After an error, only
+/// whose data does not match its size, a camera for which CameraInfo has no place, and a topic with
+/// messages of two types. After an error, only
 /// the destructor may be called.
 class Rosbag1Writer {
  public:

@@ -99,11 +99,7 @@ Expected<void> Rosbag2Sqlite::Open() {
   table_ = {};
   SEXTANT_RETURN_IF_ERROR(ReadTopics());
   SEXTANT_RETURN_IF_ERROR(CountRowsBeforeCut());
-  if (CountMessages(topics_) > 0) return {};
-  return MakeError(
-      ErrorCode::kParse,
-      fmt::format("{}: byte {}: {}, before its first message: nothing can be recovered", file_,
-                  cut_->byte, cut_->reason));
+  return RequireMessages(file_, *cut_, topics_);
 }
 
 // The database may be hostile: only tables are read, and no value is larger than the file.
@@ -136,10 +132,9 @@ Expected<void> Rosbag2Sqlite::CountRows() {
       [this](sqlite3_stmt* row) -> Expected<void> {
         const auto known = topic_of_id_.find(sqlite3_column_int64(row, 0));
         if (known == topic_of_id_.end()) return {};
-        BagTopic& topic = topics_[known->second];
-        topic.count += static_cast<std::size_t>(sqlite3_column_int64(row, 1));
-        topic.first_ns = std::max<std::int64_t>(sqlite3_column_int64(row, 2), 0);
-        topic.last_ns = std::max<std::int64_t>(sqlite3_column_int64(row, 3), 0);
+        AddMessages(topics_[known->second], static_cast<std::size_t>(sqlite3_column_int64(row, 1)),
+                    std::max<std::int64_t>(sqlite3_column_int64(row, 2), 0),
+                    std::max<std::int64_t>(sqlite3_column_int64(row, 3), 0));
         return {};
       });
 }

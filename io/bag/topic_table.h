@@ -50,17 +50,25 @@ inline std::vector<bool> WantedTopics(const std::vector<BagTopic>& topics,
   return wanted;
 }
 
-/// Counts one more message of the topic.
+/// Counts more messages of the topic, those from `first_ns` to `last_ns`.
+inline void AddMessages(BagTopic& topic, std::size_t count, std::int64_t first_ns,
+                        std::int64_t last_ns) {
+  topic.first_ns = topic.count == 0 ? first_ns : std::min(topic.first_ns, first_ns);
+  topic.last_ns = topic.count == 0 ? last_ns : std::max(topic.last_ns, last_ns);
+  topic.count += count;
+}
 inline void CountMessage(BagTopic& topic, std::int64_t time_ns) {
-  topic.first_ns = topic.count == 0 ? time_ns : std::min(topic.first_ns, time_ns);
-  topic.last_ns = topic.count == 0 ? time_ns : std::max(topic.last_ns, time_ns);
-  ++topic.count;
+  AddMessages(topic, 1, time_ns, time_ns);
 }
 
 inline std::size_t CountMessages(const std::vector<BagTopic>& topics) {
   return std::accumulate(topics.begin(), topics.end(), std::size_t{0},
                          [](std::size_t sum, const BagTopic& topic) { return sum + topic.count; });
 }
+
+/// The error for a recording that is cut before its first message; none if it has one.
+Expected<void> RequireMessages(const std::string& file, const BagCut& cut,
+                               const std::vector<BagTopic>& topics);
 
 /// ROS 1's name of a type of ROS 2: "sensor_msgs/Image" for "sensor_msgs/msg/Image".
 inline std::string Ros1TypeName(std::string type) {

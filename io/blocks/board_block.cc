@@ -143,9 +143,7 @@ void FailWith(YamlFields& in, const YamlNode& node, const BoardFault& fault) {
           fault.field.empty() ? name : name + ": " + fault.field, fault.message);
 }
 
-}  // namespace
-
-BoardHole ReadHoleBlock(YamlFields& in, const YamlNode& node) {
+BoardHole ReadHole(YamlFields& in, const YamlNode& node) {
   static const std::vector<std::string> kKeys = {"width_m", "height_m", "center_in_board_m"};
   BoardHole hole;
   if (!in.IsMap(node, "hole", kKeys)) return hole;
@@ -179,6 +177,25 @@ std::string YamlRoundHole(const RoundHole& hole) {
                      YamlList(hole.center_in_board_m));
 }
 
+}  // namespace
+
+void ReadOpenings(YamlFields& in, const YamlNode& node, Board& board) {
+  if (const YamlNode* hole = node.Find("hole")) board.hole = ReadHole(in, *hole);
+  if (const YamlNode* holes = node.Find("round_holes")) {
+    board.round_holes = ReadRoundHoles(in, *holes);
+  }
+}
+
+std::string YamlOpenings(const Board& board) {
+  std::string text;
+  if (board.hole) text += ", hole: " + YamlHole(*board.hole);
+  std::string holes;
+  for (const RoundHole& hole : board.round_holes) {
+    holes += (holes.empty() ? "" : ", ") + YamlRoundHole(hole);
+  }
+  return holes.empty() ? text : text + ", round_holes: [" + holes + "]";
+}
+
 Board ReadBoardBlock(YamlFields& in, const YamlNode& node) {
   static const std::vector<std::string> kKeys = {
       "id",          "name", "top_right_m", "right_bottom_m", "thickness_m", "hole",
@@ -190,10 +207,7 @@ Board ReadBoardBlock(YamlFields& in, const YamlNode& node) {
   board.top_right_m = in.RealAt(node, "top_right_m");
   board.right_bottom_m = in.RealAt(node, "right_bottom_m");
   board.thickness_m = in.RealAt(node, "thickness_m", 0.0);
-  if (const YamlNode* hole = node.Find("hole")) board.hole = ReadHoleBlock(in, *hole);
-  if (const YamlNode* holes = node.Find("round_holes")) {
-    board.round_holes = ReadRoundHoles(in, *holes);
-  }
+  ReadOpenings(in, node, board);
   if (const YamlNode* tags = node.Find("tags")) ReadTags(in, *tags, board);
   if (const YamlNode* checker = node.Find("checker")) board.checker = ReadChecker(in, *checker);
   if (const YamlNode* grid = node.Find("aprilgrid")) ReadAprilGrid(in, *grid, board);

@@ -14,15 +14,11 @@ namespace sextant {
 /// FindBoardFault. Errors go to `in`, at the line of the field.
 Board ReadBoardBlock(YamlFields& in, const YamlNode& node);
 
-/// Reads the hole of a board; does not check it.
-BoardHole ReadHoleBlock(YamlFields& in, const YamlNode& node);
-/// "{width_m: .., height_m: .., center_in_board_m: [..]}".
-std::string YamlHole(const BoardHole& hole);
-
-/// Reads the list of a board's round holes; does not check them.
-std::vector<RoundHole> ReadRoundHoles(YamlFields& in, const YamlNode& list);
-/// "{radius_m: .., center_in_board_m: [..]}".
-std::string YamlRoundHole(const RoundHole& hole);
+/// Reads the keys `hole` and `round_holes` of a board, where it has them; does not check them.
+void ReadOpenings(YamlFields& in, const YamlNode& node, Board& board);
+/// The same keys as a continuation of a map in braces: ", hole: {..}, round_holes: [..]"; those
+/// that the board does not have are omitted.
+std::string YamlOpenings(const Board& board);
 
 /// Reports an error if two boards have the same id, or a tag of the same family and id appears on
 /// two boards. `nodes`: those that the boards were read from.

@@ -16,8 +16,8 @@ namespace sextant {
 ///   equidistant, width and height (or image_width and image_height); also omnidirectional with the
 ///   key xi, and double_sphere with xi and alpha.
 /// - OpenCV FileStorage, YAML or XML: camera_matrix or cameraMatrix, distortion_coefficients,
-///   distCoeffs or dist_coeffs, image_width, image_height.
-/// - flat YAML: fx, fy, cx, cy, k1, k2, p1, p2, k3, also with the prefixes and underscores of
+///   distCoeffs or dist_coeffs, image_width, image_height; fisheye_model: 1 of its sample.
+/// - flat YAML: fx, fy, cx, cy, k1, k2, p1, p2, k3 to k6, also with the prefixes and underscores of
 ///   FAST-LIVO (cam_fx, cam_d0), ORB-SLAM (Camera.fx) and others (f_x, k_1), and within other maps.
 /// - Kalibr's camchain: camera_model, intrinsics, distortion_model, distortion_coeffs, resolution.
 /// - camodocal: model_type PINHOLE | MEI | KANNALA_BRANDT with its groups of parameters.

@@ -49,6 +49,9 @@ std::string ModelOf(const YamlNode& camera) {
   if (!projection.empty() && projection != "pinhole" && projection != "perspective") {
     return projection;
   }
+  // OpenCV's calibration sample marks a fisheye by a flag; the other keys are the same.
+  const std::string fisheye = TextOf(camera.Find("fisheye_model"));
+  if (fisheye == "1" || fisheye == "true") return "equidistant";
   if (distortion == "radtan" || distortion == "radial-tangential") return "plumb_bob";
   if (distortion == "equi") return "equidistant";
   if (distortion == "none") return "plumb_bob";
@@ -199,6 +202,63 @@ const YamlNode* FindDistortionList(const YamlNode& camera) {
   return nullptr;
 }
 
+using KeyNames = std::vector<std::string_view>;
+
+// The numbers of the first of each of these keys; 0 for one that is absent.
+void AddNumbersOf(YamlFields& in, const YamlNode& camera, const std::vector<KeyNames>& names,
+                  std::vector<double>& numbers) {
+  for (const KeyNames& keys : names) {
+    const YamlNode* node = FindCameraKey(camera, keys);
+    numbers.push_back(node == nullptr ? 0.0 : in.Real(*node, keys.front()));
+  }
+}
+
+// k4 to k6 of a rational distortion, where the camera has any. Without p1 and p2, k1 to k4 are more
+// likely those of a fisheye.
+void AddRational(YamlFields& in, const YamlNode& camera, std::string_view model,
+                 std::vector<double>& distortion) {
+  static const std::vector<KeyNames> kRational = {{"k4", "k_4", "Camera.k4", "Camera1.k4"},
+                                                  {"k5", "k_5", "Camera.k5", "Camera1.k5"},
+                                                  {"k6", "k_6", "Camera.k6", "Camera1.k6"}};
+  const YamlNode* any = nullptr;
+  for (const KeyNames& keys : kRational) {
+    if (any == nullptr) any = FindCameraKey(camera, keys);
+  }
+  if (any == nullptr) return;
+  if (model.empty() && FindCameraKey(camera, {"p1", "p_1", "Camera.p1", "Camera1.p1"}) == nullptr) {
+    in.Fail(any->line, "k4",
+            "expected p1 and p2 beside k1 to k6, or for the k1 to k4 of a fisheye the key "
+            "distortion_model: equidistant");
+  }
+  AddNumbersOf(in, camera, kRational, distortion);
+}
+
+// Coefficients under keys of their own: k1, k2, p1, p2 and so on.
+std::vector<double> FlatDistortion(YamlFields& in, const YamlNode& camera, std::string_view model) {
+  if (model == "double_sphere") return {};
+  static const std::vector<KeyNames> kRadialTangential = {
+      {"k1", "k_1", "Camera.k1", "Camera1.k1", "cam_d0"},
+      {"k2", "k_2", "Camera.k2", "Camera1.k2", "cam_d1"},
+      {"p1", "p_1", "Camera.p1", "Camera1.p1", "cam_d2"},
+      {"p2", "p_2", "Camera.p2", "Camera1.p2", "cam_d3"},
+      {"k3", "k_3", "Camera.k3", "Camera1.k3", "cam_d4"}};
+  static const std::vector<KeyNames> kFisheye = {
+      {"k1", "k_1", "Camera.k1", "Camera1.k1", "cam_d0"},
+      {"k2", "k_2", "Camera.k2", "Camera1.k2", "cam_d1"},
+      {"k3", "k_3", "Camera.k3", "Camera1.k3", "cam_d2"},
+      {"k4", "k_4", "Camera.k4", "Camera1.k4", "cam_d3"}};
+  static const std::vector<KeyNames> kCamodocal = {{"k2"}, {"k3"}, {"k4"}, {"k5"}};
+  std::vector<double> distortion;
+  if (model != "equidistant") {
+    AddNumbersOf(in, camera, kRadialTangential, distortion);
+    AddRational(in, camera, model, distortion);
+  } else {
+    const bool is_camodocal = FindCameraKey(camera, {"mu"}) != nullptr;
+    AddNumbersOf(in, camera, is_camodocal ? kCamodocal : kFisheye, distortion);
+  }
+  return distortion;
+}
+
 std::vector<double> ReadDistortion(YamlFields& in, const YamlNode& camera, std::string_view model) {
   if (const YamlNode* radial = camera.Find("RadialDistortion")) {
     return MatlabDistortion(in, camera, *radial);
@@ -210,29 +270,7 @@ std::vector<double> ReadDistortion(YamlFields& in, const YamlNode& camera, std::
   if (list != nullptr) {
     return CameraNumbers(in, *list, "distortion coefficients", kMaxCoefficients);
   }
-  if (model == "double_sphere") return {};
-  using Keys = std::vector<std::string_view>;
-  const bool is_camodocal_fisheye = FindCameraKey(camera, {"mu"}) != nullptr;
-  static const std::vector<Keys> kRadialTangential = {
-      {"k1", "k_1", "Camera.k1", "Camera1.k1", "cam_d0"},
-      {"k2", "k_2", "Camera.k2", "Camera1.k2", "cam_d1"},
-      {"p1", "p_1", "Camera.p1", "Camera1.p1", "cam_d2"},
-      {"p2", "p_2", "Camera.p2", "Camera1.p2", "cam_d3"},
-      {"k3", "k_3", "Camera.k3", "Camera1.k3", "cam_d4"}};
-  static const std::vector<Keys> kFisheye = {{"k1", "Camera.k1", "Camera1.k1"},
-                                             {"k2", "Camera.k2", "Camera1.k2"},
-                                             {"k3", "Camera.k3", "Camera1.k3"},
-                                             {"k4", "Camera.k4", "Camera1.k4"}};
-  static const std::vector<Keys> kCamodocal = {{"k2"}, {"k3"}, {"k4"}, {"k5"}};
-  const std::vector<Keys>& names = model != "equidistant" ? kRadialTangential
-                                   : is_camodocal_fisheye ? kCamodocal
-                                                          : kFisheye;
-  std::vector<double> distortion;
-  for (const Keys& keys : names) {
-    const YamlNode* node = FindCameraKey(camera, keys);
-    distortion.push_back(node == nullptr ? 0.0 : in.Real(*node, keys.front()));
-  }
-  return distortion;
+  return FlatDistortion(in, camera, model);
 }
 
 Expected<Camera> ReadCameraNode(const CameraNode& node, const std::string& file) {

@@ -30,12 +30,12 @@ struct CloudColumns {
 
 /// Finds the columns by the names that drivers and tools use, upper or lower case, with or without
 /// CloudCompare's prefix `scalar_` and the unit [m] or (m): x y z (VeloView: Points_m_XYZ:0 to 2,
-/// Points:0 to 2; point_x), intensity
-/// (reflectivity, remission, i), ring (laser_id, channel, line), time (t, time_us, time_ns,
-/// offset_time [ns], adjustedtime [us], timestamp, time_stamp). If several columns qualify, the
-/// first name in this list is used. Other columns (azimuth, distance, normals, colours) are
-/// ignored, and so is the line of a sensor without rings (Livox), which comes with a tag. Error:
-/// kParse if x, y or z is missing or a name appears twice; it does not name the file.
+/// Points:0 to 2; point_x), intensity (reflectivity, remission, i), ring (laser_id, channel, line),
+/// time (t, time_us, time_ns, offset_time [ns], adjustedtime [us], timestamp, time_stamp). If
+/// several columns qualify, the first name in this list is used. Other columns (azimuth, distance,
+/// normals, colours) are ignored, and so is the line of a sensor without rings (Livox), which comes
+/// with a tag. Error: kParse if x, y or z is missing or a name appears twice; it does not name the
+/// file.
 Expected<CloudColumns> FindCloudColumns(std::span<const NamedColumn> columns);
 
 /// The columns of a table without names, by their number: x, y and z; the fourth of 4 or 5 is the

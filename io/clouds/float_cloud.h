@@ -17,8 +17,7 @@ namespace sextant {
 /// a ring (IsRingNumber) and the others are not all such numbers too, else as many as make the
 /// columns differ most, four unless another count is clear.
 /// Errors: kIo; kParse if the file is empty, its size fits none, or many numbers cannot be metres.
-/// Time is linear in the file's
-/// size; memory is at most 8 times it.
+/// Time is linear in the file's size; memory is at most 8 times it.
 Expected<PointCloud> ReadFloatCloud(const std::filesystem::path& path);
 Expected<PointCloud> ParseFloatCloud(std::string_view bytes, const std::string& file);
 

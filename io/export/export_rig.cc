@@ -24,15 +24,6 @@ std::vector<NamedTransform> TreeOf(const RigResult& result) {
   return tree;
 }
 
-template <class Matrix>
-std::string Row(const Matrix& matrix) {
-  std::vector<double> values;
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) values.push_back(matrix(i, j));
-  }
-  return fmt::format("{}", fmt::join(values, " "));
-}
-
 // The comment comes last because some readers count lines.
 Expected<std::string> KittiRigText(const RigResult& result) {
   std::string text;
@@ -41,12 +32,12 @@ Expected<std::string> KittiRigText(const RigResult& result) {
     Eigen::Matrix<double, 3, 4> p = Eigen::Matrix<double, 3, 4>::Zero();
     p << camera.camera->fx_px, camera.camera->skew_px, camera.camera->cx_px, 0.0, 0.0,
         camera.camera->fy_px, camera.camera->cy_px, 0.0, 0.0, 0.0, 1.0, 0.0;
-    text += fmt::format("P_{}: {}\n", camera.name, Row(p));
+    text += fmt::format("P_{}: {}\n", camera.name, NumbersByRow(p, " "));
     for (const RigResultSensor& lidar : result.sensors) {
       if (lidar.camera || !lidar.root_from_sensor) continue;
       SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, result.Between(camera.name, lidar.name));
       text += fmt::format("Tr_{}_to_{}: {}\n", lidar.name, camera.name,
-                          Row(pose.Matrix().topRows<3>().eval()));
+                          NumbersByRow(pose.Matrix().topRows<3>(), " "));
     }
   }
   if (text.empty()) {
@@ -63,6 +54,9 @@ Expected<std::string> ExportRig(std::string_view format, const RigResult& result
   const std::vector<NamedTransform> tree = TreeOf(result);
   if (tree.empty()) {
     return MakeError(ErrorCode::kMissingData, "expected a rig with two connected sensors or more");
+  }
+  for (const RigResultSensor& sensor : result.sensors) {
+    SEXTANT_RETURN_IF_ERROR(CheckFrame(sensor.name, "sensor"));
   }
   if (format == "ros1") return Ros1LaunchText(tree);
   if (format == "ros2") return Ros2LaunchText(tree);

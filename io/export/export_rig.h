@@ -14,7 +14,8 @@ namespace sextant {
 /// root, root_from_sensor), urdf (a link and a fixed joint each) and kitti (P_<camera> and
 /// Tr_<lidar>_to_<camera> for every camera and LiDAR). Frames are named as the sensors. Errors:
 /// kUnknownName for another format; kMissingData where fewer than two sensors are connected, and
-/// for kitti without cameras.
+/// for kitti without cameras; kInvalidOption for a sensor whose name cannot be that of a frame
+/// (ExportTransform).
 Expected<std::string> ExportRig(std::string_view format, const RigResult& result);
 
 /// a_from_b of two sensors for ExportTransform, as cam_from_lidar with the sensors' names as

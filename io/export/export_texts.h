@@ -3,7 +3,9 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
+#include "base/error.h"
 #include "geometry/camera.h"
 #include "geometry/rigid3d.h"
 
@@ -16,6 +18,13 @@ struct NamedTransform {
   Rigid3d parent_from_child;
   std::string camera_frame;  ///< The camera's frame: parent or child; empty: neither.
 };
+
+/// The numbers of a matrix, row by row.
+std::string NumbersByRow(const Eigen::MatrixXd& matrix, const char* between);
+
+/// Error: kInvalidOption for a name that would need an escape in one of the formats. `whose`: for
+/// the message.
+Expected<void> CheckFrame(const std::string& name, std::string_view whose);
 
 /// The texts of ExportTransform and ExportRig, which check the names of the frames;
 /// io/export/export_transform.h documents each format.

@@ -14,17 +14,6 @@
 namespace sextant {
 namespace {
 
-// Frames are the only text of others in these formats: XML, where "--" would end the comment, YAML,
-// Python and lines of arguments. No such name needs an escape in any of them.
-Expected<void> CheckFrame(const std::string& name, const char* whose) {
-  std::string without_slashes = name.starts_with('/') ? name.substr(1) : name;
-  std::ranges::replace(without_slashes, '/', '_');
-  if (IsFileName(without_slashes) && name.find("--") == std::string::npos) return {};
-  return MakeError(ErrorCode::kInvalidOption,
-                   fmt::format("the {}'s frame is named {}: expected {}, no \"--\", and slashes",
-                               whose, Quoted(name), kFileNameRule));
-}
-
 Expected<void> CheckFrames(const ExportOptions& options) {
   SEXTANT_RETURN_IF_ERROR(CheckFrame(options.camera_frame, "camera"));
   SEXTANT_RETURN_IF_ERROR(CheckFrame(options.lidar_frame, "LiDAR"));
@@ -48,6 +37,17 @@ NamedTransform Named(const CalibrationResult& result, const ExportOptions& optio
 }
 
 }  // namespace
+
+// Frames are the only text of others in these formats: XML, where "--" would end the comment, YAML,
+// Python and lines of arguments. No such name needs an escape in any of them.
+Expected<void> CheckFrame(const std::string& name, std::string_view whose) {
+  std::string without_slashes = name.starts_with('/') ? name.substr(1) : name;
+  std::ranges::replace(without_slashes, '/', '_');
+  if (IsFileName(without_slashes) && name.find("--") == std::string::npos) return {};
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("the {}'s frame is named {}: expected {}, no \"--\", and slashes",
+                               whose, Quoted(name), kFileNameRule));
+}
 
 const std::vector<ExportFormat>& ExportFormats() {
   static const std::vector<ExportFormat> formats = {

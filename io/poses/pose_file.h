@@ -32,13 +32,11 @@ struct StatedPose {
 
 /// Reads a pose from any of these, recognised by the content:
 /// - result.yaml of sextant calibrate or its JSON, JSON of sextant solve (its first answer), and
-/// any
-///   YAML or JSON with the key cam_from_lidar or lidar_from_cam (also as OpenCV's matrix);
+///   any YAML or JSON with the key cam_from_lidar or lidar_from_cam (also as OpenCV's matrix);
 /// - geometry_msgs/TransformStamped as YAML, alone or as the list `transforms` of a TFMessage;
 /// - static transforms of ROS 1 (.launch) and ROS 2 (.launch.py, YAML), joints of a URDF;
 /// - KITTI's calibration: Tr_velo_to_cam or Tr, rotated by R0_rect and moved by the fourth column
-/// of
-///   the camera's projection; calib.txt:P2 chooses the camera. R and T of calib_velo_to_cam.txt;
+///   of the camera's projection; calib.txt:P2 chooses the camera. R and T of calib_velo_to_cam.txt;
 /// - a 4x4 or 3x4 matrix in rows (rts.txt:2 is the second of several), or the seven numbers
 ///   x y z qx qy qz qw. A comment `# x y z qw qx qy qz` states the other order; without a comment
 ///   the numbers are refused where the camera would be upright with the other order, too;
@@ -50,8 +48,8 @@ struct StatedPose {
 /// format. Where a file has only numbers, it is the one in which the camera is upright (its y axis
 /// along -z of the LiDAR), if the other is not. Errors: kIo; kParse with file and line; kNonFinite;
 /// kMissingData where no such pose is found; kInvalidOption where the file must be made
-/// unambiguous. Time is that of ParseYaml and O(n log n) in the frames, memory
-/// that of ParseYaml and 1 KiB for each frame; XML is read up to 1 MiB.
+/// unambiguous. Time is that of ParseYaml and O(n log n) in the frames, memory that of ParseYaml
+/// and 1 KiB for each frame; XML is read up to 1 MiB.
 Expected<StatedPose> ReadPoseFile(const std::filesystem::path& path);
 
 /// The text of such a file, and the name that follows its path behind a colon; empty if none does.

@@ -35,8 +35,7 @@ struct FeatureRow {
 /// - `moment` or `time_s`, `sensor`, and `board` unless there is only one;
 /// - `corner` (or `board_x`, `board_y`) with `u`, `v` (px) or `x`, `y`, `z` (m) or both;
 /// - `nx`, `ny`, `nz`, `distance`: a plane with normal . point = distance, of unit normal; or `a`,
-/// `b`, `c`, `d`:
-///   the plane a x + b y + c z + d = 0;
+///   `b`, `c`, `d`: the plane a x + b y + c z + d = 0;
 /// - `side` with `x`, `y`, `z`, a point on the line, and its direction `dx`, `dy`, `dz` or a second
 ///   point `x2`, `y2`, `z2`;
 /// - `sigma_px`, `sigma_m`, `sigma_deg` (of a normal).

@@ -40,15 +40,6 @@ void WritePoints(YamlText& out, const char* key, std::span<const Eigen::Vector3d
   for (const Eigen::Vector3d& point : points) out.Line("    - {}", YamlList(point));
 }
 
-std::string YamlRoundHoles(const Board& board) {
-  if (board.round_holes.empty()) return {};
-  std::string text;
-  for (const RoundHole& hole : board.round_holes) {
-    text += (text.empty() ? "" : ", ") + YamlRoundHole(hole);
-  }
-  return ", round_holes: [" + text + "]";
-}
-
 }  // namespace
 
 std::string FormatProblemYaml(const ProblemFile& file) {
@@ -59,9 +50,8 @@ std::string FormatProblemYaml(const ProblemFile& file) {
   if (problem.camera) WriteCameraBlock(out, *problem.camera);
   if (!problem.boards.empty()) out.Line("boards:");
   for (const Board& board : problem.boards) {
-    out.Line("  - {{id: {}, top_right_m: {}, right_bottom_m: {}{}{}}}", board.id, board.top_right_m,
-             board.right_bottom_m, board.hole ? ", hole: " + YamlHole(*board.hole) : "",
-             YamlRoundHoles(board));
+    out.Line("  - {{id: {}, top_right_m: {}, right_bottom_m: {}{}}}", board.id, board.top_right_m,
+             board.right_bottom_m, YamlOpenings(board));
   }
   if (problem.initial_cam_from_lidar) {
     out.Line("initial_cam_from_lidar:");

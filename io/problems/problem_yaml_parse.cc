@@ -84,10 +84,7 @@ void ReadProblemBoards(YamlFields& in, const YamlNode& list, std::vector<Board>&
     board.id = in.IntegerAt(node, "id", 0, kMaxId);
     board.top_right_m = in.NonNegativeAt(node, "top_right_m", 0.0);
     board.right_bottom_m = in.NonNegativeAt(node, "right_bottom_m", 0.0);
-    if (const YamlNode* hole = node.Find("hole")) board.hole = ReadHoleBlock(in, *hole);
-    if (const YamlNode* holes = node.Find("round_holes")) {
-      board.round_holes = ReadRoundHoles(in, *holes);
-    }
+    ReadOpenings(in, node, board);
     boards.push_back(board);
   }
 }

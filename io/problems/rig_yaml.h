@@ -30,7 +30,8 @@ struct RigFile {
 Expected<RigFile> ReadRigFile(const std::filesystem::path& path);
 Expected<RigFile> ParseRigFile(std::string_view text, const std::string& file);
 
-/// Reading it again gives the same bits.
+/// Reading it again gives the same bits where the points of an observation have one sigma_m: the
+/// format has one, that of the first point.
 std::string FormatRigFile(const RigFile& rig);
 
 /// Whether the text of a file has the key sextant_rig at its start, after comments.

@@ -81,7 +81,7 @@ std::string FormatRigFile(const RigFile& rig) {
   out.Line("boards:");
   for (const Board& board : problem.boards) {
     out.Line("  - {{id: {}, top_right_m: {}, right_bottom_m: {}{}}}", board.id, board.top_right_m,
-             board.right_bottom_m, board.hole ? ", hole: " + YamlHole(*board.hole) : "");
+             board.right_bottom_m, YamlOpenings(board));
   }
   out.Line("moments:{}", problem.placements.empty() ? " []" : "");
   const RigPlacement* before = nullptr;

@@ -93,8 +93,8 @@ class RigReader {
   }
 
   void ReadBoards(const YamlNode& list) {
-    static const RigKeys kKeys = {"id",   "top_right_m", "right_bottom_m",
-                                  "hole", "points_m",    "grid"};
+    static const RigKeys kKeys = {
+        "id", "top_right_m", "right_bottom_m", "hole", "round_holes", "points_m", "grid"};
     if (!in_.IsSequence(list, "boards", kMaxBoards)) return;
     for (const YamlNode& node : list.items) {
       if (!in_.IsMap(node, "boards", kKeys)) return;
@@ -103,7 +103,7 @@ class RigReader {
       if (node.Find("points_m") != nullptr) board.points = Points2At(node, "points_m");
       if (const YamlNode* grid = node.Find("grid")) board.points = GridPoints(*grid);
       ReadSize(node, board);
-      if (const YamlNode* hole = node.Find("hole")) board.board.hole = ReadHoleBlock(in_, *hole);
+      ReadOpenings(in_, node, board.board);
       if (!in_.ok()) return;
       if (!(board.board.top_right_m > 0.0 && board.board.right_bottom_m > 0.0)) {
         return in_.Fail(node.line, "boards", "expected sides longer than 0");

@@ -32,12 +32,18 @@ Expected<void> CheckAlbedo(const std::string& what, double albedo) {
                    fmt::format("{} has an albedo of {}, expected 0 to 1", what, albedo));
 }
 
+// Tiles are numbered by an int.
 Expected<void> CheckTiles(const SceneWall& wall) {
   constexpr double kMin_m = 1e-3;
-  if (wall.tile_m == 0.0 || (wall.tile_m >= kMin_m && std::isfinite(wall.tile_m))) return {};
-  return MakeError(ErrorCode::kInvalidInput,
-                   fmt::format("wall {} has tiles of {} m, expected 0 for none, or {} and more",
-                               wall.name, wall.tile_m, kMin_m));
+  constexpr double kMaxAlong = 30'000.0;
+  const double longest_m = std::max(wall.width_m, wall.height_m);
+  const bool is_fine = wall.tile_m >= kMin_m && longest_m <= kMaxAlong * wall.tile_m;
+  if (wall.tile_m == 0.0 || (is_fine && std::isfinite(wall.tile_m))) return {};
+  return MakeError(
+      ErrorCode::kInvalidInput,
+      fmt::format("wall {} has tiles of {} m, expected 0 for none, or {} and more, and "
+                  "at most {} along a side",
+                  wall.name, wall.tile_m, kMin_m, kMaxAlong));
 }
 
 // The first error of several checks.

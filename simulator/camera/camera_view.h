@@ -30,8 +30,8 @@ struct Seen {
 class CameraView {
  public:
   /// Errors: those of BoardPrint::Make; kNonFinite for a pose or side; kInvalidInput for a side
-  /// that is not positive, an albedo outside of [0, 1], tiles below a millimetre. Messages name the
-  /// board, wall, box or cylinder.
+  /// that is not positive, an albedo outside of [0, 1], tiles below a millimetre or more than
+  /// 30,000 along a side. Messages name the board, wall, box or cylinder.
   static Expected<CameraView> Make(const Scene& scene, const Rigid3d& world_from_cam, double time_s,
                                    const Lighting& lighting);
 

@@ -52,6 +52,7 @@ Expected<Scene> RectifiedPair(const Scene& scene, int camera_index, double basel
   left.intrinsics = camera;
   left.intrinsics.model = CameraModel::kPinhole;
   left.intrinsics.distortion.fill(0.0);
+  left.intrinsics.skew_px = left.intrinsics.xi = left.intrinsics.alpha = 0.0;
   left.assumed_intrinsics.reset();
   Scene pair = scene;
   pair.cameras = {left, StereoPartner(left, baseline_m, left.name + "_right")};

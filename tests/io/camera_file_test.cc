@@ -284,6 +284,36 @@ TEST(CameraFile, DistortionUnderAnotherNameIsNotIgnored) {
   EXPECT_EQ(camera->distortion[0], -0.1);
 }
 
+// OpenCV's calibration sample writes the four coefficients of a fisheye under the usual key.
+TEST(CameraFile, TheFlagOfAFisheyeIsItsModel) {
+  const std::string text =
+      "%YAML:1.0\n---\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+      "   data: [600, 0, 320, 0, 601, 240, 0, 0, 1]\ndistortion_coefficients: !!opencv-matrix\n"
+      "   rows: 4\n   cols: 1\n   dt: d\n   data: [-0.05, 0.04, -0.01, 0.003]\nfisheye_model: ";
+  const Expected<Camera> fisheye = ParseCamera(text + "1\n", "c.yml");
+  ASSERT_TRUE(fisheye) << fisheye.error().message;
+  EXPECT_EQ(fisheye->model, CameraModel::kEquidistant);
+  const Expected<Camera> usual = ParseCamera(text + "0\n", "c.yml");
+  ASSERT_TRUE(usual) << usual.error().message;
+  EXPECT_EQ(usual->model, CameraModel::kBrownConrady);
+}
+
+TEST(CameraFile, NoCoefficientUnderAKeyOfItsOwnIsIgnored) {
+  const std::string text = "{fx: 600, fy: 601, cx: 320, cy: 240, k1: 0.2, k2: 0.02, k3: 0.01";
+  const Expected<Camera> rational =
+      ParseCamera(text + ", p1: 0.001, p2: 0.002, k4: 0.3, k5: 0.03, k6: 0.005}\n", "c.yaml");
+  ASSERT_TRUE(rational) << rational.error().message;
+  const std::vector<double> first(rational->distortion.begin(), rational->distortion.begin() + 8);
+  EXPECT_EQ(first, (std::vector<double>{0.2, 0.02, 0.001, 0.002, 0.01, 0.3, 0.03, 0.005}));
+  const Expected<Camera> unclear = ParseCamera(text + ", k4: 0.001}\n", "c.yaml");
+  ASSERT_FALSE(unclear);
+  EXPECT_THAT(unclear.error().message, testing::HasSubstr("distortion_model: equidistant"));
+  const Expected<Camera> fisheye =
+      ParseCamera(text + ", k4: 0.001, distortion_model: equidistant}\n", "c.yaml");
+  ASSERT_TRUE(fisheye) << fisheye.error().message;
+  EXPECT_EQ(fisheye->distortion[3], 0.001);
+}
+
 TEST(CameraFile, ReadsTheRealFilesOfEveryForm) {
   SEXTANT_REAL_DATA(path, ".");
   struct Row {

@@ -9,6 +9,7 @@
 #include <regex>
 #include <sstream>
 
+#include "io/cameras/camera_file.h"
 #include "support/calibration_result.h"
 
 namespace sextant {
@@ -209,6 +210,57 @@ TEST(ExportTransform, OpenCvMatrixIsWrittenByRows) {
   ASSERT_EQ(numbers.size(), 16U);
   const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(numbers.data());
   EXPECT_LT(((matrix * kInLidar.homogeneous()).head<3>() - InCam()).norm(), 1e-12);
+}
+
+// A lens that a reader takes for another one is a wrong camera.
+TEST(ExportTransform, OpenCvCameraReadsBackWithItsModel) {
+  Camera camera{.width_px = 1280,
+                .height_px = 720,
+                .fx_px = 700.1,
+                .fy_px = 699.9,
+                .cx_px = 639.3,
+                .cy_px = 358.7};
+  const auto expect_back = [&camera] {
+    CalibrationResult result = test::FullCalibrationResult();
+    result.camera = camera;
+    const Expected<std::string> text = ExportTransform("opencv", result, {});
+    ASSERT_TRUE(text) << text.error().message;
+    const Expected<Camera> again = ParseCamera(*text, "c.yaml");
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again->model, camera.model);
+    EXPECT_EQ(again->fx_px, camera.fx_px);
+    EXPECT_EQ(again->distortion, camera.distortion);
+    EXPECT_EQ(again->xi, camera.xi);
+    EXPECT_EQ(again->alpha, camera.alpha);
+  };
+  expect_back();
+  camera.model = CameraModel::kBrownConrady;
+  camera.distortion = {-0.17, 0.025, 1.9e-4, -1.8e-3, 3.1e-3};
+  expect_back();
+  camera.model = CameraModel::kEquidistant;
+  camera.distortion = {-0.054, 0.04, -0.01, 0.003};
+  expect_back();
+  camera.model = CameraModel::kOmnidirectional;
+  camera.xi = 1.3;
+  expect_back();
+  camera.model = CameraModel::kDoubleSphere;
+  camera.distortion = {};
+  camera.xi = -0.2;
+  camera.alpha = 0.55;
+  expect_back();
+}
+
+// A fisheye without coefficients is no pinhole either.
+TEST(ExportTransform, KittiStatesThatItsImagesAreUndistorted) {
+  CalibrationResult result = test::FullCalibrationResult();
+  for (const CameraModel model : {CameraModel::kPinhole, CameraModel::kEquidistant}) {
+    result.camera->model = model;
+    result.camera->distortion = {};
+    const Expected<std::string> text = ExportTransform("kitti", result, {});
+    ASSERT_TRUE(text) << text.error().message;
+    EXPECT_EQ(text->find("for undistorted images") != std::string::npos,
+              model == CameraModel::kEquidistant);
+  }
 }
 
 TEST(ExportTransform, RefusesWhatTheFormatCannotHold) {

@@ -73,6 +73,24 @@ TEST(RigFile, RoundTripsToTheSameText) {
   EXPECT_EQ(FormatRigFile(*again), text);
 }
 
+// Edges on the rims of round holes mean nothing on a board without them.
+TEST(RigFile, KeepsTheRoundHolesOfABoard) {
+  const Expected<RigFile> rig =
+      ParseRigFile(RigWith("right_bottom_m: 0.8}",
+                           "right_bottom_m: 0.8, hole: {width_m: 0.1, height_m: 0.1}, round_holes: "
+                           "[{radius_m: 0.05, center_in_board_m: [0.2, 0.25]}, {radius_m: 0.06, "
+                           "center_in_board_m: [-0.2, 0.25]}]}"),
+                   "rig.yaml");
+  ASSERT_TRUE(rig) << rig.error().message;
+  const Expected<RigFile> again = ParseRigFile(FormatRigFile(*rig), "rig.yaml");
+  ASSERT_TRUE(again) << again.error().message;
+  const Board& board = again->problem.boards.at(0);
+  ASSERT_EQ(board.round_holes.size(), 2U);
+  EXPECT_EQ(board.round_holes[1].radius_m, 0.06);
+  EXPECT_EQ(board.round_holes[1].center_in_board_m, Eigen::Vector2d(-0.2, 0.25));
+  EXPECT_EQ(board.hole->width_m, 0.1);
+}
+
 TEST(RigFile, RefusesWhatIsWrongAndNamesIt) {
   const BadText cases[] = {
       {"unknown sensor", RigWith("sensor: rear", "sensor: back"), ErrorCode::kParse,
@@ -284,6 +302,15 @@ TEST(ExportRig, EveryFormatHasEverySensor) {
     EXPECT_THAT(*text, HasSubstr("top")) << format;
   }
   EXPECT_THAT(ExportRig("png", rig).error().message, HasSubstr("--sensors"));
+}
+
+// Two dashes would end the comment of a launch file.
+TEST(ExportRig, RefusesANameThatNeedsAnEscape) {
+  RigResult rig = ThreeSensors();
+  rig.sensors.back().name = "to--p";
+  const Expected<std::string> text = ExportRig("ros1", rig);
+  ASSERT_FALSE(text);
+  EXPECT_THAT(text.error().message, HasSubstr("the sensor's frame is named 'to--p'"));
 }
 
 TEST(ExportRig, APairIsInEveryFormat) {

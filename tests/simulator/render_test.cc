@@ -264,6 +264,11 @@ INSTANTIATE_TEST_SUITE_P(
                   [](auto& scene, int&, auto&) { scene.walls[0].width_m = 0.0; }},
         BadRender{"tiles", ErrorCode::kInvalidInput, "wall back",
                   [](auto& scene, int&, auto&) { scene.walls[0].tile_m = 1e-12; }},
+        BadRender{"many_tiles", ErrorCode::kInvalidInput, "at most 30000 along a side",
+                  [](auto& scene, int&, auto&) {
+                    scene.walls[0].width_m = 1e7;
+                    scene.walls[0].tile_m = 1e-3;
+                  }},
         BadRender{"albedo", ErrorCode::kInvalidInput, "board 7",
                   [](auto& scene, int&, auto&) { scene.boards[0].black.albedo = kNaN; }},
         BadRender{"background", ErrorCode::kInvalidInput, "background",

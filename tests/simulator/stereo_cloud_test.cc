@@ -94,6 +94,18 @@ TEST(StereoCloud, TriangulationInvertsProjection) {
   EXPECT_FALSE(Triangulate(images, right, left));
 }
 
+// The rectified pair is one of pinholes, whatever the lens.
+TEST(StereoCloud, ALensOfAnyModelIsRectified) {
+  Scene scene = WallScene();
+  Camera& lens = scene.cameras[0].intrinsics;
+  lens.model = CameraModel::kOmnidirectional;
+  lens.xi = 1.2;
+  lens.skew_px = 0.5;
+  const Expected<StereoImages> images = RenderStereo(scene, 0, kBaseline_m, {});
+  ASSERT_TRUE(images) << images.error().message;
+  EXPECT_EQ(images->camera.model, CameraModel::kPinhole);
+}
+
 TEST(StereoCloud, RejectsInvalidOptions) {
   const Scene scene = WallScene();
   const ImageOptions image;

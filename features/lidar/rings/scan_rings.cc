@@ -96,7 +96,11 @@ RingNumbers RingsOf(const PointCloud& cloud, const std::vector<UnsortedReturn>& 
   std::vector<int> numbers;
   numbers.reserve(returns.size());
   for (const UnsortedReturn& point : returns) numbers.push_back(cloud.ring[point.index]);
-  return CheckRings(returns, std::move(numbers));
+  // Converters that do not know the ring write the same number, mostly 0, for every point.
+  const bool is_one = std::ranges::count(numbers, numbers.front()) == std::ssize(numbers);
+  RingNumbers rings = CheckRings(returns, std::move(numbers));
+  if (is_one && rings.of_return.empty()) return RecoverRings(returns, cloud.points.size());
+  return rings;
 }
 
 // The rotation that takes the axis to z; x stays as it is as far as possible.

@@ -24,10 +24,11 @@ struct RingPoint {
 class ScanRings {
  public:
   /// Returns that are not finite or nearer than 1 cm are omitted. Rings come from the cloud's ring
-  /// field or, without one, from the points themselves (features/lidar/rings/ring_numbers.h). If
-  /// neither gives rings (a rosette, whatever its ring field contains), bands of elevation take
-  /// their place, a few times as high as the spacing of the points. Errors: kMissingData if no
-  /// return remains; kInvalidInput if the numbers of points and rings differ.
+  /// field or, without one or where it has one number for returns of many elevations, from the
+  /// points themselves (features/lidar/rings/ring_numbers.h). If neither gives rings (a rosette,
+  /// whatever its ring field contains), bands of elevation take their place, a few times as high as
+  /// the spacing of the points. Errors: kMissingData if no return remains; kInvalidInput if the
+  /// numbers of points and rings differ.
   static Expected<ScanRings> Build(const PointCloud& cloud);
 
   int rings() const { return static_cast<int>(starts_.size()) - 1; }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "calibrate/bag/bag_streams.h"
+#include "calibrate/bag/observe_recording.h"
 #include "calibrate/calibrate.h"
 #include "eval/extractors/board_scenes.h"
 #include "io/bag/rosbag1_writer.h"
@@ -57,6 +58,36 @@ TEST(ReadStreams, PairsTheFirstHundredPairsOfTopics) {
   EXPECT_EQ(one->pairings[0].pairs.pairs.size(), 1U);
   EXPECT_THAT(PlanBag(**bag, {}).error().message,
               AllOf(HasSubstr("several topics fit"), HasSubstr("and 9980 more")));
+}
+
+// Drivers of cameras without a calibration publish zeros; the user has a file of the intrinsics.
+TEST(PlanBag, ACameraThatWasNeverCalibratedIsNoObstacle) {
+  const ScratchFolder folder;
+  const std::filesystem::path path = folder.path() / "zeros.bag";
+  Expected<Rosbag1Writer> writer = Rosbag1Writer::Create(path);
+  ASSERT_TRUE(writer);
+  const MessageHeader header{.stamp_ns = kStart_ns, .frame = "f"};
+  PointCloud cloud;
+  cloud.points = {Eigen::Vector3d::UnitX()};
+  ASSERT_TRUE(writer->Write("/scan", kStart_ns, CloudMessage{.header = header, .cloud = cloud}));
+  ASSERT_TRUE(writer->Write("/cam/image", kStart_ns,
+                            ImageMessage{.header = header,
+                                         .width_px = 1,
+                                         .height_px = 1,
+                                         .encoding = "mono8",
+                                         .row_bytes = 1,
+                                         .data = "x"}));
+  ASSERT_TRUE(writer->Write("/cam/camera_info", kStart_ns, CameraInfoMessage{.header = header}));
+  ASSERT_TRUE(writer->Close());
+  const Expected<std::unique_ptr<Bag>> bag = OpenBag(path);
+  ASSERT_TRUE(bag);
+  const Expected<BagPlan> plan = PlanBag(**bag, {});
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_FALSE(plan->camera);
+  const Expected<RecordedViews> without = ObserveRecording(path, {}, {});
+  ASSERT_FALSE(without);
+  EXPECT_THAT(without.error().message,
+              AllOf(HasSubstr("camera_info"), HasSubstr("give the intrinsics with --camera")));
 }
 
 class Recording : public testing::Test {

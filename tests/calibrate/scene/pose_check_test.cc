@@ -241,6 +241,13 @@ TEST(PoseCheck, AnEmptySceneTellsNothing) {
   const PoseCheck check = CheckScenes(SearchScenes(pairs, pose), pose, kLimits);
   EXPECT_EQ(check.state, PoseState::kUnknown);
   EXPECT_THAT(check.reason, HasSubstr("too little structure: 0 depth edges"));
+
+  Camera other = camera;
+  other.fx_px = 80000.0;
+  other.fy_px = 80000.0;
+  const Expected<ScenePair> narrow = MakeScenePair(grey, scan, other, pose);
+  ASSERT_FALSE(narrow);
+  EXPECT_THAT(narrow.error().message, HasSubstr("an image of 320 x 240 pixels shows too little"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "eval/extractors/board_scenes.h"
 #include "features/lidar/board_agreement.h"
 #include "features/lidar/corner_extractor.h"
+#include "geometry/board_check.h"
 #include "geometry/symmetric.h"
 #include "simulator/lidar/lidar_model.h"
 #include "simulator/lidar/scan.h"
@@ -121,6 +123,58 @@ std::vector<double> WorstCorners(const Scene& scene, const BoardSearch& search) 
     }
   }
   return worst;
+}
+
+// An opening beside the middle tells both halves of a turn apart, without the image.
+TEST(BoardsInScans, AnOpeningBesideTheMiddleTellsWhichWayRoundABoardIs) {
+  Random random(1);
+  Scene scene = TwoBoardsInRoom({}, random);
+  Board board = scene.boards[0].board;
+  board.tags.clear();
+  board.checker.reset();
+  board.top_right_m = 0.9;
+  board.right_bottom_m = 0.7;
+  board.hole =
+      BoardHole{.width_m = 0.4, .height_m = 0.3, .center_in_board_m = Eigen::Vector2d(0.12, 0.08)};
+  EXPECT_FALSE(HolesAllowTurns(board, 2));
+  for (const double turn_deg : {40.0, 220.0}) {
+    scene.boards = {PlaceBoard(board, {.distance_m = 2.2, .turn_deg = turn_deg})};
+    const BoardSearch search = SearchScan(scene, {board}, *FindLidarModel("os1_64"), 1);
+    ASSERT_EQ(search.found.size(), 1U) << turn_deg;
+    EXPECT_LT(WorstCorners(scene, search).at(0), 0.03) << turn_deg;
+  }
+  board.hole->center_in_board_m.setZero();
+  EXPECT_TRUE(HolesAllowTurns(board, 2));
+}
+
+// A square outline looks the same after a quarter turn, an oblong opening does not.
+TEST(BoardsInScans, AnOblongOpeningTellsTheQuarterTurnsOfASquareBoard) {
+  Random random(1);
+  Scene scene = TwoBoardsInRoom({}, random);
+  Board board = scene.boards[0].board;
+  board.tags.clear();
+  board.checker.reset();
+  board.top_right_m = 0.8;
+  board.right_bottom_m = 0.8;
+  board.hole = BoardHole{.width_m = 0.5, .height_m = 0.25};
+  EXPECT_TRUE(HolesAllowTurns(board, 2));
+  EXPECT_FALSE(HolesAllowTurns(board, 1));
+  for (const double turn_deg : {40.0, 130.0}) {
+    scene.boards = {PlaceBoard(board, {.distance_m = 2.2, .turn_deg = turn_deg})};
+    const BoardSearch search = SearchScan(scene, {board}, *FindLidarModel("os1_64"), 1);
+    ASSERT_EQ(search.found.size(), 1U) << turn_deg;
+    const Expected<LidarCorners> corners = ExtractCorners("rectangle", search.found[0], board);
+    ASSERT_TRUE(corners) << corners.error().message;
+    for (std::size_t i = kCornersPerBoard; i < 2 * kCornersPerBoard; ++i) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Eigen::Vector2d& corner : CornersInBoard(board)) {
+        const Eigen::Vector3d truth =
+            scene.boards[0].world_from_board * Eigen::Vector3d(corner.x(), corner.y(), 0.0);
+        nearest = std::min(nearest, (corners->in_lidar[i] - truth).norm());
+      }
+      EXPECT_LT(nearest, 0.03) << turn_deg << " " << i;
+    }
+  }
 }
 
 class EveryLidar : public testing::TestWithParam<std::string> {

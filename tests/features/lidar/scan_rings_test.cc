@@ -157,6 +157,23 @@ TEST(ScanRings, AreRecoveredFromTheOrderOfThePoints) {
   ExpectRings(by_ring, 80, "by ring");
 }
 
+// Some converters write a field `ring` of zeros. A single ring keeps its number.
+TEST(ScanRings, AreRecoveredWhereTheFieldSaysNothing) {
+  PointCloud cloud = RoomSeenBy({EvenFan(16, 2.0)}, 400);
+  cloud.ring.assign(cloud.points.size(), 0);
+  const Expected<ScanRings> rings = ScanRings::Build(cloud);
+  ASSERT_TRUE(rings);
+  EXPECT_TRUE(rings->has_rings());
+  EXPECT_EQ(rings->rings(), 16);
+
+  PointCloud single = RoomSeenBy({{3.0}}, 400);
+  single.ring.assign(single.points.size(), 7);
+  const Expected<ScanRings> one = ScanRings::Build(single);
+  ASSERT_TRUE(one);
+  ASSERT_EQ(one->rings(), 1);
+  EXPECT_EQ(one->number(0), 7);
+}
+
 // In any order and without invalid points, rings are followed from far returns to near ones.
 TEST(ScanRings, AreFollowedWhereBeamsStartBesideTheOrigin) {
   PointCloud cloud = RoomSeenBy({EvenFan(16, 2.0), 0.01}, 400);

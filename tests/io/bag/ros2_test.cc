@@ -218,6 +218,29 @@ TEST(Ros2, ADatabaseOfSomethingElseIsNamed) {
       HasSubstr("expected a recording of ROS 2 (SQLite with the tables topics and messages)"));
 }
 
+// Recordings that were merged list a topic twice; its times are those of both.
+TEST(Ros2, ATopicThatIsListedTwiceIsOne) {
+  const std::filesystem::path path = test::TestFolder() / "merged.db3";
+  std::filesystem::copy_file(Seed("rosbag2/plain"), path);
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  const char* const twice =
+      "INSERT INTO topics(id, name, type, serialization_format)"
+      " SELECT 99, name, type, serialization_format FROM topics WHERE name = '/info';"
+      "INSERT INTO messages(topic_id, timestamp, data) SELECT 99, 4, data FROM messages"
+      " WHERE topic_id = 2;";
+  EXPECT_EQ(sqlite3_exec(database, twice, nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(database);
+  const Expected<std::unique_ptr<Bag>> bag = OpenBag(path);
+  ASSERT_TRUE(bag) << bag.error().message;
+  ASSERT_EQ((*bag)->topics().size(), 2U);
+  const BagTopic& info = (*bag)->topics()[1];
+  EXPECT_EQ(info.name, "/info");
+  EXPECT_EQ(info.count, 2U);
+  EXPECT_EQ(info.first_ns, 4);
+  EXPECT_EQ(info.last_ns, 9);
+}
+
 // livox_ros_driver2's message, aligned as CDR: a point takes 19 bytes and one of padding.
 TEST(LivoxMessage, OfRos2IsReadWithItsPadding) {
   std::string data("\x00\x01\x00\x00", 4);
@@ -252,6 +275,16 @@ TEST(LivoxMessage, OfRos2IsReadWithItsPadding) {
   EXPECT_THAT(scan->cloud.points, ElementsAre(Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(1, 2, 4)));
   EXPECT_THAT(scan->cloud.intensity, ElementsAre(40.0F, 41.0F));
   EXPECT_THAT(scan->cloud.time_s, ElementsAre(0.0, 1e-6));
+  // No sensor measures that far: a ray without a return.
+  const float far = 1e30F;
+  std::string beyond = data;
+  beyond.replace(beyond.size() - 19 + 4, sizeof(far), reinterpret_cast<const char*>(&far),
+                 sizeof(far));
+  message.data = beyond;
+  const Expected<CloudMessage> without = DecodePointCloud(message);
+  ASSERT_TRUE(without) << without.error().message;
+  EXPECT_TRUE(without->cloud.points[0].allFinite());
+  EXPECT_FALSE(without->cloud.points[1].allFinite());
   message.data = std::string_view(data).substr(0, data.size() - 12);
   EXPECT_THAT(DecodePointCloud(message).error().message, HasSubstr("points"));
 }

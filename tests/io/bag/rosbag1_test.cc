@@ -146,6 +146,17 @@ INSTANTIATE_TEST_SUITE_P(Compressions, RoundTripTest,
                          testing::Values(BagCompression::kNone, BagCompression::kBz2,
                                          BagCompression::kLz4));
 
+// CameraInfo has no xi: the lens would read back as another one.
+TEST(Rosbag1Writer, RefusesACameraForWhichCameraInfoHasNoPlace) {
+  Expected<Rosbag1Writer> writer = Rosbag1Writer::Create(test::TestFolder() / "xi.bag");
+  ASSERT_TRUE(writer) << writer.error().message;
+  CameraInfoMessage info = SomeCamera(CameraModel::kOmnidirectional);
+  info.camera.xi = 1.3;
+  const Expected<void> written = writer->Write("/camera_info", kStart, info);
+  ASSERT_FALSE(written);
+  EXPECT_THAT(written.error().message, HasSubstr("omnidirectional: it has no place for xi"));
+}
+
 #ifdef SEXTANT_ROSBAG_DUMP
 TEST_P(RoundTripTest, RosReadsWhatWeWrite) {
   const test::ProgramRun run =
