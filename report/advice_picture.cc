@@ -177,8 +177,11 @@ cv::Mat DrawAdvice(const CalibrationResult& result, const SensorPair& sensors,
                    const std::vector<BoardProposal>& proposals) {
   const double aspect = static_cast<double>(sensors.camera.height_px) / sensors.camera.width_px;
   constexpr int kHead_px = 34;
-  const int image_width = std::min(900, cvRound((kHeight_px - kHead_px) / aspect));
-  const int image_height = cvRound(image_width * aspect);
+  constexpr int kMaxWidth_px = 900;
+  constexpr int kMaxHeight_px = kHeight_px - kHead_px;
+  // Both are rounded, and a product of rounded numbers may be a pixel too high.
+  const int image_width = std::clamp(cvRound(kMaxHeight_px / aspect), 1, kMaxWidth_px);
+  const int image_height = std::clamp(cvRound(image_width * aspect), 1, kMaxHeight_px);
   cv::Mat canvas(kHeight_px, kTop_px + kGap_px + image_width + kGap_px, CV_8UC3, kPaper);
   const std::vector<PlacedBoard> seen = SeenBoardsOf(result);
   std::vector<PlacedBoard> next;
