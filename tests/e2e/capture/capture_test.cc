@@ -155,6 +155,18 @@ TEST_F(CaptureRun, ItGoesOnWithTheFilesThatAreThereAndGivesTheAnswerOfCalibrate)
   EXPECT_EQ(ReadText(TestPath("result.yaml")), ReadText(TestPath("calibrated.yaml")));
 }
 
+TEST_F(CaptureRun, StandardOutputHasTheJsonAlone) {
+  for (int view = 0; view < 6; ++view) Drop(view);
+  const test::ProgramRun run = test::RunSextant(
+      "capture " + folder_.string() + " --port 0 --need 60,2 --bootstrap 20 --json - --out " +
+      TestPath("result.yaml") + " --report " + TestPath("report.html"));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, testing::StartsWith("{"));
+  EXPECT_THAT(run.out, Not(HasSubstr("Watching")));
+  EXPECT_THAT(run.err, HasSubstr("Watching '"));
+  EXPECT_THAT(run.err, HasSubstr("known to"));
+}
+
 TEST_F(CaptureRun, CtrlCWritesWhatIsKnown) {
   Start("0.001,0.001");
   Drop(0);
