@@ -63,7 +63,8 @@ class LiveSession {
   std::size_t takes_ = 0;
 };
 
-/// "7: board 0 in the photo and in the scan", or what is missing and why: one view in one line.
+/// "7: board 0 in the photo; 1 possible board in the scan", with what is missing and why: one view
+/// in one line, which is its error where its files could not be read.
 std::string DescribeSighting(const SessionView& view, const std::vector<Board>& boards);
 
 }  // namespace sextant

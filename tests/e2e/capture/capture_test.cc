@@ -103,10 +103,10 @@ TEST_F(CaptureRun, FilesThatAppearAreProcessedUntilTheAccuracyIsReached) {
   const std::string scan = ReadText(recording_ / NameOf("scan", 0));
   WriteText(folder_ / NameOf("scan", 0), scan.substr(0, scan.size() / 2));
   EXPECT_TRUE(Eventually(kPatience_s, [&] { return PageHas("<li>000: "); })) << ReadText(log_);
-  EXPECT_FALSE(PageHas("<li>000: board"));
+  EXPECT_FALSE(PageHas("<li>000: boards"));
   Copy(NameOf("scan", 0));
   EXPECT_TRUE(Eventually(kPatience_s, [&] {
-    return PageHas("<li>000: board 0, 1 in the photo; ");
+    return PageHas("<li>000: boards 0, 1 in the photo; ");
   })) << ReadText(log_);
 
   // A photo alone waits for its scan.
