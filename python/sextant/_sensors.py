@@ -33,7 +33,7 @@ def read_boards(path):
 
 
 def read_cloud(path):
-    """A scan (PCD, PLY, KITTI .bin, CSV, npy) as (N, 3) to (N, 6).
+    """A scan (PCD, PLY, LAS, npy, KITTI .bin, or a table) as (N, 3) to (N, 6).
 
     Columns: x y z [m] in the LiDAR frame, intensity, ring (0 the lowest), time [s]; as many as the
     file has, NaN for one that is missing before another. Rays without a return have NaN points.
