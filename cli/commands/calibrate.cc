@@ -142,6 +142,10 @@ Expected<RigResult> CalibrateSensors(const CalibrateCommandOptions& options,
   SEXTANT_RETURN_IF_ERROR(CheckRigOptions(options));
   SEXTANT_ASSIGN_OR_RETURN(const CalibrateOptions settings, SettingsFrom(options));
   ObserveRigOptions observe{.observe = settings.observe, .match = settings.match};
+  if (options.boards_path.empty() && session.boards.empty()) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     "--board is missing: the session does not name the boards");
+  }
   if (!options.boards_path.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(observe.boards, ReadBoards(options.boards_path));
   }

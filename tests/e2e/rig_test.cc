@@ -291,5 +291,33 @@ TEST(RigCommand, ReadsTheTransformsOfTheOriginalPackage) {
   EXPECT_NEAR(pair["a_from_b"]["translation_m"][0].get<double>(), -0.397, 1e-12);
 }
 
+TEST(RigCommand, OptionsForRigFilesAreRefusedForTransforms) {
+  const std::string rts = TestPath("rts.txt");
+  test::WriteText(rts,
+                  "1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 0 0 0.4\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  const std::string command = "rig " + rts + " --overwrite --out " + TestPath("rig.json");
+  EXPECT_EQ(RunSextant(command).exit_code, 0);
+  test::ExpectRefused(RunSextant(command + " --root camera_1"), "--root is for a rig file");
+  test::ExpectRefused(RunSextant(command + " --estimate-time"),
+                      "--estimate-time is for a rig file");
+  // The fault of a matrix is named, and no rig file is expected.
+  test::WriteText(rts, "1 0 0 0.1\n0 1 0 0\n0 0 2 0\n0 0 0 1\n");
+  test::ExpectRefused(RunSextant(command), "expected a rotation");
+}
+
+TEST(RigCommand, ASessionWithoutBoardsIsWrongUse) {
+  const std::string folder = SessionOfRig().string();
+  test::WriteText(TestPath("session.yaml"),
+                  "sextant_session: 1\nsensors:\n"
+                  "  - {name: lidar, clouds: '" +
+                      folder +
+                      "/scan_*.pcd'}\n"
+                      "  - {name: left, camera: '" +
+                      folder + "/left_info.yaml', images: '" + folder + "/left_*.png'}\n");
+  test::ExpectRefused(
+      RunSextant("calibrate " + TestPath("session.yaml") + " --out " + TestPath("rig.json")),
+      "--board is missing");
+}
+
 }  // namespace
 }  // namespace sextant
