@@ -16,7 +16,6 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr LidarErrorModel kWhite = kWhiteNoiseOnly;
 
 /// Squared errors of every pair of sensors over many rigs.
 struct PairErrors {
