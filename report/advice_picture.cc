@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "geometry/board_check.h"
+#include "solvers/core/board_view_check.h"
 
 namespace sextant {
 namespace {
@@ -33,10 +34,9 @@ std::vector<PlacedBoard> SeenBoardsOf(const CalibrationResult& result) {
   for (const ResultView& view : result.views) {
     if (!view.kept) continue;
     for (const ResultBoardView& seen : view.boards) {
-      const auto board = std::find_if(result.boards.begin(), result.boards.end(),
-                                      [&](const Board& b) { return b.id == seen.board; });
-      if (board == result.boards.end() || !seen.cam_from_board) continue;
-      placed.push_back({&*board, *seen.cam_from_board});
+      const Board* board = FindBoard(result.boards, seen.board);
+      if (board == nullptr || !seen.cam_from_board) continue;
+      placed.push_back({board, *seen.cam_from_board});
     }
   }
   return placed;

@@ -16,7 +16,6 @@ namespace {
 
 using testing::HasSubstr;
 
-
 /// Squared errors of every pair of sensors over many rigs.
 struct PairErrors {
   double nees = 0.0;        ///< Sum of e' C^-1 e / 6.
