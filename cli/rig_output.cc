@@ -17,14 +17,17 @@ int DeliverRig(const char* command, const Expected<RigResult>& result, const Rig
     return Refuse(command, result.error(), no_answer ? kNoAnswer : kWrongUse);
   }
   const std::string json = FormatRigResult(*result);
+  std::string text = DescribeRig(*result) + "\n";
   Expected<void> written = WriteFileAtomically(outputs.result_path, json);
-  std::string text = DescribeRig(*result) + "\n" +
-                     WroteLine(outputs.result_path, "the result, for sextant export and report");
   if (written && !outputs.report_path.empty()) {
     written = WritePage(CollectRigPage(*result), outputs.report_path);
-    text += WroteLine(outputs.report_path, kReportWords);
   }
-  if (!written) return Refuse(command, written.error());
+  if (!written) {
+    PrintBesideJson(outputs.json_path, text);
+    return Refuse(command, written.error());
+  }
+  text += WroteLine(outputs.result_path, "the result, for sextant export and report");
+  if (!outputs.report_path.empty()) text += WroteLine(outputs.report_path, kReportWords);
   const bool whole = result->refutations.empty() && result->unconnected.empty();
   return Deliver(command, outputs.json_path, text, json, whole ? kAnswered : kNotUsable);
 }

@@ -212,10 +212,11 @@ int Run(const CalibrateCommandOptions& options) {
   if (const auto ok = ClaimResult(options.out_path); !ok) return Refuse("calibrate", ok.error());
   const Expected<Calibration> calibration = CalibrateWithProgress(options);
   if (!calibration) return Refuse("calibrate", calibration.error());
+  std::string text = DescribeCalibration(*calibration);
   if (Expected<void> ok = WriteFiles(options, *calibration); !ok) {
+    PrintBesideJson(options.json_path, text);
     return Refuse("calibrate", ok.error());
   }
-  std::string text = DescribeCalibration(*calibration);
   if (!calibration->result) {
     if (!options.report_path.empty()) text += WroteLine(options.report_path, kReportWords);
     PrintBesideJson(options.json_path, text);

@@ -252,15 +252,16 @@ int Finish(const CaptureOptions& options, Capture& capture) {
                   kNoAnswer);
   }
   const Calibration& calibration = *capture.calibration();
+  std::string text = "\n" + DescribeCalibration(calibration);
   if (const Expected<void> ok = WriteCapture(options, calibration); !ok) {
     capture.End("The capture has ended, but could not write: " + ok.error().message);
+    PrintBesideJson(options.json_path, text);
     return Refuse("capture", ok.error());
   }
   capture.End(fmt::format("{} The report is {}.",
                           capture.IsReached() ? "The accuracy that is needed has been reached."
                                               : "The capture was ended.",
                           PathText(options.report_path)));
-  std::string text = "\n" + DescribeCalibration(calibration);
   if (!calibration.result) {
     PrintBesideJson(options.json_path, text + WroteLine(options.report_path, kReportWords));
     return Refuse("capture", calibration.result.error(), kNoAnswer);

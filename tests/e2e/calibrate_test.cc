@@ -227,6 +227,7 @@ TEST(Calibrate, TheResultIsWrittenIfTheProblemCannotBe) {
   EXPECT_EQ(run.exit_code, 4) << run.err;
   EXPECT_THAT(run.err, HasSubstr("/dev/full"));
   EXPECT_TRUE(fs::exists(out));
+  EXPECT_THAT(run.out, HasSubstr("cam_from_lidar"));
 }
 
 // An unreadable view is left out; a scan that is also the output must not be, and be replaced.

@@ -300,6 +300,9 @@ TEST(RigCommand, OptionsForRigFilesAreRefusedForTransforms) {
   test::ExpectRefused(RunSextant(command + " --root camera_1"), "--root is for a rig file");
   test::ExpectRefused(RunSextant(command + " --estimate-time"),
                       "--estimate-time is for a rig file");
+  const ProgramRun full = RunSextant("rig " + rts + " --out /dev/full");
+  EXPECT_EQ(full.exit_code, 4);
+  EXPECT_THAT(full.out, HasSubstr("camera_1")) << "what cannot be written is still printed";
   // The fault of a matrix is named, and no rig file is expected.
   test::WriteText(rts, "1 0 0 0.1\n0 1 0 0\n0 0 2 0\n0 0 0 1\n");
   test::ExpectRefused(RunSextant(command), "expected a rotation");
