@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@ using test::ProgramRun;
 using test::ReadText;
 using test::RunSextant;
 using test::TestFolder;
+using test::TestPath;
 using test::WriteText;
 using testing::HasSubstr;
 using testing::Key;
