@@ -96,6 +96,11 @@ TEST(RigCommand, ARigIsExportedAsATreeOrAPair) {
   const ProgramRun none = RunSextant("export " + out + " --sensors left top --to matrix");
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_THAT(none.err, HasSubstr("there are: lidar, left, right"));
+  for (const char* option : {"--lidar-frame velodyne", "--camera-frame cam", "--parent camera"}) {
+    const std::string command = "export " + out + " --to ros2 " + option;
+    test::ExpectRefused(RunSextant(command), "is for two sensors");
+    EXPECT_EQ(RunSextant(command + " --sensors left lidar").exit_code, 0) << option;
+  }
 }
 
 TEST(RigCommand, AScanIsDrawnOnTheImageOfANamedCamera) {
