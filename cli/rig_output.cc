@@ -9,13 +9,15 @@
 
 namespace sextant::cli {
 
+int ExitCodeOfRig(const Error& error) {
+  const bool has_no_answer = error.code == ErrorCode::kDegenerate ||
+                             error.code == ErrorCode::kNoConvergence ||
+                             error.code == ErrorCode::kMissingData;
+  return has_no_answer ? kNoAnswer : kWrongUse;
+}
+
 int DeliverRig(const char* command, const Expected<RigResult>& result, const RigOutputs& outputs) {
-  if (!result) {
-    const ErrorCode code = result.error().code;
-    const bool no_answer = code == ErrorCode::kDegenerate || code == ErrorCode::kNoConvergence ||
-                           code == ErrorCode::kMissingData;
-    return Refuse(command, result.error(), no_answer ? kNoAnswer : kWrongUse);
-  }
+  if (!result) return Refuse(command, result.error(), ExitCodeOfRig(result.error()));
   const std::string json = FormatRigResult(*result);
   std::string text = DescribeRig(*result) + "\n";
   Expected<void> written = WriteFileAtomically(outputs.result_path, json);

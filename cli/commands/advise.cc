@@ -14,6 +14,7 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/rig_output.h"
 #include "eval/metrics/bounds.h"
 #include "io/output/standard_output.h"
 #include "io/problems/rig_yaml.h"
@@ -180,7 +181,7 @@ int AdviseOnRig(const AdviseCommandOptions& options, const std::string& text) {
   const Expected<RigFile> rig = ParseRigFile(text, options.result_path);
   if (!rig) return Refuse("advise", rig.error());
   const Expected<RigAdvice> advice = AdviseRig(*rig);
-  if (!advice) return Refuse("advise", advice.error(), kNoAnswer);
+  if (!advice) return Refuse("advise", advice.error(), ExitCodeOfRig(advice.error()));
   Print("{}", RigAdviceText(*advice));
   return kAnswered;
 }

@@ -283,6 +283,28 @@ TEST(RigCommand, ClocksAreEstimatedFromBoardsThatMove) {
   EXPECT_THAT(still.out, HasSubstr("the time offset of rear cannot be told"));
 }
 
+// Two corners of one sensor are exchanged.
+TEST(RigCommand, WrongDataIsWrongUseWhoeverReadsIt) {
+  test::WriteText(TestPath("rig.yaml"),
+                  "sextant_rig: 1\nsensors: [{name: top}, {name: rear}]\n"
+                  "boards: [{id: 0, top_right_m: 0.8, right_bottom_m: 0.6}]\n"
+                  "tables: corners.csv\n");
+  std::string table = TableOfMovingBoard(0.0);
+  const auto replace = [&table](const std::string& from, const std::string& to) {
+    for (std::size_t at = table.find(from); at != std::string::npos; at = table.find(from, at)) {
+      table.replace(at, from.size(), to);
+    }
+  };
+  replace(",rear,2,", ",rear,x,");
+  replace(",rear,3,", ",rear,2,");
+  replace(",rear,x,", ",rear,3,");
+  test::WriteText(TestPath("corners.csv"), table);
+  test::ExpectRefused(RunSextant("rig " + TestPath("rig.yaml") + " --out " + TestPath("rig.json")),
+                      "its points do not have the form of the board");
+  test::ExpectRefused(RunSextant("advise " + TestPath("rig.yaml")),
+                      "its points do not have the form of the board");
+}
+
 TEST(RigCommand, ReadsTheTransformsOfTheOriginalPackage) {
   SEXTANT_REAL_DATA(path, "dhall/rts.txt");
   const std::string out = TestPath("rig.json");
