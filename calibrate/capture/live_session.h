@@ -33,7 +33,6 @@ class LiveSession {
 
   std::size_t size() const { return views_.size(); }
   const std::vector<Board>& boards() const { return observer_.boards(); }
-  const Camera& camera() const { return observer_.camera(); }
   /// The views that the last Take observed, as indices into Calibration::observed.views.
   const std::vector<std::size_t>& newest() const { return newest_; }
   /// All views, the newest first; those of one Take in the order of their names.
