@@ -22,6 +22,11 @@ int Refuse(const char* command, const Error& error, int exit_code) {
   return ExitCodeOf(error, exit_code);
 }
 
+void PrintBesideJson(const std::string& json_path, std::string_view text) {
+  if (json_path == "-") return PrintErrorText(text);
+  PrintText(text);
+}
+
 int Deliver(const char* command, const std::string& json_path, const std::string& text,
             const std::string& json, int exit_code) {
   if (json_path == "-") {

@@ -26,9 +26,12 @@ std::string WroteLine(const std::filesystem::path& path, std::string_view what);
 /// Prints "sextant <command>: <message>" on standard error. Returns ExitCodeOf the error.
 int Refuse(const char* command, const Error& error, int exit_code = kWrongUse);
 
-/// Prints the text, or writes the results to the file of --json; text and JSON never share standard
-/// output. `json_path`: empty for none, "-" for standard output. Returns `exit_code`,
-/// or that of Refuse if the file cannot be written.
+/// Prints a text that is not the result's: on standard error where --json is "-", as text and JSON
+/// never share standard output.
+void PrintBesideJson(const std::string& json_path, std::string_view text);
+
+/// Prints the text, or writes the results to the file of --json. `json_path`: empty for none, "-"
+/// for standard output. Returns `exit_code`, or that of Refuse if the file cannot be written.
 int Deliver(const char* command, const std::string& json_path, const std::string& text,
             const std::string& json, int exit_code);
 

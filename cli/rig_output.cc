@@ -9,22 +9,27 @@
 
 namespace sextant::cli {
 
+int ExitCodeOfRig(const Error& error) {
+  const bool has_no_answer = error.code == ErrorCode::kDegenerate ||
+                             error.code == ErrorCode::kNoConvergence ||
+                             error.code == ErrorCode::kMissingData;
+  return has_no_answer ? kNoAnswer : kWrongUse;
+}
+
 int DeliverRig(const char* command, const Expected<RigResult>& result, const RigOutputs& outputs) {
-  if (!result) {
-    const ErrorCode code = result.error().code;
-    const bool no_answer = code == ErrorCode::kDegenerate || code == ErrorCode::kNoConvergence ||
-                           code == ErrorCode::kMissingData;
-    return Refuse(command, result.error(), no_answer ? kNoAnswer : kWrongUse);
-  }
+  if (!result) return Refuse(command, result.error(), ExitCodeOfRig(result.error()));
   const std::string json = FormatRigResult(*result);
+  std::string text = DescribeRig(*result) + "\n";
   Expected<void> written = WriteFileAtomically(outputs.result_path, json);
-  std::string text = DescribeRig(*result) + "\n" +
-                     WroteLine(outputs.result_path, "the result, for sextant export and report");
   if (written && !outputs.report_path.empty()) {
     written = WritePage(CollectRigPage(*result), outputs.report_path);
-    text += WroteLine(outputs.report_path, kReportWords);
   }
-  if (!written) return Refuse(command, written.error());
+  if (!written) {
+    PrintBesideJson(outputs.json_path, text);
+    return Refuse(command, written.error());
+  }
+  text += WroteLine(outputs.result_path, "the result, for sextant export and report");
+  if (!outputs.report_path.empty()) text += WroteLine(outputs.report_path, kReportWords);
   const bool whole = result->refutations.empty() && result->unconnected.empty();
   return Deliver(command, outputs.json_path, text, json, whole ? kAnswered : kNotUsable);
 }

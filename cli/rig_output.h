@@ -15,6 +15,9 @@ struct RigOutputs {
   std::string report_path{};  ///< The report in HTML; empty: not written.
 };
 
+/// kNoAnswer where the sensors' data has no answer, kWrongUse where the data itself is wrong.
+int ExitCodeOfRig(const Error& error);
+
 /// Writes a rig's result and its report, and prints it or its JSON (Deliver); prints the error
 /// where there is none. Returns the exit code.
 int DeliverRig(const char* command, const Expected<RigResult>& result, const RigOutputs& outputs);

@@ -109,9 +109,12 @@ py::list ViewsOf(const ModuleCalibration& calibration) {
 }
 
 py::list BoardFates(const ModuleCalibration& calibration) {
+  const Assembly& assembly = calibration.all->assembly;
   py::list rows;
-  for (const BoardRow& row : calibration.all->assembly.rows) {
-    rows.append(py::make_tuple(calibration.all->observed.views[row.view].name, row.board,
+  for (const BoardRow& row : assembly.rows) {
+    const int id =
+        row.board < 0 ? -1 : assembly.problem.boards[static_cast<std::size_t>(row.board)].id;
+    rows.append(py::make_tuple(calibration.all->observed.views[row.view].name, id,
                                std::string(ToString(row.fate)), row.why));
   }
   return rows;
@@ -179,8 +182,10 @@ void BindCalibrate(py::module_& module) {
   calibration
       .def_property_readonly("views", &ViewsOf,
                              "A dict for each view: name, kept, reason, and residuals [m, px].")
-      .def_property_readonly("boards", &BoardFates,
-                             "What became of each board in each view: (view, board, status, why).")
+      .def_property_readonly(
+          "boards", &BoardFates,
+          "What became of each board in each view: (view, id of the board, or -1\n"
+          "for the view as a whole, status, why).")
       .def_property_readonly("problem", &ProblemOf, "The pairs, for solve() and compare().")
       .def(
           "to_json", [](const C& c) { return FormatCalibrationResultJson(c.result()); },

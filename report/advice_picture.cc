@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "geometry/board_check.h"
+#include "solvers/core/board_view_check.h"
 
 namespace sextant {
 namespace {
@@ -33,10 +34,9 @@ std::vector<PlacedBoard> SeenBoardsOf(const CalibrationResult& result) {
   for (const ResultView& view : result.views) {
     if (!view.kept) continue;
     for (const ResultBoardView& seen : view.boards) {
-      const auto board = std::find_if(result.boards.begin(), result.boards.end(),
-                                      [&](const Board& b) { return b.id == seen.board; });
-      if (board == result.boards.end() || !seen.cam_from_board) continue;
-      placed.push_back({&*board, *seen.cam_from_board});
+      const Board* board = FindBoard(result.boards, seen.board);
+      if (board == nullptr || !seen.cam_from_board) continue;
+      placed.push_back({board, *seen.cam_from_board});
     }
   }
   return placed;
@@ -177,8 +177,11 @@ cv::Mat DrawAdvice(const CalibrationResult& result, const SensorPair& sensors,
                    const std::vector<BoardProposal>& proposals) {
   const double aspect = static_cast<double>(sensors.camera.height_px) / sensors.camera.width_px;
   constexpr int kHead_px = 34;
-  const int image_width = std::min(900, cvRound((kHeight_px - kHead_px) / aspect));
-  const int image_height = cvRound(image_width * aspect);
+  constexpr int kMaxWidth_px = 900;
+  constexpr int kMaxHeight_px = kHeight_px - kHead_px;
+  // Both are rounded, and a product of rounded numbers may be a pixel too high.
+  const int image_width = std::clamp(cvRound(kMaxHeight_px / aspect), 1, kMaxWidth_px);
+  const int image_height = std::clamp(cvRound(image_width * aspect), 1, kMaxHeight_px);
   cv::Mat canvas(kHeight_px, kTop_px + kGap_px + image_width + kGap_px, CV_8UC3, kPaper);
   const std::vector<PlacedBoard> seen = SeenBoardsOf(result);
   std::vector<PlacedBoard> next;

@@ -84,7 +84,7 @@ std::string PairTable(const RigResult& result) {
   return table.Plain(kTextWidth);
 }
 
-// x: used, with the residual; -: left out; blank: not seen.
+// Blank: not seen.
 std::string ViewTable(const RigResult& result) {
   std::vector<std::string> header = {"moment", "board"};
   for (const RigResultSensor& sensor : result.sensors) header.push_back(sensor.name);

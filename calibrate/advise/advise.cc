@@ -181,14 +181,16 @@ Expected<Advice> Advise(const CalibrationResult& result, const SensorPair& senso
   }
   const Candidate& chosen = grid[*best];
   const Board& board = result.boards[chosen.board];
-  const std::optional<Matrix6d> covariance = CovarianceOf(
-      known + ShareOfPredicted(result) * *InformationAt(sensors, board, chosen.cam_from_board));
+  const Matrix6d information =
+      ShareOfPredicted(result) * *InformationAt(sensors, board, chosen.cam_from_board);
+  const std::optional<Matrix6d> covariance = CovarianceOf(known + information);
   if (!covariance) {
     return MakeError(ErrorCode::kDegenerate, "no single view of the grid determines the pose");
   }
   advice.proposal = {.board = chosen.board,
                      .cam_from_board = chosen.cam_from_board,
                      .rings = RingsOn(*PredictView(sensors, board, chosen.cam_from_board)),
+                     .information = information,
                      .covariance = *covariance,
                      .sentence = DescribePlacement(board, chosen.cam_from_board)};
   return advice;

@@ -16,6 +16,7 @@ struct BoardProposal {
   std::size_t board = 0;  ///< Index into the result's boards.
   Rigid3d cam_from_board{};
   int rings = 0;           ///< Rings that would cross the board.
+  Matrix6d information{};  ///< Predicted of this view.
   Matrix6d covariance{};   ///< Predicted for the pose with this view added.
   std::string sentence{};  ///< Distance, side, height and tilt in words.
 };

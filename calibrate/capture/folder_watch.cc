@@ -12,15 +12,17 @@
 #include "base/text/lower_case.h"
 #include "base/text/path_text.h"
 #include "calibrate/session/file_pairs.h"
+#include "io/clouds/cloud_file.h"
 
 namespace sextant {
 namespace {
 
 namespace fs = std::filesystem;
 
-template <std::size_t Count>
-bool HasExtension(const fs::path& path, const std::array<std::string_view, Count>& extensions) {
-  return std::ranges::find(extensions, LowerCase(path.extension().string())) != extensions.end();
+bool IsImageName(const fs::path& path) {
+  static constexpr std::array<std::string_view, 9> kExtensions = {
+      ".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm", ".ppm", ".webp"};
+  return std::ranges::find(kExtensions, LowerCase(path.extension().string())) != kExtensions.end();
 }
 
 }  // namespace
@@ -31,17 +33,13 @@ FolderWatch::FolderWatch(fs::path folder, std::string image_pattern, std::string
       cloud_pattern_(std::move(cloud_pattern)) {}
 
 bool FolderWatch::IsImage(const fs::path& path) const {
-  static constexpr std::array<std::string_view, 9> kExtensions = {
-      ".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm", ".ppm", ".webp"};
   if (!image_pattern_.empty()) return MatchesPattern(path.filename().string(), image_pattern_);
-  return HasExtension(path, kExtensions);
+  return IsImageName(path);
 }
 
 bool FolderWatch::IsCloud(const fs::path& path) const {
-  static constexpr std::array<std::string_view, 5> kExtensions = {".pcd", ".ply", ".bin", ".csv",
-                                                                  ".npy"};
   if (!cloud_pattern_.empty()) return MatchesPattern(path.filename().string(), cloud_pattern_);
-  return HasExtension(path, kExtensions);
+  return IsCloudName(path);
 }
 
 Expected<void> FolderWatch::AddFolder(const fs::path& folder, bool with_folders,

@@ -31,7 +31,7 @@ struct FolderFiles {
 class FolderWatch {
  public:
   /// The patterns are those of file names, with `*`. Empty: every image (.png, .jpg, .jpeg, .bmp,
-  /// .tif, .tiff, .pgm, .ppm, .webp) and every scan (.pcd, .ply, .bin, .csv, .npy).
+  /// .tif, .tiff, .pgm, .ppm, .webp) and every scan (IsCloudName).
   explicit FolderWatch(std::filesystem::path folder, std::string image_pattern = "",
                        std::string cloud_pattern = "");
 

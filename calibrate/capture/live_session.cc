@@ -30,14 +30,21 @@ std::vector<std::filesystem::path> PathsOf(const std::vector<WatchedFile>& files
   return paths;
 }
 
+// "board 0", "boards 0, 1", or "no board".
 std::string BoardsIn(const std::vector<CameraSighting>& sightings,
                      const std::vector<Board>& boards) {
-  std::string text;
+  std::string ids;
   for (const CameraSighting& sighting : sightings) {
     const Board& board = boards[static_cast<std::size_t>(sighting.board)];
-    text += fmt::format("{}{}", text.empty() ? "" : ", ", board.id);
+    ids += fmt::format("{}{}", ids.empty() ? "" : ", ", board.id);
   }
-  return text;
+  if (ids.empty()) return "no board";
+  return (sightings.size() == 1 ? "board " : "boards ") + ids;
+}
+
+std::string PossibleBoards(std::size_t count) {
+  if (count == 0) return "no board";
+  return fmt::format("{} possible board{}", count, count == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -59,6 +66,8 @@ bool LiveSession::Take(const FolderFiles& files) {
   const FilesByPath images = ByPath(files.images);
   const FilesByPath clouds = ByPath(files.clouds);
   session_.files = PairSoFar(PathsOf(files.images), PathsOf(files.clouds), tolerance_s_);
+  std::map<std::filesystem::path, View*> before;  // By the photo, which is in one pair.
+  for (View& view : views_) before.emplace(view.image.path, &view);
   std::vector<View> views;
   std::vector<FilePair> unseen;
   newest_.clear();
@@ -66,12 +75,11 @@ bool LiveSession::Take(const FolderFiles& files) {
   ++takes_;
   for (const FilePair& pair : session_.files.pairs) {
     View view{.image = images.at(pair.image), .cloud = clouds.at(pair.cloud), .arrival = takes_};
-    const auto known = std::ranges::find_if(views_, [&view](const View& before) {
-      return before.image == view.image && before.cloud == view.cloud;
-    });
-    if (known != views_.end()) {
-      view.arrival = known->arrival;
-      view.seen = known->seen;
+    const auto known = before.find(pair.image);
+    if (known != before.end() && known->second->image == view.image &&
+        known->second->cloud == view.cloud) {
+      view.arrival = known->second->arrival;
+      view.seen = std::move(known->second->seen);
       view.seen.name = pair.name;
       ++kept;
     } else {
@@ -107,15 +115,11 @@ Calibration LiveSession::Solve() const {
 
 std::string DescribeSighting(const SessionView& view, const std::vector<Board>& boards) {
   if (!view.seen) return fmt::format("{}: {}", view.name, view.seen.error().message);
-  const std::string in_photo = BoardsIn(view.seen->in_image, boards);
+  const std::vector<CameraSighting>& in_photo = view.seen->in_image;
   const std::size_t in_scan = view.seen->in_scan.size();
-  std::string text = fmt::format("{}: {}; {}", view.name,
-                                 in_photo.empty() ? std::string("no board in the photo")
-                                                  : fmt::format("board {} in the photo", in_photo),
-                                 in_scan == 0 ? std::string("no board in the scan")
-                                              : fmt::format("{} possible board{} in the scan",
-                                                            in_scan, in_scan == 1 ? "" : "s"));
-  for (const CameraSighting& sighting : view.seen->in_image) {
+  std::string text = fmt::format("{}: {} in the photo; {} in the scan", view.name,
+                                 BoardsIn(in_photo, boards), PossibleBoards(in_scan));
+  for (const CameraSighting& sighting : in_photo) {
     if (!sighting.left_out.empty()) text += fmt::format(" ({})", sighting.left_out);
   }
   for (const MissingBoard& missing : view.seen->missing) {

@@ -33,7 +33,6 @@ class LiveSession {
 
   std::size_t size() const { return views_.size(); }
   const std::vector<Board>& boards() const { return observer_.boards(); }
-  const Camera& camera() const { return observer_.camera(); }
   /// The views that the last Take observed, as indices into Calibration::observed.views.
   const std::vector<std::size_t>& newest() const { return newest_; }
   /// All views, the newest first; those of one Take in the order of their names.
@@ -63,7 +62,8 @@ class LiveSession {
   std::size_t takes_ = 0;
 };
 
-/// "7: board 0 in the photo and in the scan", or what is missing and why: one view in one line.
+/// "7: board 0 in the photo; 1 possible board in the scan", with what is missing and why: one view
+/// in one line, which is its error where its files could not be read.
 std::string DescribeSighting(const SessionView& view, const std::vector<Board>& boards);
 
 }  // namespace sextant

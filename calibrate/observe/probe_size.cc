@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "calibrate/observe/board_scale.h"
 #include "features/lidar/corner_extractor.h"
 
 namespace sextant {
@@ -14,22 +15,6 @@ namespace {
 constexpr double kSameRange = 0.3;  // Relative; the sensors are not in one place.
 constexpr double kStep = 1.07;      // The search tolerates a size that is a few percent off.
 constexpr int kStepsEachWay = 6;    // From two thirds of the size to one and a half.
-
-Board Scaled(const Board& board, double factor) {
-  Board scaled{.id = board.id,
-               .top_right_m = factor * board.top_right_m,
-               .right_bottom_m = factor * board.right_bottom_m};
-  if (board.hole) {
-    scaled.hole = BoardHole{.width_m = factor * board.hole->width_m,
-                            .height_m = factor * board.hole->height_m,
-                            .center_in_board_m = factor * board.hole->center_in_board_m};
-  }
-  for (const RoundHole& hole : board.round_holes) {
-    scaled.round_holes.push_back(
-        {.radius_m = factor * hole.radius_m, .center_in_board_m = factor * hole.center_in_board_m});
-  }
-  return scaled;
-}
 
 // Measured by lines fitted without a known size; where that fails, the size of the search.
 std::string SizeOf(const BoardPatch& patch, const Board& board) {
@@ -56,7 +41,8 @@ std::vector<std::string> ProbeSizes(const PointCloud& cloud, std::span<const Boa
     std::optional<BoardPatch> best;
     Board best_board;
     for (int i = -kStepsEachWay; i <= kStepsEachWay; ++i) {
-      const std::vector<Board> scaled = {Scaled(board, std::pow(kStep, i))};
+      std::vector<Board> scaled = {board};
+      ScaleOutline(std::pow(kStep, i), scaled.front());
       const Expected<BoardSearch> search = FindBoards(*rings, scaled, options);
       if (!search || search->found.empty()) continue;
       const BoardPatch& patch = search->found.front();

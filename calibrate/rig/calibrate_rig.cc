@@ -9,6 +9,7 @@
 
 #include "base/version.h"
 #include "geometry/symmetric.h"
+#include "solvers/rig/rig_model.h"
 #include "solvers/rig/solve_rig.h"
 
 namespace sextant {
@@ -71,8 +72,15 @@ struct SensorPair {
   std::size_t b = 0;
 };
 
-RigResultPair PairOf(const RigFile& rig, const RigEstimate& estimate, const SensorPair& of,
-                     bool estimate_time) {
+// Whether the offsets of clocks were estimated, which SolveRig does only if the boards move.
+bool HasTimeOffsets(const RigEstimate& estimate) {
+  return std::ranges::any_of(estimate.numbers, [](const RigEstimatedNumber& number) {
+    return number.name == kTimeOffset;
+  });
+}
+
+// The pair alone has time offsets where all sensors together have, so that both are comparable.
+RigResultPair PairOf(const RigFile& rig, const RigEstimate& estimate, const SensorPair& of) {
   const UncertainPose joint = estimate.Between(of.a, of.b);
   RigResultPair pair{.a = rig.problem.sensors[of.a].name,
                      .b = rig.problem.sensors[of.b].name,
@@ -82,7 +90,9 @@ RigResultPair PairOf(const RigFile& rig, const RigEstimate& estimate, const Sens
   const RigProblem part = Restricted(rig.problem, sensors);
   pair.views = static_cast<int>(part.placements.size());
   if (part.placements.empty()) return pair;
-  const Expected<RigEstimate> alone = SolveRig(part, {.estimate_time = estimate_time});
+  const bool has_offsets = HasTimeOffsets(estimate);
+  const Expected<RigEstimate> alone =
+      SolveRig(part, {.estimate_time = has_offsets, .boards_move = has_offsets});
   if (!alone) return pair;
   const UncertainPose pose = alone->Between(0, 1);
   pair.alone_a_from_b = pose.b_from_a;
@@ -94,7 +104,7 @@ RigResultPair PairOf(const RigFile& rig, const RigEstimate& estimate, const Sens
 }
 
 std::vector<RigResultPair> PairsOf(const RigFile& rig, const RigEstimate& estimate,
-                                   bool estimate_time, const ProgressCallback& progress) {
+                                   const ProgressCallback& progress) {
   std::vector<SensorPair> connected;
   for (std::size_t a = 0; a < rig.problem.sensors.size(); ++a) {
     for (std::size_t b = a + 1; b < rig.problem.sensors.size(); ++b) {
@@ -104,7 +114,7 @@ std::vector<RigResultPair> PairsOf(const RigFile& rig, const RigEstimate& estima
   std::vector<RigResultPair> pairs(connected.size());
   ProgressCounter counter(progress, "pairs of sensors", connected.size());
   tbb::parallel_for(std::size_t{0}, connected.size(), [&](std::size_t i) {
-    pairs[i] = PairOf(rig, estimate, connected[i], estimate_time);
+    pairs[i] = PairOf(rig, estimate, connected[i]);
     counter.Step();
   });
   counter.Finish();
@@ -120,7 +130,7 @@ Expected<RigResult> CalibrateRig(const RigFile& rig, bool estimate_time,
   return RigResult{.version = std::string(Version()),
                    .root = rig.problem.sensors[rig.root].name,
                    .sensors = SensorsOf(rig, estimate),
-                   .pairs = PairsOf(rig, estimate, estimate_time, progress),
+                   .pairs = PairsOf(rig, estimate, progress),
                    .views = ViewsOf(rig, estimate),
                    .numbers = NumbersOf(rig, estimate),
                    .unconnected = estimate.unconnected,

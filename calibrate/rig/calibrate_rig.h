@@ -12,9 +12,10 @@
 namespace sextant {
 
 /// Solves a rig, and every pair of its sensors alone as a check (the loop test): each pair's own
-/// answer against that of all sensors. Runs on all cores; the same input gives the same result on
-/// any number of them. `estimate_time`: RigOptions::estimate_time. Progress: the stage of SolveRig,
-/// then "pairs of sensors". Errors: those of SolveRig.
+/// answer against that of all sensors, with time offsets in both or in neither. Runs on all cores;
+/// the same input gives the same result on any number of them. `estimate_time`:
+/// RigOptions::estimate_time. Progress: the stage of SolveRig, then "pairs of sensors". Errors:
+/// those of SolveRig.
 Expected<RigResult> CalibrateRig(const RigFile& rig, bool estimate_time = false,
                                  const ProgressCallback& progress = {});
 

@@ -152,7 +152,7 @@ class RigAssembly {
     }
   }
 
-  // The camera with the most matches tells the LiDAR's boards; others add those that it lacks.
+  // The LiDAR's boards are those of the camera with the most matches; others add what it lacks.
   void AddLidar(std::size_t lidar) {
     std::vector<std::pair<std::size_t, std::vector<BoardView>>> by_camera;
     for (std::size_t s = 0; s < session_.sensors.size(); ++s) {
@@ -198,7 +198,7 @@ class RigAssembly {
     return std::ranges::count(at->second.seen, sensor, &RigObservation::sensor) > 0;
   }
 
-  // Moments in which no camera tells what a LiDAR sees: by what another LiDAR sees.
+  // Moments in which no camera identifies what a LiDAR sees: another LiDAR does.
   void AddByLidar(std::size_t lidar, std::size_t other) {
     std::vector<Observation> views(session_.moments.size());
     std::vector<ScanAsImage> images(views.size());

@@ -27,10 +27,10 @@ struct ObservedRig {
   std::vector<std::string> notes{};  ///< Files that cannot be read, pairs without a match.
 };
 
-/// Finds the boards in all images and scans, on all cores, and tells which patch of a scan is which
-/// board by the cameras of the same moment (MatchViews, for every camera and LiDAR), and where no
-/// camera sees it by the other LiDARs. Errors: kMissingData without
-/// boards or moments; those of ReadBoards, ReadCamera and Observer::Make.
+/// Finds the boards in all images and scans, on all cores. Which patch of a scan is which board
+/// follows from the cameras of the same moment (MatchViews, for every camera and LiDAR) and, where
+/// none sees the board, from the other LiDARs. Errors: kMissingData without boards or moments;
+/// those of ReadBoards, ReadCamera and Observer::Make.
 Expected<ObservedRig> ObserveRig(const RigSession& session, const ObserveRigOptions& options);
 
 }  // namespace sextant

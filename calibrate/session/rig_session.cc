@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "base/text/path_text.h"
-#include "io/blocks/pose_block.h"
+#include "calibrate/session/simulated_folder.h"
 #include "io/text/text_file.h"
 #include "io/text/yaml_fields.h"
 
@@ -86,60 +86,37 @@ class RigSessionReader {
   RigSession session_;
 };
 
-// The true poses in truth.yaml, in the frame of the LiDAR; everything else in it is ignored.
-Expected<void> AddTruth(const fs::path& path, RigSession& session) {
-  SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, path.string()));
-  const YamlNode* cameras = root.Find("cameras");
-  if (cameras == nullptr) return {};
+// The true poses, in the frame of the LiDAR.
+Expected<void> AddTruth(const fs::path& folder, RigSession& session) {
+  SEXTANT_ASSIGN_OR_RETURN(const auto truth, SimulatedTruth(folder));
+  if (truth.empty()) return {};
   for (SessionSensor& sensor : session.sensors) {
     if (sensor.camera.empty()) sensor.true_rig_from_sensor = Rigid3d{};
-    for (const YamlNode& node : cameras->items) {
-      const YamlNode* name = node.Find("camera");
-      const YamlNode* pose = node.Find("cam_from_lidar");
-      if (name == nullptr || pose == nullptr || name->text != sensor.name) continue;
-      YamlFields in(path.string());
-      sensor.true_rig_from_sensor = ReadPoseBlock(in, *pose, "cam_from_lidar").Inverse();
-      if (!in.ok()) return in.TakeError();
-    }
+    const auto pose = truth.find(sensor.name);
+    if (pose != truth.end()) sensor.true_rig_from_sensor = pose->second.Inverse();
   }
   return {};
 }
 
-// With cameras cam and cam_right, cam_*.png also matches the images of cam_right.
-std::vector<fs::path> Numbered(const std::vector<fs::path>& images, std::size_t prefix) {
-  std::vector<fs::path> own;
-  const auto is_number = [](char c) { return c >= '0' && c <= '9'; };
-  for (const fs::path& image : images) {
-    if (std::ranges::all_of(image.stem().string().substr(prefix), is_number)) own.push_back(image);
-  }
-  return own;
-}
-
 Expected<std::optional<RigSession>> ReadSimulatedRig(const fs::path& folder) {
-  SEXTANT_ASSIGN_OR_RETURN(const auto infos, ExpandPattern(folder / "*_info.yaml"));
-  if (infos.size() < 2) return std::optional<RigSession>();
-  if (infos.size() > kMaxSensors) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<SimulatedCamera> cameras, SimulatedCameras(folder));
+  if (cameras.size() < 2) return std::optional<RigSession>();
+  if (cameras.size() > kMaxSensors) {
     return MakeError(ErrorCode::kMissingData,
                      fmt::format("the folder '{}' has {} files *_info.yaml, expected at most {} "
                                  "cameras",
-                                 PathText(folder), infos.size(), kMaxSensors));
+                                 PathText(folder), cameras.size(), kMaxSensors));
   }
   RigSession session{.boards = folder / "boards.yaml"};
   SessionSensor lidar{.name = "lidar"};
   SEXTANT_ASSIGN_OR_RETURN(lidar.files, ExpandPattern(folder / "scan_*.pcd"));
   session.sensors.push_back(std::move(lidar));
-  for (const fs::path& info : infos) {
-    const std::string stem = info.stem().string();
-    SessionSensor sensor{.name = stem.substr(0, stem.size() - std::string("_info").size()),
-                         .camera = info};
-    SEXTANT_ASSIGN_OR_RETURN(const auto images, ExpandPattern(folder / (sensor.name + "_*.png")));
-    sensor.files = Numbered(images, sensor.name.size() + 1);
+  for (const SimulatedCamera& camera : cameras) {
+    SessionSensor sensor{.name = camera.name, .camera = camera.info};
+    SEXTANT_ASSIGN_OR_RETURN(sensor.files, SimulatedImages(folder, camera.name));
     session.sensors.push_back(std::move(sensor));
   }
-  if (IsFile(folder / "truth.yaml")) {
-    SEXTANT_RETURN_IF_ERROR(AddTruth(folder / "truth.yaml", session));
-  }
+  SEXTANT_RETURN_IF_ERROR(AddTruth(folder, session));
   GroupMoments(session);
   return std::optional<RigSession>(std::move(session));
 }

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "base/text/printable.h"
+#include "calibrate/session/simulated_folder.h"
 #include "io/blocks/pose_block.h"
 #include "io/text/number_text.h"
 #include "io/text/text_file.h"
@@ -102,60 +103,24 @@ class SessionReader {
   Session session_;
 };
 
-// cam_from_lidar of one camera in truth.yaml; everything else in the file is ignored.
-Expected<std::optional<Rigid3d>> TruthOf(const fs::path& path, const std::string& camera) {
-  if (!Exists(path)) return std::optional<Rigid3d>();
-  SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
-  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, path.string()));
-  const YamlNode* cameras = root.Find("cameras");
-  if (cameras == nullptr) return std::optional<Rigid3d>();
-  for (const YamlNode& node : cameras->items) {
-    const YamlNode* name = node.Find("camera");
-    const YamlNode* pose = node.Find("cam_from_lidar");
-    if (name == nullptr || pose == nullptr || name->text != camera) continue;
-    YamlFields in(path.string());
-    const Rigid3d cam_from_lidar = ReadPoseBlock(in, *pose, "cam_from_lidar");
-    if (!in.ok()) return in.TakeError();
-    return std::optional<Rigid3d>(cam_from_lidar);
-  }
-  return std::optional<Rigid3d>();
-}
-
-// The names of the cameras that have an info file.
-Expected<std::vector<std::string>> CamerasIn(const fs::path& folder) {
-  SEXTANT_ASSIGN_OR_RETURN(const std::vector<fs::path> infos,
-                           ExpandPattern(folder / "*_info.yaml"));
-  std::vector<std::string> names;
-  for (const fs::path& info : infos) {
-    const std::string stem = info.stem().string();
-    names.push_back(stem.substr(0, stem.size() - std::string("_info").size()));
-  }
-  return names;
-}
-
 Expected<Session> ReadSimulated(const fs::path& folder, const std::string& camera_name) {
-  SEXTANT_ASSIGN_OR_RETURN(const std::vector<std::string> cameras, CamerasIn(folder));
-  const std::string camera = camera_name.empty() ? cameras.front() : camera_name;
-  if (std::ranges::find(cameras, camera) == cameras.end()) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<SimulatedCamera> cameras, SimulatedCameras(folder));
+  const std::string camera = camera_name.empty() ? cameras.front().name : camera_name;
+  const auto chosen = std::ranges::find(cameras, camera, &SimulatedCamera::name);
+  if (chosen == cameras.end()) {
     std::string known;
-    for (const std::string& name : cameras) known += (known.empty() ? "" : ", ") + name;
+    for (const SimulatedCamera& one : cameras) known += (known.empty() ? "" : ", ") + one.name;
     return MakeError(ErrorCode::kMissingData, fmt::format("{}: no camera '{}'; there are: {}",
                                                           folder.string(), camera, known));
   }
-  Session session{.boards = folder / "boards.yaml", .camera = folder / (camera + "_info.yaml")};
-  SEXTANT_ASSIGN_OR_RETURN(const auto images, ExpandPattern(folder / (camera + "_*.png")));
+  Session session{.boards = folder / "boards.yaml", .camera = chosen->info};
+  SEXTANT_ASSIGN_OR_RETURN(const auto images, SimulatedImages(folder, camera));
   SEXTANT_ASSIGN_OR_RETURN(const auto clouds, ExpandPattern(folder / "scan_*.pcd"));
-  // With cameras cam and cam_right, cam_*.png also matches the images of cam_right.
-  std::vector<fs::path> own;
-  const auto is_number = [](char c) { return c >= '0' && c <= '9'; };
-  for (const fs::path& image : images) {
-    const std::string number = image.stem().string().substr(camera.size() + 1);
-    if (std::ranges::all_of(number, is_number)) own.push_back(image);
+  session.files = PairFiles(images, clouds);
+  SEXTANT_ASSIGN_OR_RETURN(const auto truth, SimulatedTruth(folder));
+  if (const auto pose = truth.find(camera); pose != truth.end()) {
+    session.true_cam_from_lidar = pose->second;
   }
-  session.files = PairFiles(own, clouds);
-  SEXTANT_ASSIGN_OR_RETURN(const std::optional<Rigid3d> truth,
-                           TruthOf(folder / "truth.yaml", camera));
-  session.true_cam_from_lidar = truth;
   return session;
 }
 

@@ -156,10 +156,11 @@ class PageServer::Impl {
  private:
   void Accept() {
     acceptor_.async_accept([this](beast::error_code error, tcp::socket socket) {
+      // Before the connection, for which there may be no memory.
+      if (acceptor_.is_open()) Accept();
       if (!error && connections_ < kMaxConnections) {
         std::make_shared<Connection>(std::move(socket), port_, shelf_, connections_)->Read();
       }
-      if (acceptor_.is_open()) Accept();
     });
   }
 

@@ -14,6 +14,7 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/rig_output.h"
 #include "eval/metrics/bounds.h"
 #include "io/output/standard_output.h"
 #include "io/problems/rig_yaml.h"
@@ -116,14 +117,12 @@ std::string ViewsText(const CalibrationResult& result, const Advice& advice) {
 }
 
 // The proposal as a view of the result, so that the next proposal takes it into account.
-ResultView AsView(const CalibrationResult& result, const Advice& advice) {
+ResultView AsView(const CalibrationResult& result, const BoardProposal& proposal) {
   ResultView view;
   view.view = -1;
-  Matrix6d before = Matrix6d::Zero();
-  if (advice.covariance) before = advice.covariance->inverse();
-  view.information = advice.proposal.covariance.inverse() - before;
-  view.boards.push_back({.board = result.boards[advice.proposal.board].id,
-                         .cam_from_board = advice.proposal.cam_from_board});
+  view.information = proposal.information;
+  view.boards.push_back(
+      {.board = result.boards[proposal.board].id, .cam_from_board = proposal.cam_from_board});
   return view;
 }
 
@@ -142,7 +141,7 @@ Expected<std::vector<BoardProposal>> Propose(const CalibrationResult& result,
                         advice.proposal.sentence, advice.proposal.rings,
                         SigmaText(advice.proposal.covariance));
     proposals.push_back(advice.proposal);
-    growing.views.push_back(AsView(growing, advice));
+    growing.views.push_back(AsView(growing, advice.proposal));
     counter.Step();
   }
   counter.Finish();
@@ -181,7 +180,7 @@ int AdviseOnRig(const AdviseCommandOptions& options, const std::string& text) {
   const Expected<RigFile> rig = ParseRigFile(text, options.result_path);
   if (!rig) return Refuse("advise", rig.error());
   const Expected<RigAdvice> advice = AdviseRig(*rig);
-  if (!advice) return Refuse("advise", advice.error(), kNoAnswer);
+  if (!advice) return Refuse("advise", advice.error(), ExitCodeOfRig(advice.error()));
   Print("{}", RigAdviceText(*advice));
   return kAnswered;
 }

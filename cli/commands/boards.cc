@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "cli/commands/commands.h"
@@ -31,7 +32,8 @@ struct BoardsOptions {
 };
 
 void Declare(BoardsOptions& options, Arguments& arguments) {
-  arguments.Add("SCAN", options.scans, "Scans, any number: PCD, PLY, KITTI .bin or CSV",
+  arguments.Add("SCAN", options.scans,
+                "Scans, any number: PCD, PLY, LAS, npy, KITTI .bin or a table\n(.csv, .xyz)",
                 {.required = true});
   arguments.Add("--board", options.boards_path,
                 "Boards to find (YAML, or marker_coordinates.txt of the original package)",
@@ -47,6 +49,16 @@ void Declare(BoardsOptions& options, Arguments& arguments) {
                 {.writes = Writes::kFile});
   arguments.Add("--json", options.json_path, "Write the results as JSON; - for standard output",
                 {.writes = Writes::kFileOrStandardOutput});
+}
+
+// The boards that the search finds, or those in the polygons that a person has drawn.
+Expected<BoardSearch> SearchOf(const ScanRings& rings, const std::vector<Board>& boards,
+                               const BoardSearchOptions& options,
+                               const std::optional<ScanMarks>& marks) {
+  if (!marks) return FindBoards(rings, boards, options);
+  BoardSearch search;
+  SEXTANT_ASSIGN_OR_RETURN(search.found, PatchesFromPolygons(rings, *marks, boards, options));
+  return search;
 }
 
 ScanReport Examine(const std::string& path, const std::vector<Board>& boards,
@@ -65,18 +77,13 @@ ScanReport Examine(const std::string& path, const std::vector<Board>& boards,
   }
   report.returns = static_cast<int>(rings->points().size());
   report.rings = rings->rings();
-  if (marks) {
-    const Expected<std::vector<BoardPatch>> patches =
-        PatchesFromPolygons(*rings, *marks, boards, options);
-    if (!patches) {
-      report.failure =
-          Error{patches.error().code, fmt::format("{}: {}", path, patches.error().message)};
-      return report;
-    }
-    report.search.found = *patches;
-  } else {
-    report.search = *FindBoards(*rings, boards, options);
+  Expected<BoardSearch> search = SearchOf(*rings, boards, options, marks);
+  if (!search) {
+    report.failure =
+        Error{search.error().code, fmt::format("{}: {}", path, search.error().message)};
+    return report;
   }
+  report.search = *std::move(search);
   for (const BoardPatch& patch : report.search.found) {
     report.corners.push_back(
         ExtractCorners(extractor, patch, boards[static_cast<std::size_t>(patch.board)]));
@@ -113,7 +120,7 @@ int Run(const BoardsOptions& options) {
     if (!read) return Refuse("boards", read.error());
     marks = *read;
   }
-  // Names and sizes are checked before any scan is read.
+  // The name is checked before any scan is read.
   if (const auto known = ExtractCorners(options.extractor, {}, {});
       !known && known.error().code == ErrorCode::kUnknownName) {
     return Refuse("boards", known.error());

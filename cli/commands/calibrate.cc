@@ -20,7 +20,6 @@
 #include "io/boards/board_file.h"
 #include "io/output/output_file.h"
 #include "io/output/output_target.h"
-#include "io/output/standard_output.h"
 #include "io/problems/problem_yaml.h"
 #include "io/results/calibration_result.h"
 #include "report/calibrate_text.h"
@@ -143,6 +142,10 @@ Expected<RigResult> CalibrateSensors(const CalibrateCommandOptions& options,
   SEXTANT_RETURN_IF_ERROR(CheckRigOptions(options));
   SEXTANT_ASSIGN_OR_RETURN(const CalibrateOptions settings, SettingsFrom(options));
   ObserveRigOptions observe{.observe = settings.observe, .match = settings.match};
+  if (options.boards_path.empty() && session.boards.empty()) {
+    return MakeError(ErrorCode::kInvalidOption,
+                     "--board is missing: the session does not name the boards");
+  }
   if (!options.boards_path.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(observe.boards, ReadBoards(options.boards_path));
   }
@@ -181,14 +184,15 @@ Expected<Calibration> CalibrateWithProgress(const CalibrateCommandOptions& optio
 }
 
 Expected<void> WriteFiles(const CalibrateCommandOptions& options, const Calibration& calibration) {
+  // The result first: where the disk is full, it is worth most.
+  if (calibration.result) {
+    SEXTANT_RETURN_IF_ERROR(
+        WriteFileAtomically(options.out_path, FormatCalibrationResult(*calibration.result)));
+  }
   const bool has_problem = !calibration.assembly.rows.empty();
   if (has_problem && !options.problem_path.empty()) {
     SEXTANT_RETURN_IF_ERROR(
         WriteFileAtomically(options.problem_path, FormatProblemYaml(ProblemFileOf(calibration))));
-  }
-  if (calibration.result) {
-    SEXTANT_RETURN_IF_ERROR(
-        WriteFileAtomically(options.out_path, FormatCalibrationResult(*calibration.result)));
   }
   if (options.report_path.empty()) return {};
   return WriteCalibrationReport(calibration, options.tolerance_s, options.report_path);
@@ -208,13 +212,14 @@ int Run(const CalibrateCommandOptions& options) {
   if (const auto ok = ClaimResult(options.out_path); !ok) return Refuse("calibrate", ok.error());
   const Expected<Calibration> calibration = CalibrateWithProgress(options);
   if (!calibration) return Refuse("calibrate", calibration.error());
+  std::string text = DescribeCalibration(*calibration);
   if (Expected<void> ok = WriteFiles(options, *calibration); !ok) {
+    PrintBesideJson(options.json_path, text);
     return Refuse("calibrate", ok.error());
   }
-  std::string text = DescribeCalibration(*calibration);
   if (!calibration->result) {
     if (!options.report_path.empty()) text += WroteLine(options.report_path, kReportWords);
-    Print("{}", text);
+    PrintBesideJson(options.json_path, text);
     return Refuse("calibrate", calibration->result.error(), kNoAnswer);
   }
   if (!options.out_path.empty()) {

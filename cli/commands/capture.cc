@@ -146,11 +146,10 @@ class Capture {
   // Until the accuracy is reached or a signal comes.
   void Run() {
     const StopRequest stop;
-    Print(
+    PrintNow(fmt::format(
         "Watching '{}'. Open {} in a browser on this machine; Ctrl-C ends the capture and\n"
         "writes what is known.\n",
-        PathText(options_.folder), display_.address());
-    FlushOutput();
+        PathText(options_.folder), display_.address()));
     display_.Show(Page());
     while (!stop.IsMade() && !IsReached()) {
       Look();
@@ -176,24 +175,32 @@ class Capture {
     display_.SetState("Computing the answer with the new views.");
     calibration_.reset();
     if (session_.size() > 0) calibration_ = session_.Solve();
-    NoteNewest();
+    std::string news = NoteNewest();
     ReportPage page = Page();
-    if (calibration_) Print("  {}\n", SoFar(*calibration_, options_));
+    if (calibration_) news += fmt::format("  {}\n", SoFar(*calibration_, options_));
     if (!IsReached() && !page.next.sentences.empty()) {
-      Print("  Next: {}\n", page.next.sentences.front());
+      news += fmt::format("  Next: {}\n", page.next.sentences.front());
     }
-    FlushOutput();
+    PrintNow(news);
     display_.Show(std::move(page));
   }
 
-  void NoteNewest() {
+  void PrintNow(const std::string& text) const {
+    PrintBesideJson(options_.json_path, text);
+    FlushOutput();
+  }
+
+  // A line for each new view.
+  std::string NoteNewest() {
     constexpr std::size_t kMaxLines = 12;
+    std::string lines;
     for (const std::size_t i : session_.newest()) {
       found_.insert(found_.begin(),
                     DescribeSighting(calibration_->observed.views[i], session_.boards()));
-      Print("{}\n", found_.front());
+      lines += found_.front() + "\n";
     }
     found_.resize(std::min(found_.size(), kMaxLines));
+    return lines;
   }
 
   std::string Waiting(const FolderFiles& files) const {
@@ -245,17 +252,18 @@ int Finish(const CaptureOptions& options, Capture& capture) {
                   kNoAnswer);
   }
   const Calibration& calibration = *capture.calibration();
+  std::string text = "\n" + DescribeCalibration(calibration);
   if (const Expected<void> ok = WriteCapture(options, calibration); !ok) {
     capture.End("The capture has ended, but could not write: " + ok.error().message);
+    PrintBesideJson(options.json_path, text);
     return Refuse("capture", ok.error());
   }
   capture.End(fmt::format("{} The report is {}.",
                           capture.IsReached() ? "The accuracy that is needed has been reached."
                                               : "The capture was ended.",
                           PathText(options.report_path)));
-  std::string text = "\n" + DescribeCalibration(calibration);
   if (!calibration.result) {
-    Print("{}{}", text, WroteLine(options.report_path, kReportWords));
+    PrintBesideJson(options.json_path, text + WroteLine(options.report_path, kReportWords));
     return Refuse("capture", calibration.result.error(), kNoAnswer);
   }
   text += "\n" + WroteLine(options.out_path, "the result, for project, export and advise") +

@@ -2,6 +2,7 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -77,9 +78,9 @@ Expected<PoseCheck> CheckByBoard(const CheckOptions& options, const SceneInput& 
     return PoseCheck{.reason =
                          "the calibration by the board is not usable: " + result.verdict->reason};
   }
+  const auto views = std::ranges::count_if(result.views, &ResultView::kept);
   return JudgeChange(PoseDifference(result.cam_from_lidar, input.given.cam_from_lidar),
-                     *result.covariance, limits, static_cast<int>(result.views.size()),
-                     "views of the board");
+                     *result.covariance, limits, static_cast<int>(views), "views of the board");
 }
 
 Expected<PoseCheck> CheckPose(const CheckOptions& options, const SceneInput& input) {

@@ -128,10 +128,6 @@ int Run(const CompareOptions& options) {
       ScoredRows(Compare(problem, *solvers, *truth, progress.Callback()), *solvers, others);
   std::vector<ComparisonRow> rows;
   for (const ScoredRow& of : scored) rows.push_back(of.row);
-  if (!options.plot_path.empty()) {
-    const Expected<void> drawn = DrawPlot(ResidualPlot(problem, rows), options.plot_path);
-    if (!drawn) return Refuse("compare", drawn.error());
-  }
   const bool answered = IsAnswered(scored);
   if (!answered) {
     const auto failed = std::find_if(rows.begin(), rows.end(),
@@ -139,7 +135,11 @@ int Run(const CompareOptions& options) {
     PrintNoAnswer("compare", options.input, *input, *failed);
   }
   const std::string text = answered ? DescribeComparison(scored) : std::string();
-  return DeliverAnswers("compare", options.input, *input, rows, text, answered);
+  const int code = DeliverAnswers("compare", options.input, *input, rows, text, answered);
+  // After the answers, which do not need gnuplot; without any there is nothing to draw.
+  if (options.plot_path.empty() || !answered) return code;
+  const Expected<void> drawn = DrawPlot(ResidualPlot(problem, rows), options.plot_path);
+  return drawn ? code : Refuse("compare", drawn.error());
 }
 
 }  // namespace

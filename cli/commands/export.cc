@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/text/path_text.h"
 #include "cli/commands/commands.h"
@@ -104,8 +105,29 @@ Expected<void> CheckVerdict(const ExportCommandOptions& options, const RigResult
                                options.result_path, rig.refutations[0]));
 }
 
+// Options of two frames would be silently ignored, too.
+Expected<void> CheckWholeRig(const ExportCommandOptions& options) {
+  const std::pair<const std::string&, const char*> of_a_pair[] = {
+      {options.lidar_frame, "--lidar-frame"},
+      {options.camera_frame, "--camera-frame"},
+      {options.parent, "--parent"}};
+  for (const auto& [value, name] : of_a_pair) {
+    if (value.empty()) continue;
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        fmt::format("{} is for two sensors, and all sensors of a rig have the frames of "
+                    "their names, below the root: leave it out, or choose two with "
+                    "--sensors",
+                    name));
+  }
+  return {};
+}
+
 Expected<std::string> ExportedRig(const ExportCommandOptions& options, const RigResult& rig) {
-  if (options.sensors.empty()) return ExportRig(options.format, rig);
+  if (options.sensors.empty()) {
+    SEXTANT_RETURN_IF_ERROR(CheckWholeRig(options));
+    return ExportRig(options.format, rig);
+  }
   SEXTANT_ASSIGN_OR_RETURN(const CalibrationResult pair,
                            ResultOfPair(rig, options.sensors[0], options.sensors[1]));
   return ExportTransform(options.format, pair, FramesOf(options, pair));

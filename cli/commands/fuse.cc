@@ -38,7 +38,7 @@ void Declare(FuseOptions& options, Arguments& arguments) {
   arguments.Add(
       "CLOUD", options.clouds,
       "Clouds, each in the frame of its own camera, or of its sensor of a rig: PCD, PLY,\n"
-      "KITTI .bin or CSV",
+      "LAS, npy, KITTI .bin or a table (.csv, .xyz)",
       {.required = true});
   arguments.Add("--from", options.from,
                 std::string("The pose of the camera of each cloud but the last: ") + kPoseHelp);

@@ -55,14 +55,17 @@ Expected<std::vector<Board>> BoardsOf(const PrintBoardOptions& options) {
                    "expected a board file, or a board of another program with --template");
 }
 
+// The name of the file, or of the template.
+std::string SourceOf(const PrintBoardOptions& options) {
+  if (!options.board_template.empty()) return options.board_template;
+  return std::filesystem::path(options.board_path).filename().string();
+}
+
 // The boards as a file, or drawn.
 Expected<std::string> Content(const PrintBoardOptions& options, const std::vector<Board>& boards) {
   if (std::filesystem::path(options.out).extension() == ".yaml") return FormatBoards(boards);
   SEXTANT_ASSIGN_OR_RETURN(const DrawingFormat format, FormatOf(options.out));
-  const std::string source = options.board_template.empty()
-                                 ? std::filesystem::path(options.board_path).filename().string()
-                                 : options.board_template;
-  return DrawBoards(boards, source, format, options.dpi);
+  return DrawBoards(boards, SourceOf(options), format, options.dpi);
 }
 
 int Run(const PrintBoardOptions& options) {
@@ -73,7 +76,7 @@ int Run(const PrintBoardOptions& options) {
     if (boards->empty()) {
       return Refuse("print-board",
                     {ErrorCode::kInvalidOption,
-                     fmt::format("{}: there is no board {}", options.board_path, *options.id)});
+                     fmt::format("--id: {} has no board {}", SourceOf(options), *options.id)});
     }
   }
   const Expected<std::string> content = Content(options, *boards);

@@ -36,7 +36,8 @@ struct ProjectOptions {
 
 void Declare(ProjectOptions& options, Arguments& arguments) {
   arguments.Add("--image", options.image_path, "The photo", {.required = true});
-  arguments.Add("--cloud", options.cloud_path, "Its scan: PCD, PLY, KITTI .bin or CSV",
+  arguments.Add("--cloud", options.cloud_path,
+                "Its scan: PCD, PLY, LAS, npy, KITTI .bin or a table (.csv, .xyz)",
                 {.required = true});
   arguments.Add("--result", options.result_path,
                 std::string(kPoseHelp) + ",\nor rig.json of sextant rig", {.required = true});

@@ -116,11 +116,14 @@ int Run(const RefineSceneOptions& options) {
   if (!pairs) return Refuse("refine-scene", pairs.error());
   const SceneFit fit = SearchScenes(*pairs, input->given.cam_from_lidar, progress.Callback());
   const CalibrationResult result = ResultOf(*input, fit, options);
+  std::string text = Describe(result, *input);
   const Expected<void> written =
       WriteFileAtomically(options.out_path, FormatCalibrationResult(result));
-  if (!written) return Refuse("refine-scene", written.error());
-  const std::string text =
-      Describe(result, *input) + WroteLine(options.out_path, "the result, for project and export");
+  if (!written) {
+    PrintBesideJson(options.json_path, text);
+    return Refuse("refine-scene", written.error());
+  }
+  text += WroteLine(options.out_path, "the result, for project and export");
   return Deliver("refine-scene", options.json_path, text, FormatCalibrationResultJson(result),
                  result.verdict->usability == Usability::kNotUsable ? kNotUsable : kAnswered);
 }

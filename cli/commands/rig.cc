@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <string_view>
+#include <vector>
+
+#include "base/text/path_text.h"
 #include "calibrate/rig/calibrate_rig.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
@@ -58,11 +62,30 @@ Expected<void> ChooseRoot(const std::string& name, RigFile& rig) {
                    fmt::format("--root: no sensor '{}'; there are: {}", name, known));
 }
 
+// As rts.txt does.
+bool BeginsWithMatrix(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  return begin != std::string_view::npos && !text.substr(begin).starts_with("---") &&
+         std::string_view("+-.0123456789").find(text[begin]) != std::string_view::npos;
+}
+
+Expected<RigResult> ResultOfTransforms(const RigCommandOptions& options, std::string_view text) {
+  SEXTANT_ASSIGN_OR_RETURN(const std::vector<Rigid3d> transforms,
+                           ParseTransformList(text, options.path));
+  if (!options.root.empty() || options.estimate_time) {
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        fmt::format("{} is for a rig file: {} has poses alone, in the frame of the LiDAR; leave it "
+                    "out",
+                    options.root.empty() ? "--estimate-time" : "--root", PathText(options.path)));
+  }
+  return RigOfTransforms(transforms);
+}
+
 Expected<RigResult> ResultFrom(const RigCommandOptions& options) {
   SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(options.path));
-  if (!IsRigFile(text)) {
-    const auto transforms = ParseTransformList(text, options.path);
-    if (transforms) return RigOfTransforms(*transforms);
+  if (BeginsWithMatrix(text) || ParseTransformList(text, options.path)) {
+    return ResultOfTransforms(options, text);
   }
   SEXTANT_ASSIGN_OR_RETURN(RigFile rig, ParseRigFile(text, options.path));
   SEXTANT_RETURN_IF_ERROR(ChooseRoot(options.root, rig));

@@ -105,10 +105,14 @@ Expected<void> WriteExtras(const Scene& scene, const std::vector<ScanTruth>& sca
   return options.sheet_path.empty() ? Expected<void>() : WriteSheet(scene, options);
 }
 
-// --sheet may name a file in the folder of --out, which the simulation creates.
+// --sheet may name a file in the folder of --out, which the simulation creates; `session/` is
+// `session`.
 Expected<void> CheckSheet(const SimulateOptions& options) {
+  const auto with_slash = [](const std::filesystem::path& folder) {
+    return (folder / "").lexically_normal();
+  };
   const std::filesystem::path sheet(options.sheet_path);
-  if (sheet.empty() || sheet.parent_path() == std::filesystem::path(options.out)) return {};
+  if (sheet.empty() || with_slash(sheet.parent_path()) == with_slash(options.out)) return {};
   return ClaimOutput(sheet);
 }
 

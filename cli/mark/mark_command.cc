@@ -20,7 +20,8 @@ namespace sextant::cli {
 namespace {
 
 void Declare(MarkOptions& options, Arguments& arguments) {
-  arguments.Add("--cloud", options.cloud_path, "The scan: PCD, PLY, KITTI .bin or CSV",
+  arguments.Add("--cloud", options.cloud_path,
+                "The scan: PCD, PLY, LAS, npy, KITTI .bin or a table (.csv, .xyz)",
                 {.required = true});
   arguments.Add("--image", options.image_path, "Its photo");
   arguments.Add("--camera", options.camera_path,

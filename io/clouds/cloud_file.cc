@@ -23,13 +23,20 @@
 namespace sextant {
 namespace {
 
-std::string LowerExtension(const std::string& file) {
-  return LowerCase(std::filesystem::path(file).extension().string());
+std::string LowerExtension(const std::filesystem::path& file) {
+  return LowerCase(file.extension().string());
 }
 
+template <std::size_t kCount>
+bool IsOneOf(const std::string& extension, const std::array<const char*, kCount>& extensions) {
+  return std::ranges::find(extensions, extension) != extensions.end();
+}
+
+// Besides .txt.
+constexpr std::array kTableExtensions = {".csv", ".xyz", ".pts", ".asc", ".tsv"};
+
 bool IsTableExtension(const std::string& extension) {
-  constexpr std::array kExtensions = {".csv", ".txt", ".xyz", ".pts", ".asc", ".tsv"};
-  return std::ranges::find(kExtensions, extension) != kExtensions.end();
+  return extension == ".txt" || IsOneOf(extension, kTableExtensions);
 }
 
 // Whether the bytes are lines of text with three values at least; the first may be a count.
@@ -104,6 +111,12 @@ Expected<void> CheckMetres(const PointCloud& cloud, const std::string& file) {
 
 Expected<PointCloud> ReadCloud(const std::filesystem::path& path) {
   return ReadWith(path, ParseCloud);
+}
+
+bool IsCloudName(const std::filesystem::path& path) {
+  constexpr std::array kExtensions = {".pcd", ".ply", ".las", ".npy", ".bin"};
+  const std::string extension = LowerExtension(path);
+  return IsOneOf(extension, kExtensions) || IsOneOf(extension, kTableExtensions);
 }
 
 Expected<PointCloud> ParseCloud(std::string_view bytes, const std::string& file) {

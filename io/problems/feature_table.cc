@@ -131,7 +131,7 @@ class FeatureTableReader {
     row.pixel = Vector<2>({"u", "v"});
     row.sigma_px = Sigma("sigma_px");
     row.sigma_m = Sigma("sigma_m");
-    row.plane = Plane();
+    row.plane = Plane(row.sigma_m);
     row.position_m = Vector<3>({"x", "y", "z"});
     if (const auto side = Id("side")) row.side = Line(*side, row);
     Check(row);
@@ -240,7 +240,7 @@ class FeatureTableReader {
     return length > 1e-9 ? (vector / length).eval() : Eigen::Vector3d(Eigen::Vector3d::UnitX());
   }
 
-  std::optional<MeasuredPlane> Plane() {
+  std::optional<MeasuredPlane> Plane(const std::optional<double>& sigma_m) {
     const auto normal = Vector<4>(kNormal);
     const auto equation = Vector<4>(kEquation);
     if (!normal && !equation) return std::nullopt;
@@ -255,7 +255,7 @@ class FeatureTableReader {
                "length, a x + b y + c z + d = 0");
     }
     plane.distance_m = normal ? values[3] : -values[3] / std::max(values.head<3>().norm(), 1e-9);
-    plane.sigma_m = Value("sigma_m").value_or(plane.sigma_m);
+    plane.sigma_m = sigma_m.value_or(plane.sigma_m);
     if (const auto sigma_deg = Sigma("sigma_deg")) plane.sigma_rad = kRadPerDeg * *sigma_deg;
     return plane;
   }

@@ -33,7 +33,7 @@ def read_boards(path):
 
 
 def read_cloud(path):
-    """A scan (PCD, PLY, KITTI .bin, CSV, npy) as (N, 3) to (N, 6).
+    """A scan (PCD, PLY, LAS, npy, KITTI .bin, or a table) as (N, 3) to (N, 6).
 
     Columns: x y z [m] in the LiDAR frame, intensity, ring (0 the lowest), time [s]; as many as the
     file has, NaN for one that is missing before another. Rays without a return have NaN points.
@@ -114,7 +114,8 @@ def calibrate(session=None, *, images=None, clouds=None, boards=None, camera=Non
     boards: a board file or a list of Board; camera: a Camera or a file; instead of the session's.
     solvers: specs or functions; the first gives the answer. initial: rough cam_from_lidar (4, 4).
     need: the accuracy for the verdict, (mm, degrees) of the least certain direction, 1 sigma.
-    bootstrap: samples over the views; 0 for neither bootstrap nor cross-validation.
+    bootstrap: samples over the views; 0 for neither bootstrap nor cross-validation. camera_name: of
+    a simulated session with several cameras, by default the first.
 
     Raises Error with the message that `sextant calibrate` prints. A result whose verdict is NOT
     USABLE is returned: look at `verdict` and `reason`.

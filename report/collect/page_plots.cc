@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "geometry/board_check.h"
 #include "report/collect/page_views.h"
+#include "solvers/core/board_view_check.h"
 
 namespace sextant {
 namespace {
@@ -26,7 +27,7 @@ std::vector<KeptBoard> KeptBoards(const CalibrationResult& result) {
   for (const ResultView& view : result.views) {
     if (!view.kept) continue;
     for (const ResultBoardView& seen : view.boards) {
-      const Board* board = FindBoard(result, seen.board);
+      const Board* board = FindBoard(result.boards, seen.board);
       if (board == nullptr || !seen.cam_from_board) continue;
       const Eigen::Vector3d& place = seen.cam_from_board->translation;
       const Eigen::Vector3d normal = seen.cam_from_board->rotation * Eigen::Vector3d::UnitZ();

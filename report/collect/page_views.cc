@@ -10,6 +10,7 @@
 #include "geometry/board_check.h"
 #include "report/collect/utc_text.h"
 #include "report/collect/view_media.h"
+#include "solvers/core/board_view_check.h"
 
 namespace sextant {
 namespace {
@@ -48,7 +49,7 @@ PageBoard BoardOf(const CalibrationResult& result, const ResultBoardView& seen) 
   PageBoard page{.name = fmt::format("{}", seen.board),
                  .residuals_m = seen.residuals_m,
                  .residuals_px = seen.residuals_px};
-  const Board* board = FindBoard(result, seen.board);
+  const Board* board = FindBoard(result.boards, seen.board);
   if (board == nullptr) return page;
   page.name = NameOf(*board);
   if (seen.cam_from_board) AddByCamera(result, *board, *seen.cam_from_board, page);
@@ -108,9 +109,13 @@ PageView ViewWithoutMedia(const CalibrationResult& result, const ResultView& vie
 void AddMedia(const CalibrationResult& result, const Frame& frame, const MediaBudget& budget,
               PageView& page) {
   const cv::Mat image = AsColour(frame.image);
+  // A camera whose file has no image size has that of the image.
+  Camera camera = *result.camera;
+  if (camera.width_px == 0) camera.width_px = image.cols;
+  if (camera.height_px == 0) camera.height_px = image.rows;
   MediaSource source{.image = image,
                      .cloud = frame.cloud,
-                     .camera = *result.camera,
+                     .camera = camera,
                      .cam_from_lidar = result.cam_from_lidar};
   for (const PageBoard& board : page.boards) {
     const std::vector<Eigen::Vector3d>& corners =
@@ -171,12 +176,6 @@ PageTable FactsOf(const LidarPattern& lidar) {
 }
 
 }  // namespace
-
-const Board* FindBoard(const CalibrationResult& result, int id) {
-  const auto found = std::find_if(result.boards.begin(), result.boards.end(),
-                                  [id](const Board& board) { return board.id == id; });
-  return found == result.boards.end() ? nullptr : &*found;
-}
 
 std::vector<Eigen::Vector2d> OutlineInImage(const Camera& camera, const Board& board,
                                             const Rigid3d& cam_from_board) {

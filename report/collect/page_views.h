@@ -29,7 +29,4 @@ std::vector<PageView> PageViewsOf(const CalibrationResult& result, const Calibra
 std::vector<Eigen::Vector2d> OutlineInImage(const Camera& camera, const Board& board,
                                             const Rigid3d& cam_from_board);
 
-/// The board of that id; null if the result does not have it.
-const Board* FindBoard(const CalibrationResult& result, int id);
-
 }  // namespace sextant

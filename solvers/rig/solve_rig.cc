@@ -359,7 +359,9 @@ bool BoardsMove(const RigProblem& problem, RigOptions options) {
 }  // namespace
 
 Expected<RigEstimate> SolveRig(const RigProblem& problem, const RigOptions& options) {
-  if (!options.estimate_time || BoardsMove(problem, options)) return SolveOnce(problem, options);
+  if (!options.estimate_time || options.boards_move || BoardsMove(problem, options)) {
+    return SolveOnce(problem, options);
+  }
   RigOptions without_clocks = options;
   without_clocks.estimate_time = false;
   SEXTANT_ASSIGN_OR_RETURN(RigEstimate estimate, SolveOnce(problem, without_clocks));

@@ -26,6 +26,7 @@ struct RigOptions {
   /// (RigObservation::time_s), as the number time_offset_s; not where the boards' motion is lost in
   /// the noise, which a warning states.
   bool estimate_time = false;
+  bool boards_move = false;     ///< It is known that they do, so estimate_time does not test it.
   ProgressCallback progress{};  ///< Stage "rig": minima, at most as many as are announced.
 };
 

@@ -168,6 +168,24 @@ TEST(Advise, BeginsFromNothing) {
   EXPECT_GT(advice->considered, 100);
 }
 
+// What is known may not determine the pose; it must not be counted as the proposal's own.
+TEST(Advise, TheInformationOfTheProposalIsItsOwn) {
+  const SimulatedViews session = Simulate(2, 5);
+  CalibrationResult result = ResultOf(session, 1);
+  const Expected<Advice> alone = Advise(ResultOf(session, 0), SensorsOf(session));
+  ASSERT_TRUE(alone) << alone.error().message;
+  EXPECT_TRUE(alone->proposal.information.isApprox(alone->proposal.covariance.inverse(), 1e-6));
+  constexpr double kKnown = 1e12;
+  Matrix6d one_direction = Matrix6d::Zero();
+  one_direction(0, 0) = kKnown;
+  result.views[0].information = one_direction;
+  const Expected<Advice> advice = Advise(result, SensorsOf(session));
+  ASSERT_TRUE(advice) << advice.error().message;
+  EXPECT_FALSE(advice->covariance);
+  EXPECT_LT(advice->proposal.information(0, 0), 0.01 * kKnown);
+  EXPECT_LT(advice->proposal.covariance(0, 0), 2.0 / kKnown);
+}
+
 TEST(Advise, NamesTheMissingInput) {
   const SimulatedViews session = Simulate(1, 5);
   CalibrationResult result = ResultOf(session, 1);

@@ -213,6 +213,21 @@ TEST(Calibrate, NoCommonBoardEndsInOne) {
   EXPECT_THAT(run.err, HasSubstr("was not found"));
   EXPECT_THAT(ReadText(page), HasSubstr("<strong>NOT USABLE</strong>"));
   EXPECT_THAT(ReadText(page), Not(HasSubstr("camera_from_lidar")));
+  // There is no JSON, and nothing else in its place.
+  const ProgramRun json = RunSextant("calibrate " + session.string() + Out() + " --json -");
+  EXPECT_EQ(json.exit_code, 1);
+  EXPECT_EQ(json.out, "");
+  EXPECT_THAT(json.err, HasSubstr("no board was seen by both sensors"));
+}
+
+TEST(Calibrate, TheResultIsWrittenIfTheProblemCannotBe) {
+  const std::string out = (TestFolder() / "result.yaml").string();
+  const ProgramRun run = RunSextant("calibrate " + Simulated("--scans 1").string() +
+                                    " --bootstrap 0 --problem /dev/full --out " + out);
+  EXPECT_EQ(run.exit_code, 4) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("/dev/full"));
+  EXPECT_TRUE(fs::exists(out));
+  EXPECT_THAT(run.out, HasSubstr("cam_from_lidar"));
 }
 
 // An unreadable view is left out; a scan that is also the output must not be, and be replaced.

@@ -105,6 +105,10 @@ TEST(PrintBoard, RefusesWhatItCannotPrint) {
   EXPECT_THAT(Print("id: 0\ntop_right_m: 9\nright_bottom_m: 9\n", "huge.png").err,
               HasSubstr("lower --dpi"));
   EXPECT_EQ(Print("id: 0\ntop_right_m: 0\nright_bottom_m: 1\n", "zero.pdf").exit_code, 2);
+  const ProgramRun absent = test::RunSextant("print-board --template fast_calib --id 99 --out " +
+                                             test::TestPath("absent.pdf"));
+  EXPECT_EQ(absent.exit_code, 2);
+  EXPECT_THAT(absent.err, HasSubstr("--id: fast_calib has no board 99"));
 }
 
 }  // namespace

@@ -96,6 +96,11 @@ TEST(RigCommand, ARigIsExportedAsATreeOrAPair) {
   const ProgramRun none = RunSextant("export " + out + " --sensors left top --to matrix");
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_THAT(none.err, HasSubstr("there are: lidar, left, right"));
+  for (const char* option : {"--lidar-frame velodyne", "--camera-frame cam", "--parent camera"}) {
+    const std::string command = "export " + out + " --to ros2 " + option;
+    test::ExpectRefused(RunSextant(command), "is for two sensors");
+    EXPECT_EQ(RunSextant(command + " --sensors left lidar").exit_code, 0) << option;
+  }
 }
 
 TEST(RigCommand, AScanIsDrawnOnTheImageOfANamedCamera) {
@@ -278,6 +283,28 @@ TEST(RigCommand, ClocksAreEstimatedFromBoardsThatMove) {
   EXPECT_THAT(still.out, HasSubstr("the time offset of rear cannot be told"));
 }
 
+// Two corners of one sensor are exchanged.
+TEST(RigCommand, WrongDataIsWrongUseWhoeverReadsIt) {
+  test::WriteText(TestPath("rig.yaml"),
+                  "sextant_rig: 1\nsensors: [{name: top}, {name: rear}]\n"
+                  "boards: [{id: 0, top_right_m: 0.8, right_bottom_m: 0.6}]\n"
+                  "tables: corners.csv\n");
+  std::string table = TableOfMovingBoard(0.0);
+  const auto replace = [&table](const std::string& from, const std::string& to) {
+    for (std::size_t at = table.find(from); at != std::string::npos; at = table.find(from, at)) {
+      table.replace(at, from.size(), to);
+    }
+  };
+  replace(",rear,2,", ",rear,x,");
+  replace(",rear,3,", ",rear,2,");
+  replace(",rear,x,", ",rear,3,");
+  test::WriteText(TestPath("corners.csv"), table);
+  test::ExpectRefused(RunSextant("rig " + TestPath("rig.yaml") + " --out " + TestPath("rig.json")),
+                      "its points do not have the form of the board");
+  test::ExpectRefused(RunSextant("advise " + TestPath("rig.yaml")),
+                      "its points do not have the form of the board");
+}
+
 TEST(RigCommand, ReadsTheTransformsOfTheOriginalPackage) {
   SEXTANT_REAL_DATA(path, "dhall/rts.txt");
   const std::string out = TestPath("rig.json");
@@ -289,6 +316,37 @@ TEST(RigCommand, ReadsTheTransformsOfTheOriginalPackage) {
   EXPECT_EQ(pair["a"], "camera_1");
   // x of -0.14 and 0.257 m.
   EXPECT_NEAR(pair["a_from_b"]["translation_m"][0].get<double>(), -0.397, 1e-12);
+}
+
+TEST(RigCommand, OptionsForRigFilesAreRefusedForTransforms) {
+  const std::string rts = TestPath("rts.txt");
+  test::WriteText(rts,
+                  "1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 0 0 0.4\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  const std::string command = "rig " + rts + " --overwrite --out " + TestPath("rig.json");
+  EXPECT_EQ(RunSextant(command).exit_code, 0);
+  test::ExpectRefused(RunSextant(command + " --root camera_1"), "--root is for a rig file");
+  test::ExpectRefused(RunSextant(command + " --estimate-time"),
+                      "--estimate-time is for a rig file");
+  const ProgramRun full = RunSextant("rig " + rts + " --out /dev/full");
+  EXPECT_EQ(full.exit_code, 4);
+  EXPECT_THAT(full.out, HasSubstr("camera_1")) << "what cannot be written is still printed";
+  // The fault of a matrix is named, and no rig file is expected.
+  test::WriteText(rts, "1 0 0 0.1\n0 1 0 0\n0 0 2 0\n0 0 0 1\n");
+  test::ExpectRefused(RunSextant(command), "expected a rotation");
+}
+
+TEST(RigCommand, ASessionWithoutBoardsIsWrongUse) {
+  const std::string folder = SessionOfRig().string();
+  test::WriteText(TestPath("session.yaml"),
+                  "sextant_session: 1\nsensors:\n"
+                  "  - {name: lidar, clouds: '" +
+                      folder +
+                      "/scan_*.pcd'}\n"
+                      "  - {name: left, camera: '" +
+                      folder + "/left_info.yaml', images: '" + folder + "/left_*.png'}\n");
+  test::ExpectRefused(
+      RunSextant("calibrate " + TestPath("session.yaml") + " --out " + TestPath("rig.json")),
+      "--board is missing");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@ using test::ProgramRun;
 using test::ReadText;
 using test::RunSextant;
 using test::TestFolder;
+using test::TestPath;
 using test::WriteText;
 using testing::HasSubstr;
 using testing::Key;
@@ -224,6 +226,12 @@ TEST(Simulate, DrawsAContactSheet) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const cv::Mat drawn = test::ReadPicture(sheet);
   EXPECT_EQ(drawn.size(), cv::Size(3 * 640, 480));
+  // In the folder that is yet to be made, as shells complete its name.
+  const std::string folder = (TestFolder() / "new").string();
+  const ProgramRun within = RunSextant("simulate " + SceneFile() + " --level pairs --sheet " +
+                                       folder + "/sheet.png --out " + folder + "/");
+  EXPECT_EQ(within.exit_code, 0) << within.err;
+  EXPECT_TRUE(fs::exists(fs::path(folder) / "sheet.png"));
 }
 
 }  // namespace

@@ -175,5 +175,15 @@ TEST(CloudFile, AnUnknownExtensionGivesTheKnownOnes) {
   EXPECT_THAT(cloud.error().message, testing::HasSubstr(".ply"));
 }
 
+TEST(CloudName, FormsThatAreReadAreScansByTheirExtension) {
+  for (const char* name : {"a.pcd", "a.ply", "a.las", "a.npy", "a.bin", "a.csv", "a.xyz", "a.pts",
+                           "a.asc", "a.tsv", "top/A.PCD"}) {
+    EXPECT_TRUE(IsCloudName(name)) << name;
+  }
+  for (const char* name : {"notes.txt", "a.png", "a.yaml", "pcd", "a.pcd.gz", ""}) {
+    EXPECT_FALSE(IsCloudName(name)) << name;
+  }
+}
+
 }  // namespace
 }  // namespace sextant

@@ -70,6 +70,14 @@ def test_arrays_give_what_the_files_give(session):
     assert_near_truth(plain, session)
 
 
+def test_boards_are_named_by_their_ids(session):
+    with open(session.boards) as file:
+        boards = sextant.parse_boards(file.read().replace("id: 0", "id: 7", 1))
+    assert [board.id for board in boards] == [7]
+    calibration = sextant.calibrate(folder_of(session), boards=boards, bootstrap=0)
+    assert {row[1] for row in calibration.boards} == {7}
+
+
 def test_an_own_solver_calibrates(session):
     def through_kabsch(problem):
         return sextant.solve(problem, solver="kabsch")

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "base/units.h"
-#include "eval/experiment/kinds/board_scale.h"
+#include "calibrate/observe/board_scale.h"
 #include "features/lidar/corner_extractor.h"
 #include "geometry/random_vectors.h"
 #include "geometry/scan_marks.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "eval/experiment/kinds/board_scale.h"
+#include "calibrate/observe/board_scale.h"
 
 namespace sextant {
 namespace {

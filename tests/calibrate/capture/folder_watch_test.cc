@@ -64,6 +64,7 @@ TEST_F(FolderWatchTest, EmptyHiddenAndOtherFilesDoNotCount) {
   Write(".partial.png", "x");
   Write("result.yaml", "x");
   Write("report.html", "x");
+  Write("notes.txt", "x");
   Look();
   const FolderFiles files = Look();
   EXPECT_THAT(files.images, IsEmpty());
@@ -79,6 +80,13 @@ TEST_F(FolderWatchTest, FoldersWithinItAreWatchedToo) {
   const FolderFiles files = Look();
   EXPECT_THAT(Names(files.images), ElementsAre("b.PNG"));
   EXPECT_THAT(Names(files.clouds), ElementsAre("b.pcd"));
+}
+
+TEST_F(FolderWatchTest, EveryScanThatIsReadIsWatched) {
+  for (const char* name : {"a.las", "b.LAS", "c.xyz", "d.pts", "e.npy", "f.bin"}) Write(name, "x");
+  Look();
+  EXPECT_THAT(Names(Look().clouds),
+              ElementsAre("a.las", "b.LAS", "c.xyz", "d.pts", "e.npy", "f.bin"));
 }
 
 TEST_F(FolderWatchTest, PatternsChooseAmongSeveralSensors) {

@@ -103,10 +103,10 @@ TEST_F(CaptureRun, FilesThatAppearAreProcessedUntilTheAccuracyIsReached) {
   const std::string scan = ReadText(recording_ / NameOf("scan", 0));
   WriteText(folder_ / NameOf("scan", 0), scan.substr(0, scan.size() / 2));
   EXPECT_TRUE(Eventually(kPatience_s, [&] { return PageHas("<li>000: "); })) << ReadText(log_);
-  EXPECT_FALSE(PageHas("<li>000: board"));
+  EXPECT_FALSE(PageHas("<li>000: boards"));
   Copy(NameOf("scan", 0));
   EXPECT_TRUE(Eventually(kPatience_s, [&] {
-    return PageHas("<li>000: board 0, 1 in the photo; ");
+    return PageHas("<li>000: boards 0, 1 in the photo; ");
   })) << ReadText(log_);
 
   // A photo alone waits for its scan.
@@ -153,6 +153,18 @@ TEST_F(CaptureRun, ItGoesOnWithTheFilesThatAreThereAndGivesTheAnswerOfCalibrate)
       TestPath("calibrated.yaml"));
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(ReadText(TestPath("result.yaml")), ReadText(TestPath("calibrated.yaml")));
+}
+
+TEST_F(CaptureRun, StandardOutputHasTheJsonAlone) {
+  for (int view = 0; view < 6; ++view) Drop(view);
+  const test::ProgramRun run = test::RunSextant(
+      "capture " + folder_.string() + " --port 0 --need 60,2 --bootstrap 20 --json - --out " +
+      TestPath("result.yaml") + " --report " + TestPath("report.html"));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, testing::StartsWith("{"));
+  EXPECT_THAT(run.out, Not(HasSubstr("Watching")));
+  EXPECT_THAT(run.err, HasSubstr("Watching '"));
+  EXPECT_THAT(run.err, HasSubstr("known to"));
 }
 
 TEST_F(CaptureRun, CtrlCWritesWhatIsKnown) {

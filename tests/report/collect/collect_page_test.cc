@@ -103,6 +103,19 @@ TEST(CollectPage, TheBoardIsWhereBothSensorsSawIt) {
   EXPECT_NEAR(page.coverage.at(0).share, 4.0 / 40.0, 1.0 / 40.0 + 1e-9);
 }
 
+TEST(CollectPage, ACameraWithoutItsSizeHasThatOfThePhoto) {
+  const Frame frame = NoisyFrame();
+  CalibrationResult result = ResultWith(1);
+  const ReportPage stated = CollectPage({.result = result, .frames = AlwaysThe(frame)});
+  result.camera->width_px = 0;
+  result.camera->height_px = 0;
+  const ReportPage page = CollectPage({.result = result, .frames = AlwaysThe(frame)});
+  ASSERT_TRUE(page.views[0].photo);
+  EXPECT_EQ(page.views[0].photo->width_px, 480);
+  EXPECT_FALSE(page.views[0].photo->dots.empty());
+  EXPECT_EQ(page.views[0].photo->dots.size(), stated.views[0].photo->dots.size());
+}
+
 TEST(CollectPage, AViewWithoutFilesSaysWhy) {
   CalibrationResult result = ResultWith(2);
   result.views[0].image_path = "absent.png";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/random.h"
@@ -14,8 +15,6 @@ namespace sextant {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr LidarErrorModel kWhite = kWhiteNoiseOnly;
 
 /// Squared errors of every pair of sensors over many rigs.
 struct PairErrors {
@@ -426,6 +425,14 @@ TEST(RigTime, BoardsAtRestDoNotTellAnOffset) {
   ASSERT_TRUE(estimate) << estimate.error().message;
   ASSERT_EQ(estimate->warnings.size(), 2U);
   EXPECT_THAT(estimate->warnings[0], HasSubstr("the time offset of cam_1 cannot be told"));
+  const auto is_offset = [](const RigEstimatedNumber& number) {
+    return number.name == "time_offset_s";
+  };
+  EXPECT_TRUE(std::ranges::none_of(estimate->numbers, is_offset));
+  // Whoever knows better is believed.
+  const auto known = SolveRig(rig.problem, {.estimate_time = true, .boards_move = true});
+  ASSERT_TRUE(known) << known.error().message;
+  EXPECT_EQ(std::ranges::count_if(known->numbers, is_offset), 2);
 }
 
 }  // namespace

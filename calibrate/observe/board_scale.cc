@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/experiment/kinds/board_scale.h"
+#include "calibrate/observe/board_scale.h"
 
 namespace sextant {
 
