@@ -2,6 +2,7 @@
 #include "solvers/rig/rig_costs.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "geometry/uncertain_pose.h"
 #include "solvers/blocks/pose_manifold.h"
@@ -39,8 +40,20 @@ RigBlockCost::RigBlockCost(const RigBlock& block, const RigPlacementModel& place
                                           block.numbers.size() + (block.clock ? 1 : 0), 1);
 }
 
+// Nothing of the block is used, as where its residuals cannot be evaluated at the start.
+void RigBlockCost::SetZero(double* residuals, double** jacobians) const {
+  std::fill_n(residuals, num_residuals(), 0.0);
+  for (std::size_t k = 0; jacobians != nullptr && k < parameter_block_sizes().size(); ++k) {
+    DerivativeOf(jacobians, k, num_residuals(), parameter_block_sizes()[k]);
+  }
+}
+
 bool RigBlockCost::Evaluate(double const* const* parameters, double* residuals,
                             double** jacobians) const {
+  if (std::ranges::all_of(weights_, [](double weight) { return weight == 0.0; })) {
+    SetZero(residuals, jacobians);
+    return true;
+  }
   const Rigid3d sensor_from_root = PoseIn(parameters[0]);
   const Rigid3d root_from_board = PoseIn(parameters[1]);
   const int shift_at = shift_ < 0 ? 0 : 1 + shift_;
