@@ -485,7 +485,7 @@ TEST(RigTime, BoardsAtRestDoNotTellAnOffset) {
   const auto estimate = SolveRig(rig.problem, {.estimate_time = true});
   ASSERT_TRUE(estimate) << estimate.error().message;
   ASSERT_EQ(estimate->warnings.size(), 2U);
-  EXPECT_THAT(estimate->warnings[0], HasSubstr("the time offset of cam_1 cannot be told"));
+  EXPECT_THAT(estimate->warnings[0], HasSubstr("does not determine the time offset of cam_1"));
 }
 
 }  // namespace
