@@ -140,9 +140,8 @@ std::optional<std::string> OtherIntrinsics(const CalibrationProblem& problem) {
   return fmt::format(
       "camera: with fx, fy = {:.4g}, {:.4g} px and the principal point ({:.4g}, {:.4g}), estimated "
       "along with the pose, the RMSE falls from {:.3g} to {:.3g} px: the intrinsics may not be "
-      "those "
-      "of these images (cropped, scaled, refocused, or with a distortion that is not stated), and "
-      "the pose is then off; check them, or use refine(..., intrinsics=focal+center)",
+      "those of these images (cropped, scaled, refocused, or with a distortion that is not "
+      "stated), and the pose is then off; check them, or use refine(..., intrinsics=focal+center)",
       some.camera->fx_px, some.camera->fy_px, some.camera->cx_px, some.camera->cy_px,
       std::sqrt(given / count), std::sqrt(other / count));
 }

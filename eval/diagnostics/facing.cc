@@ -9,7 +9,7 @@
 namespace sextant {
 namespace {
 
-// The side of the group's plane on which a point is: 1 or -1; 0 where that is not clear.
+// The side of the group's plane on which a sensor is: 1 or -1; 0 where that is not clear.
 class GroupPlane {
  public:
   explicit GroupPlane(const std::vector<Eigen::Vector3d>& points) {
@@ -25,25 +25,32 @@ class GroupPlane {
     constexpr double kMaxThickness = 0.15;
     is_plane_ = extent[1] > 0.0 && extent[0] < kMaxThickness * extent[1];
     width_ = extent[2];
-    margin_ = std::max(0.1 * extent[2], 3.0 * extent[0]);
+    if (is_plane_) min_sine_ = std::max(kMinSine, kSigmas * extent[0] / extent[1]);
   }
 
-  int SideOf(const Eigen::Vector3d& point) const {
-    const double distance = normal_.dot(point - middle_);
-    if (!is_plane_ || std::abs(distance) < margin_) return 0;
-    if ((point - middle_).norm() > kMaxDistance * width_) return 0;
+  int SideOf(const Eigen::Vector3d& sensor) const {
+    const double distance = normal_.dot(sensor - middle_);
+    const double range = (sensor - middle_).norm();
+    if (!is_plane_ || std::abs(distance) < kMinDistance * width_) return 0;
+    if (std::abs(distance) < min_sine_ * range || range > kMaxRange * width_) return 0;
     return distance > 0.0 ? 1 : -1;
   }
 
  private:
+  // Nobody measures a board that he sees at less than 10 degrees, and few points that lie near a
+  // plane by chance are seen at more by both sensors, which are close to each other.
+  static constexpr double kMinSine = 0.1736;
+  // Of the error of the normal, which noise as large as the thickness causes.
+  static constexpr double kSigmas = 3.0;
   // In widths of the group; a sensor that sees it is nearer, and a far origin is no sensor.
-  static constexpr double kMaxDistance = 1e4;
+  static constexpr double kMinDistance = 0.1;
+  static constexpr double kMaxRange = 1e4;
 
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_;
   bool is_plane_ = false;
   double width_ = 0.0;
-  double margin_ = 0.0;
+  double min_sine_ = 1.0;
 };
 
 }  // namespace

@@ -29,14 +29,24 @@ const std::vector<double>& ResidualsOf(const SolveReport& report, bool in_pixels
   return in_pixels ? report.evaluation.per_pair_px : report.evaluation.per_pair_m;
 }
 
+// Whether the inliers, which are of one kind, are known to be of this one.
+bool HasInliersOf(const SolveReport& report, bool in_pixels) {
+  if (ResidualsOf(report, !in_pixels).empty()) return true;
+  if (!report.noise) return false;
+  const bool is_m = report.noise->sigma_m.has_value();
+  const bool is_px = report.noise->sigma_px.has_value();
+  return in_pixels ? is_px && !is_m : is_m && !is_px;
+}
+
 void AddOutliers(const SolveReport& report, bool in_pixels, std::span<const RepeatedPairs> repeated,
                  std::vector<std::string>& lines) {
   const std::vector<int> outliers = OutlyingPairs(report, in_pixels);
   if (outliers.empty()) return;
   const std::vector<double>& residuals = ResidualsOf(report, in_pixels);
-  const bool are_used = std::any_of(outliers.begin(), outliers.end(), [&](int i) {
+  const auto is_used = [&](int i) {
     return std::binary_search(report.inliers.begin(), report.inliers.end(), i);
-  });
+  };
+  const bool are_used = !HasInliersOf(report, in_pixels) || std::ranges::any_of(outliers, is_used);
   lines.push_back(fmt::format(
       "outliers: {} of {} pairs are farther off than the others' noise explains: {}; {}",
       outliers.size(), residuals.size(), OutlierList(residuals, outliers, in_pixels, repeated),
@@ -68,6 +78,47 @@ double SigmaOfThoseUpTo(double limit, const std::vector<double>& sorted, int dim
     freedom += dimension;
   }
   return std::sqrt(squares / std::max(1.0, freedom));
+}
+
+// As TailOf, where the sigma has been estimated with `freedom` degrees of freedom: that of
+// Student's distribution in two dimensions, and the same share more with three.
+double TailOfEstimate(std::size_t count, int dimension, double freedom) {
+  const double normal = TailOf(count, 2);
+  const double tail = std::sqrt(freedom * std::expm1(normal * normal / freedom));
+  return tail * TailOf(count, dimension) / normal;
+}
+
+// Of the pairs that an answer leaves out. Even among true pairs those left out are the farthest, so
+// that they are tried one by one, the nearest first, and one that the noise of those before it
+// explains counts for the noise from then on.
+std::vector<int> OutlyingAmongLeftOut(std::span<const double> residuals,
+                                      const std::vector<int>& inliers, int dimension) {
+  constexpr double kUnknowns = 6.0;
+  double squares = 0.0;
+  double freedom = -kUnknowns;
+  std::vector<int> left_out;
+  for (int i = 0; i < static_cast<int>(residuals.size()); ++i) {
+    const double residual = residuals[static_cast<std::size_t>(i)];
+    if (std::binary_search(inliers.begin(), inliers.end(), i)) {
+      squares += residual * residual;
+      freedom += dimension;
+    } else if (std::isfinite(residual)) {
+      left_out.push_back(i);
+    }
+  }
+  freedom = std::max(1.0, freedom);
+  SortByResidual(residuals, left_out);
+  while (!left_out.empty()) {
+    const double residual = residuals[static_cast<std::size_t>(left_out.back())];
+    // Few pairs determine their pose that much less well.
+    const double variance = squares / freedom * (1.0 + kUnknowns / freedom);
+    const double tail = TailOfEstimate(residuals.size(), dimension, freedom);
+    if (residual * residual > tail * tail * variance) break;
+    squares += residual * residual;
+    freedom += dimension;
+    left_out.pop_back();
+  }
+  return left_out;
 }
 
 }  // namespace
@@ -102,27 +153,11 @@ std::vector<int> OutlyingResiduals(std::span<const double> residuals, int dimens
 std::vector<int> OutlyingPairs(const SolveReport& report, bool in_pixels) {
   const std::vector<double>& residuals = ResidualsOf(report, in_pixels);
   const int dimension = in_pixels ? 2 : 3;
-  double sigma = 0.0;  // Not estimated.
-  if (report.noise) {
-    sigma = (in_pixels ? report.noise->sigma_px : report.noise->sigma_m).value_or(0.0);
-  }
-  // The inliers are of one kind only.
-  const bool one_kind =
-      report.evaluation.per_pair_m.empty() || report.evaluation.per_pair_px.empty();
   const bool leaves_out = !report.inliers.empty() && report.inliers.size() < residuals.size();
-  if (sigma == 0.0 || !one_kind || !leaves_out) return OutlyingResiduals(residuals, dimension);
-  // Few pairs determine their pose and noise that much less well.
-  const double freedom =
-      std::max(1.0, dimension * static_cast<double>(report.inliers.size()) - 6.0);
-  const double limit = TailOf(residuals.size(), dimension) * sigma * (1.0 + 6.0 / freedom);
-  std::vector<int> outliers;
-  for (int i = 0; i < static_cast<int>(residuals.size()); ++i) {
-    const double residual = residuals[static_cast<std::size_t>(i)];
-    const bool is_used = std::binary_search(report.inliers.begin(), report.inliers.end(), i);
-    if (!is_used && std::isfinite(residual) && residual > limit) outliers.push_back(i);
+  if (!leaves_out || !HasInliersOf(report, in_pixels)) {
+    return OutlyingResiduals(residuals, dimension);
   }
-  SortByResidual(residuals, outliers);
-  return outliers;
+  return OutlyingAmongLeftOut(residuals, report.inliers, dimension);
 }
 
 std::vector<std::string> DescribeOutliers(const SolveReport& report,

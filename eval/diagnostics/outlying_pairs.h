@@ -17,9 +17,10 @@ namespace sextant {
 /// Empty below eight pairs. `dimension`: 3 for points, 2 for pixels. O(n log n).
 std::vector<int> OutlyingResiduals(std::span<const double> residuals, int dimension);
 
-/// The same for the pairs of an answer. Where it leaves pairs out and has estimated the noise of
-/// the others, which may be less than half of all, these are the pairs left out that this noise
-/// does not explain, however few pairs there are.
+/// The same for the pairs of an answer. Where it leaves pairs of this kind out, these are the pairs
+/// left out that the residuals of the others do not explain, of which there may be less than half,
+/// however few pairs there are: from the nearest on, until one is beyond the limit that one of all
+/// true pairs exceeds with a probability of 1 %.
 std::vector<int> OutlyingPairs(const SolveReport& report, bool in_pixels);
 
 /// One sentence for each kind of pairs with outliers, by their place in the file,

@@ -18,7 +18,6 @@ namespace sextant {
 namespace {
 
 constexpr double kMinEdgeDifference = 0.05;  // Relative to the edge's length.
-constexpr double kEdgeSigmas = 3.0;
 constexpr double kWeakRatio = 5.0;
 
 struct Edge {
@@ -54,21 +53,29 @@ std::optional<double> KnownLength(const EdgesById& edges, int board_id, int edge
   return board->second[static_cast<std::size_t>(edge)];
 }
 
+// The number of sigmas that one of the edges exceeds by noise alone with a probability of 1 %.
+double SigmasOfEdges(std::size_t edges) {
+  constexpr double kChance = 0.01;
+  return std::sqrt(2.0 * std::log(static_cast<double>(edges) / kChance));
+}
+
 // By how much the edge's error exceeds what noise explains; zero or negative if noise explains it.
-double Excess(const Edge& edge, std::optional<double> known) {
+double Excess(const Edge& edge, std::optional<double> known, double sigmas) {
   const double reference = known.value_or(edge.in_cam_m);
   double difference = std::abs(edge.in_cam_m - edge.in_lidar_m);
   if (known) {
     difference = std::max(
         {difference, std::abs(edge.in_cam_m - *known), std::abs(edge.in_lidar_m - *known)});
   }
-  return difference - std::max(kMinEdgeDifference * reference, kEdgeSigmas * edge.sigma_m);
+  return difference - std::max(kMinEdgeDifference * reference, sigmas * edge.sigma_m);
 }
 
 std::vector<EdgeFinding> DiagnoseEdges(const CalibrationProblem& problem) {
   std::vector<EdgeFinding> findings;
   const EdgesById known_edges = KnownEdges(problem);
-  for (const BoardPairs& group : CompleteBoards(problem.pairs_3d3d)) {
+  const std::vector<BoardPairs> boards = CompleteBoards(problem.pairs_3d3d);
+  const double sigmas = SigmasOfEdges(kCornersPerBoard * boards.size());
+  for (const BoardPairs& group : boards) {
     double worst = 0.0;
     std::optional<EdgeFinding> finding;
     for (int i = 0; i < kCornersPerBoard; ++i) {
@@ -76,7 +83,7 @@ std::vector<EdgeFinding> DiagnoseEdges(const CalibrationProblem& problem) {
       const Pair3d3d& to = problem.pairs_3d3d[group.pair((i + 1) % kCornersPerBoard)];
       const Edge edge = MeasureEdge(from, to);
       const std::optional<double> known = KnownLength(known_edges, from.id.board, i);
-      const double excess = Excess(edge, known);
+      const double excess = Excess(edge, known, sigmas);
       if (excess <= worst) continue;
       worst = excess;
       finding = EdgeFinding{from.id.view, from.id.board, i, edge.in_cam_m, edge.in_lidar_m, known};

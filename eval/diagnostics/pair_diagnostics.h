@@ -59,9 +59,9 @@ struct PairDiagnostics {
 ///
 /// Contradiction: the RMSE of all complete boards is more than three times their RMSE under poses
 /// of their own, and more than a tenth of the mean edge. Edges: reported if they differ by more
-/// than 5 percent of their length and by more than three standard deviations of their difference
-/// (if the noise is stated). Weak direction: its standard deviation, for points about a far origin
-/// that at their centre, is more than five times that of the best determined direction.
+/// than 5 percent of their length and, if the noise is stated, by more than one of all edges does
+/// by noise with a probability of 1 %. Weak direction: its standard deviation, for points about a
+/// far origin that at their centre, is more than five times that of the best determined direction.
 PairDiagnostics DiagnosePairs(const CalibrationProblem& problem);
 
 /// Whether no pose of these pairs, in the order that is used, can be right: they are not what they

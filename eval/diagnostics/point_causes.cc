@@ -264,8 +264,7 @@ std::vector<std::string> CausesInPoints(const CalibrationProblem& problem) {
     causes.emplace_back(
         "mirrored: the LiDAR's points are a mirror image of the camera's: an axis has the wrong "
         "sign, two are exchanged, or the points are in a wrong order; the LiDAR frame is x "
-        "forward, "
-        "y left, z up, the camera's x right, y down, z forward");
+        "forward, y left, z up, the camera's x right, y down, z forward");
   }
   add(FindExchangedSensors(problem));
   add(FindFarCamera(in_cam));

@@ -32,9 +32,8 @@ struct RivalGroups {
 /// The groups of the 3D-3D pairs, or where there are none of the 2D-3D pairs: ransac(kabsch) or
 /// ransac(p3p) of `registry` leaves pairs out of which another pose is a rival (FindRivals), with
 /// the noise that these pairs show, whatever they state: a sigma that is too small contradicts any
-/// pose. Needs four 3D-3D or
-/// five 2D-3D pairs in each group; searches in up to 400, evenly spread over the list. Time O(n)
-/// beyond these.
+/// pose. Needs four 3D-3D or five 2D-3D pairs in each group; searches in up to 400, evenly spread
+/// over the list. Time O(n) beyond these.
 std::optional<RivalGroups> FindRivalGroups(const SolverRegistry& registry,
                                            const CalibrationProblem& problem);
 

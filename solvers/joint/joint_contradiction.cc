@@ -29,7 +29,7 @@ double ContradictionScale(const std::vector<ViewSums>& sums) {
   for (const ViewSums& of : sums) {
     if (of.freedom > 0) ratios.push_back(of.contradiction / (kMedianOfSix * of.freedom));
   }
-  return Median(ratios);
+  return ratios.empty() ? 1.0 : Median(ratios);
 }
 
 std::vector<double> Disagreements(const std::vector<ViewSums>& sums) {

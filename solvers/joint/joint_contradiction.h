@@ -8,7 +8,8 @@
 namespace sextant {
 
 /// The median contradiction of the views over its expectation: by how much the squared differences
-/// between the sensors exceed the noise. Robust to nearly half of the views being wrong.
+/// between the sensors exceed the noise. Robust to nearly half of the views being wrong; 1 where no
+/// view can be compared.
 double ContradictionScale(const std::vector<ViewSums>& sums);
 
 /// How much each view differs from the others, as the quantile of a standard normal variable: the

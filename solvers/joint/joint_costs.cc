@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 
 #include "geometry/intrinsics.h"
+#include "solvers/blocks/derivative_block.h"
+#include "solvers/blocks/log_by_turn.h"
 #include "solvers/blocks/pose_manifold.h"
 
 namespace sextant {
@@ -12,24 +14,6 @@ namespace {
 constexpr int kViewNumbers = 2 * kPoseNumbers;
 // Columns of the pose in the LiDAR within the derivative by a view's block.
 constexpr int kLidarColumns = 6;
-
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using JacobianMap = Eigen::Map<RowMajorMatrix>;
-
-/// The derivative by parameter block `index`, set to zero; none where Ceres does not need it.
-JacobianMap JacobianOf(double** jacobians, std::size_t index, Eigen::Index rows,
-                       Eigen::Index columns) {
-  const bool needed = jacobians != nullptr && jacobians[index] != nullptr;
-  JacobianMap map(needed ? jacobians[index] : nullptr, needed ? rows : 0, needed ? columns : 0);
-  map.setZero();
-  return map;
-}
-
-// The inverse of LeftJacobianSo3 to the fourth order in the angle, which is small at the minimum.
-Eigen::Matrix3d InverseLeftJacobian(const Eigen::Vector3d& phi) {
-  const Eigen::Matrix3d hat = Hat(phi);
-  return Eigen::Matrix3d::Identity() - 0.5 * hat + (1.0 / 12.0) * hat * hat;
-}
 
 }  // namespace
 
@@ -45,10 +29,10 @@ PrintedCost::PrintedCost(const JointModel& model, const PrintedTerm& term, const
 bool PrintedCost::Evaluate(double const* const* parameters, double* residuals,
                            double** jacobians) const {
   Eigen::Map<Eigen::VectorXd> values(residuals, num_residuals());
-  JacobianMap by_view = JacobianOf(jacobians, 0, num_residuals(), kViewNumbers);
+  DerivativeBlock by_view = ZeroDerivative(jacobians, 0, num_residuals(), kViewNumbers);
   const auto free = static_cast<Eigen::Index>(model_.intrinsics.size());
   const bool by_camera = free > 0 && jacobians != nullptr && jacobians[1] != nullptr;
-  if (by_camera) JacobianOf(jacobians, 1, num_residuals(), free);
+  if (by_camera) ZeroDerivative(jacobians, 1, num_residuals(), free);
   values.setZero();
   if (weight_ == 0.0) return true;
   const Camera camera =
@@ -64,7 +48,7 @@ bool PrintedCost::Evaluate(double const* const* parameters, double* residuals,
 
 bool PrintedCost::Differentiated(const Camera& camera, const PrintedResidual& at,
                                  double* jacobian) const {
-  JacobianMap by(jacobian, num_residuals(), std::ssize(model_.intrinsics));
+  DerivativeBlock by(jacobian, num_residuals(), std::ssize(model_.intrinsics));
   for (std::size_t i = 0; i < at.in_cam.size(); ++i) {
     const auto pixel_by = PixelByIntrinsics(camera, at.in_cam[i]);
     if (!pixel_by) return false;
@@ -90,7 +74,7 @@ FaceCost::FaceCost(const JointView& view, const FaceGroup& group,
 bool FaceCost::Evaluate(double const* const* parameters, double* residuals,
                         double** jacobians) const {
   const BoardPlane plane(PoseIn(parameters[0] + kPoseNumbers));
-  JacobianMap by_view = JacobianOf(jacobians, 0, num_residuals(), kViewNumbers);
+  DerivativeBlock by_view = ZeroDerivative(jacobians, 0, num_residuals(), kViewNumbers);
   Eigen::VectorXd offset = Eigen::VectorXd::Zero(num_residuals());
   for (Eigen::Index k = 0; k < group_.by.cols(); ++k) {
     offset += group_.by.col(k) * *parameters[k + 1];
@@ -127,7 +111,7 @@ EdgeCost::EdgeCost(const JointModel& model, const JointView& view,
 bool EdgeCost::Evaluate(double const* const* parameters, double* residuals,
                         double** jacobians) const {
   const BoardPlane plane(PoseIn(parameters[0] + kPoseNumbers));
-  JacobianMap by_view = JacobianOf(jacobians, 0, num_residuals(), kViewNumbers);
+  DerivativeBlock by_view = ZeroDerivative(jacobians, 0, num_residuals(), kViewNumbers);
   Eigen::VectorXd shift = Eigen::VectorXd::Zero(num_residuals());
   Eigen::VectorXd factor(num_residuals());
   for (std::size_t s = 0; s < view_.shifts.size(); ++s) {
@@ -147,7 +131,8 @@ bool EdgeCost::Evaluate(double const* const* parameters, double* residuals,
     if (by_view.size() > 0) by_view.block<1, 6>(i, kLidarColumns) = weights_[k] * ray.by_pose;
   }
   for (std::size_t s = 0; s < view_.shifts.size(); ++s) {
-    JacobianMap by = JacobianOf(jacobians, s + 1, num_residuals(), view_.shifts[s].by.cols());
+    DerivativeBlock by =
+        ZeroDerivative(jacobians, s + 1, num_residuals(), view_.shifts[s].by.cols());
     if (by.size() > 0) by = factor.asDiagonal() * view_.shifts[s].by;
   }
   return true;
@@ -166,12 +151,12 @@ bool LinkCost::Evaluate(double const* const* parameters, double* residuals,
   Eigen::Map<Vector6d> values(residuals);
   values << lever_m_ * turn, error.translation;
   values = scale_.cwiseProduct(values).eval();
-  JacobianMap by_pose = JacobianOf(jacobians, 0, 6, kPoseNumbers);
-  JacobianMap by_view = JacobianOf(jacobians, 1, 6, kViewNumbers);
+  DerivativeBlock by_pose = ZeroDerivative(jacobians, 0, 6, kPoseNumbers);
+  DerivativeBlock by_view = ZeroDerivative(jacobians, 1, 6, kViewNumbers);
   if (by_pose.size() == 0 && by_view.size() == 0) return true;
   const Eigen::Matrix3d turned = cam_from_lidar.rotation.toRotationMatrix();
   const Eigen::Matrix3d back = cam_from_board.rotation.conjugate().toRotationMatrix();
-  const Eigen::Matrix3d by_turn = lever_m_ * InverseLeftJacobian(turn) * back;
+  const Eigen::Matrix3d by_turn = lever_m_ * LogByTurn(turn) * back;
   const Eigen::Vector3d arm = turned * lidar_from_board.translation;
   const Eigen::Vector3d off = arm + cam_from_lidar.translation - cam_from_board.translation;
   if (by_pose.size() > 0) {
@@ -202,7 +187,7 @@ bool PriorCost::Evaluate(double const* const* parameters, double* residuals,
   const Eigen::Map<const Eigen::VectorXd> numbers(parameters[0], num_residuals());
   Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) =
       weight_ * (numbers - block_.mean).cwiseQuotient(block_.sigma);
-  JacobianMap by = JacobianOf(jacobians, 0, num_residuals(), num_residuals());
+  DerivativeBlock by = ZeroDerivative(jacobians, 0, num_residuals(), num_residuals());
   if (by.size() > 0) by.diagonal() = weight_ * block_.sigma.cwiseInverse();
   return true;
 }

@@ -41,11 +41,13 @@ class JointSearch {
   }
 
   Expected<JointAnswer> Run() {
-    if (IsRobust() || options_.cut > 0.0) SEXTANT_RETURN_IF_ERROR(FollowLosses(kNearEnough));
-    if (options_.cut > 0.0) {
+    const bool cuts = options_.cut > 0.0;
+    if (IsRobust() || IsEstimated() || cuts) SEXTANT_RETURN_IF_ERROR(FollowLosses(kNearEnough));
+    if (cuts) {
       SEXTANT_RETURN_IF_ERROR(Cut());
     } else {
       noise_ = {.out_of_plane_m = shift_m_, .in_plane_m = shift_m_};
+      if (IsEstimated()) noise_ = MedianNoise(Residuals(), noise_);
       SEXTANT_RETURN_IF_ERROR(FollowLosses(options_.step_tolerance));
     }
     SEXTANT_RETURN_IF_ERROR(AddUncertainty());

@@ -20,7 +20,8 @@ struct JointAnswer {
 /// First minimises with the robust losses, scaled by the noise, and with views that may be shifted;
 /// then alternates least squares, the estimate of the noise and the selection of the observations
 /// within `cut` of it and of the views that do not contradict the others (ContradictingViews),
-/// until both stay the same. `shift_m`: the expected shift of the returns of one view. Errors:
+/// until both stay the same. Without a cut, the answer is the minimum of the losses, and the noise
+/// that of the medians. `shift_m`: the expected shift of the returns of one view. Errors:
 /// kDegenerate (no view is left, or the views leave a direction of the pose undetermined),
 /// kNoConvergence.
 Expected<JointAnswer> SearchJointly(const JointModel& model, const JointState& start,

@@ -72,8 +72,9 @@ std::vector<int> NotRejected(const std::vector<Pair>& pairs, const std::vector<i
 /// Pairs that state no noise have it estimated: see refine_noise.h.
 /// Plain least squares runs in RefinePose, robust losses in Ceres. With on=both, the pairs of the
 /// other kind are used too, without the ids that the inner solver rejected. Covariance: inverse of
-/// sum rho' J^T J; with free intrinsics see refine_camera.h. Termination kConverged: the last step
-/// is under step_tolerance. Errors: kNoConvergence, kDegenerate, those of the inner solver.
+/// sum rho' J^T J, larger where outliers pull at the pose (see RefinePoseWithCeres); with free
+/// intrinsics see refine_camera.h. Termination kConverged: the last step is under step_tolerance.
+/// Errors: kNoConvergence, kDegenerate, those of the inner solver.
 class RefineSolver final : public Solver {
  public:
   RefineSolver(const SolverArguments& arguments, const RefineOptions& options)

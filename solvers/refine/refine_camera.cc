@@ -60,9 +60,10 @@ ceres::Manifold* NewIntrinsicManifold(const std::vector<int>& free) {
 struct State {
   Rigid3d pose;
   IntrinsicVector numbers;
-  double cost = 0.0;            // 1/2 sum rho
-  Eigen::MatrixXd information;  // Over (dphi, dt, free intrinsics).
-  Eigen::VectorXd levers;  // Largest shift, in focal lengths, by one unit of each free intrinsic.
+  double cost = 0.0;  // 1/2 sum rho
+  LossVariance variance{};
+  Eigen::MatrixXd information{};  // Over (dphi, dt, free intrinsics), and LossVariance::Factor.
+  Eigen::VectorXd levers{};  // Largest shift, in focal lengths, by one unit of each free intrinsic.
 };
 
 void AddPoint(const PointTerm& term, const ceres::LossFunction* loss, State& sum) {
@@ -73,6 +74,7 @@ void AddPoint(const PointTerm& term, const ceres::LossFunction* loss, State& sum
   const Eigen::Matrix<double, 3, 6> jacobian = at.Jacobian();
   sum.information.topLeftCorner<6, 6>() += rho[1] * jacobian.transpose() * jacobian;
   sum.cost += 0.5 * rho[0];
+  sum.variance.Add(at.residual.squaredNorm(), 3, rho);
 }
 
 bool AddPixel(const PixelTerm& term, const Camera& camera, const std::vector<int>& free,
@@ -96,6 +98,7 @@ bool AddPixel(const PixelTerm& term, const Camera& camera, const std::vector<int
   }
   sum.information += rho[1] * jacobian.transpose() * jacobian;
   sum.cost += 0.5 * rho[0];
+  sum.variance.Add(at.residual.squaredNorm(), 2, rho);
   return true;
 }
 
@@ -105,6 +108,7 @@ bool SumUp(const PairTerms& terms, const std::vector<int>& free, const RobustLos
   const std::unique_ptr<ceres::LossFunction> rho(NewLoss(loss));
   const auto count = static_cast<Eigen::Index>(free.size());
   sum.cost = 0.0;
+  sum.variance = {};
   sum.information.setZero(6 + count, 6 + count);
   sum.levers.setZero(count);
   const Camera camera = WithIntrinsics(terms.camera, sum.numbers);
@@ -112,6 +116,7 @@ bool SumUp(const PairTerms& terms, const std::vector<int>& free, const RobustLos
   for (const PixelTerm term : terms.pixels) {
     if (!AddPixel(term, camera, free, rho.get(), sum)) return false;
   }
+  if (rho) sum.information /= sum.variance.Factor(static_cast<double>(6 + count));
   return std::isfinite(sum.cost);
 }
 
@@ -211,7 +216,7 @@ Expected<RefinedPoseAndCamera> RefinePoseAndCamera(const PairTerms& terms, const
                     "fewer intrinsics",
                     terms.points.size(), terms.pixels.size(), 6 + free.size(), free.size()));
   }
-  State state{start, IntrinsicsOf(terms.camera), 0.0, {}, {}};
+  State state{.pose = start, .numbers = IntrinsicsOf(terms.camera)};
   if (!SumUp(terms, free, loss, state)) {
     return NotConverged("a point does not project at the start");
   }
@@ -220,8 +225,11 @@ Expected<RefinedPoseAndCamera> RefinePoseAndCamera(const PairTerms& terms, const
   // Checked before the outcome: unobservable parameters also prevent convergence.
   SEXTANT_ASSIGN_OR_RETURN(const Eigen::MatrixXd covariance,
                            ObservableCovariance(terms, free, state));
-  if (OutcomeOf(summary.termination_type) != RefineOutcome::kConverged) {
-    return NotConverged("no convergence within max_iterations");
+  const RefineOutcome outcome = OutcomeOf(summary.termination_type);
+  if (outcome != RefineOutcome::kConverged) {
+    return NotConverged(outcome == RefineOutcome::kMaxIterations
+                            ? "no convergence within max_iterations"
+                            : "no step lowers the cost");
   }
   RefinedPoseAndCamera refined;
   refined.cam_from_lidar = state.pose;

@@ -32,7 +32,8 @@ struct RefinedPoseAndCamera {
 /// camera of the terms: self-calibration by bundle adjustment of one view (Triggs et al. 2000),
 /// by ceres::Problem.
 ///
-/// The covariance is the inverse of sum rho' J^T J over pose and intrinsics, times the residual
+/// The covariance is the inverse of sum rho' J^T J over pose and intrinsics, times the factor by
+/// which the residuals show that the variance is larger (LossVariance), and times the residual
 /// variance where the noise was only assumed.
 /// Errors: kTooFewPairs (fewer residuals than unknowns), kDegenerate (a singular information, or
 /// an intrinsic with a sigma of over a quarter of the focal length or radius that it acts on: with

@@ -42,7 +42,7 @@ class CeresPoseProblem {
 
 template <int kResiduals, class Terms>
 bool AddWeighted(const Terms& terms, const Camera* camera, const ceres::LossFunction* loss,
-                 RefinedPose& sum) {
+                 LossVariance& variance, RefinedPose& sum) {
   const Eigen::Matrix3d r = sum.cam_from_lidar.rotation.toRotationMatrix();
   TermDerivatives<kResiduals> at;
   for (const auto& term : terms) {
@@ -53,6 +53,7 @@ bool AddWeighted(const Terms& terms, const Camera* camera, const ceres::LossFunc
     const Eigen::Matrix<double, kResiduals, 6> jacobian = at.Jacobian();
     sum.information += rho[1] * jacobian.transpose() * jacobian;
     sum.cost += 0.5 * rho[0];
+    variance.Add(squared, kResiduals, rho);
   }
   return true;
 }
@@ -78,8 +79,14 @@ bool SumUp(const TermsView& terms, const RobustLoss& loss, RefinedPose& sum) {
   const std::unique_ptr<ceres::LossFunction> rho(NewLoss(loss));
   sum.cost = 0.0;
   sum.information.setZero();
-  return AddWeighted<3>(terms.points, nullptr, rho.get(), sum) &&
-         AddWeighted<2>(terms.pixels, terms.camera, rho.get(), sum) && std::isfinite(sum.cost);
+  LossVariance variance;
+  if (!AddWeighted<3>(terms.points, nullptr, rho.get(), variance, sum) ||
+      !AddWeighted<2>(terms.pixels, terms.camera, rho.get(), variance, sum)) {
+    return false;
+  }
+  constexpr double kUnknowns = 6.0;
+  if (rho) sum.information /= variance.Factor(kUnknowns);
+  return std::isfinite(sum.cost);
 }
 
 }  // namespace

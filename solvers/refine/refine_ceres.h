@@ -18,7 +18,8 @@ struct RobustLoss {
 };
 
 /// As RefinePose, with a robust loss on each pair, by ceres::Problem. `cost` is
-/// 1/2 sum rho(|r_i|^2) and `information` sum rho'(|r_i|^2) J_i^T J_i.
+/// 1/2 sum rho(|r_i|^2) and `information` sum rho'(|r_i|^2) J_i^T J_i over the factor by which the
+/// residuals show that the variance is larger (LossVariance): its inverse is the covariance.
 RefinedPose RefinePoseWithCeres(const TermsView& terms, const Rigid3d& start,
                                 const RobustLoss& loss, const RefineLimits& limits);
 

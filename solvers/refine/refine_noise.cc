@@ -23,7 +23,7 @@ std::optional<double>& SigmaOf(PairKind kind, NoiseEstimate& noise) {
   return kind == PairKind::k3d3d ? noise.sigma_m : noise.sigma_px;
 }
 
-// Twice the cost, and the information, of the terms of one kind at a pose.
+// The cost and the information of terms at a pose: with one iteration, no step is taken.
 RefinedPose At(const TermsView& terms, const Rigid3d& pose) {
   return RefinePose(terms, pose, {.max_iterations = 1});
 }

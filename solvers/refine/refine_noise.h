@@ -23,8 +23,7 @@ class RefinedPairs {
   /// - for a loss, that of FindNoiseScale, whose pose becomes a second start (MM-estimation, Yohai
   ///   1987);
   /// - for least squares on both kinds, the variances under which the squared residuals of each
-  /// kind
-  ///   have their expected sum at the minimum, iterated from `start` (Helmert's variance
+  ///   kind have their expected sum at the minimum, iterated from `start` (Helmert's variance
   ///   components).
   /// Errors: those of FindNoiseScale.
   Expected<void> EstimateNoise(const RefineOptions& options, const Solver& inner,

@@ -17,8 +17,9 @@ struct BoardInformation {
   Matrix6d in_board = Matrix6d::Zero();
 };
 
-/// The information of every observation at an estimate, in which all sensors are connected. An
-/// observation at which its residuals cannot be evaluated is left out.
+/// The information of every observation at an estimate, in which all sensors are connected. Of an
+/// observation, those kinds of residuals are left out that cannot be evaluated there. Requires a
+/// problem as RigModelOf does.
 std::vector<BoardInformation> BoardInformationOf(const RigProblem& problem,
                                                  const RigEstimate& estimate);
 

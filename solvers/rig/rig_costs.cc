@@ -2,26 +2,14 @@
 #include "solvers/rig/rig_costs.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "geometry/uncertain_pose.h"
+#include "solvers/blocks/derivative_block.h"
+#include "solvers/blocks/log_by_turn.h"
 #include "solvers/blocks/pose_manifold.h"
 
 namespace sextant {
-namespace {
-
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-// The derivative by parameter block `index`, set to zero; none where Ceres does not need it.
-Eigen::Map<RowMajor> DerivativeOf(double** jacobians, std::size_t index, Eigen::Index rows,
-                                  Eigen::Index columns) {
-  const bool needed = jacobians != nullptr && jacobians[index] != nullptr;
-  Eigen::Map<RowMajor> map(needed ? jacobians[index] : nullptr, needed ? rows : 0,
-                           needed ? columns : 0);
-  map.setZero();
-  return map;
-}
-
-}  // namespace
 
 RigBlockCost::RigBlockCost(const RigBlock& block, const RigPlacementModel& placement,
                            const std::vector<double>& weights)
@@ -39,8 +27,20 @@ RigBlockCost::RigBlockCost(const RigBlock& block, const RigPlacementModel& place
                                           block.numbers.size() + (block.clock ? 1 : 0), 1);
 }
 
+// Nothing of the block is used, as where its residuals cannot be evaluated at the start.
+void RigBlockCost::SetZero(double* residuals, double** jacobians) const {
+  std::fill_n(residuals, num_residuals(), 0.0);
+  for (std::size_t k = 0; jacobians != nullptr && k < parameter_block_sizes().size(); ++k) {
+    ZeroDerivative(jacobians, k, num_residuals(), parameter_block_sizes()[k]);
+  }
+}
+
 bool RigBlockCost::Evaluate(double const* const* parameters, double* residuals,
                             double** jacobians) const {
+  if (std::ranges::all_of(weights_, [](double weight) { return weight == 0.0; })) {
+    SetZero(residuals, jacobians);
+    return true;
+  }
   const Rigid3d sensor_from_root = PoseIn(parameters[0]);
   const Rigid3d root_from_board = PoseIn(parameters[1]);
   const int shift_at = shift_ < 0 ? 0 : 1 + shift_;
@@ -68,13 +68,13 @@ bool RigBlockCost::Evaluate(double const* const* parameters, double* residuals,
   if (jacobians == nullptr) return true;
   const Eigen::Matrix<double, Eigen::Dynamic, 6> by_pose = weights.asDiagonal() * at.by_pose;
   const ProductJacobians outer = JacobiansOfProduct(sensor_from_root, root_from_seen);
-  auto by_sensor = DerivativeOf(jacobians, 0, block_.rows(), kPoseNumbers);
+  auto by_sensor = ZeroDerivative(jacobians, 0, block_.rows(), kPoseNumbers);
   if (by_sensor.size() > 0) by_sensor.leftCols<6>() = by_pose * outer.by_left;
   const ProductJacobians inner = JacobiansOfProduct(root_from_board, board_from_moved_seen);
   const ProductJacobians within = JacobiansOfProduct(moved.board_from_moved, board_from_seen);
   const Eigen::Matrix<double, Eigen::Dynamic, 6> by_root = by_pose * outer.by_right;
   const Eigen::Matrix<double, Eigen::Dynamic, 6> by_moved_seen = by_root * inner.by_right;
-  auto by_placement = DerivativeOf(jacobians, 1, block_.rows(), kPoseNumbers * poses_);
+  auto by_placement = ZeroDerivative(jacobians, 1, block_.rows(), kPoseNumbers * poses_);
   if (by_placement.size() > 0) {
     by_placement.leftCols<6>() = by_root * inner.by_left;
     if (shift_ >= 0) by_placement.middleCols<6>(6 * shift_at) = by_moved_seen * within.by_right;
@@ -84,11 +84,11 @@ bool RigBlockCost::Evaluate(double const* const* parameters, double* residuals,
     }
   }
   if (block_.clock) {
-    auto by_clock = DerivativeOf(jacobians, clock, block_.rows(), 1);
+    auto by_clock = ZeroDerivative(jacobians, clock, block_.rows(), 1);
     if (by_clock.size() > 0) by_clock.col(0) = -by_moved_seen * within.by_left * moved.by_time;
   }
   for (std::size_t k = 0; k < block_.numbers.size(); ++k) {
-    auto by_number = DerivativeOf(jacobians, 2 + k, block_.rows(), 1);
+    auto by_number = ZeroDerivative(jacobians, 2 + k, block_.rows(), 1);
     if (by_number.size() > 0) by_number.col(0) = weights.cwiseProduct(block_.numbers[k].by);
   }
   return true;
@@ -112,7 +112,7 @@ bool ShiftCost::Evaluate(double const* const* parameters, double* residuals,
   Vector6d values;
   values << lever_m_ * turn, shift.translation;
   Eigen::Map<Vector6d>(residuals, 6) = weights_by_m_.cwiseProduct(values);
-  auto by = DerivativeOf(jacobians, 0, 6, kPoseNumbers * poses_);
+  auto by = ZeroDerivative(jacobians, 0, 6, kPoseNumbers * poses_);
   if (by.size() == 0) return true;
   Matrix6d by_shift = Matrix6d::Identity();
   by_shift.topLeftCorner<3, 3>() = lever_m_ * LogByTurn(turn);
@@ -128,7 +128,7 @@ MotionCost::MotionCost(const RigPlacementModel& placement)
 
 bool MotionCost::Evaluate(double const* const* parameters, double* residuals,
                           double** jacobians) const {
-  auto by = DerivativeOf(jacobians, 0, 12, kPoseNumbers * poses_);
+  auto by = ZeroDerivative(jacobians, 0, 12, kPoseNumbers * poses_);
   for (int k = 0; k < 2; ++k) {
     const Rigid3d step = PoseIn(parameters[0] + kPoseNumbers * (first_ + k));
     const MotionSigma& sigma = kMotionSigmas[static_cast<std::size_t>(k)];

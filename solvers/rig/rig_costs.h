@@ -11,7 +11,8 @@ namespace sextant {
 
 /// The residuals of a block at sensor_from_root * root_from_board * board_from_moved *
 /// board_from_seen. Parameters: the sensor's pose, the placement's (board, shifts, motion), each
-/// shared number, and the sensor's time offset where the block has one.
+/// shared number, and the sensor's time offset where the block has one. A block of which all
+/// weights are 0 is not evaluated.
 class RigBlockCost final : public ceres::CostFunction {
  public:
   RigBlockCost(const RigBlock& block, const RigPlacementModel& placement,
@@ -20,6 +21,8 @@ class RigBlockCost final : public ceres::CostFunction {
                 double** jacobians) const override;
 
  private:
+  void SetZero(double* residuals, double** jacobians) const;
+
   const RigBlock& block_;
   int shift_;
   int poses_;

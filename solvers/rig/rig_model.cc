@@ -72,10 +72,17 @@ class RigModelMaker {
     block.clock = clock;
   }
 
+  // The raw observations with the pose by which edge rays are assigned to points of a rim.
+  static BoardView WithPose(const RigObservation& of) {
+    BoardView view = of.raw;
+    if (of.sensor_from_board) view.lidar_from_board = *of.sensor_from_board;
+    return view;
+  }
+
   void AddObservation(std::size_t placement, std::size_t seen) {
     const RigObservation& of = problem_.placements[placement].seen[seen];
     const Board& board = *FindBoard(problem_.boards, problem_.placements[placement].board);
-    BoardViewTerms terms = TermsOf(of.raw, board);
+    BoardViewTerms terms = TermsOf(WithPose(of), board);
     RigBlock block{.placement = placement, .seen = seen, .sensor = of.sensor};
     AddClock(of, block);
     for (PrintedTerm& term : terms.printed) {

@@ -98,7 +98,8 @@ struct RigModel {
 inline constexpr const char* kTimeOffset = "time_offset_s";
 inline constexpr double kClockSigma_s = 0.1;
 
-/// Requires a problem that passes CheckRigProblem. The model refers to nothing of the problem.
+/// Requires a problem that passes CheckRigProblem, with sensor_from_board of every observation that
+/// has edge rays. The model refers to nothing of the problem.
 /// `clock_root`: where the time offsets of the sensors are estimated, the one whose clock counts.
 RigModel RigModelOf(const RigProblem& problem, std::optional<std::size_t> clock_root = {});
 

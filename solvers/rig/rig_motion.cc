@@ -4,13 +4,9 @@
 #include <Eigen/Geometry>
 
 #include "geometry/so3.h"
+#include "solvers/blocks/log_by_turn.h"
 
 namespace sextant {
-
-Eigen::Matrix3d LogByTurn(const Eigen::Vector3d& phi) {
-  const Eigen::Matrix3d hat = Hat(phi);
-  return Eigen::Matrix3d::Identity() - 0.5 * hat + (1.0 / 12.0) * hat * hat;
-}
 
 MovedBoard MovedAfter(const RigMotion& motion, double time_s) {
   const double s = time_s / kMotionUnit_s;

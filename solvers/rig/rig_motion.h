@@ -38,8 +38,4 @@ MovedBoard MovedAfter(const RigMotion& motion, double time_s);
 /// frame, within `time_s`, which is not 0.
 RigMotion MotionBetween(const Rigid3d& before, const Rigid3d& after, double time_s);
 
-/// Derivative of the logarithm of a rotation by a perturbation on its left, to the fourth order in
-/// the angle, which is small.
-Eigen::Matrix3d LogByTurn(const Eigen::Vector3d& phi);
-
 }  // namespace sextant

@@ -52,7 +52,8 @@ std::optional<std::size_t> ClockRoot(const RigOptions& options) {
 
 std::string ClockWarning(const std::string& sensor, const std::string& uncertainty) {
   return fmt::format(
-      "the time offset of {} cannot be told{}: move boards, in several directions, while {} and "
+      "the data does not determine the time offset of {}{}: move boards, in several directions, "
+      "while {} and "
       "another sensor see them, and state times",
       sensor, uncertainty, sensor);
 }
@@ -175,7 +176,7 @@ class RigSolution {
 
   // An offset that the boards' motion determines is known far better than its prior.
   void WarnOfClocks(RigEstimate& estimate) const {
-    constexpr double kTold = 0.3;
+    constexpr double kDetermined = 0.3;  // Sigma over that of the prior.
     for (std::size_t s = 0; s < sensors_.size() && options_.estimate_time; ++s) {
       if (s == options_.root) continue;
       const auto number =
@@ -183,7 +184,7 @@ class RigSolution {
             return one.sensor == sensors_[s] && one.name == kTimeOffset;
           });
       const bool any = number != estimate.numbers.end();
-      if (any && number->sigma < kTold * kClockSigma_s) continue;
+      if (any && number->sigma < kDetermined * kClockSigma_s) continue;
       estimate.warnings.push_back(
           ClockWarning(whole_.sensors[sensors_[s]].name,
                        any ? fmt::format(" (+-{:.0f} ms)", 1e3 * number->sigma) : ""));

@@ -101,11 +101,11 @@ Expected<void> CheckConsensus(const PairScorer& scorer, double max_squared,
   if (distinct >= min_inliers && false_alarms < kMaxFalseAlarms) return {};
   return MakeError(
       ErrorCode::kNoConsensus,
-      fmt::format("the best pose gathers {} of {} pairs (each counted once), expected at least {} "
-                  "and more than chance "
-                  "explains ({:.2g} such poses, fewer than {:g} wanted); check the pairing and the "
-                  "sigmas",
-                  distinct, count, min_inliers, false_alarms, kMaxFalseAlarms));
+      fmt::format(
+          "the best pose gathers {} of {} pairs (each counted once), expected at least {} "
+          "and more than chance explains ({:.2g} such poses, fewer than {:g} wanted); check "
+          "the pairing and the sigmas",
+          distinct, count, min_inliers, false_alarms, kMaxFalseAlarms));
 }
 
 Expected<void> CheckConsensus(const PairScorer& scorer, const Rigid3d& pose, double max_squared,

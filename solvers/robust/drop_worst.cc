@@ -23,9 +23,10 @@ struct DropWorstOptions : InlierOptions {
 ///
 /// Ends with `keep` pairs and the inner solver on these; with keep=0 as soon as all remaining pairs
 /// are within the threshold. These must be a consensus (see CheckConsensus), and the answer is that
-/// of BetterOnInliers. Residuals are in sigmas, so that a pair
-/// that is known to be noisy is not dropped for it. Errors: kNoConsensus, kTooFewPairs (fewer than
-/// `keep`), those of the inner solver.
+/// of BetterOnInliers. Residuals are in sigmas, so that a pair that is known to be noisy is not
+/// dropped for it. One solution of the inner solver for each pair dropped, so that time is
+/// quadratic in the pairs. Errors: kNoConsensus, kTooFewPairs (fewer than `keep`), those of the
+/// inner solver.
 class DropWorstSolver final : public Solver {
  public:
   DropWorstSolver(const SolverArguments& arguments, PairKind kind, const DropWorstOptions& options)

@@ -280,7 +280,7 @@ TEST(RigCommand, ClocksAreEstimatedFromBoardsThatMove) {
   test::WriteText(TestPath("corners.csv"), TableOfMovingBoard(0.0));
   const ProgramRun still = RunSextant(command);
   EXPECT_EQ(still.exit_code, 0) << still.err;
-  EXPECT_THAT(still.out, HasSubstr("the time offset of rear cannot be told"));
+  EXPECT_THAT(still.out, HasSubstr("does not determine the time offset of rear"));
 }
 
 // Two corners of one sensor are exchanged.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "eval/synthetic/random_scene.h"
 #include "eval/synthetic/simulate_pairs.h"
 #include "geometry/symmetric.h"
 
@@ -90,6 +91,20 @@ TEST(PairDiagnostics, ReportsTheBoardWithInconsistentEdges) {
   EXPECT_EQ(diagnostics.edges[0].view, 1);
   EXPECT_EQ(diagnostics.edges[0].board, 1);
   EXPECT_THAT(Describe(diagnostics), testing::Contains(HasSubstr("board 1 of view 1")));
+}
+
+// Forty edges each, with a stated noise of a tenth of their length: in a scene in a hundred may one
+// of them exceed the limit.
+TEST(PairDiagnostics, ReportsHardlyAnyEdgeForNoiseAlone) {
+  constexpr std::uint64_t kScenes = 100;
+  int reported = 0;
+  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
+    Random random(DeriveSeed(1, "edges", 0, seed));
+    RandomScene scene = MakeRandomScene({.pairs = 40, .sigma_m = 0.05, .on_boards = true}, random);
+    scene.problem.pairs_2d3d.clear();
+    reported += DiagnosePairs(scene.problem).edges.empty() ? 0 : 1;
+  }
+  EXPECT_LE(reported, 3);
 }
 
 TEST(PairDiagnostics, ReportsANominalSizeThatDisagreesWithBothSensors) {

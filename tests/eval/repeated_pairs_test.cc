@@ -106,5 +106,26 @@ TEST(Facing, TellsOppositeSidesOfABoardFromTheSame) {
   EXPECT_FALSE(SensorsFaceEachOther({}, camera_at(6.0)));
 }
 
+// Points that happen to lie near a plane between the sensors, which both see at 2 degrees.
+TEST(Facing, IsNotSeenInPlanesThatBothSensorsSeeEdgeOn) {
+  const std::vector<std::vector<Eigen::Vector3d>> groups = {
+      {{3.5, 0.1, -0.5}, {4.5, 0.1, -0.5}, {4.5, 0.1, 0.5}, {3.5, 0.1, 0.5}}};
+  EXPECT_FALSE(SensorsFaceEachOther(groups, Rigid3d{{1.0, 0.0, 0.0, 0.0}, {0.0, -0.3, 0.0}}));
+}
+
+// The same board seen at 17 degrees from both sides, once exact and once with a noise that turns
+// its normal by as much.
+TEST(Facing, IsNotSeenWhereNoiseMayTurnTheBoardSoFar) {
+  const auto board = [](double noise) {
+    return std::vector<std::vector<Eigen::Vector3d>>{{{3.5, 1.2 + noise, -0.5},
+                                                      {4.5, 1.2 - noise, -0.5},
+                                                      {4.5, 1.2 + noise, 0.5},
+                                                      {3.5, 1.2 - noise, 0.5}}};
+  };
+  const Rigid3d opposite{{1.0, 0.0, 0.0, 0.0}, {0.0, -2.4, 0.0}};
+  EXPECT_TRUE(SensorsFaceEachOther(board(0.0), opposite));
+  EXPECT_FALSE(SensorsFaceEachOther(board(0.06), opposite));
+}
+
 }  // namespace
 }  // namespace sextant

@@ -12,6 +12,8 @@
 #include "solvers/builtin_solvers.h"
 #include "solvers/core/registry.h"
 #include "solvers/joint/board_view_residuals.h"
+#include "solvers/joint/joint_contradiction.h"
+#include "solvers/joint/joint_noise.h"
 #include "solvers/refine/rotation_manifold.h"
 
 namespace sextant {
@@ -214,9 +216,18 @@ TEST(Joint, DropsAViewOfOneSensor) {
 TEST(Joint, ReportsThatTheNoiseIsLargerThanStated) {
   SimulatedViews session = Views({.seed = 14, .views = 20});
   for (BoardView& view : session.problem.board_views) view.range_sigma_m *= 0.4;
-  const auto report = Solve(session.problem, "joint(kabsch)");
-  ASSERT_TRUE(report) << report.error().message;
-  EXPECT_THAT(report->warnings, Contains(HasSubstr("noise of the ranges on the boards is 2.5")));
+  for (const char* spec : {"joint(kabsch)", "joint(kabsch,cut=0)"}) {
+    const auto report = Solve(session.problem, spec);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_THAT(report->warnings, Contains(HasSubstr("noise of the ranges on the boards is 2.5")))
+        << spec;
+  }
+}
+
+// The level of the links is not estimated where nothing can be compared, as with a single view.
+TEST(Joint, ContradictionOfNoViewsIsAsExpected) {
+  EXPECT_EQ(ContradictionScale({}), 1.0);
+  EXPECT_EQ(WithMedianShift({ViewSums{}}, {.out_of_plane_m = 0.01}).out_of_plane_m, 0.01);
 }
 
 // Named estimate within five of its own sigmas.

@@ -2,6 +2,7 @@
 // Every robust loss on every kind of residual: accepted, and with a consistent covariance.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -19,7 +20,8 @@ namespace {
 // V = E[w^2 s] / k / E[w + 2 w' s / k]^2 and H the information of least squares (Huber 1981,
 // section 6.3); refine states 1 / E[w]. NEES / 6 is therefore V E[w]: the figures below, for the
 // default scales, from 200000 draws (standard error under 0.003). Never above 1: downweighting
-// makes the stated covariance conservative.
+// makes the stated covariance conservative. Where the residuals of 50 pairs happen to show a larger
+// variance, it is enlarged, by hardly a percent on average.
 struct LossCase {
   const char* loss;
   double pixels;  // k = 2
@@ -73,36 +75,61 @@ INSTANTIATE_TEST_SUITE_P(Every, RefineLosses,
                                                           KindCase{"kabsch", false, true},
                                                           KindCase{"kabsch,on=both", true, true})));
 
-// Thirty percent of the pairs are outliers, nobody states the noise, and the pairs of a board share
-// errors. 300 scenes have a standard error of 1.7 percent at 90; three are allowed.
-class RefineLossesWithOutliers : public testing::TestWithParam<const char*> {};
-
-TEST_P(RefineLossesWithOutliers, RegionHoldsTheTruth) {
-  constexpr int kTrials = 300;
-  constexpr double kChiSquare6 = 12.591587243743977;  // Quantile at 0.95.
-  const test::SceneOptions options = {.pairs = 60,
-                                      .sigma_m = 0.01,
-                                      .sigma_px = 1.0,
-                                      .on_boards = true,
-                                      .shared_error = 1.0,
-                                      .states_noise = false};
-  const SolverPtr solver = BuiltinSolvers().Make(GetParam()).value();
+/// How often the region of 95 percent holds the truth where 30 percent of 60 pairs are outliers.
+struct RegionCount {
   int covered = 0;
-  int answers = 0;
-  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
+  int answers = 0;  // The inner solver may not bear the outliers.
+  std::size_t most_inliers_beyond = 0;
+
+  // 300 scenes have a standard error of 1.7 percent at 90; three are allowed.
+  double Least() const { return answers * (0.90 - 3.0 * std::sqrt(0.90 * 0.10 / answers)); }
+};
+
+constexpr int kOutlierTrials = 300;
+
+RegionCount CountRegions(const std::string& spec, const test::SceneOptions& options) {
+  constexpr double kChiSquare6 = 12.591587243743977;  // Quantile at 0.95.
+  const SolverPtr solver = BuiltinSolvers().Make(spec).value();
+  RegionCount count;
+  for (std::uint64_t trial = 0; trial < kOutlierTrials; ++trial) {
     Random random(DeriveSeed(5, "losses with outliers", 0, trial));
     test::PairScene scene = test::MakeScene(options, random);
     const std::vector<int> inliers = test::AddOutliers(0.3, options, random, scene);
     const Expected<SolveReport> report = solver->Solve(scene.problem);
-    if (!report) continue;  // The inner solver may not bear the outliers.
-    ++answers;
-    EXPECT_LT(report->inliers.size(), inliers.size() + 3U);
-    ASSERT_TRUE(report->covariance);
+    if (!report || !report->covariance) continue;
+    ++count.answers;
+    const std::size_t beyond =
+        report->inliers.size() - std::min(report->inliers.size(), inliers.size());
+    count.most_inliers_beyond = std::max(count.most_inliers_beyond, beyond);
     const Vector6d error = PoseDifference(report->cam_from_lidar, scene.cam_from_lidar);
-    if (SquaredMahalanobis(error, *report->covariance) <= kChiSquare6) ++covered;
+    if (SquaredMahalanobis(error, *report->covariance) <= kChiSquare6) ++count.covered;
   }
-  ASSERT_GT(answers, kTrials / 2);
-  EXPECT_GT(covered, answers * (0.90 - 3.0 * std::sqrt(0.90 * 0.10 / answers)));
+  return count;
+}
+
+// Nobody states the noise, and the pairs of a board share errors.
+class RefineLossesWithOutliers : public testing::TestWithParam<const char*> {};
+
+TEST_P(RefineLossesWithOutliers, RegionHoldsTheTruth) {
+  const RegionCount count = CountRegions(GetParam(), {.pairs = 60,
+                                                      .sigma_m = 0.01,
+                                                      .sigma_px = 1.0,
+                                                      .on_boards = true,
+                                                      .shared_error = 1.0,
+                                                      .states_noise = false});
+  ASSERT_GT(count.answers, kOutlierTrials / 2);
+  EXPECT_LT(count.most_inliers_beyond, 3U);
+  EXPECT_GT(count.covered, count.Least());
+}
+
+// Huber's loss lets every outlier pull at the pose. Without the outliers' share of the variance the
+// region held the truth in 77 percent of the scenes.
+TEST(RefineLossesOnPoints, HuberCountsThePullOfOutliers) {
+  const RegionCount count = CountRegions("refine(kabsch,loss=huber,max_iterations=200)",
+                                         {.pairs = 60, .sigma_m = 0.01, .sigma_px = 1.0});
+  ASSERT_EQ(count.answers, kOutlierTrials);
+  EXPECT_GT(count.covered, count.Least());
+  EXPECT_LT(count.covered, kOutlierTrials);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, RefineLossesWithOutliers,

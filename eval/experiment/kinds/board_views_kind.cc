@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include "eval/experiment/kinds/board_scale.h"
 #include "eval/experiment/kinds/problem_trials.h"
 #include "eval/synthetic/simulate_views.h"
 
@@ -51,9 +52,8 @@ const OptionSet<BoardViewsSettings>& BoardViewsParameters() {
 void StateWrongSize(double share, CalibrationProblem& problem) {
   const double scale = 1.0 + share;
   for (Board& board : problem.boards) {
-    board.top_right_m *= scale;
-    board.right_bottom_m *= scale;
-    for (BoardTag& tag : board.tags) tag.edge_m *= scale;
+    ScaleOutline(scale, board);
+    ScalePrint(scale, board);
   }
   for (BoardView& view : problem.board_views) {
     view.cam_from_board.translation *= scale;

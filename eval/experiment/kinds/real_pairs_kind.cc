@@ -12,6 +12,7 @@ void ScaleToMetres(double metres, CalibrationProblem& problem) {
     pair.point_in_cam *= metres;
     pair.point_in_lidar *= metres;
     pair.sigma_m *= metres;
+    if (pair.covariance_in_cam) *pair.covariance_in_cam *= metres * metres;
   }
   for (Pair2d3d& pair : problem.pairs_2d3d) pair.point_in_lidar *= metres;
 }

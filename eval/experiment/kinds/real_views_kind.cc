@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tbb/task_arena.h>
+
 #include <array>
 #include <mutex>
 #include <utility>
@@ -46,7 +48,10 @@ class RealViewsTrials final : public Trials {
 
   void Run(const TrialId& id, TrialRows& rows) const override {
     std::call_once(observed_, [this] {
-      trials_ = ObserveDataSet(set_).and_then([this](CalibrationProblem&& problem) {
+      // Isolated: a thread that waits there must not take another trial, which waits for this.
+      Expected<CalibrationProblem> seen =
+          tbb::this_task_arena::isolate([this] { return ObserveDataSet(set_); });
+      trials_ = std::move(seen).and_then([this](CalibrationProblem&& problem) {
         return MakeRealTrials(std::move(problem), set_.manifest.reference, settings_, solvers_,
                               condition_);
       });

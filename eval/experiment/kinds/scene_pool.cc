@@ -2,6 +2,7 @@
 #include "eval/experiment/kinds/scene_pool.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <map>
 #include <mutex>
@@ -30,8 +31,11 @@ Expected<std::shared_ptr<const ScenePool>> SimulatePool(EverydayPlace place,
   auto pool = std::make_shared<ScenePool>();
   std::vector<std::optional<Expected<ScenePair>>> made(static_cast<std::size_t>(count));
   std::vector<Rigid3d> poses(made.size());
-  tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t i) {
-    made[i] = SimulateScenePair(place, lidar, i + 1, poses[i]);
+  // Isolated: a thread that waits here must not take another trial, which waits for this pool.
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t i) {
+      made[i] = SimulateScenePair(place, lidar, i + 1, poses[i]);
+    });
   });
   for (std::optional<Expected<ScenePair>>& pair : made) {
     if (!*pair) return tl::unexpected<Error>(pair->error());
