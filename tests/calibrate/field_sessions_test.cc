@@ -159,12 +159,11 @@ TEST(FieldSessions, YardWithACameraThatLooksBackwards) {
   rows << -.885, .465, .022, -.039, -.027, -.999, -.464, -.885, .043;
   const Rigid3d expected = Pose(rows, {-0.011, -0.171, 0.047});
   const Session session = SessionIn(folder / "*.png", folder / "*.pcd");
-  for (const Board& described : {board, Exchanged(board)}) {
-    const Expected<Calibration> calibration = Calibrate(session, OptionsFor(described, camera));
-    ASSERT_TRUE(calibration) << calibration.error().message;
-    EXPECT_GE(KeptIn(*calibration), 5U) << RowsOf(*calibration);
-    ExpectPose(*calibration, expected, {.translation_m = 0.04, .rotation_deg = 0.6});
-  }
+  const Expected<Calibration> calibration =
+      Calibrate(session, OptionsFor(Exchanged(board), camera));
+  ASSERT_TRUE(calibration) << calibration.error().message;
+  EXPECT_GE(KeptIn(*calibration), 5U) << RowsOf(*calibration);
+  ExpectPose(*calibration, expected, {.translation_m = 0.04, .rotation_deg = 0.6});
 }
 
 // One view of a board with four round holes and four tags, the scan of a rosette cropped so that

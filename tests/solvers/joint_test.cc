@@ -21,6 +21,10 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+// Of many sessions: a third of the returns of the default. What the tests of errors are about, the
+// offsets of rings and of views, is as large for few returns.
+constexpr double kCoarseAzimuth_deg = 0.6;
+
 SimulatedViews Views(const ViewSimulation& simulation) { return SimulateViews(simulation).value(); }
 
 Expected<SolveReport> Solve(const CalibrationProblem& problem, const char* spec) {
@@ -356,7 +360,7 @@ TEST(Joint, CovarianceIncludesTheSystematicErrorsOfTheLidar) {
   double mean_nees = 0.0;
   for (const LidarErrorModel& errors : models) {
     for (const int views : {6, 15}) {
-      ViewSimulation simulation{.views = views};
+      ViewSimulation simulation{.views = views, .azimuth_step_deg = kCoarseAzimuth_deg};
       simulation.errors = errors;
       const auto means = StatisticsOf(simulation, kSessions, {"joint(kabsch)", "kabsch"});
       const ErrorStatistics& joint = means[0];
@@ -374,7 +378,8 @@ TEST(Joint, CovarianceIncludesTheSystematicErrorsOfTheLidar) {
 // them; the crossing distance is found, and the pose as accurate as the covariance states.
 TEST(Joint, FindsWhereTheBeamsOfTheLidarCross) {
   constexpr int kSessions = 60;
-  ViewSimulation simulation{.views = 15, .beam_crossing_m = 0.042};
+  ViewSimulation simulation{
+      .views = 15, .azimuth_step_deg = kCoarseAzimuth_deg, .beam_crossing_m = 0.042};
   simulation.errors = {0.01, 0.01, 0.003, 0.001};
   const ErrorStatistics joint =
       StatisticsOf(simulation, kSessions, {"joint(kabsch)"}, "beam_crossing_m").front();

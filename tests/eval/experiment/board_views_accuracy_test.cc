@@ -39,7 +39,8 @@ TEST(BoardViews, JointIsNearTheBoundAndBetterThanTwoStageSolvers) {
             "\nsolvers: [joint(kabsch), kabsch, refine(kabsch), gnc(kabsch), average(kabsch), "
             "epnp, refine(epnp)]\nparameters: {views: " +
             std::to_string(at.views) +
-            "}\nmetrics: []\ntables: [{columns: [rms(rotation_deg), rms(translation_mm), "
+            ", azimuth_step_deg: 0.6}\nmetrics: []\ntables: [{columns: [rms(rotation_deg), "
+            "rms(translation_mm), "
             "mean(nees), rate(answered), 'efficiency(rotation_deg, bound_rotation_deg)', "
             "'efficiency(translation_mm, bound_translation_mm)']}]\n",
         "board_views.yaml", BuiltinKinds(), BuiltinSolvers());
