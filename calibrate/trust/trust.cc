@@ -69,7 +69,7 @@ Poses SolveResamples(const CalibrationProblem& problem, const Solver& solver,
                      const ViewGroups& groups, const TrustOptions& options,
                      ProgressCounter& counter) {
   Poses answers(static_cast<std::size_t>(options.bootstrap_samples));
-  tbb::parallel_for(std::size_t{0}, answers.size(), [&](std::size_t draw) {
+  const auto solve = [&](std::size_t draw) {
     Random random(DeriveSeed(options.seed, "bootstrap of views", 0, draw));
     std::vector<int> drawn;
     for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -78,7 +78,9 @@ Poses SolveResamples(const CalibrationProblem& problem, const Solver& solver,
     }
     answers[draw] = PoseOf(ResampleViews(problem, drawn), solver);
     counter.Step();
-  });
+  };
+  // One draw a task: where the progress callback throws, tasks that have begun run to their end.
+  tbb::parallel_for(std::size_t{0}, answers.size(), solve, tbb::simple_partitioner());
   return answers;
 }
 

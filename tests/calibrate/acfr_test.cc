@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The seven real pairs of acfr/cam_lidar_calibration, without manual marking.
-#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,22 +11,15 @@
 #include <vector>
 
 #include "base/units.h"
+#include "calibrate/acfr_session.h"
 #include "calibrate/match/assemble.h"
-#include "calibrate/session/observe_files.h"
 #include "calibrate/trust/diagnose.h"
-#include "io/cameras/camera_file.h"
 #include "solvers/builtin_solvers.h"
 #include "solvers/core/registry.h"
 #include "support/real_data.h"
 
 namespace sextant::test {
 namespace {
-
-Board AcfrBoard() {
-  Board board{.id = 0, .top_right_m = 0.61, .right_bottom_m = 0.85};
-  board.checker = BoardChecker{.inner_columns = 5, .inner_rows = 7, .square_m = 0.095};
-  return board;
-}
 
 // The mean of the published runs: camera poses in the LiDAR frame, R = Rz Ry Rx.
 Rigid3d PublishedCamFromLidar(const std::filesystem::path& path) {
@@ -51,18 +43,17 @@ Rigid3d PublishedCamFromLidar(const std::filesystem::path& path) {
   return lidar_from_cam.Inverse();
 }
 
-std::vector<SessionView> SeeAcfr(const std::filesystem::path& folder) {
-  std::vector<FilePair> pairs;
-  for (const int id : {2, 5, 9, 16, 20, 26, 30}) {
-    pairs.push_back({.name = std::to_string(id),
-                     .image = folder / fmt::format("images/pose{}.png", id),
-                     .cloud = folder / fmt::format("full/pose{}.pcd", id)});
+// Seven of the pairs.
+std::vector<SessionView> SevenViews(const ObservedSession& session) {
+  const std::set<std::string> some = {"pose2",  "pose5",  "pose9", "pose16",
+                                      "pose20", "pose26", "pose30"};
+  std::vector<SessionView> views;
+  for (std::size_t i = 0; i < session.views.size(); ++i) {
+    const std::string name = session.session.files.pairs[i].image.stem().string();
+    if (some.contains(name)) views.push_back(session.views[i]);
   }
-  const Expected<Camera> camera = ReadCamera(folder / "camera_info.yaml");
-  EXPECT_TRUE(camera) << camera.error().message;
-  const Expected<Observer> observer = Observer::Make({AcfrBoard()}, *camera);
-  EXPECT_TRUE(observer) << observer.error().message;
-  return ObserveFiles(*observer, pairs, {});
+  EXPECT_EQ(views.size(), some.size());
+  return views;
 }
 
 // The point without the errors of the LiDAR that the answer states: a corner by the scan contains
@@ -104,10 +95,10 @@ double HeldOutRmse(const CalibrationProblem& problem, const char* spec) {
 
 TEST(AcfrPairs, TheBoardOfEveryPairIsMatchedAndThePoseIsThePublishedOne) {
   SEXTANT_REAL_DATA(folder, "acfr_vlp16");
-  const std::vector<SessionView> views = SeeAcfr(folder);
-  const Camera camera = *ReadCamera(folder / "camera_info.yaml");
-  const std::vector<Board> boards = {AcfrBoard()};
-  const Expected<Assembly> assembly = Assemble(views, boards, camera);
+  const Expected<ObservedSession>& session = AcfrSession(folder);
+  ASSERT_TRUE(session) << session.error().message;
+  const std::vector<SessionView> views = SevenViews(*session);
+  const Expected<Assembly> assembly = Assemble(views, session->boards, session->camera);
   ASSERT_TRUE(assembly) << assembly.error().message;
   for (const BoardRow& row : assembly->rows) {
     EXPECT_EQ(row.fate, BoardStatus::kKept) << views[row.view].name << ": " << row.why;

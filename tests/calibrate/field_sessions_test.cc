@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/units.h"
+#include "calibrate/acfr_session.h"
 #include "calibrate/calibrate.h"
 #include "io/boards/board_file.h"
 #include "io/cameras/camera_file.h"
@@ -93,15 +94,11 @@ void ExpectEachViewAgrees(const ObservedSession& observed, CalibrateOptions opti
 
 TEST(FieldSessions, AcfrInBothDescriptionsOfTheBoardAndViewsOneByOne) {
   SEXTANT_REAL_DATA(folder, "acfr_vlp16");
-  const Camera camera = *ReadCamera(folder / "camera_info.yaml");
-  Board board{.id = 0, .top_right_m = 0.61, .right_bottom_m = 0.85};
-  board.checker = BoardChecker{.inner_columns = 5, .inner_rows = 7, .square_m = 0.095};
-  const Session session = SessionIn(folder / "images" / "*.png", folder / "full" / "*.pcd");
   std::vector<Rigid3d> poses;
-  for (const Board& described : {board, Exchanged(board)}) {
-    const CalibrateOptions options = OptionsFor(described, camera);
-    const Expected<ObservedSession> observed = ObserveSession(session, options);
+  for (const Expected<ObservedSession>& observed :
+       {AcfrSession(folder), ObserveAcfr(folder, Exchanged(AcfrBoard()))}) {
     ASSERT_TRUE(observed) << observed.error().message;
+    const CalibrateOptions options = OptionsFor(observed->boards[0], observed->camera);
     const Calibration calibration = CalibrateObserved(*observed, options);
     EXPECT_EQ(KeptIn(calibration), 20U) << RowsOf(calibration);
     ASSERT_TRUE(calibration.result) << calibration.result.error().message;
@@ -162,12 +159,11 @@ TEST(FieldSessions, YardWithACameraThatLooksBackwards) {
   rows << -.885, .465, .022, -.039, -.027, -.999, -.464, -.885, .043;
   const Rigid3d expected = Pose(rows, {-0.011, -0.171, 0.047});
   const Session session = SessionIn(folder / "*.png", folder / "*.pcd");
-  for (const Board& described : {board, Exchanged(board)}) {
-    const Expected<Calibration> calibration = Calibrate(session, OptionsFor(described, camera));
-    ASSERT_TRUE(calibration) << calibration.error().message;
-    EXPECT_EQ(KeptIn(*calibration), 6U) << RowsOf(*calibration);
-    ExpectPose(*calibration, expected, {.translation_m = 0.04, .rotation_deg = 0.6});
-  }
+  const Expected<Calibration> calibration =
+      Calibrate(session, OptionsFor(Exchanged(board), camera));
+  ASSERT_TRUE(calibration) << calibration.error().message;
+  EXPECT_EQ(KeptIn(*calibration), 6U) << RowsOf(*calibration);
+  ExpectPose(*calibration, expected, {.translation_m = 0.04, .rotation_deg = 0.6});
 }
 
 // One view of a board with four round holes and four tags, the scan of a rosette cropped so that

@@ -65,7 +65,7 @@ MatchedBoard TrueMatch(const Seen& seen, int board) {
 }
 
 TEST(Observe, BothBoardsInEveryWayThatTheirOutlineAllows) {
-  const Seen& seen = See(0);
+  const Seen& seen = See(10);
   ASSERT_EQ(seen.observation.in_image.size(), 2U);
   ASSERT_EQ(seen.observation.in_scan.size(), 2U);
   EXPECT_THAT(seen.observation.missing, testing::IsEmpty());
@@ -80,7 +80,7 @@ TEST(Observe, BothBoardsInEveryWayThatTheirOutlineAllows) {
 }
 
 TEST(Observe, EveryPlacementPutsTheCornersWhereItsPoseDoes) {
-  const Seen& seen = See(1);
+  const Seen& seen = See(11);
   const std::vector<Board> boards = BoardsIn(seen.scene);
   for (const LidarSighting& patch : seen.observation.in_scan) {
     for (const BoardPlacement& placement : patch.placements) {
@@ -95,7 +95,7 @@ TEST(Observe, EveryPlacementPutsTheCornersWhereItsPoseDoes) {
 }
 
 TEST(Observe, TurnsOfOnePatchAreQuarterTurns) {
-  const Seen& seen = See(1);
+  const Seen& seen = See(11);
   for (const LidarSighting& patch : seen.observation.in_scan) {
     for (const BoardPlacement& a : patch.placements) {
       for (const BoardPlacement& b : patch.placements) {
@@ -151,7 +151,7 @@ TEST(Observe, RawObservationsAreTrueToTheirSigmas) {
 }
 
 TEST(Observe, CornersOfAMatchAgreeUnderTheTruth) {
-  const Seen& seen = See(2);
+  const Seen& seen = See(12);
   CalibrationProblem problem;
   problem.camera = *FindCameraModel("zed_left");
   problem.boards = BoardsIn(seen.scene);

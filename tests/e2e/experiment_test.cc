@@ -77,7 +77,7 @@ TEST(Run, SameBytesOnOneAndTwoThreads) {
 }
 
 TEST(Run, ContinuesAfterBeingKilledAtAnyMoment) {
-  const std::filesystem::path experiment = WriteExperiment(4000);
+  const std::filesystem::path experiment = WriteExperiment(2500);
   ASSERT_EQ(RunSextant(RunArguments(experiment, "whole", "--no-csv")).exit_code, 0);
   for (const char* seconds : {"0.05", "0.1", "0.15", "0.2"}) {
     RunProgram("timeout -s KILL " + std::string(seconds) + " " + SEXTANT_BINARY,

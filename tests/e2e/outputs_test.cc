@@ -246,17 +246,5 @@ TEST(Outputs, AFileThatWasBeingReplacedSurvivesAKill) {
   }
 }
 
-TEST(Outputs, EveryCommandThatWritesHasOverwrite) {
-  for (const char* command :
-       {"calibrate",   "capture", "advise",    "project", "report",   "export",
-        "detect",      "boards",  "mark",      "bag",     "simulate", "simulate pairs",
-        "print-board", "convert", "fuse",      "solve",   "compare",  "average",
-        "run",         "merge",   "reproduce", "rig",     "check",    "refine-scene"}) {
-    EXPECT_THAT(RunSextant(std::string(command) + " --help").out, HasSubstr("--overwrite"))
-        << command;
-  }
-  EXPECT_THAT(RunSextant("--help").out, HasSubstr("4 an output could not be written"));
-}
-
 }  // namespace
 }  // namespace sextant::test

@@ -29,26 +29,25 @@ void ExpectRefused(const std::string& arguments, const std::string& option) {
   EXPECT_THAT(run.err, HasSubstr("expected"));
 }
 
-TEST(Refused, NumbersThatAreNotFiniteOrOutOfRange) {
-  for (const std::string text : {"nan", "inf", "-inf", "1e999", "0x10", "''"}) {
-    ExpectRefused("boards a.pcd --board b.yaml --edge-growth " + text, "--edge-growth");
-    ExpectRefused("boards a.pcd --board b.yaml --beam-aperture " + text, "--beam-aperture");
-    ExpectRefused("boards a.pcd --board b.yaml --beam-divergence " + text, "--beam-divergence");
-    ExpectRefused("boards a.pcd --board b.yaml --region 0 0 0 1 1 " + text, "--region");
-    ExpectRefused("calibrate session --tolerance " + text, "--tolerance");
-    ExpectRefused("bag a.bag --tolerance " + text, "--tolerance");
-    ExpectRefused("advise result.yaml --pixel-sigma " + text, "--pixel-sigma");
-    ExpectRefused("simulate s.yaml --interval " + text, "--interval");
-    ExpectRefused("simulate s.yaml --pixel-sigma " + text, "--pixel-sigma");
-    ExpectRefused("simulate pairs --depth-sigma " + text, "--depth-sigma");
-    ExpectRefused("project --image a --cloud b --result c --out d --point-size " + text,
-                  "--point-size");
-    ExpectRefused("print-board b.yaml --out b.png --dpi " + text, "--dpi");
-  }
+// That these options are numbers, and counts with a range. What is no number is tested once, in
+// tests/cli/parse_test.cc.
+TEST(Refused, NumbersThatAreNotFinite) {
+  ExpectRefused("boards a.pcd --board b.yaml --edge-growth nan", "--edge-growth");
+  ExpectRefused("boards a.pcd --board b.yaml --beam-aperture nan", "--beam-aperture");
+  ExpectRefused("boards a.pcd --board b.yaml --beam-divergence nan", "--beam-divergence");
+  ExpectRefused("boards a.pcd --board b.yaml --region 0 0 0 1 1 nan", "--region");
+  ExpectRefused("calibrate session --tolerance nan", "--tolerance");
+  ExpectRefused("bag a.bag --tolerance nan", "--tolerance");
+  ExpectRefused("advise result.yaml --pixel-sigma nan", "--pixel-sigma");
+  ExpectRefused("simulate s.yaml --interval nan", "--interval");
+  ExpectRefused("simulate s.yaml --pixel-sigma nan", "--pixel-sigma");
+  ExpectRefused("simulate pairs --depth-sigma nan", "--depth-sigma");
+  ExpectRefused("project --image a --cloud b --result c --out d --point-size nan", "--point-size");
+  ExpectRefused("print-board b.yaml --out b.png --dpi nan", "--dpi");
 }
 
 TEST(Refused, CountsOutOfRange) {
-  for (const std::string text : {"-1", "1000000000", "99999999999999999999", "1.5", "nan"}) {
+  for (const std::string text : {"-1", "1000000000"}) {
     ExpectRefused("simulate pairs --views " + text, "--views");
     ExpectRefused("simulate pairs --outliers " + text, "--outliers");
     ExpectRefused("simulate s.yaml --scans " + text, "--scans");

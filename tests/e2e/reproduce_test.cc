@@ -123,12 +123,28 @@ std::map<std::string, std::string> VerdictsOf(const std::filesystem::path& page)
   return verdicts;
 }
 
+// The claims, without the experiments that no claim is about: those are for readers.
+std::string WithoutUnclaimed(std::string claims) {
+  const std::string before = "experiments: [";
+  const std::size_t begin = claims.find(before) + before.size();
+  const std::size_t end = claims.find(']', begin);
+  std::string kept;
+  std::istringstream names(claims.substr(begin, end - begin));
+  for (std::string name; names >> name;) {
+    if (name.ends_with(',')) name.pop_back();
+    if (claims.find("{experiment: " + name + ",") == std::string::npos) continue;
+    kept += (kept.empty() ? "" : ", ") + name;
+  }
+  return claims.replace(begin, end - begin, kept);
+}
+
 // The quick run judges every claim that paper/ judges, and contradicts none.
 TEST(Reproduce, QuicklyAgreesWithThePageOfTheFullRun) {
   const std::filesystem::path root = test::SourceRoot();
-  const ProgramRun run = RunSextant(
-      "reproduce --quick --experiments " + (root / "experiments").string() + " --claims " +
-      (root / "paper" / "claims.yaml").string() + " --out " + TestPath("paper"));
+  WriteText(TestPath("claims.yaml"), WithoutUnclaimed(ReadText(root / "paper" / "claims.yaml")));
+  const ProgramRun run =
+      RunSextant("reproduce --quick --experiments " + (root / "experiments").string() +
+                 " --claims " + TestPath("claims.yaml") + " --out " + TestPath("paper"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto full = VerdictsOf(root / "paper" / "REPRODUCTION.md");
   const auto quick = VerdictsOf(TestFolder() / "paper" / "REPRODUCTION.md");

@@ -163,7 +163,7 @@ TEST_F(ResultCommands, AdviseProposesAndDraws) {
       {.board = 0, .cam_from_board = Rigid3d{ExpSo3({0.0, 0.0, 0.785}), {0.1, 0.0, 2.0}}});
   Write();
   const ProgramRun run =
-      RunSextant("advise " + Result() + " --count 2 --lidar os1_64 --picture " + Picture());
+      RunSextant("advise " + Result() + " --count 2 --lidar vlp16 --picture " + Picture());
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, AllOf(HasSubstr("cam_from_lidar after the one view"),
                              HasSubstr("after first"), HasSubstr("Hold board 0 (left) "),

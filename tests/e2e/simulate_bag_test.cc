@@ -131,12 +131,13 @@ TEST(SimulateBag, TheSameSeedGivesTheSameBytesInOneGoOrLater) {
   const fs::path other = TestFolder() / "other";
   ASSERT_EQ(Simulate(whole, "--scans 2 --seed 4 --bag").exit_code, 0);
   ASSERT_EQ(Simulate(later, "--seed 4 --bag").exit_code, 0);
-  EXPECT_NE(ReadText(later / "session.bag"), ReadText(whole / "session.bag"));
+  const std::string one_scan = ReadText(later / "session.bag");
+  EXPECT_NE(one_scan, ReadText(whole / "session.bag"));
   ASSERT_EQ(Simulate(later, "--scans 2 --seed 4").exit_code, 0);
   ASSERT_EQ(Simulate(later, "--scans 2 --seed 4 --bag").exit_code, 0);
   EXPECT_EQ(ReadText(later / "session.bag"), ReadText(whole / "session.bag"));
-  ASSERT_EQ(Simulate(other, "--scans 2 --seed 5 --bag").exit_code, 0);
-  EXPECT_NE(ReadText(other / "session.bag"), ReadText(whole / "session.bag"));
+  ASSERT_EQ(Simulate(other, "--seed 5 --bag").exit_code, 0);
+  EXPECT_NE(ReadText(other / "session.bag"), one_scan);
 }
 
 TEST(SimulateBag, AFileThatWasChangedIsRefusedAndNoBagAppears) {

@@ -95,17 +95,17 @@ TEST(Simulate, AKilledRunContinuesWhereItWas) {
   const std::string scene = SceneFile();
   const std::string whole = (TestFolder() / "whole").string();
   const std::string killed = (TestFolder() / "killed").string();
-  const std::string command = std::string(SEXTANT_BINARY) + " simulate " + scene + " --scans 8";
-  ASSERT_EQ(RunSextant("simulate " + scene + " --scans 8 --out " + whole).exit_code, 0);
+  const std::string command = std::string(SEXTANT_BINARY) + " simulate " + scene + " --scans 5";
+  ASSERT_EQ(RunSextant("simulate " + scene + " --scans 5 --out " + whole).exit_code, 0);
   // Killed as soon as its second image exists.
   test::RunProgram("sh", "-c '" + command + " --out " + killed + " & pid=$!; while [ ! -e " +
                              killed +
                              "/cam_001.png ] && kill -0 $pid; do sleep 0.001; done; kill "
                              "-9 $pid; wait'");
   ASSERT_TRUE(fs::exists(killed + "/cam_001.png"));
-  WriteText(killed + "/.scan_005.pcd.0123456789abcdef.sxtmp", "half");
+  WriteText(killed + "/.scan_003.pcd.0123456789abcdef.sxtmp", "half");
   const fs::file_time_type before = fs::last_write_time(killed + "/cam_001.png");
-  const ProgramRun resumed = RunSextant("simulate " + scene + " --scans 8 --out " + killed);
+  const ProgramRun resumed = RunSextant("simulate " + scene + " --scans 5 --out " + killed);
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
   EXPECT_EQ(resumed.out.find("kept: 0;"), std::string::npos) << resumed.out;
   EXPECT_EQ(fs::last_write_time(killed + "/cam_001.png"), before);

@@ -127,9 +127,15 @@ TEST_F(Mpi, SameBytesAsOneProcess) {
 // the 250 kB or more that it writes.
 constexpr int kLongRun = 10000;
 
+// Its rows, once per process.
+const std::string& RowsOfLongRun() {
+  static const std::string rows = WholeRows(WriteExperiment(kLongRun));
+  return rows;
+}
+
 TEST_F(Mpi, AKilledRankLosesWhatWasInFlight) {
+  const std::string& whole = RowsOfLongRun();
   const std::filesystem::path experiment = WriteExperiment(kLongRun);
-  const std::string whole = WholeRows(experiment);
   for (const int killed : {1, 0}) {
     const std::string out = "killed" + std::to_string(killed);
     EXPECT_NE(RunKilled(2, killed, experiment, out).exit_code, 0)
@@ -148,8 +154,8 @@ TEST_F(Mpi, AKilledRankLosesWhatWasInFlight) {
 }
 
 TEST_F(Mpi, AnyNumberOfRanksGoesOnWithTheRowsOfAnother) {
+  const std::string& whole = RowsOfLongRun();
   const std::filesystem::path experiment = WriteExperiment(kLongRun);
-  const std::string whole = WholeRows(experiment);
   ASSERT_EQ(RunProgram(SEXTANT_BINARY, RunArguments(experiment, "out") + " --shard 2/5").exit_code,
             0);
   EXPECT_NE(RunKilled(4, 3, experiment, "out").exit_code, 0);

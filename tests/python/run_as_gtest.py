@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the tests of this folder by pytest behind the options of a gtest binary, so that ctest shards
-them and scripts/test lists and counts them like all others: --gtest_list_tests,
---gtest_output=xml:FILE, GTEST_TOTAL_SHARDS and GTEST_SHARD_INDEX."""
+"""Runs the tests of this folder by pytest behind the options of a gtest binary, so that scripts/test
+lists and counts them like all others: --gtest_list_tests and --gtest_output=xml:FILE."""
 
-import os
 import sys
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
@@ -16,12 +14,7 @@ class GtestReport:
 
     def __init__(self, output):
         self.output = output
-        self.shards = int(os.environ.get("GTEST_TOTAL_SHARDS", "1"))
-        self.shard = int(os.environ.get("GTEST_SHARD_INDEX", "0"))
         self.outcomes = {}
-
-    def pytest_collection_modifyitems(self, items):
-        items[:] = items[self.shard::self.shards]
 
     def pytest_runtest_logreport(self, report):
         failed, reason = self.outcomes.get(report.nodeid, (False, None))

@@ -17,7 +17,7 @@ namespace {
 class EverydayScenes : public testing::TestWithParam<EverydayPlace> {};
 
 TEST_P(EverydayScenes, AreSeenByBothSensors) {
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     Scene scene = EverydayScene(GetParam(), seed);
     const auto lidar = FindLidarModel("vlp16");
     ASSERT_TRUE(lidar);

@@ -72,6 +72,7 @@ TEST_P(Outliers, AnswersNearlyAsWellAsOnTheTrueInliers) {
   EXPECT_LT(std::sqrt(squares / oracle_squares), 1.0 + c.lost_pairs / true_pairs);
 }
 
+// clique_test.cc has 95 percent outliers among 100 pairs.
 std::vector<OutlierCase> OutlierCases() {
   return {
       {"ransac(kabsch)", "kabsch", 20, 0.0, 100},
@@ -86,14 +87,12 @@ std::vector<OutlierCase> OutlierCases() {
       {"drop_worst(kabsch)", "kabsch", 20, 0.2, 100},
       {"clique(kabsch)", "kabsch", 20, 0.0, 100},
       {"clique(kabsch)", "kabsch", 20, 0.5, 100},
-      {"clique(kabsch)", "kabsch", 100, 0.95, 100},
       {"clique(kabsch)", "kabsch", 300, 0.9, 10},
       {"robust(kabsch)", "kabsch", 20, 0.0, 100},
       {"robust(kabsch)", "kabsch", 20, 0.5, 100},
       {"robust(kabsch)", "kabsch", 100, 0.2, 100},
       {"robust(kabsch)", "kabsch", 100, 0.5, 100},
       {"robust(kabsch)", "kabsch", 100, 0.8, 100},
-      {"robust(kabsch)", "kabsch", 100, 0.95, 100},
       // Five pairs lost of 500 scatter the ratio of ten trials by 1.3 percent.
       {"robust(kabsch)", "kabsch", 1000, 0.5, 10, 20.0},
       {"robust(kabsch)", "kabsch", 1000, 0.95, 10},

@@ -14,10 +14,14 @@ namespace {
 
 constexpr int kComparedViews = 8;
 
-// Near and far views: a far one shows a few rings only.
+// Near and far views: a far one shows a few rings only. With a third of the usual returns on each,
+// for the time.
 SimulatedViews NearAndFar(std::uint64_t seed) {
-  ViewSimulation simulation{
-      .seed = seed, .views = kComparedViews, .nearest_m = 1.5, .farthest_m = 4.0};
+  ViewSimulation simulation{.seed = seed,
+                            .views = kComparedViews,
+                            .nearest_m = 1.5,
+                            .farthest_m = 4.0,
+                            .azimuth_step_deg = 0.6};
   simulation.errors = LidarErrorModel{};
   return SimulateViews(simulation).value();
 }

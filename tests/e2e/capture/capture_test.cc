@@ -167,19 +167,37 @@ TEST_F(CaptureRun, StandardOutputHasTheJsonAlone) {
   EXPECT_THAT(run.err, HasSubstr("known to"));
 }
 
-TEST_F(CaptureRun, CtrlCWritesWhatIsKnown) {
+// What the page shows in a browser, where there is one, before and after the first views.
+TEST_F(CaptureRun, CtrlCWritesWhatIsKnownAndThePageShowsItBefore) {
+  const bool has_browser = test::Browser::IsInstalled();
+  const test::Browser browser(TestFolder() / "profile");
   Start("0.001,0.001");
+  const std::string address = "http://127.0.0.1:" + std::to_string(Port()) + "/";
+  if (has_browser) {
+    const test::Browser::Page page = browser.LoadAddress(address);
+    EXPECT_EQ(page.console, "");
+    EXPECT_THAT(page.dom, HasSubstr("Waiting for the"));
+  }
   Drop(0);
   Drop(1);
   EXPECT_TRUE(Eventually(kPatience_s, [&] {
-    return ReadText(log_).find("known to") != std::string::npos;
+    return ReadText(log_).find("known to") != std::string::npos && PageHas("<li>001: ");
   })) << ReadText(log_);
+  if (has_browser) {
+    const test::Browser::Page page = browser.LoadAddress(address);
+    EXPECT_EQ(page.console, "");
+    EXPECT_THAT(page.dom, HasSubstr("Hold the board here next"));
+    EXPECT_THAT(page.dom, HasSubstr("class=\"selected\""));
+    // What scripts may load is this server's state alone.
+    EXPECT_THAT(page.dom, HasSubstr("connect-src 'self'"));
+  }
   program_->Interrupt();
   const int code = program_->Wait(kPatience_s);
   const auto result = ReadCalibrationResult(TestPath("result.yaml"));
   ASSERT_TRUE(result) << result.error().message << ReadText(log_);
   EXPECT_EQ(code, result->verdict->usability == Usability::kNotUsable ? 3 : 0);
   EXPECT_THAT(ReadText(TestPath("report.html")), HasSubstr("Calibration report"));
+  if (!has_browser) GTEST_SKIP() << test::Browser::kAbsent;
 }
 
 TEST_F(CaptureRun, CtrlCWithoutAPairIsNoAnswer) {
@@ -189,27 +207,6 @@ TEST_F(CaptureRun, CtrlCWithoutAPairIsNoAnswer) {
   EXPECT_EQ(program_->Wait(kPatience_s), 1);
   EXPECT_THAT(ReadText(log_), HasSubstr("no photo and scan of one moment appeared"));
   EXPECT_FALSE(fs::exists(TestPath("result.yaml")));
-}
-
-TEST_F(CaptureRun, ThePageInABrowser) {
-  if (!test::Browser::IsInstalled()) GTEST_SKIP() << test::Browser::kAbsent;
-  const test::Browser browser(TestFolder() / "profile");
-  Start("0.001,0.001");
-  const std::string address = "http://127.0.0.1:" + std::to_string(Port()) + "/";
-  test::Browser::Page page = browser.LoadAddress(address);
-  EXPECT_EQ(page.console, "");
-  EXPECT_THAT(page.dom, HasSubstr("Waiting for the"));
-  Drop(0);
-  Drop(1);
-  EXPECT_TRUE(Eventually(kPatience_s, [&] { return PageHas("<li>001: "); })) << ReadText(log_);
-  page = browser.LoadAddress(address);
-  EXPECT_EQ(page.console, "");
-  EXPECT_THAT(page.dom, HasSubstr("Hold the board here next"));
-  EXPECT_THAT(page.dom, HasSubstr("class=\"selected\""));
-  // What scripts may load is this server's state alone.
-  EXPECT_THAT(page.dom, HasSubstr("connect-src 'self'"));
-  program_->Interrupt();
-  EXPECT_NE(program_->Wait(kPatience_s), -1);
 }
 
 TEST(CaptureCommand, WhatIsMissingIsNamedBeforeItWaits) {

@@ -13,9 +13,11 @@
 namespace sextant::test {
 namespace {
 
-// Values of one metric in the first trials of the first condition, by subject.
-std::map<std::string, std::vector<double>> Try(const std::string& text, const std::string& metric,
-                                               int trials) {
+// Values by metric and subject.
+using MeasuredValues = std::map<std::string, std::map<std::string, std::vector<double>>>;
+
+// The first trials of the first condition.
+MeasuredValues Try(const std::string& text, int trials) {
   const std::string file = (SourceRoot() / "experiments" / "try.yaml").string();
   const Expected<Experiment> experiment =
       ParseExperiment(text, file, BuiltinKinds(), BuiltinSolvers());
@@ -28,19 +30,21 @@ std::map<std::string, std::vector<double>> Try(const std::string& text, const st
     rows.BeginTrial(trial);
     condition.trials->Run({trial, SeedOf(*experiment, condition, trial)}, rows);
   }
-  std::size_t column = 0;
-  while (experiment->metrics[column].name != metric) ++column;
-  std::map<std::string, std::vector<double>> values;
+  MeasuredValues values;
   for (std::size_t r = 0; r < rows.keys().size(); ++r) {
-    values[condition.trials->subjects()[rows.keys()[r].subject]].push_back(
-        rows.values()[r * rows.metrics() + column]);
+    const std::string& subject = condition.trials->subjects()[rows.keys()[r].subject];
+    for (std::size_t column = 0; column < rows.metrics(); ++column) {
+      values[experiment->metrics[column].name][subject].push_back(
+          rows.values()[r * rows.metrics() + column]);
+    }
   }
   return values;
 }
 
+// Those of one metric and subject, of which every trial has one.
 std::vector<double> TryOne(const std::string& text, const std::string& metric, int trials,
                            const std::string& subject) {
-  std::vector<double> values = Try(text, metric, trials)[subject];
+  std::vector<double> values = Try(text, trials)[metric][subject];
   EXPECT_GE(values.size(), static_cast<std::size_t>(trials)) << subject;
   return values;
 }
@@ -54,8 +58,10 @@ TEST(PaperKinds, SceneWithoutNoiseGivesTheTruth) {
       "kind: scene\ntrials: 1\nsolvers: [epnp]\nparameters: {scene: scenes/paper_rot_data.yaml, "
       "lidar: noise, lidar_sigma_m: 0, camera: marked, mark_sigma_px: 0, translation_m: [0.785, "
       "-0.52, -0.69], rotation_deg: [2.6, -15, 0]}\n";
-  for (const double x : TryOne(pixels, "estimated_x_m", 3, "epnp")) EXPECT_NEAR(x, 0.785, 1e-6);
-  for (const double kept : TryOne(pixels, "inliers", 1, "epnp")) EXPECT_EQ(kept, 20.0);
+  MeasuredValues marked = Try(pixels, 3);
+  EXPECT_EQ(marked["inliers"]["epnp"].size(), 3U);
+  for (const double x : marked["estimated_x_m"]["epnp"]) EXPECT_NEAR(x, 0.785, 1e-6);
+  for (const double kept : marked["inliers"]["epnp"]) EXPECT_EQ(kept, 20.0);
 }
 
 // All boards are about 2 m in front of the camera: with an assumed focal length 13 % too long they
@@ -89,15 +95,16 @@ TEST(PaperKinds, AveragedScansAreMoreAccurateThanOne) {
 
 TEST(PaperKinds, BoardsInScansAndImagesAreFound) {
   const std::string scan = "kind: board_scan\ntrials: 1\n";
-  auto corners = Try(scan, "corner_mm", 4);
+  MeasuredValues in_scan = Try(scan, 4);
   for (const char* extractor : {"lines3d_raw", "plane_lines", "rectangle"}) {
-    EXPECT_EQ(corners[extractor].size(), 4U) << extractor;
-    for (const double off : corners[extractor]) EXPECT_LT(off, 150.0) << extractor;
+    const std::vector<double>& corners = in_scan["corner_mm"][extractor];
+    EXPECT_EQ(corners.size(), 4U) << extractor;
+    for (const double off : corners) EXPECT_LT(off, 150.0) << extractor;
   }
-  for (const double gap : TryOne(scan, "gap_mm", 4, "rectangle")) EXPECT_EQ(gap, 0.0);
+  for (const double gap : in_scan["gap_mm"]["rectangle"]) EXPECT_EQ(gap, 0.0);
   const std::string image =
       "kind: board_image\ntrials: 1\nparameters: {camera_model: pinhole, distance_m: 1.5}\n";
-  const auto prints = Try(image, "corner_mm", 1);
+  const auto prints = Try(image, 1)["corner_mm"];
   EXPECT_EQ(prints.size(), 3U);
   for (const auto& [print, errors] : prints) {
     for (const double off : errors) EXPECT_LT(off, 10.0) << print;
@@ -126,9 +133,10 @@ TEST(RigKind, EveryPairIsMeasuredAgainstItsBoundItsCovarianceAndItsChain) {
   const std::string text =
       "kind: rig\ntrials: 1\nparameters: {cameras: 2, lidars: 1, moments: 8, takes_part: 0.8}\n";
   constexpr int kTrials = 6;
+  MeasuredValues measured = Try(text, kTrials);
   std::map<std::string, std::vector<double>> squares;
   for (const char* metric : {"nees", "over_bound", "translation_mm", "chained_mm"}) {
-    for (const auto& [pair, values] : Try(text, metric, kTrials)) {
+    for (const auto& [pair, values] : measured[metric]) {
       for (const double value : values) {
         const bool squared = std::string(metric) == "nees";
         squares[metric].push_back(squared ? value : value * value);

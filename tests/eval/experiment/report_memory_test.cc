@@ -64,10 +64,10 @@ TEST(ReportMemory, DoesNotGrowWithTheTrials) {
 #ifdef SEXTANT_SANITIZED
   GTEST_SKIP() << "sanitizers keep freed memory";
 #endif
-  const long few = PeakAfterReport(300'000);
-  const long many = PeakAfterReport(1'500'000);
+  const long few = PeakAfterReport(150'000);
+  const long many = PeakAfterReport(900'000);
   // The positions of the blocks, 0.3 bytes per trial, plus allocator overhead; a single column
-  // would take 9600.
+  // would take 6000.
   EXPECT_LT(many - few, 3000) << "kilobytes";
 }
 

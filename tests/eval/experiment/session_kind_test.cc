@@ -62,7 +62,7 @@ TEST(SessionKind, MeasuresTheAnswerAgainstTruthAndBound) {
 }
 
 TEST(SessionKind, TheWordsOnAFaultAreJudged) {
-  const Expected<Experiment> experiment = Parse(", views: 4, fault: focal_length");
+  const Expected<Experiment> experiment = Parse(", views: 3, fault: focal_length");
   ASSERT_TRUE(experiment) << experiment.error().message;
   const Row row(*experiment, 0);
   EXPECT_EQ(row["good"], 0.0) << "without a bootstrap nothing is GOOD";

@@ -37,13 +37,21 @@ LidarModel QuietModel(const std::string& name) {
   return model;
 }
 
-BoardSearch SearchFor(const Board& described, const Scene& scene, const LidarModel& model,
-                      std::uint64_t seed) {
+ScanRings RingsInRoom(const Scene& scene, const LidarModel& model, std::uint64_t seed) {
   const Expected<SimulatedScan> scan = SimulateScan(scene, model, {.seed = seed});
   EXPECT_TRUE(scan);
+  return *ScanRings::Build(scan->cloud);
+}
+
+BoardSearch SearchIn(const ScanRings& rings, const Board& described, const LidarModel& model) {
   BoardSearchOptions options;
   options.beam = *FindLidarBeam(model.name);
-  return *FindBoards(*ScanRings::Build(scan->cloud), std::vector<Board>{described}, options);
+  return *FindBoards(rings, std::vector<Board>{described}, options);
+}
+
+BoardSearch SearchFor(const Board& described, const Scene& scene, const LidarModel& model,
+                      std::uint64_t seed) {
+  return SearchIn(RingsInRoom(scene, model, seed), described, model);
 }
 
 // The corners of the board in the numbering nearest to the one found: a scan does not tell which of
@@ -84,10 +92,9 @@ TEST_P(EveryRoll, OfAnOblongBoardInBothDescriptions) {
   for (int roll = 0; roll < 360; roll += 15) {
     const SceneBoard placed =
         PlaceBoard(Plate(0.6, 0.45), {.azimuth_deg = 8.0, .turn_deg = 1.0 * roll, .yaw_deg = 10.0});
-    const Scene scene = RoomWith(placed);
+    const ScanRings rings = RingsInRoom(RoomWith(placed), model, static_cast<std::uint64_t>(roll));
     for (const Board& described : {Plate(0.6, 0.45), Plate(0.45, 0.6)}) {
-      const BoardSearch search =
-          SearchFor(described, scene, model, static_cast<std::uint64_t>(roll));
+      const BoardSearch search = SearchIn(rings, described, model);
       EXPECT_EQ(search.found.size(), 1U)
           << roll << (search.rejected.empty() ? "" : ": " + search.rejected[0].why);
       missed += search.found.empty() ? 1 : 0;

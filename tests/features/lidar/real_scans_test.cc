@@ -46,10 +46,11 @@ TEST(RealScans, AcfrBoardIsFoundInEveryFullScan) {
   for (const int id : {2, 4, 5, 8, 9, 11, 13, 15, 16, 19, 20, 22, 24, 26, 27, 29, 30, 33, 36, 38}) {
     const Expected<PointCloud> cloud = ReadPcd(folder / fmt::format("full/pose{}.pcd", id));
     ASSERT_TRUE(cloud) << cloud.error().message;
-    const Expected<BoardSearch> search = FindBoards(*ScanRings::Build(*cloud), boards, {});
+    const ScanRings rings = *ScanRings::Build(*cloud);
+    const Expected<BoardSearch> search = FindBoards(rings, boards, {});
     ASSERT_TRUE(search);
     ASSERT_EQ(search->found.size(), 1U) << "pose " << id;
-    const Expected<BoardSearch> other = FindBoards(*ScanRings::Build(*cloud), exchanged, {});
+    const Expected<BoardSearch> other = FindBoards(rings, exchanged, {});
     ASSERT_TRUE(other);
     ASSERT_EQ(other->found.size(), 1U) << "pose " << id;
     const BoardPatch& patch = search->found[0];
@@ -125,13 +126,13 @@ TEST(RealScans, EachHasItsBoardAndNoOther) {
     SEXTANT_REAL_DATA(path, "");
     const Expected<PointCloud> cloud = ReadPcd(path / scan.file);
     ASSERT_TRUE(cloud) << cloud.error().message;
+    const ScanRings rings = *ScanRings::Build(*cloud);
     BoardSearchOptions options;
     options.beam = *FindLidarBeam(scan.beam);
     for (const bool exchanged : {false, true}) {
       Board board{.top_right_m = scan.width_m, .right_bottom_m = scan.height_m};
       if (exchanged) std::swap(board.top_right_m, board.right_bottom_m);
-      const Expected<BoardSearch> search =
-          FindBoards(*ScanRings::Build(*cloud), std::vector<Board>{board}, options);
+      const Expected<BoardSearch> search = FindBoards(rings, std::vector<Board>{board}, options);
       ASSERT_TRUE(search);
       EXPECT_EQ(search->found.size(), 1U) << scan.file;
       if (search->found.empty()) continue;

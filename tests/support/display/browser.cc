@@ -37,7 +37,10 @@ ProcessEnd RunChromium(const std::filesystem::path& profile,
 
 }  // namespace
 
-bool Browser::IsInstalled() { return RunProcess({"chromium", "--version"}).has_value(); }
+bool Browser::IsInstalled() {
+  static const bool is_installed = RunProcess({"chromium", "--version"}).has_value();
+  return is_installed;
+}
 
 Browser::Page Browser::Load(const std::filesystem::path& page) const {
   return LoadAddress("file://" + page.string());
