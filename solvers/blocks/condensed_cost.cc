@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/blocks/condensed_cost.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,39 @@ namespace {
 
 using AnyRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using CondensedRows = Eigen::Map<AnyRows>;
+
+// The upper triangle of A^T A.
+AnyRows NormalOf(const AnyRows& a) {
+  AnyRows normal = AnyRows::Zero(a.cols(), a.cols());
+  for (Eigen::Index row = 0; row < a.rows(); ++row) {
+    for (Eigen::Index i = 0; i < a.cols(); ++i) {
+      const double factor = a(row, i);
+      for (Eigen::Index k = i; k < a.cols(); ++k) normal(i, k) += factor * a(row, k);
+    }
+  }
+  return normal;
+}
+
+// From the upper triangle of a positive semidefinite N to R with R^T R = N, above the diagonal too.
+// A direction of which N knows nothing but rounding has a row of zeros: the least squares that
+// follow form N themselves, so that nothing is lost.
+void FactoriseInPlace(AnyRows& normal) {
+  constexpr double kRounding = 1e-15;
+  const Eigen::Index size = normal.rows();
+  for (Eigen::Index i = 0; i < size; ++i) normal.row(i).head(i).setZero();
+  const Eigen::VectorXd least = kRounding * static_cast<double>(size) * normal.diagonal();
+  for (Eigen::Index i = 0; i < size; ++i) {
+    auto row = normal.row(i).tail(size - i);
+    if (!(row[0] > least[i])) {
+      row.setZero();
+      continue;
+    }
+    row /= std::sqrt(row[0]);
+    for (Eigen::Index k = i + 1; k < size; ++k) {
+      normal.row(k).tail(size - k) -= normal(i, k) * normal.row(i).tail(size - k);
+    }
+  }
+}
 
 }  // namespace
 
@@ -51,7 +85,7 @@ bool CondensedCost::Condense(double const* const* parameters, double* residuals,
     places[b] = derivatives[b].data();
   }
   if (!all_->Evaluate(parameters, values.data(), places.data())) return false;
-  Eigen::MatrixXd joined = Eigen::MatrixXd::Zero(rows, columns_ + 1);
+  AnyRows joined = AnyRows::Zero(rows, columns_ + 1);
   Eigen::Index at = 0;
   for (std::size_t b = 0; b < sizes.size(); ++b) {
     const Eigen::Index width = b == 0 ? count_ : sizes[b];
@@ -61,8 +95,8 @@ bool CondensedCost::Condense(double const* const* parameters, double* residuals,
     at += width;
   }
   joined.col(at) = values;
-  const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> qr(joined);
-  const Eigen::MatrixXd triangle = joined.topRows(num_residuals()).triangularView<Eigen::Upper>();
+  AnyRows triangle = NormalOf(joined);
+  FactoriseInPlace(triangle);
   at = 0;
   for (std::size_t b = 0; b < sizes.size(); ++b) {
     const Eigen::Index width = b == 0 ? count_ : sizes[b];

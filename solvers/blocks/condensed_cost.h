@@ -7,9 +7,9 @@
 
 namespace sextant {
 
-/// A cost with many residuals r and few parameters as one with few residuals: with the triangle of
-/// [J r] = Q [R s; 0 t], the residuals are (s, t) and the derivatives (R, 0). Cost, gradient and
-/// J^T J are the same to rounding, at every state.
+/// A cost with many residuals r and few parameters as one with few residuals: with the Cholesky
+/// factor [R s; 0 t] of [J r]^T [J r], the residuals are (s, t) and the derivatives (R, 0). Cost,
+/// gradient and J^T J are the same to rounding, at every state.
 class CondensedCost final : public ceres::CostFunction {
  public:
   /// For the first parameter block, only the columns [first, first + count) of the derivative may
