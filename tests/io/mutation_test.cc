@@ -171,7 +171,7 @@ TEST_P(MutationTest, ReadsOrRefusesEveryDamage) {
   EXPECT_EQ(reader.refusal(reader.good), "");
   Random random(2);
   int refused = 0;
-  constexpr int kTrials = 400;
+  constexpr int kTrials = 100;
   for (int trial = 0; trial < kTrials; ++trial) {
     const std::string message = reader.refusal(Damaged(reader.good, random));
     if (message.empty()) continue;
