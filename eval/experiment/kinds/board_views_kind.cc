@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include "eval/experiment/kinds/board_scale.h"
+#include "calibrate/observe/board_scale.h"
 #include "eval/experiment/kinds/problem_trials.h"
 #include "eval/synthetic/simulate_views.h"
 
