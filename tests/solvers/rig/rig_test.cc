@@ -142,7 +142,7 @@ TEST(RigModel, EdgeRaysOfRimsHaveNoResidualsAtTheTruth) {
         {.direction = in_lidar.normalized(), .side = kFirstRim, .sigma_m = 0.01});
   }
   RigProblem problem;
-  problem.sensors = {{.name = "lidar", .lidar_errors = kWhite}};
+  problem.sensors = {{.name = "lidar", .lidar_errors = kWhiteNoiseOnly}};
   problem.boards = {board};
   problem.placements = {{.moment = 0, .board = 1, .seen = {seen}}};
   const RigModel model = RigModelOf(problem);
