@@ -218,15 +218,15 @@ TEST(Calibrate, NoCommonBoardEndsInOne) {
   EXPECT_THAT(ReadText(page), HasSubstr("<strong>NOT USABLE</strong>"));
   EXPECT_THAT(ReadText(page), Not(HasSubstr("camera_from_lidar")));
   // There is no JSON, and nothing else in its place.
-  const ProgramRun json = RunSextant("calibrate " + session.string() + Out() + " --json -");
-  EXPECT_EQ(json.exit_code, 1);
-  EXPECT_EQ(json.out, "");
-  EXPECT_THAT(json.err, HasSubstr("no board was seen by both sensors"));
+  const ProgramRun to_pipe = RunSextant("calibrate " + session.string() + Out() + " --json -");
+  EXPECT_EQ(to_pipe.exit_code, 1);
+  EXPECT_EQ(to_pipe.out, "");
+  EXPECT_THAT(to_pipe.err, HasSubstr("no board was seen by both sensors"));
 }
 
 TEST(Calibrate, TheResultIsWrittenIfTheProblemCannotBe) {
   const std::string out = (TestFolder() / "result.yaml").string();
-  const ProgramRun run = RunSextant("calibrate " + Simulated("--scans 1").string() +
+  const ProgramRun run = RunSextant("calibrate " + Simulated().string() +
                                     " --bootstrap 0 --problem /dev/full --out " + out);
   EXPECT_EQ(run.exit_code, 4) << run.err;
   EXPECT_THAT(run.err, HasSubstr("/dev/full"));

@@ -51,12 +51,12 @@ CalibrationProblem WidePixels(double wrong_px) {
                           .fy_px = 4000.0,
                           .cx_px = 3000.0,
                           .cy_px = 2000.0};
-  const Rigid3d pose;
   for (const Eigen::Vector3d& point :
        {Eigen::Vector3d(-2.0, -1.0, 4.0), Eigen::Vector3d(2.0, -1.0, 3.5),
         Eigen::Vector3d(2.0, 1.0, 4.0), Eigen::Vector3d(-2.0, 1.0, 5.0)}) {
-    problem.pairs_2d3d.push_back(
-        {.pixel = *Project(*problem.camera, pose * point), .point_in_lidar = point});
+    Pair2d3d& pair = problem.pairs_2d3d.emplace_back();
+    pair.pixel = *Project(*problem.camera, point);
+    pair.point_in_lidar = point;
   }
   problem.pairs_2d3d.back().pixel.x() += wrong_px;
   return problem;
