@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <sstream>
 #include <string>
 
@@ -41,11 +40,6 @@ fs::path Simulated() {
                              "--interval 60 --scans 4");
 }
 
-// The text on one line, however it is broken.
-std::string Unbroken(const std::string& text) {
-  return std::regex_replace(text, std::regex("\\s+"), " ");
-}
-
 std::size_t LongestLine(const std::string& text) {
   std::istringstream lines(text);
   std::size_t longest = 0;
@@ -78,7 +72,7 @@ TEST(Calibrate, ASimulatedSessionAsItStands) {
   EXPECT_THAT(run.out, HasSubstr("error against the truth"));
   EXPECT_THAT(run.out, HasSubstr("cam_from_lidar maps a point of the LiDAR frame"));
   EXPECT_THAT(run.out, AnyOf(StartsWith("GOOD: "), StartsWith("USABLE WITH CARE: ")));
-  EXPECT_THAT(Unbroken(run.out), HasSubstr("It rests on 8 boards in 4 of 4 views"));
+  EXPECT_THAT(test::Unbroken(run.out), HasSubstr("It rests on 8 boards in 4 of 4 views"));
   EXPECT_LE(LongestLine(run.out), 100U);
   EXPECT_THAT(run.out, Not(HasSubstr("ambiguous")));
   const std::string text = ReadText(calibrated.In("result.json"));
@@ -103,7 +97,7 @@ TEST(Calibrate, ASimulatedSessionAsItStands) {
                 fs::copy_options::overwrite_existing);
   const ProgramRun mixed = RunSextant("calibrate " + session.string() + Out() + " --bootstrap 30");
   EXPECT_EQ(mixed.exit_code, 0) << mixed.err;
-  EXPECT_THAT(Unbroken(mixed.out), HasSubstr("image and scan of different moments"));
+  EXPECT_THAT(test::Unbroken(mixed.out), HasSubstr("image and scan of different moments"));
   EXPECT_THAT(mixed.out, StartsWith("USABLE WITH CARE: In 1 of 4 views"));
 }
 

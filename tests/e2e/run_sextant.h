@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <regex>
 #include <string>
 
 #include "support/run_program.h"
@@ -12,6 +13,11 @@ namespace sextant::test {
 /// Runs the program that was built with the tests.
 inline ProgramRun RunSextant(const std::string& arguments) {
   return RunProgram(SEXTANT_BINARY, arguments);
+}
+
+/// The text on one line, however it is broken.
+inline std::string Unbroken(const std::string& text) {
+  return std::regex_replace(text, std::regex("\\s+"), " ");
 }
 
 /// It ended with that exit code and stated the reason.

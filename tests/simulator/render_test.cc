@@ -247,6 +247,7 @@ INSTANTIATE_TEST_SUITE_P(
                   [](auto& scene, int&, auto&) {
                     scene.cameras[0].intrinsics.width_px = 100000;
                     scene.cameras[0].intrinsics.height_px = 100000;
+                    scene.cameras[0].intrinsics.fx_px = 50000.0;
                   }},
         BadRender{"focal", ErrorCode::kInvalidInput, "focal",
                   [](auto& scene, int&, auto&) { scene.cameras[0].intrinsics.fx_px = 0.0; }},
