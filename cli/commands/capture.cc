@@ -241,6 +241,17 @@ Expected<void> WriteCapture(const CaptureOptions& options, const Calibration& ca
   return WriteCalibrationReport(calibration, options.tolerance_s, options.report_path);
 }
 
+int DeliverCapture(const CaptureOptions& options, const Calibration& calibration,
+                   const std::string& text) {
+  if (!calibration.result) {
+    PrintBesideJson(options.json_path, text);
+    return Refuse("capture", calibration.result.error(), kNoAnswer);
+  }
+  return Deliver(
+      "capture", options.json_path, text, FormatCalibrationResultJson(*calibration.result),
+      calibration.result->verdict->usability == Usability::kNotUsable ? kNotUsable : kAnswered);
+}
+
 int Finish(const CaptureOptions& options, Capture& capture) {
   if (!capture.calibration()) {
     capture.End("The capture has ended without a photo and a scan.");
@@ -253,24 +264,21 @@ int Finish(const CaptureOptions& options, Capture& capture) {
   }
   const Calibration& calibration = *capture.calibration();
   std::string text = "\n" + DescribeCalibration(calibration);
-  if (const Expected<void> ok = WriteCapture(options, calibration); !ok) {
-    capture.End("The capture has ended, but could not write: " + ok.error().message);
-    PrintBesideJson(options.json_path, text);
-    return Refuse("capture", ok.error());
+  const Expected<void> written = WriteCapture(options, calibration);
+  if (written) {
+    capture.End(fmt::format("{} The report is {}.",
+                            capture.IsReached() ? "The accuracy that is needed has been reached."
+                                                : "The capture was ended.",
+                            PathText(options.report_path)));
+    if (calibration.result) {
+      text += "\n" + WroteLine(options.out_path, "the result, for project, export and advise");
+    }
+    text += WroteLine(options.report_path, kReportWords);
+  } else {
+    capture.End("The capture has ended, but could not write: " + written.error().message);
   }
-  capture.End(fmt::format("{} The report is {}.",
-                          capture.IsReached() ? "The accuracy that is needed has been reached."
-                                              : "The capture was ended.",
-                          PathText(options.report_path)));
-  if (!calibration.result) {
-    PrintBesideJson(options.json_path, text + WroteLine(options.report_path, kReportWords));
-    return Refuse("capture", calibration.result.error(), kNoAnswer);
-  }
-  text += "\n" + WroteLine(options.out_path, "the result, for project, export and advise") +
-          WroteLine(options.report_path, kReportWords);
-  return Deliver(
-      "capture", options.json_path, text, FormatCalibrationResultJson(*calibration.result),
-      calibration.result->verdict->usability == Usability::kNotUsable ? kNotUsable : kAnswered);
+  const int code = DeliverCapture(options, calibration, text);
+  return written ? code : Refuse("capture", written.error());
 }
 
 int RunCapture(const CaptureOptions& options) {
