@@ -33,6 +33,7 @@ struct SimulateOptions {
   bool bag = false;
   double lidar_sigma_m = 0.0068;
   std::optional<double> pixel_sigma_px{};  ///< None: the default of the level.
+  GivenOptions given{};
 };
 
 void Declare(SimulateOptions& options, Arguments& arguments) {
@@ -67,11 +68,24 @@ void Declare(SimulateOptions& options, Arguments& arguments) {
   arguments.Add("--sheet", options.sheet_path,
                 "Draw image, scan and edges of the first scan (.png)",
                 {.writes = Writes::kCheckedByCommand});
+  arguments.ReportGiven(options.given);
+}
+
+// What the level does not write, or does not draw.
+Expected<void> CheckLevel(const GivenOptions& given, SessionLevel level) {
+  if (level == SessionLevel::kFull) {
+    return RefuseGiven(given, {"--lidar-sigma", "--pixel-sigma"},
+                       "is for the levels corners and pairs; the level full has the noise of the "
+                       "scene's sensors");
+  }
+  return RefuseGiven(given, {"--unit", "--ideal", "--pcd"},
+                     "is for the level full, which alone has scans and images");
 }
 
 Expected<SessionOptions> SessionOptionsOf(const SimulateOptions& options) {
   SEXTANT_ASSIGN_OR_RETURN(const SessionLevel level, FindSessionLevel(options.level));
   SEXTANT_ASSIGN_OR_RETURN(const PcdEncoding encoding, FindPcdEncoding(options.pcd));
+  SEXTANT_RETURN_IF_ERROR(CheckLevel(options.given, level));
   SessionOptions session;
   session.folder = options.out;
   session.level = level;
