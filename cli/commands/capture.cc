@@ -133,6 +133,10 @@ std::string SoFar(const Calibration& calibration, const CaptureOptions& options)
   return text;
 }
 
+void PrintWarnings(const FolderFiles& files) {
+  for (const std::string& warning : files.warnings) PrintError("warning: {}\n", warning);
+}
+
 /// Watches the folder, and keeps page, terminal and answer up to date.
 class Capture {
  public:
@@ -164,16 +168,20 @@ class Capture {
 
   void End(const std::string& state) { display_.End(Page(), state); }
   const std::optional<Calibration>& calibration() const { return calibration_; }
+  /// Whether there was a photo with its scan, which may be gone.
+  bool had_views() const { return had_views_; }
 
  private:
   void Look() {
     const Expected<FolderFiles> files = watch_.Look();
     if (!files) return display_.SetState(files.error().message);
+    PrintWarnings(*files);
     const std::size_t complete = files->images.size() + files->clouds.size();
     if (complete != std::exchange(complete_, complete)) display_.SetState("Looking at new files.");
     if (!session_.Take(*files)) return display_.SetState(Waiting(*files));
     display_.SetState("Computing the answer with the new views.");
     calibration_.reset();
+    had_views_ = had_views_ || session_.size() > 0;
     if (session_.size() > 0) calibration_ = session_.Solve();
     std::string news = NoteNewest();
     ReportPage page = Page();
@@ -229,6 +237,7 @@ class Capture {
   LiveSession session_;
   CaptureDisplay display_;
   std::optional<Calibration> calibration_{};
+  bool had_views_ = false;
   std::size_t complete_ = 0;          // Files at the last look.
   std::vector<std::string> found_{};  // The newest first.
 };
@@ -255,12 +264,18 @@ int DeliverCapture(const CaptureOptions& options, const Calibration& calibration
 int Finish(const CaptureOptions& options, Capture& capture) {
   if (!capture.calibration()) {
     capture.End("The capture has ended without a photo and a scan.");
-    return Refuse("capture",
-                  {ErrorCode::kMissingData,
-                   fmt::format("no photo and scan of one moment appeared in '{}'; files are paired "
-                               "by the numbers or times in their names",
-                               PathText(options.folder))},
-                  kNoAnswer);
+    const std::string folder = PathText(options.folder);
+    const std::string why =
+        capture.had_views()
+            ? fmt::format(
+                  "the photos and scans that '{}' had are gone, and the answer with them; "
+                  "leave them there until the capture has ended",
+                  folder)
+            : fmt::format(
+                  "no photo and scan of one moment appeared in '{}'; files are paired by "
+                  "the numbers or times in their names",
+                  folder);
+    return Refuse("capture", {ErrorCode::kMissingData, why}, kNoAnswer);
   }
   const Calibration& calibration = *capture.calibration();
   std::string text = "\n" + DescribeCalibration(calibration);
@@ -283,7 +298,9 @@ int Finish(const CaptureOptions& options, Capture& capture) {
 
 int RunCapture(const CaptureOptions& options) {
   FolderWatch watch(options.folder, options.image_pattern, options.cloud_pattern);
-  if (const auto files = watch.Look(); !files) return Refuse("capture", files.error());
+  const Expected<FolderFiles> files = watch.Look();
+  if (!files) return Refuse("capture", files.error());
+  PrintWarnings(*files);
   Progress progress;
   Expected<LiveSession> session = SessionFor(options, progress.Callback());
   if (!session) return Refuse("capture", session.error());
