@@ -64,8 +64,8 @@ int Run(const SolveOptions& options) {
   const int code =
       DeliverAnswers("solve", options.input, *input, rows, TextOf(problem, **solver, row), true);
   if (options.overlay.empty()) return code;
-  const Expected<void> drawn =
-      DrawOverlay(problem, *row.report, options.overlay[0], options.overlay[1]);
+  const Expected<void> drawn = DrawOverlay(problem, *row.report, (*solver)->spec().needs,
+                                           options.overlay[0], options.overlay[1]);
   return drawn ? code : Refuse("solve", drawn.error());
 }
 
