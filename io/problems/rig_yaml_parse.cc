@@ -303,13 +303,28 @@ class RigReader {
                   const std::vector<Eigen::Vector2d>& points) {
     if (!in_.IsSequence(list, "points_m", kMaxNumbers)) return;
     if (!IsAsMany(list.line, "points_m", list.items.size(), points.size())) return;
-    MeasuredPoint point;
-    point.sigma_m = in_.RealAt(node, "sigma_m", point.sigma_m);
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::vector<double> sigmas = SigmasAt(node, points.size());
+    for (std::size_t i = 0; i < points.size() && in_.ok(); ++i) {
+      MeasuredPoint point{.sigma_m = sigmas[i]};
       point.in_board_m << points[i], 0.0;
       point.in_sensor_m = in_.Point(list.items[i], "points_m");
       observation_.points.push_back(point);
     }
+  }
+
+  // One of all points, or a list with that of each.
+  std::vector<double> SigmasAt(const YamlNode& node, std::size_t points) {
+    const YamlNode* list = node.Find("sigma_m");
+    if (list == nullptr || list->kind != YamlNode::Kind::kSequence) {
+      return std::vector<double>(points, in_.RealAt(node, "sigma_m", MeasuredPoint{}.sigma_m));
+    }
+    std::vector<double> sigmas = in_.RealList(*list, "sigma_m", kMaxNumbers);
+    if (in_.ok() && sigmas.size() != points) {
+      in_.Fail(list->line, "sigma_m",
+               fmt::format("expected one number, or {}, as many as points_m, got {}", points,
+                           sigmas.size()));
+    }
+    return sigmas;
   }
 
   void ReadPlane(const YamlNode& node) {
