@@ -13,6 +13,7 @@
 #include "io/output/output_file.h"
 #include "io/output/standard_output.h"
 #include "io/poses/pose_file.h"
+#include "report/rig_text.h"
 
 namespace sextant::cli {
 namespace {
@@ -122,6 +123,7 @@ Expected<std::string> ExportedRig(const ExportCommandOptions& options, const Rig
                                       "has no effect on a rig's result, which states it"));
   if (options.sensors.empty()) {
     SEXTANT_RETURN_IF_ERROR(CheckWholeRig(options));
+    for (const std::string& line : UnconnectedFindings(rig)) PrintError("warning: {}\n", line);
     return ExportRig(options.format, rig);
   }
   SEXTANT_ASSIGN_OR_RETURN(const CalibrationResult pair,

@@ -163,6 +163,12 @@ TEST(RigCommand, CloudsOfNamedSensorsAreFused) {
   test::ExpectRefused(
       RunSextant("export " + TestPath("rig.json") + " --to ros2 --pose-is lidar_from_cam"),
       "--pose-is has no effect on a rig's result");
+  result.sensors.push_back({.name = "lost"});
+  result.unconnected = {"'lost' shares no board with another sensor"};
+  std::ofstream(TestPath("part.json")) << FormatRigResult(result);
+  const ProgramRun part = RunSextant("export " + TestPath("part.json") + " --to ros2");
+  EXPECT_EQ(part.exit_code, 0) << part.err;
+  EXPECT_THAT(part.err, HasSubstr("warning: 'lost' shares no board"));
 }
 
 TEST(RigCommand, OptionsOfOneCameraAndOneLidarAreRefused) {
