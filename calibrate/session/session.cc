@@ -66,6 +66,11 @@ class SessionReader {
     if (in_.ok() && ways != 1) {
       in_.Fail(root.line, "session", "expected one of pairs, images with clouds, and bag");
     }
+    for (const char* topic : {"image_topic", "cloud_topic"}) {
+      if (in_.ok() && session_.bag.empty() && root.Find(topic) != nullptr) {
+        in_.Fail(root.line, topic, "is for a recording, and this session has files; leave it out");
+      }
+    }
     if (const YamlNode* pairs = root.Find("pairs")) ReadPairs(*pairs);
     if (has_patterns) ReadPatterns(root);
   }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <map>
 
 #include "base/units.h"
@@ -265,6 +267,9 @@ class RigReader {
       in_.Fail(node.line, "board", fmt::format("expected the id of one of the boards, got {}", id));
     }
     if (!in_.ok()) return 0;
+    CheckUsed(node, "sigma_px", {"pixels"});
+    CheckUsed(node, "sigma_m", {"points_m"});
+    CheckUsed(node, "in_board_m", {"pixels", "points_m"});
     std::vector<Eigen::Vector2d> points = board->second.points;
     if (node.Find("in_board_m") != nullptr) points = Points2At(node, "in_board_m");
     if (node.Find("time_s") != nullptr) observation_.time_s = in_.RealAt(node, "time_s");
@@ -277,6 +282,16 @@ class RigReader {
       observation_.sensor_from_board = ReadPoseBlock(in_, *pose, "sensor_from_board");
     }
     return id;
+  }
+
+  // Refuses a key that describes measurements which are not there.
+  void CheckUsed(const YamlNode& node, std::string_view key,
+                 std::initializer_list<std::string_view> measured) {
+    const auto is_there = [&](std::string_view name) { return node.Find(name) != nullptr; };
+    if (!in_.ok() || !is_there(key) || std::ranges::any_of(measured, is_there)) return;
+    in_.Fail(node.line, key,
+             fmt::format("describes {}, which the observation does not have; leave it out",
+                         fmt::join(measured, " or ")));
   }
 
   // Whether there are as many measurements as points of the board.

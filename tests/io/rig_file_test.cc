@@ -122,6 +122,11 @@ TEST(RigFile, RefusesWhatIsWrongAndNamesIt) {
        "has board 3 of sensor 'top' twice"},
       {"no direction", RigWith("[0, 3, 0]", "[0, 0, 0]"), ErrorCode::kParse, "not zeros"},
       {"unknown key", RigWith("sigma_px", "sigma_pixels"), ErrorCode::kParse, "sigma_px"},
+      {"sigma without pixels", RigWith("sensor: top\n", "sensor: top\n        sigma_px: 0.2\n"),
+       ErrorCode::kParse, "describes pixels, which the observation does not have"},
+      {"points without a measurement",
+       RigWith("sensor: rear\n", "sensor: rear\n        in_board_m: [0, 0]\n"), ErrorCode::kParse,
+       "describes pixels or points_m"},
       {"unknown root", RigWith("root: top", "root: roof"), ErrorCode::kParse, "'roof'"}};
   for (const BadText& bad : cases) test::ExpectRefused(ParseRigFile(bad.text, "rig.yaml"), bad);
 }
