@@ -21,8 +21,9 @@ int DeliverRig(const char* command, const Expected<RigResult>& result, const Rig
   const std::string json = FormatRigResult(*result);
   std::string text = DescribeRig(*result) + "\n";
   Expected<void> written = WriteFileAtomically(outputs.result_path, json);
-  if (written && !outputs.report_path.empty()) {
-    written = WritePage(CollectRigPage(*result), outputs.report_path);
+  if (!outputs.report_path.empty()) {
+    const Expected<void> page = WritePage(CollectRigPage(*result), outputs.report_path);
+    if (written) written = page;
   }
   if (written) {
     text += WroteLine(outputs.result_path, "the result, for sextant export and report");

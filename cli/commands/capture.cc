@@ -242,12 +242,15 @@ class Capture {
   std::vector<std::string> found_{};  // The newest first.
 };
 
+// The report is written also where the result cannot be.
 Expected<void> WriteCapture(const CaptureOptions& options, const Calibration& calibration) {
+  Expected<void> written;
   if (calibration.result) {
-    SEXTANT_RETURN_IF_ERROR(
-        WriteFileAtomically(options.out_path, FormatCalibrationResult(*calibration.result)));
+    written = WriteFileAtomically(options.out_path, FormatCalibrationResult(*calibration.result));
   }
-  return WriteCalibrationReport(calibration, options.tolerance_s, options.report_path);
+  const Expected<void> report =
+      WriteCalibrationReport(calibration, options.tolerance_s, options.report_path);
+  return written ? report : written;
 }
 
 int DeliverCapture(const CaptureOptions& options, const Calibration& calibration,

@@ -161,19 +161,18 @@ int Run(const SimulateOptions& options) {
   if (!report) {
     return Refuse("simulate", WithScene(report.error(), options.scene_path));
   }
-  if (const Expected<void> ok = WriteExtras(*scene, report->scans, options); !ok) {
-    return Refuse("simulate", ok.error());
-  }
+  const Expected<void> extras = WriteExtras(*scene, report->scans, options);
   Print("{}",
-        WroteLine(options.out,
-                  fmt::format("scene {}, scans: {}, files written: {}, kept: {}{}; the truth is "
-                              "in truth.yaml{}",
-                              scene->name, options.scans, report->written, report->kept,
-                              report->removed > 0
-                                  ? fmt::format(", removed: {} of more scans", report->removed)
-                                  : "",
-                              options.bag ? ", scans and images also in session.bag" : "")));
-  return kAnswered;
+        WroteLine(
+            options.out,
+            fmt::format("scene {}, scans: {}, files written: {}, kept: {}{}; the truth is "
+                        "in truth.yaml{}",
+                        scene->name, options.scans, report->written, report->kept,
+                        report->removed > 0
+                            ? fmt::format(", removed: {} of more scans", report->removed)
+                            : "",
+                        options.bag && extras ? ", scans and images also in session.bag" : "")));
+  return extras ? kAnswered : Refuse("simulate", extras.error());
 }
 
 }  // namespace
