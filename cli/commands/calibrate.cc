@@ -206,7 +206,7 @@ Expected<void> WriteFiles(const CalibrateCommandOptions& options, const std::str
   return written;
 }
 
-int RunOnRig(const CalibrateCommandOptions& options, const RigSession& session) {
+int RunOnSensors(const CalibrateCommandOptions& options, const RigSession& session) {
   const std::string path = OutPath(options, "rig.json");
   if (const auto ok = ClaimResult(path); !ok) return Refuse("calibrate", ok.error());
   Expected<void> problem;
@@ -251,7 +251,7 @@ int Run(const CalibrateCommandOptions& options) {
   if (!options.session.empty() && options.camera_name.empty()) {
     const auto rig = ReadRigSession(options.session);
     if (!rig) return Refuse("calibrate", rig.error());
-    if (*rig) return RunOnRig(options, **rig);
+    if (*rig) return RunOnSensors(options, **rig);
   }
   return RunOnPair(options);
 }
