@@ -143,8 +143,7 @@ SolverEntry DropWorstEntry() {
   return {
       .name = "drop_worst",
       .summary =
-          "removes the pair with the largest residual (of 200 and more the worst hundredth) "
-          "and solves again, until keep are left",
+          "removes the worst pair (of 200 or more 1 percent) and solves again, until keep are left",
       .needs = "keep pairs, or what the inner solver needs and at least one pair more",
       .reference = "the manual elimination of the paper (20 to 11 to 8 points)",
       .example = "drop_worst(kabsch)",
