@@ -34,7 +34,7 @@ void DeclareCalibrate(CalibrateArguments& how, Arguments& arguments) {
                 "any form of sextant check, or X Y Z QW QX QY QZ; default: a camera that looks\n"
                 "along the LiDAR's x",
                 {.min_values = 1, .max_values = 7});
-  DeclarePoseIs(how.pose_is, arguments);
+  DeclarePoseIs(how.pose_is, arguments, "--initial");
   arguments.Add("--detector", how.detector, "See sextant detect");
   arguments.Add("--extractor", how.extractor, "See sextant boards", {.shows_default = true});
   DeclareSearch(how.search, arguments);

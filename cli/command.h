@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "cli/given_options.h"
+
 // How a command states its options, its help and its run, without the library that parses them.
 namespace sextant::cli {
 
@@ -49,6 +51,7 @@ struct ArgumentRules {
   std::vector<std::string> choices{};    ///< The only values allowed, in any case.
   std::vector<std::string> offers{};     ///< What shells complete where there are no choices.
   std::string excludes{};                ///< Name of an option that may not be given as well.
+  std::string needs{};  ///< Name of an option without which this one would have no effect.
   Writes writes = Writes::kNothing;      ///< Only for strings.
 };
 
@@ -68,7 +71,12 @@ class Arguments {
     all_.push_back({std::move(name), &value, std::move(help), std::move(rules)});
   }
 
+  /// Where the parser notes which of the arguments the user gave, for a command that has to tell a
+  /// default from a given value.
+  void ReportGiven(GivenOptions& given) { given_ = &given; }
+
   const std::vector<Argument>& all() const { return all_; }
+  GivenOptions* given() const { return given_; }  ///< Null: not asked for.
 
   /// Whether the command writes files, and so has the flag kOverwrite.
   bool HaveOutputs() const {
@@ -78,6 +86,7 @@ class Arguments {
 
  private:
   std::vector<Argument> all_;
+  GivenOptions* given_ = nullptr;
 };
 
 /// The flag of every command that writes files.

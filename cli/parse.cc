@@ -206,11 +206,35 @@ std::string AddOutput(const Argument& argument, std::vector<OutputArgument>& out
   return {};
 }
 
-ParsedLine LineOf(const Chosen& chosen, bool overwrites) {
+GivenOptions GivenOf(const Arguments& arguments, const CLI::App& app) {
+  GivenOptions given;
+  for (const Argument& argument : arguments.all()) {
+    if (app.get_option(argument.name)->count() > 0) given.push_back(argument.name);
+  }
+  return given;
+}
+
+// The error for an option that has no effect without another one; empty if there is none.
+std::string NeededOption(const Arguments& arguments, const GivenOptions& given) {
+  for (const Argument& argument : arguments.all()) {
+    const std::string& needed = argument.rules.needs;
+    if (needed.empty() || !IsGiven(given, argument.name) || IsGiven(given, needed)) continue;
+    return fmt::format("{0} has no effect without {1}: add {1}, or leave {0} out\n", argument.name,
+                       needed);
+  }
+  return {};
+}
+
+ParsedLine LineOf(const Chosen& chosen, const CLI::App& app, bool overwrites) {
   ParsedLine line{.run = chosen.command->run, .command = chosen.name, .overwrites = overwrites};
   // Declaring again gives the variables, which now hold the values of the line.
   Arguments arguments;
   if (chosen.command->declare) chosen.command->declare(arguments);
+  const GivenOptions given = GivenOf(arguments, app);
+  if (arguments.given() != nullptr) *arguments.given() = given;
+  if (std::string error = NeededOption(arguments, given); !error.empty()) {
+    return {.exit_code = kWrongUse, .err = std::move(error)};
+  }
   for (const Argument& argument : arguments.all()) {
     const std::string error = AddOutput(argument, line.outputs);
     if (!error.empty()) return {.exit_code = kWrongUse, .err = error};
@@ -233,6 +257,23 @@ std::pair<const CLI::App*, std::string> ChosenApp(const CLI::App& app) {
     }
   }
   return {chosen, name};
+}
+
+// The error for an argument before a subcommand, which has its own; empty if there is none.
+std::string BeforeSubcommand(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands(nullptr)) {
+    if (!command->parsed()) continue;
+    for (const CLI::App* sub : command->get_subcommands(nullptr)) {
+      if (!sub->parsed()) continue;
+      for (const CLI::Option* option : command->get_options()) {
+        if (option->count() == 0) continue;
+        return fmt::format("{0} does not go before {1}; see '{2} {3} {1} --help'\n",
+                           option->get_name(), sub->get_name(), app.get_name(),
+                           command->get_name());
+      }
+    }
+  }
+  return {};
 }
 
 std::vector<std::string> OptionsOf(const CLI::App& app) {
@@ -302,7 +343,10 @@ ParsedLine ParseLine(const Program& program, int argc, const char* const* argv) 
     if (!unknown.empty()) return {.exit_code = kWrongUse, .err = std::move(unknown)};
     return {.exit_code = code == 0 ? kAnswered : kWrongUse, .out = out.str(), .err = err.str()};
   }
-  return LineOf(FindChosen(app, AllCommands(program)), overwrites);
+  if (std::string error = BeforeSubcommand(app); !error.empty()) {
+    return {.exit_code = kWrongUse, .err = std::move(error)};
+  }
+  return LineOf(FindChosen(app, AllCommands(program)), *ChosenApp(app).first, overwrites);
 }
 
 }  // namespace sextant::cli

@@ -155,11 +155,11 @@ Expected<GivenPose> GivenPoseOfText(const PoseText& text, const std::string& pat
 
 }  // namespace
 
-void DeclarePoseIs(std::string& pose_is, Arguments& arguments) {
+void DeclarePoseIs(std::string& pose_is, Arguments& arguments, const std::string& of) {
   arguments.Add("--pose-is", pose_is,
                 "Direction of a pose whose file does not state it: cam_from_lidar maps points of\n"
                 "the LiDAR into the camera's optical frame",
-                {.choices = {"cam_from_lidar", "lidar_from_cam"}});
+                {.choices = {"cam_from_lidar", "lidar_from_cam"}, .needs = of});
 }
 
 void DeclarePairNames(PairNames& names, Arguments& arguments) {

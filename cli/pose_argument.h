@@ -18,8 +18,9 @@ inline constexpr const char* kPoseHelp =
     "result.yaml, a 4x4 matrix, KITTI's calib.txt, a TransformStamped (YAML), a static transform\n"
     "of ROS 1 or 2, a URDF, x y z qx qy qz qw, or JSON; recognised by its content";
 
-/// --pose-is: the direction of poses whose file does not state it.
-void DeclarePoseIs(std::string& pose_is, Arguments& arguments);
+/// --pose-is: the direction of poses whose file does not state it. `of`: the option that gives the
+/// poses; empty: a required argument does.
+void DeclarePoseIs(std::string& pose_is, Arguments& arguments, const std::string& of = "");
 
 /// cam_from_lidar of a file. Where the direction follows from the axes alone, a line on standard
 /// error says so. Errors: those of ReadPoseFile and CamFromLidar.

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/recording_summary.h"
 
-#include <fmt/chrono.h>
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 
 #include "base/text/path_text.h"
 #include "eval/statistics/text_table.h"
 #include "io/text/number_text.h"
+#include "report/collect/utc_text.h"
 
 namespace sextant::cli {
 namespace {
@@ -29,8 +30,9 @@ std::string Summary(const Bag& bag, const std::string& path) {
   std::string text = fmt::format("{}: {}, {} topics, {} messages", PathText(path), bag.format(),
                                  bag.topics().size(), messages);
   if (messages > 0) {
-    text += fmt::format(", {} s from {:%Y-%m-%d %H:%M:%S} UTC", Fixed(Seconds(last - first), 3),
-                        fmt::gmtime(static_cast<std::time_t>(first / 1'000'000'000)));
+    const std::chrono::sys_time<std::chrono::nanoseconds> start{std::chrono::nanoseconds(first)};
+    text += fmt::format(", {} s from {}", Fixed(Seconds(last - first), 3),
+                        UtcText(std::chrono::floor<std::chrono::seconds>(start)));
   }
   text += "\n";
   return bag.cut() ? text + "warning: " + DescribeCut(bag) + "\n" : text;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "calibrate/bag/bag_image.h"
 #include "calibrate/bag/bag_streams.h"
@@ -51,13 +52,14 @@ class Extractor {
 
   Expected<void> Take(const BagMessage& message) {
     SEXTANT_ASSIGN_OR_RETURN(const MessageHeader header, DecodeHeader(message));
-    const std::string name = MessageName(numbers_[message.topic_index]++, header.stamp_ns);
+    const std::size_t number = numbers_[message.topic_index]++;
+    const std::string name = MessageName(number, header.stamp_ns);
     SEXTANT_ASSIGN_OR_RETURN(const std::optional<Extracted> file, Convert(message));
     if (!file) return {};
     const std::filesystem::path folder = FolderOf(message.topic_index);
     SEXTANT_RETURN_IF_ERROR(MakeSubfolder(folder));
-    extensions_[message.topic_index] = file->extension;
     ++files_;
+    extensions_[{message.topic_index, number}] = file->extension;
     return WriteFileAtomically(folder / (name + file->extension), file->bytes);
   }
 
@@ -75,7 +77,7 @@ class Extractor {
 
   std::string FileName(std::size_t topic, std::size_t number, std::int64_t stamp_ns) {
     return fmt::format("{}/{}{}", FolderOf(topic).filename().string(),
-                       MessageName(number, stamp_ns), extensions_[topic]);
+                       MessageName(number, stamp_ns), extensions_[{topic, number}]);
   }
   int files() const { return files_; }
 
@@ -114,7 +116,8 @@ class Extractor {
   std::map<std::size_t, std::string> folders_;
   std::unordered_set<std::string> taken_;
   std::unordered_map<std::string, std::size_t> numbers_of_name_;  // The last number of each name.
-  std::map<std::size_t, std::string> extensions_;
+  // Of each message by topic and number: a topic may have images of several formats.
+  std::map<std::pair<std::size_t, std::size_t>, std::string> extensions_;
   std::map<std::size_t, std::string> cameras_;
   int files_ = 0;
 };

@@ -21,17 +21,17 @@ int DeliverRig(const char* command, const Expected<RigResult>& result, const Rig
   const std::string json = FormatRigResult(*result);
   std::string text = DescribeRig(*result) + "\n";
   Expected<void> written = WriteFileAtomically(outputs.result_path, json);
-  if (written && !outputs.report_path.empty()) {
-    written = WritePage(CollectRigPage(*result), outputs.report_path);
+  if (!outputs.report_path.empty()) {
+    const Expected<void> page = WritePage(CollectRigPage(*result), outputs.report_path);
+    if (written) written = page;
   }
-  if (!written) {
-    PrintBesideJson(outputs.json_path, text);
-    return Refuse(command, written.error());
+  if (written) {
+    text += WroteLine(outputs.result_path, "the result, for sextant export and report");
+    if (!outputs.report_path.empty()) text += WroteLine(outputs.report_path, kReportWords);
   }
-  text += WroteLine(outputs.result_path, "the result, for sextant export and report");
-  if (!outputs.report_path.empty()) text += WroteLine(outputs.report_path, kReportWords);
   const bool whole = result->refutations.empty() && result->unconnected.empty();
-  return Deliver(command, outputs.json_path, text, json, whole ? kAnswered : kNotUsable);
+  const int code = Deliver(command, outputs.json_path, text, json, whole ? kAnswered : kNotUsable);
+  return written ? code : Refuse(command, written.error());
 }
 
 }  // namespace sextant::cli

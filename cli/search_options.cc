@@ -35,7 +35,7 @@ void DeclareSearch(SearchArguments& search, Arguments& arguments) {
   arguments.Add("--edge-growth", search.growth,
                 "How far beyond an edge the board still gives returns, as a share of the beam's\n"
                 "width",
-                {.range = {{-10.0, 10.0}}});
+                {.range = {{-10.0, 10.0}}, .excludes = "--raw-edges"});
   arguments.Add("--seed", search.seed, "Seed of the search for planes", {.shows_default = true});
 }
 

@@ -25,20 +25,22 @@ struct Mark {
   bool used = true;
 };
 
-std::vector<Mark> MarksOf(const CalibrationProblem& problem, const SolveReport& report) {
+// The inliers of a report count the pairs of one kind, and only these are drawn.
+std::vector<Mark> MarksOf(const CalibrationProblem& problem, const SolveReport& report,
+                          const DataNeeds& needs) {
   const Camera& camera = report.camera ? report.camera->camera : *problem.camera;
   const auto used = [&report](std::size_t i) {
     return report.inliers.empty() ||
            std::binary_search(report.inliers.begin(), report.inliers.end(), static_cast<int>(i));
   };
+  const bool of_points = needs.pairs_3d3d > 0 || problem.pairs_2d3d.empty();
   std::vector<Mark> marks;
-  for (std::size_t i = 0; i < problem.pairs_2d3d.size(); ++i) {
+  for (std::size_t i = 0; !of_points && i < problem.pairs_2d3d.size(); ++i) {
     const Pair2d3d& pair = problem.pairs_2d3d[i];
     const auto projected = Project(camera, report.cam_from_lidar * pair.point_in_lidar);
     if (projected) marks.push_back({pair.pixel, *projected, used(i)});
   }
-  if (!problem.pairs_2d3d.empty()) return marks;
-  for (std::size_t i = 0; i < problem.pairs_3d3d.size(); ++i) {
+  for (std::size_t i = 0; of_points && i < problem.pairs_3d3d.size(); ++i) {
     const Pair3d3d& pair = problem.pairs_3d3d[i];
     const auto measured = Project(camera, pair.point_in_cam);
     const auto projected = Project(camera, report.cam_from_lidar * pair.point_in_lidar);
@@ -71,7 +73,8 @@ void DrawLegend(const std::string& text, cv::Mat& canvas) {
 }  // namespace
 
 Expected<void> DrawOverlay(const CalibrationProblem& problem, const SolveReport& report,
-                           const std::filesystem::path& image, const std::filesystem::path& out) {
+                           const DataNeeds& needs, const std::filesystem::path& image,
+                           const std::filesystem::path& out) {
   if (!problem.camera) {
     return MakeError(ErrorCode::kMissingData, "an overlay needs the camera: give --camera");
   }
@@ -85,7 +88,7 @@ Expected<void> DrawOverlay(const CalibrationProblem& problem, const SolveReport&
         fmt::format("{}: the image has {} x {} pixels, expected the camera's {} x {}",
                     image.string(), canvas.cols, canvas.rows, camera.width_px, camera.height_px));
   }
-  const std::vector<Mark> marks = MarksOf(problem, report);
+  const std::vector<Mark> marks = MarksOf(problem, report, needs);
   if (marks.empty()) {
     return MakeError(ErrorCode::kMissingData, "no pair projects into the image: nothing to draw");
   }

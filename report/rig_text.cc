@@ -117,21 +117,25 @@ std::string NumberLines(const RigResult& result) {
   return text;
 }
 
-// A pair whose own answer differs from that of all sensors by far more than it should.
-std::vector<std::string> LoopWarnings(const RigResult& result) {
-  constexpr double kMaxSigmas = 3.0;
+}  // namespace
+
+std::vector<std::string> LoopFindings(const RigResult& result) {
   std::vector<std::string> lines;
   for (const RigResultPair& pair : result.pairs) {
-    if (!pair.alone_sigmas || *pair.alone_sigmas <= kMaxSigmas) continue;
-    lines.push_back(fmt::format(
-        "{} and {} alone differ from the answer of all sensors by {:.1f} sigmas: an error that "
-        "their views share, such as wrong intrinsics or another board size",
-        pair.a, pair.b, *pair.alone_sigmas));
+    if (!pair.alone_sigmas || *pair.alone_sigmas <= kMaxLoopSigmas) continue;
+    lines.push_back(
+        fmt::format("{} and {} alone differ from the answer of all sensors by {:.1f} sigmas",
+                    pair.a, pair.b, *pair.alone_sigmas));
   }
   return lines;
 }
 
-}  // namespace
+std::vector<std::string> UnconnectedFindings(const RigResult& result) {
+  std::vector<std::string> lines = result.unconnected;
+  if (!result.refutations.empty()) return lines;
+  for (std::string& line : lines) line += ". The poses of the connected sensors are usable";
+  return lines;
+}
 
 std::string DescribeRig(const RigResult& result) {
   std::string text = fmt::format("Poses in the frame of {} (root_from_sensor):\n{}", result.root,
@@ -142,9 +146,11 @@ std::string DescribeRig(const RigResult& result) {
             ViewTable(result);
   }
   if (!result.numbers.empty()) text += "\nEstimated with the poses:\n" + NumberLines(result);
-  std::vector<std::string> warnings = result.unconnected;
+  std::vector<std::string> warnings = UnconnectedFindings(result);
   warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
-  for (std::string& line : LoopWarnings(result)) warnings.push_back(std::move(line));
+  for (const std::string& line : LoopFindings(result)) {
+    warnings.push_back(fmt::format("{}: {}", line, kLoopCause));
+  }
   if (!warnings.empty() || !result.refutations.empty()) text += "\n";
   for (const std::string& warning : warnings) {
     text += Wrapped("warning: " + warning, kTextWidth);

@@ -42,15 +42,15 @@ bool FolderWatch::IsCloud(const fs::path& path) const {
   return IsCloudName(path);
 }
 
-Expected<void> FolderWatch::AddFolder(const fs::path& folder, bool with_folders,
-                                      State& found) const {
+std::error_code FolderWatch::AddFiles(const fs::path& folder, State& found,
+                                      std::vector<fs::path>& folders) const {
   std::error_code error;
   fs::directory_iterator it(folder, error);
   for (const fs::directory_iterator end; !error && it != end; it.increment(error)) {
     if (it->path().filename().string().starts_with('.')) continue;
     std::error_code gone;  // A file may disappear at any time; it is then no file of this look.
     if (it->is_directory(gone)) {
-      if (with_folders) SEXTANT_RETURN_IF_ERROR(AddFolder(it->path(), false, found));
+      folders.push_back(it->path());
       continue;
     }
     if (!it->is_regular_file(gone) || (!IsImage(it->path()) && !IsCloud(it->path()))) continue;
@@ -59,16 +59,27 @@ Expected<void> FolderWatch::AddFolder(const fs::path& folder, bool with_folders,
     file.changed = it->last_write_time(gone);
     if (!gone) found.emplace(file.path, file);
   }
-  // A folder within the folder may disappear, too.
-  if (!error || !with_folders) return {};
-  return MakeError(ErrorCode::kIo, fmt::format("cannot read the folder '{}': {}", PathText(folder),
-                                               error.message()));
+  return error;
 }
 
 Expected<FolderFiles> FolderWatch::Look() {
   State found;
-  SEXTANT_RETURN_IF_ERROR(AddFolder(folder_, true, found));
   FolderFiles files;
+  std::vector<fs::path> folders;
+  if (const std::error_code error = AddFiles(folder_, found, folders)) {
+    return MakeError(ErrorCode::kIo, fmt::format("cannot read the folder '{}': {}",
+                                                 PathText(folder_), error.message()));
+  }
+  for (const fs::path& folder : folders) {
+    std::vector<fs::path> deeper;  // Not watched.
+    const std::error_code error = AddFiles(folder, found, deeper);
+    // It may disappear, too.
+    if (!error || error == std::errc::no_such_file_or_directory) continue;
+    if (!unreadable_.insert(folder).second) continue;
+    files.warnings.push_back(fmt::format(
+        "cannot read the folder '{}': {}; what is in it is missing until it can be read",
+        PathText(folder), error.message()));
+  }
   for (const auto& [path, file] : found) {
     const auto before = last_.find(path);
     if (file.bytes == 0 || before == last_.end() || before->second != file) {

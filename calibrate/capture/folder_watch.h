@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "base/error.h"
@@ -25,6 +27,9 @@ struct FolderFiles {
   std::vector<WatchedFile> images{};
   std::vector<WatchedFile> clouds{};
   std::size_t unsettled = 0;  ///< Files that are new, empty, or have changed since the last look.
+  /// Why a folder within the folder cannot be read: a sentence for each that the looks before did
+  /// not name.
+  std::vector<std::string> warnings{};
 };
 
 /// The photos and scans that a driver writes into a folder, or into folders within it.
@@ -43,8 +48,9 @@ class FolderWatch {
  private:
   using State = std::map<std::filesystem::path, WatchedFile>;
 
-  Expected<void> AddFolder(const std::filesystem::path& folder, bool with_folders,
-                           State& found) const;
+  /// Adds the files of a folder; returns why it cannot be read, if so, and its folders.
+  std::error_code AddFiles(const std::filesystem::path& folder, State& found,
+                           std::vector<std::filesystem::path>& folders) const;
   bool IsImage(const std::filesystem::path& path) const;
   bool IsCloud(const std::filesystem::path& path) const;
 
@@ -52,6 +58,7 @@ class FolderWatch {
   std::string image_pattern_;
   std::string cloud_pattern_;
   State last_;
+  std::set<std::filesystem::path> unreadable_{};  ///< Folders that a warning named.
 };
 
 }  // namespace sextant

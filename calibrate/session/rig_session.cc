@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "base/text/path_text.h"
+#include "calibrate/session/session.h"
 #include "calibrate/session/simulated_folder.h"
 #include "io/text/text_file.h"
 #include "io/text/yaml_fields.h"
@@ -132,10 +133,7 @@ Expected<std::optional<RigSession>> ReadRigSession(const fs::path& path) {
       return IsFile(path / "boards.yaml") ? ReadSimulatedRig(path) : std::optional<RigSession>();
     }
   }
-  const std::string extension = file.extension().string();
-  if (!IsFile(file) || (extension != ".yaml" && extension != ".yml")) {
-    return std::optional<RigSession>();
-  }
+  if (!IsFile(file) || IsRecording(file)) return std::optional<RigSession>();
   SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(file));
   const Expected<YamlNode> root = ParseYaml(text, file.string());
   if (!root || root->kind != YamlNode::Kind::kMap || root->Find("sensors") == nullptr ||

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "base/text/path_text.h"
 #include "base/text/printable.h"
 #include "calibrate/session/simulated_folder.h"
 #include "io/blocks/pose_block.h"
@@ -17,11 +18,6 @@ namespace sextant {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool IsRecording(const fs::path& path) {
-  const std::string extension = path.extension().string();
-  return extension == ".bag" || extension == ".db3" || extension == ".mcap";
-}
 
 bool Exists(const fs::path& path) {
   std::error_code error;
@@ -69,6 +65,11 @@ class SessionReader {
                      (root.Find("bag") != nullptr ? 1 : 0);
     if (in_.ok() && ways != 1) {
       in_.Fail(root.line, "session", "expected one of pairs, images with clouds, and bag");
+    }
+    for (const char* topic : {"image_topic", "cloud_topic"}) {
+      if (in_.ok() && session_.bag.empty() && root.Find(topic) != nullptr) {
+        in_.Fail(root.line, topic, "is for a recording, and this session has files; leave it out");
+      }
     }
     if (const YamlNode* pairs = root.Find("pairs")) ReadPairs(*pairs);
     if (has_patterns) ReadPatterns(root);
@@ -150,6 +151,11 @@ tl::unexpected<Error> HintToSolve(const std::string& file) {
 
 }  // namespace
 
+bool IsRecording(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  return extension == ".bag" || extension == ".db3" || extension == ".mcap";
+}
+
 Expected<Session> ParseSession(std::string_view text, const std::string& file) {
   if (BeginsWithNumber(text)) return HintToSolve(file);
   SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
@@ -178,12 +184,22 @@ Expected<Session> SessionOfFiles(std::span<const std::string> images,
 
 Expected<Session> ReadSession(const fs::path& path, const std::string& camera_name) {
   std::error_code error;
-  if (!fs::is_directory(path, error)) {
+  const bool is_folder = fs::is_directory(path, error);
+  const bool has_session = is_folder && Exists(path / "session.yaml");
+  const bool is_simulated = is_folder && !has_session && Exists(path / "boards.yaml");
+  if (!camera_name.empty() && !is_simulated) {
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        fmt::format("the camera '{}': only a folder of sextant simulate has cameras with "
+                    "names, and '{}' is none; leave the name out",
+                    PrintableLine(camera_name), PathText(path)));
+  }
+  if (!is_folder) {
     if (IsRecording(path)) return Session{.bag = path};
     return ReadWith(path, ParseSession);
   }
-  if (Exists(path / "session.yaml")) return ReadWith(path / "session.yaml", ParseSession);
-  if (Exists(path / "boards.yaml")) return ReadSimulated(path, camera_name);
+  if (has_session) return ReadWith(path / "session.yaml", ParseSession);
+  if (is_simulated) return ReadSimulated(path, camera_name);
   for (fs::directory_iterator it(path, error), end; !error && it != end; it.increment(error)) {
     if (IsRecording(it->path())) return Session{.bag = path};
   }

@@ -28,6 +28,9 @@ struct Session {
   std::optional<Rigid3d> true_cam_from_lidar{};  ///< Simulated sessions; not given to solvers.
 };
 
+/// Whether it is named as a recording of ROS is: .bag, .db3 or .mcap.
+bool IsRecording(const std::filesystem::path& path);
+
 /// Reads a session by its path:
 /// - a YAML file (docs/formats.md), whose paths are relative to its folder;
 /// - a folder with session.yaml in it;
@@ -35,7 +38,7 @@ struct Session {
 ///   scan_*.pcd, truth.yaml; `camera_name` selects one of several cameras (empty: the first);
 /// - a recording of ROS: a file that ends in .bag, .db3 or .mcap, or a folder with one.
 /// Errors: kIo; kParse with file, line and key; kMissingData for a folder that is none of these and
-/// for a folder without a camera of that name.
+/// for a folder without a camera of that name; kInvalidOption for a name where there are none.
 /// Time is linear in the file or the folder, O(n log n) in the names; memory: 1 KiB for each name,
 /// or that of ParseYaml (io/text/yaml_node.h).
 Expected<Session> ReadSession(const std::filesystem::path& path,

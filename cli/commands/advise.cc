@@ -34,6 +34,7 @@ struct AdviseCommandOptions {
   std::string lidar{};         ///< A model of the simulator; empty: the result's, else vlp16.
   double pixel_sigma_px = 0.3;
   int count = 1;
+  GivenOptions given{};
 };
 
 void Declare(AdviseCommandOptions& options, Arguments& arguments) {
@@ -51,6 +52,7 @@ void Declare(AdviseCommandOptions& options, Arguments& arguments) {
                 "A LiDAR of sextant list lidars; default: the result's own rings, else vlp16");
   arguments.Add("--pixel-sigma", options.pixel_sigma_px, "Noise of a printed corner [px]",
                 {.shows_default = true, .range = {{0.001, 100.0}}});
+  arguments.ReportGiven(options.given);
 }
 
 Expected<LidarPattern> PatternNamed(const std::string& name) {
@@ -172,11 +174,10 @@ std::string RigAdviceText(const RigAdvice& advice) {
 }
 
 int AdviseOnRig(const AdviseCommandOptions& options, const std::string& text) {
-  if (!options.picture_path.empty() || options.count != 1 || !options.lidar.empty()) {
-    return Refuse("advise", {ErrorCode::kInvalidOption,
-                             "--picture, --count and --lidar are for a result of one camera and "
-                             "one LiDAR; leave them out for a rig"});
-  }
+  const Expected<void> ok =
+      RefuseGiven(options.given, {"--picture", "--count", "--lidar", "--pixel-sigma"},
+                  "is for a result of one camera and one LiDAR, and this is a rig");
+  if (!ok) return Refuse("advise", ok.error());
   const Expected<RigFile> rig = ParseRigFile(text, options.result_path);
   if (!rig) return Refuse("advise", rig.error());
   const Expected<RigAdvice> advice = AdviseRig(*rig);

@@ -29,6 +29,7 @@ struct BoardsOptions {
   SearchArguments search{};
   std::string overlay_path{};  ///< Empty: none.
   std::string json_path{};     ///< See Deliver.
+  GivenOptions given{};
 };
 
 void Declare(BoardsOptions& options, Arguments& arguments) {
@@ -49,6 +50,7 @@ void Declare(BoardsOptions& options, Arguments& arguments) {
                 {.writes = Writes::kFile});
   arguments.Add("--json", options.json_path, "Write the results as JSON; - for standard output",
                 {.writes = Writes::kFileOrStandardOutput});
+  arguments.ReportGiven(options.given);
 }
 
 // The boards that the search finds, or those in the polygons that a person has drawn.
@@ -100,6 +102,10 @@ bool HasAllBoards(const ScanReport& report, std::size_t boards) {
 }
 
 Expected<void> CheckScans(const BoardsOptions& options) {
+  if (!options.polygons_path.empty()) {
+    SEXTANT_RETURN_IF_ERROR(
+        RefuseGiven(options.given, {"--region"}, "is for a search, which --polygons replaces"));
+  }
   if (!options.overlay_path.empty() && options.scans.size() > 1) {
     return MakeError(
         ErrorCode::kInvalidOption,
@@ -143,16 +149,14 @@ int Run(const BoardsOptions& options) {
     unreadable = true;
     Refuse("boards", *report.failure);
   }
-  if (!options.overlay_path.empty() && !unreadable) {
-    if (const Expected<void> ok =
-            DrawScan(options.scans[0], reports[0], *boards, options.overlay_path);
-        !ok) {
-      return Refuse("boards", ok.error());
-    }
-  }
   const int found = complete == static_cast<int>(reports.size()) ? kAnswered : kNoAnswer;
-  return Deliver("boards", options.json_path, DescribeScans(reports, *boards, options.extractor),
-                 ScansJson(reports, *boards, options.extractor), unreadable ? kWrongUse : found);
+  const int code =
+      Deliver("boards", options.json_path, DescribeScans(reports, *boards, options.extractor),
+              ScansJson(reports, *boards, options.extractor), unreadable ? kWrongUse : found);
+  if (options.overlay_path.empty() || unreadable) return code;
+  const Expected<void> drawn =
+      DrawScan(options.scans[0], reports[0], *boards, options.overlay_path);
+  return drawn ? code : Refuse("boards", drawn.error());
 }
 
 }  // namespace

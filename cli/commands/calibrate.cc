@@ -36,12 +36,13 @@ struct CalibrateCommandOptions {
   std::string camera_name{};  ///< For a simulated session with several; empty: all, as a rig.
   std::string image_topic{};  ///< For a recording; empty: the only one.
   std::string cloud_topic{};
-  double tolerance_s = 0.05;  ///< Between the stamps of an image and its scan.
+  double tolerance_s = 0.05;  ///< Between the stamps of an image and its scan in a recording.
   CalibrateArguments how{};
-  std::string out_path = "result.yaml";
+  std::string out_path{};      ///< Empty: result.yaml, or rig.json for several sensors.
   std::string json_path{};     ///< See Deliver.
   std::string problem_path{};  ///< The solvers' problem; empty: not written.
   std::string report_path{};   ///< The report in HTML; empty: not written.
+  GivenOptions given{};
 };
 
 void DeclareSources(CalibrateCommandOptions& options, Arguments& arguments) {
@@ -57,7 +58,7 @@ void DeclareSources(CalibrateCommandOptions& options, Arguments& arguments) {
   arguments.Add("--image-topic", options.image_topic, "For a recording with several");
   arguments.Add("--cloud-topic", options.cloud_topic, "For a recording with several");
   arguments.Add("--tolerance", options.tolerance_s,
-                "Maximum time between an image and its scan, by their stamps [s]",
+                "For a recording: maximum time between an image and its scan [s]",
                 {.shows_default = true, .range = {{0.0, 3600.0}}});
   arguments.Add("--board", options.boards_path,
                 "Boards (YAML, or marker_coordinates.txt); default: the session's");
@@ -71,8 +72,9 @@ void DeclareSources(CalibrateCommandOptions& options, Arguments& arguments) {
 void Declare(CalibrateCommandOptions& options, Arguments& arguments) {
   DeclareSources(options, arguments);
   DeclareCalibrate(options.how, arguments);
-  arguments.Add("--out", options.out_path, "Result file (YAML)",
-                {.shows_default = true, .writes = Writes::kCheckedByCommand});
+  arguments.Add("--out", options.out_path,
+                "Result file (YAML); default: result.yaml, or rig.json for several sensors",
+                {.writes = Writes::kCheckedByCommand});
   arguments.Add("--json", options.json_path, "Write the result as JSON too; - for standard output",
                 {.writes = Writes::kFileOrStandardOutput});
   arguments.Add("--problem", options.problem_path,
@@ -82,6 +84,7 @@ void Declare(CalibrateCommandOptions& options, Arguments& arguments) {
                 "Write a report for people who did not run this: one file of HTML that opens\n"
                 "offline. Without a pose it shows what each sensor saw",
                 {.writes = Writes::kFile});
+  arguments.ReportGiven(options.given);
 }
 
 Expected<Session> ChosenSession(const CalibrateCommandOptions& options) {
@@ -96,6 +99,8 @@ Expected<Session> ChosenSession(const CalibrateCommandOptions& options) {
                      fmt::format("{} is missing: expected --image and --cloud together",
                                  options.images.empty() ? "--image" : "--cloud"));
   }
+  SEXTANT_RETURN_IF_ERROR(RefuseGiven(options.given, {"--camera-name"},
+                                      "is for the folder of a simulated session, not for files"));
   return SessionOfFiles(options.images, options.clouds);
 }
 
@@ -106,6 +111,11 @@ Expected<Session> SessionFrom(const CalibrateCommandOptions& options) {
   if (!options.camera_path.empty()) session.camera = options.camera_path;
   if (!options.image_topic.empty()) session.image_topic = options.image_topic;
   if (!options.cloud_topic.empty()) session.cloud_topic = options.cloud_topic;
+  if (session.bag.empty()) {
+    SEXTANT_RETURN_IF_ERROR(
+        RefuseGiven(options.given, {"--image-topic", "--cloud-topic", "--tolerance"},
+                    "is for a recording, and this session has its images and scans in files"));
+  }
   const bool has_boards = !session.boards.empty();
   if (!has_boards || (session.camera.empty() && session.bag.empty())) {
     return MakeError(
@@ -122,23 +132,17 @@ Expected<CalibrateOptions> SettingsFrom(const CalibrateCommandOptions& options) 
   return settings;
 }
 
-// What the options that do not apply to several sensors would change.
 Expected<void> CheckRigOptions(const CalibrateCommandOptions& options) {
-  const std::pair<bool, const char*> given[] = {{!options.how.solvers.empty(), "--solver"},
-                                                {!options.how.initial.empty(), "--initial"},
-                                                {!options.camera_path.empty(), "--camera"}};
-  for (const auto& [is_given, name] : given) {
-    if (!is_given) continue;
-    return MakeError(ErrorCode::kInvalidOption,
-                     fmt::format("{} is for one camera and one LiDAR, and this session has more "
-                                 "sensors; leave it out, or choose a camera with --camera-name",
-                                 name));
-  }
-  return {};
+  return RefuseGiven(
+      options.given,
+      {"--solver", "--initial", "--need", "--bootstrap", "--camera", "--image-topic",
+       "--cloud-topic", "--tolerance"},
+      "is for one camera and one LiDAR, and this session has more sensors (two of them alone: by "
+      "--camera-name in a simulated folder, else by --image and --cloud)");
 }
 
-Expected<RigResult> CalibrateSensors(const CalibrateCommandOptions& options,
-                                     const RigSession& session) {
+Expected<ObservedRig> ObserveSensors(const CalibrateCommandOptions& options,
+                                     const RigSession& session, const ProgressCallback& progress) {
   SEXTANT_RETURN_IF_ERROR(CheckRigOptions(options));
   SEXTANT_ASSIGN_OR_RETURN(const CalibrateOptions settings, SettingsFrom(options));
   ObserveRigOptions observe{.observe = settings.observe, .match = settings.match};
@@ -149,14 +153,12 @@ Expected<RigResult> CalibrateSensors(const CalibrateCommandOptions& options,
   if (!options.boards_path.empty()) {
     SEXTANT_ASSIGN_OR_RETURN(observe.boards, ReadBoards(options.boards_path));
   }
-  Progress progress;
-  observe.progress = progress.Callback();
-  SEXTANT_ASSIGN_OR_RETURN(const ObservedRig observed, ObserveRig(session, observe));
-  if (!options.problem_path.empty()) {
-    SEXTANT_RETURN_IF_ERROR(WriteFileAtomically(options.problem_path, FormatRigFile(observed.rig)));
-  }
-  Expected<RigResult> result =
-      CalibrateRig(observed.rig, /*estimate_time=*/false, progress.Callback());
+  observe.progress = progress;
+  return ObserveRig(session, observe);
+}
+
+Expected<RigResult> ResultOfSensors(const ObservedRig& observed, const ProgressCallback& progress) {
+  Expected<RigResult> result = CalibrateRig(observed.rig, /*estimate_time=*/false, progress);
   for (const std::string& note : observed.notes) {
     if (!result) result.error().AddLine(note);
     if (result) result->warnings.push_back(note);
@@ -164,9 +166,9 @@ Expected<RigResult> CalibrateSensors(const CalibrateCommandOptions& options,
   return result;
 }
 
-// Without a path of its own, the result of a rig is no result.yaml.
-std::string RigPath(const std::string& out_path) {
-  return out_path == CalibrateCommandOptions{}.out_path ? "rig.json" : out_path;
+// The path of --out; without it the result of a rig is no result.yaml.
+std::string OutPath(const CalibrateCommandOptions& options, const char* default_path) {
+  return options.out_path.empty() ? default_path : options.out_path;
 }
 
 Expected<void> ClaimResult(const std::string& path) {
@@ -183,52 +185,75 @@ Expected<Calibration> CalibrateWithProgress(const CalibrateCommandOptions& optio
   return Calibrate(session, settings);
 }
 
-Expected<void> WriteFiles(const CalibrateCommandOptions& options, const Calibration& calibration) {
-  // The result first: where the disk is full, it is worth most.
+// The result first: where the disk is full, it is worth most. The first error; the files after it
+// are written too.
+Expected<void> WriteFiles(const CalibrateCommandOptions& options, const std::string& out_path,
+                          const Calibration& calibration) {
+  Expected<void> written;
+  const auto keep_first = [&written](const Expected<void>& ok) {
+    if (written) written = ok;
+  };
   if (calibration.result) {
-    SEXTANT_RETURN_IF_ERROR(
-        WriteFileAtomically(options.out_path, FormatCalibrationResult(*calibration.result)));
+    keep_first(WriteFileAtomically(out_path, FormatCalibrationResult(*calibration.result)));
   }
-  const bool has_problem = !calibration.assembly.rows.empty();
-  if (has_problem && !options.problem_path.empty()) {
-    SEXTANT_RETURN_IF_ERROR(
+  if (!calibration.assembly.rows.empty() && !options.problem_path.empty()) {
+    keep_first(
         WriteFileAtomically(options.problem_path, FormatProblemYaml(ProblemFileOf(calibration))));
   }
-  if (options.report_path.empty()) return {};
-  return WriteCalibrationReport(calibration, options.tolerance_s, options.report_path);
+  if (!options.report_path.empty()) {
+    keep_first(WriteCalibrationReport(calibration, options.tolerance_s, options.report_path));
+  }
+  return written;
+}
+
+int RunOnSensors(const CalibrateCommandOptions& options, const RigSession& session) {
+  const std::string path = OutPath(options, "rig.json");
+  if (const auto ok = ClaimResult(path); !ok) return Refuse("calibrate", ok.error());
+  Expected<void> problem;
+  const auto result = [&]() -> Expected<RigResult> {
+    Progress progress;
+    SEXTANT_ASSIGN_OR_RETURN(const ObservedRig observed,
+                             ObserveSensors(options, session, progress.Callback()));
+    if (!options.problem_path.empty()) {
+      problem = WriteFileAtomically(options.problem_path, FormatRigFile(observed.rig));
+    }
+    return ResultOfSensors(observed, progress.Callback());
+  }();
+  const int code = DeliverRig("calibrate", result, {path, options.json_path, options.report_path});
+  return problem ? code : Refuse("calibrate", problem.error());
+}
+
+int RunOnPair(const CalibrateCommandOptions& options) {
+  const std::string path = OutPath(options, "result.yaml");
+  if (const auto ok = ClaimResult(path); !ok) return Refuse("calibrate", ok.error());
+  const Expected<Calibration> calibration = CalibrateWithProgress(options);
+  if (!calibration) return Refuse("calibrate", calibration.error());
+  const Expected<void> written = WriteFiles(options, path, *calibration);
+  std::string text = DescribeCalibration(*calibration);
+  if (written && calibration->result) {
+    text += "\n" + WroteLine(path, "the result, for project, export and advise");
+  }
+  if (written && !options.report_path.empty()) text += WroteLine(options.report_path, kReportWords);
+  int code = kNoAnswer;
+  if (calibration->result) {
+    const bool usable = calibration->result->verdict->usability != Usability::kNotUsable;
+    code =
+        Deliver("calibrate", options.json_path, text,
+                FormatCalibrationResultJson(*calibration->result), usable ? kAnswered : kNotUsable);
+  } else {
+    PrintBesideJson(options.json_path, text);
+    code = Refuse("calibrate", calibration->result.error(), kNoAnswer);
+  }
+  return written ? code : Refuse("calibrate", written.error());
 }
 
 int Run(const CalibrateCommandOptions& options) {
   if (!options.session.empty() && options.camera_name.empty()) {
     const auto rig = ReadRigSession(options.session);
     if (!rig) return Refuse("calibrate", rig.error());
-    if (*rig) {
-      const std::string path = RigPath(options.out_path);
-      if (const auto ok = ClaimResult(path); !ok) return Refuse("calibrate", ok.error());
-      return DeliverRig("calibrate", CalibrateSensors(options, **rig),
-                        {path, options.json_path, options.report_path});
-    }
+    if (*rig) return RunOnSensors(options, **rig);
   }
-  if (const auto ok = ClaimResult(options.out_path); !ok) return Refuse("calibrate", ok.error());
-  const Expected<Calibration> calibration = CalibrateWithProgress(options);
-  if (!calibration) return Refuse("calibrate", calibration.error());
-  std::string text = DescribeCalibration(*calibration);
-  if (Expected<void> ok = WriteFiles(options, *calibration); !ok) {
-    PrintBesideJson(options.json_path, text);
-    return Refuse("calibrate", ok.error());
-  }
-  if (!calibration->result) {
-    if (!options.report_path.empty()) text += WroteLine(options.report_path, kReportWords);
-    PrintBesideJson(options.json_path, text);
-    return Refuse("calibrate", calibration->result.error(), kNoAnswer);
-  }
-  if (!options.out_path.empty()) {
-    text += "\n" + WroteLine(options.out_path, "the result, for project, export and advise");
-  }
-  if (!options.report_path.empty()) text += WroteLine(options.report_path, kReportWords);
-  return Deliver(
-      "calibrate", options.json_path, text, FormatCalibrationResultJson(*calibration->result),
-      calibration->result->verdict->usability == Usability::kNotUsable ? kNotUsable : kAnswered);
+  return RunOnPair(options);
 }
 
 }  // namespace

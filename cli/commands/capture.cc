@@ -133,6 +133,10 @@ std::string SoFar(const Calibration& calibration, const CaptureOptions& options)
   return text;
 }
 
+void PrintWarnings(const FolderFiles& files) {
+  for (const std::string& warning : files.warnings) PrintError("warning: {}\n", warning);
+}
+
 /// Watches the folder, and keeps page, terminal and answer up to date.
 class Capture {
  public:
@@ -164,16 +168,20 @@ class Capture {
 
   void End(const std::string& state) { display_.End(Page(), state); }
   const std::optional<Calibration>& calibration() const { return calibration_; }
+  /// Whether there was a photo with its scan, which may be gone.
+  bool had_views() const { return had_views_; }
 
  private:
   void Look() {
     const Expected<FolderFiles> files = watch_.Look();
     if (!files) return display_.SetState(files.error().message);
+    PrintWarnings(*files);
     const std::size_t complete = files->images.size() + files->clouds.size();
     if (complete != std::exchange(complete_, complete)) display_.SetState("Looking at new files.");
     if (!session_.Take(*files)) return display_.SetState(Waiting(*files));
     display_.SetState("Computing the answer with the new views.");
     calibration_.reset();
+    had_views_ = had_views_ || session_.size() > 0;
     if (session_.size() > 0) calibration_ = session_.Solve();
     std::string news = NoteNewest();
     ReportPage page = Page();
@@ -229,53 +237,73 @@ class Capture {
   LiveSession session_;
   CaptureDisplay display_;
   std::optional<Calibration> calibration_{};
+  bool had_views_ = false;
   std::size_t complete_ = 0;          // Files at the last look.
   std::vector<std::string> found_{};  // The newest first.
 };
 
+// The report is written also where the result cannot be.
 Expected<void> WriteCapture(const CaptureOptions& options, const Calibration& calibration) {
+  Expected<void> written;
   if (calibration.result) {
-    SEXTANT_RETURN_IF_ERROR(
-        WriteFileAtomically(options.out_path, FormatCalibrationResult(*calibration.result)));
+    written = WriteFileAtomically(options.out_path, FormatCalibrationResult(*calibration.result));
   }
-  return WriteCalibrationReport(calibration, options.tolerance_s, options.report_path);
+  const Expected<void> report =
+      WriteCalibrationReport(calibration, options.tolerance_s, options.report_path);
+  return written ? report : written;
 }
 
-int Finish(const CaptureOptions& options, Capture& capture) {
-  if (!capture.calibration()) {
-    capture.End("The capture has ended without a photo and a scan.");
-    return Refuse("capture",
-                  {ErrorCode::kMissingData,
-                   fmt::format("no photo and scan of one moment appeared in '{}'; files are paired "
-                               "by the numbers or times in their names",
-                               PathText(options.folder))},
-                  kNoAnswer);
-  }
-  const Calibration& calibration = *capture.calibration();
-  std::string text = "\n" + DescribeCalibration(calibration);
-  if (const Expected<void> ok = WriteCapture(options, calibration); !ok) {
-    capture.End("The capture has ended, but could not write: " + ok.error().message);
-    PrintBesideJson(options.json_path, text);
-    return Refuse("capture", ok.error());
-  }
-  capture.End(fmt::format("{} The report is {}.",
-                          capture.IsReached() ? "The accuracy that is needed has been reached."
-                                              : "The capture was ended.",
-                          PathText(options.report_path)));
+int DeliverCapture(const CaptureOptions& options, const Calibration& calibration,
+                   const std::string& text) {
   if (!calibration.result) {
-    PrintBesideJson(options.json_path, text + WroteLine(options.report_path, kReportWords));
+    PrintBesideJson(options.json_path, text);
     return Refuse("capture", calibration.result.error(), kNoAnswer);
   }
-  text += "\n" + WroteLine(options.out_path, "the result, for project, export and advise") +
-          WroteLine(options.report_path, kReportWords);
   return Deliver(
       "capture", options.json_path, text, FormatCalibrationResultJson(*calibration.result),
       calibration.result->verdict->usability == Usability::kNotUsable ? kNotUsable : kAnswered);
 }
 
+int Finish(const CaptureOptions& options, Capture& capture) {
+  if (!capture.calibration()) {
+    capture.End("The capture has ended without a photo and a scan.");
+    const std::string folder = PathText(options.folder);
+    const std::string why =
+        capture.had_views()
+            ? fmt::format(
+                  "the photos and scans that '{}' had are gone, and the answer with them; "
+                  "leave them there until the capture has ended",
+                  folder)
+            : fmt::format(
+                  "no photo and scan of one moment appeared in '{}'; files are paired by "
+                  "the numbers or times in their names",
+                  folder);
+    return Refuse("capture", {ErrorCode::kMissingData, why}, kNoAnswer);
+  }
+  const Calibration& calibration = *capture.calibration();
+  std::string text = "\n" + DescribeCalibration(calibration);
+  const Expected<void> written = WriteCapture(options, calibration);
+  if (written) {
+    capture.End(fmt::format("{} The report is {}.",
+                            capture.IsReached() ? "The accuracy that is needed has been reached."
+                                                : "The capture was ended.",
+                            PathText(options.report_path)));
+    if (calibration.result) {
+      text += "\n" + WroteLine(options.out_path, "the result, for project, export and advise");
+    }
+    text += WroteLine(options.report_path, kReportWords);
+  } else {
+    capture.End("The capture has ended, but could not write: " + written.error().message);
+  }
+  const int code = DeliverCapture(options, calibration, text);
+  return written ? code : Refuse("capture", written.error());
+}
+
 int RunCapture(const CaptureOptions& options) {
   FolderWatch watch(options.folder, options.image_pattern, options.cloud_pattern);
-  if (const auto files = watch.Look(); !files) return Refuse("capture", files.error());
+  const Expected<FolderFiles> files = watch.Look();
+  if (!files) return Refuse("capture", files.error());
+  PrintWarnings(*files);
   Progress progress;
   Expected<LiveSession> session = SessionFor(options, progress.Callback());
   if (!session) return Refuse("capture", session.error());

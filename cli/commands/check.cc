@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/chrono.h>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -17,6 +16,7 @@
 #include "io/output/appended_file.h"
 #include "io/results/check_result.h"
 #include "io/text/number_text.h"
+#include "report/collect/utc_text.h"
 
 namespace sextant::cli {
 namespace {
@@ -92,12 +92,6 @@ Expected<PoseCheck> CheckPose(const CheckOptions& options, const SceneInput& inp
   return CheckScenes(SearchScenes(pairs, given, progress.Callback()), given, LimitsOf(options));
 }
 
-std::string NowUtc() {
-  return fmt::format(
-      "{:%FT%TZ}",
-      fmt::gmtime(std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now())));
-}
-
 std::string JsonOf(const PoseCheck& check, const SceneInput& input, const CheckOptions& options) {
   const CheckLimits limits = LimitsOf(options);
   CheckResult result{.version = std::string(Version()),
@@ -135,8 +129,10 @@ Expected<void> AppendHistory(const std::string& path, const PoseCheck& check,
   }
   // An earlier line that was cut stays a line of its own.
   std::string line = begin.empty() ? header : std::string(end == "\n" ? "" : "\n");
-  line += fmt::format("{},{},{},{},{}", NowUtc(), ToString(check.state), ToString(input.direction),
-                      input.session.files.pairs.size(), check.is_certain ? "yes" : "no");
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  line += fmt::format("{},{},{},{},{}", UtcIsoText(now), ToString(check.state),
+                      ToString(input.direction), input.session.files.pairs.size(),
+                      check.is_certain ? "yes" : "no");
   for (const double v : InDegreesAndMm(check.change)) line += fmt::format(",{:.4f}", v);
   for (const double v : InDegreesAndMm(check.covariance.diagonal().cwiseSqrt())) {
     line += fmt::format(",{:.4f}", v);

@@ -39,7 +39,7 @@ void Declare(CompareOptions& options, Arguments& arguments) {
   arguments.Add("--truth", options.truth,
                 std::string("The true pose, which adds the error of every answer: ") + kPoseHelp,
                 {.min_values = 1, .max_values = 7});
-  DeclarePoseIs(options.pose_is, arguments);
+  DeclarePoseIs(options.pose_is, arguments, "--truth");
   arguments.Add("--plot", options.plot_path,
                 "Draw the residuals of every pair under every solver (.svg or .png)",
                 {.writes = Writes::kFile});

@@ -37,7 +37,7 @@ void Declare(DetectOptions& options, Arguments& arguments) {
                 "The boards to find: board YAML or marker_coordinates.txt; default: all tags of\n"
                 "--detector");
   arguments.Add("--camera", options.camera_path,
-                "Intrinsics, for poses and corners in the camera frame");
+                "Intrinsics, for poses and corners in the camera frame", {.needs = "--board"});
   arguments.Add("--detector", options.detector,
                 "aruco, apriltag or checkerboard, with options; see sextant list detectors");
   arguments.Add("--overlay", options.overlay_path,
@@ -125,8 +125,9 @@ std::filesystem::path OverlayPath(const DetectOptions& options, const std::strin
           out.extension().string());
 }
 
-ImageResult ExamineFile(const Search& search, const DetectOptions& options,
-                        const std::string& path) {
+// `drawn`: what becomes of the overlay, without which there is still a result.
+ImageResult ExamineFile(const Search& search, const DetectOptions& options, const std::string& path,
+                        Expected<void>& drawn) {
   SEXTANT_ASSIGN_OR_RETURN(const cv::Mat image, ReadImage(path));
   Expected<ImageReport> report = Examine(search, image);
   if (!report) {
@@ -134,8 +135,8 @@ ImageResult ExamineFile(const Search& search, const DetectOptions& options,
   }
   report->path = path;
   if (!options.overlay_path.empty()) {
-    const cv::Mat drawn = DrawDetection(image, *report, search.Boards(), search.GetCamera());
-    SEXTANT_RETURN_IF_ERROR(WriteImage(drawn, OverlayPath(options, path)));
+    drawn = WriteImage(DrawDetection(image, *report, search.Boards(), search.GetCamera()),
+                       OverlayPath(options, path));
   }
   return report;
 }
@@ -162,11 +163,12 @@ int Run(const DetectOptions& options) {
   if (!search) return Refuse("detect", search.error());
   if (const Expected<void> ok = CheckOverlays(options); !ok) return Refuse("detect", ok.error());
   std::vector<ImageResult> results(options.images.size());
+  std::vector<Expected<void>> drawn(options.images.size());
   {
     Progress progress;
     ProgressCounter counter(progress.Callback(), "images", results.size());
     tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
-      results[i] = ExamineFile(*search, options, options.images[i]);
+      results[i] = ExamineFile(*search, options, options.images[i], drawn[i]);
       counter.Step();
     });
   }
@@ -183,8 +185,12 @@ int Run(const DetectOptions& options) {
     text += DescribeDetection(*result, search->Boards());
   }
   const int exit_code = any_failed ? kWrongUse : any_found ? kAnswered : kNoAnswer;
-  return Deliver("detect", options.json_path, text,
-                 FormatDetections(options.images, results, search->Boards()), exit_code);
+  int code = Deliver("detect", options.json_path, text,
+                     FormatDetections(options.images, results, search->Boards()), exit_code);
+  for (const Expected<void>& overlay : drawn) {
+    if (!overlay) code = Refuse("detect", overlay.error());
+  }
+  return code;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "io/output/output_file.h"
 #include "io/output/standard_output.h"
 #include "io/poses/pose_file.h"
+#include "report/rig_text.h"
 
 namespace sextant::cli {
 namespace {
@@ -27,6 +28,7 @@ struct ExportCommandOptions {
   bool force = false;    ///< Also a result with the verdict NOT USABLE.
   std::string parent{};  ///< "lidar" or "camera"; empty: the LiDAR, if the format has a parent.
   std::vector<std::string> sensors{};  ///< Two of a rig; empty: all.
+  GivenOptions given{};
 };
 
 std::string FormatsHelp() {
@@ -65,6 +67,7 @@ void Declare(ExportCommandOptions& options, Arguments& arguments) {
       "all sensors, in ros1, ros2, ros2_yaml, urdf or kitti",
       {.min_values = 2});
   arguments.Add("--force", options.force, "Export also a result with the verdict NOT USABLE");
+  arguments.ReportGiven(options.given);
 }
 
 // By the conventions of ROS a frame of this name has x forward; ours has x to the right.
@@ -79,15 +82,18 @@ ExportOptions FramesOf(const ExportCommandOptions& options, const CalibrationRes
   return frames;
 }
 
-// A parent that a format cannot express would be silently ignored.
-Expected<void> CheckParent(const ExportCommandOptions& options) {
+// A parent or a frame that a format cannot express would be silently ignored.
+Expected<void> CheckFormat(const ExportCommandOptions& options) {
   const auto& formats = ExportFormats();
   const auto format = std::find_if(formats.begin(), formats.end(),
                                    [&](const auto& one) { return options.format == one.name; });
-  if (format == formats.end() || format->has_parent || options.parent.empty()) return {};
-  return MakeError(
-      ErrorCode::kInvalidOption,
-      fmt::format("--parent: {} always holds cam_from_lidar; leave the option out", format->name));
+  if (format == formats.end() || format->has_parent) return {};
+  SEXTANT_RETURN_IF_ERROR(
+      RefuseGiven(options.given, {"--parent"},
+                  fmt::format("has no effect: {} always holds cam_from_lidar", format->name)));
+  if (options.format == "matrix") return {};  // Its comment names the frames.
+  return RefuseGiven(options.given, {"--lidar-frame", "--camera-frame"},
+                     fmt::format("has no effect: {} has no names of frames", format->name));
 }
 
 Expected<void> CheckVerdict(const ExportCommandOptions& options, const CalibrationResult& result) {
@@ -107,25 +113,17 @@ Expected<void> CheckVerdict(const ExportCommandOptions& options, const RigResult
 
 // Options of two frames would be silently ignored, too.
 Expected<void> CheckWholeRig(const ExportCommandOptions& options) {
-  const std::pair<const std::string&, const char*> of_a_pair[] = {
-      {options.lidar_frame, "--lidar-frame"},
-      {options.camera_frame, "--camera-frame"},
-      {options.parent, "--parent"}};
-  for (const auto& [value, name] : of_a_pair) {
-    if (value.empty()) continue;
-    return MakeError(
-        ErrorCode::kInvalidOption,
-        fmt::format("{} is for two sensors, and all sensors of a rig have the frames of "
-                    "their names, below the root: leave it out, or choose two with "
-                    "--sensors",
-                    name));
-  }
-  return {};
+  return RefuseGiven(options.given, {"--lidar-frame", "--camera-frame", "--parent"},
+                     "is for two sensors, which --sensors chooses, and all sensors of a rig have "
+                     "the frames of their names, below the root");
 }
 
 Expected<std::string> ExportedRig(const ExportCommandOptions& options, const RigResult& rig) {
+  SEXTANT_RETURN_IF_ERROR(RefuseGiven(options.given, {"--pose-is"},
+                                      "has no effect on a rig's result, which states it"));
   if (options.sensors.empty()) {
     SEXTANT_RETURN_IF_ERROR(CheckWholeRig(options));
+    for (const std::string& line : UnconnectedFindings(rig)) PrintError("warning: {}\n", line);
     return ExportRig(options.format, rig);
   }
   SEXTANT_ASSIGN_OR_RETURN(const CalibrationResult pair,
@@ -169,7 +167,7 @@ int RunOnRig(const ExportCommandOptions& options, const std::string& text) {
 }
 
 int Run(const ExportCommandOptions& options) {
-  if (const Expected<void> ok = CheckParent(options); !ok) return Refuse("export", ok.error());
+  if (const Expected<void> ok = CheckFormat(options); !ok) return Refuse("export", ok.error());
   const Expected<PoseText> file = ReadPoseText(options.result_path);
   if (!file) return Refuse("export", file.error());
   if (file->name.empty() && IsRigResult(file->text)) return RunOnRig(options, file->text);

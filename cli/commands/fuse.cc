@@ -32,6 +32,7 @@ struct FuseOptions {
   std::string rig_path{};  ///< Replaces both, with the sensor of each cloud.
   std::vector<std::string> sensors{};
   std::string out = "fused.ply";
+  GivenOptions given{};
 };
 
 void Declare(FuseOptions& options, Arguments& arguments) {
@@ -53,6 +54,7 @@ void Declare(FuseOptions& options, Arguments& arguments) {
   arguments.Add("--out", options.out,
                 "Cloud to write: .ply (each input cloud in its own colour) or .pcd",
                 {.shows_default = true, .writes = Writes::kFile});
+  arguments.ReportGiven(options.given);
 }
 
 // Distinguishable for the colour-blind too (Okabe and Ito 2008); the last cloud is grey.
@@ -67,11 +69,9 @@ struct CloudPoses {
 };
 
 Expected<CloudPoses> PosesOfRig(const FuseOptions& options) {
-  if (!options.from.empty() || !options.to.empty() || !options.rts_path.empty()) {
-    return MakeError(ErrorCode::kInvalidOption,
-                     "--result with --sensors has the pose of every cloud: leave out --from, --to "
-                     "and --rts");
-  }
+  SEXTANT_RETURN_IF_ERROR(RefuseGiven(options.given, {"--from", "--to", "--pose-is", "--rts"},
+                                      "has no effect with --result and --sensors, which have the "
+                                      "pose of every cloud"));
   if (options.rig_path.empty()) {
     return MakeError(ErrorCode::kInvalidOption, "--sensors needs --result, the rig.json of a rig");
   }
@@ -103,10 +103,9 @@ Expected<CloudPoses> PosesOf(const FuseOptions& options) {
   const std::size_t clouds = options.clouds.size();
   std::vector<Rigid3d> poses;
   if (!options.rts_path.empty()) {
-    if (!options.from.empty() || !options.to.empty()) {
-      return MakeError(ErrorCode::kInvalidOption,
-                       "--rts already has the transform of every cloud: leave out --from and --to");
-    }
+    SEXTANT_RETURN_IF_ERROR(RefuseGiven(options.given, {"--from", "--to", "--pose-is"},
+                                        "has no effect with --rts, which has the transform of "
+                                        "every cloud"));
     SEXTANT_ASSIGN_OR_RETURN(const std::vector<Rigid3d> list, ReadTransformList(options.rts_path));
     poses = list;
   } else {

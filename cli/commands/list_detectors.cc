@@ -15,6 +15,7 @@ struct ListDetectorsOptions {
   int trials = 200;
   std::uint64_t seed = 1;
   bool markdown = false;
+  GivenOptions given{};
 };
 
 void Declare(ListDetectorsOptions& options, Arguments& arguments) {
@@ -23,6 +24,7 @@ void Declare(ListDetectorsOptions& options, Arguments& arguments) {
   arguments.Add("--seed", options.seed, "The same seed gives the same figures",
                 {.shows_default = true});
   arguments.Add("--markdown", options.markdown, "As a page");
+  arguments.ReportGiven(options.given);
 }
 
 std::string DescribeEntry(const TagDetectorEntry& entry, bool markdown) {
@@ -35,6 +37,11 @@ std::string DescribeEntry(const TagDetectorEntry& entry, bool markdown) {
 }
 
 int Run(const ListDetectorsOptions& options) {
+  if (options.trials == 0) {
+    const Expected<void> ok =
+        RefuseGiven(options.given, {"--seed"}, "is for the tags of --trials, and there are none");
+    if (!ok) return Refuse("list detectors", ok.error());
+  }
   for (const TagDetectorEntry& entry : TagDetectorEntries()) {
     Print("{}", DescribeEntry(entry, options.markdown));
   }

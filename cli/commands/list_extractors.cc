@@ -22,6 +22,7 @@ struct ListExtractorsOptions {
   int trials = 0;  ///< 0: the list of extractors only.
   std::uint64_t seed = 1;
   bool markdown = false;
+  GivenOptions given{};
 };
 
 void Declare(ListExtractorsOptions& options, Arguments& arguments) {
@@ -35,6 +36,7 @@ void Declare(ListExtractorsOptions& options, Arguments& arguments) {
   arguments.Add("--seed", options.seed, "The same seed gives the same figures",
                 {.shows_default = true});
   arguments.Add("--markdown", options.markdown, "As a page");
+  arguments.ReportGiven(options.given);
 }
 
 BoardHolding HoldingOf(const std::string& name) {
@@ -43,6 +45,11 @@ BoardHolding HoldingOf(const std::string& name) {
 }
 
 int Run(const ListExtractorsOptions& options) {
+  if (options.trials == 0) {
+    const Expected<void> ok = RefuseGiven(options.given, {"--lidars", "--holding", "--seed"},
+                                          "is for the scans of --trials, and there are none");
+    if (!ok) return Refuse("list extractors", ok.error());
+  }
   TextTable table({"extractor", "corners by"}, TextTable::Columns::kWords);
   for (const CornerExtractorInfo& info : CornerExtractors()) {
     table.AddRow({info.name, info.summary});

@@ -18,7 +18,8 @@ struct ListSolversOptions {
 
 void Declare(ListSolversOptions& options, Arguments& arguments) {
   arguments.Add("NAME", options.name, "One solver in full");
-  arguments.Add("--markdown", options.markdown, "The whole catalogue as a page");
+  arguments.Add("--markdown", options.markdown, "The whole catalogue as a page",
+                {.excludes = "NAME"});
 }
 
 std::string Usage(const SolverEntry& entry) {

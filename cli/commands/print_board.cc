@@ -20,6 +20,7 @@ struct PrintBoardOptions {
   std::string out{};
   std::optional<int> id{};  ///< None: every board of the file.
   double dpi = 150.0;       ///< Resolution of a PNG.
+  GivenOptions given{};
 };
 
 void Declare(PrintBoardOptions& options, Arguments& arguments) {
@@ -34,6 +35,7 @@ void Declare(PrintBoardOptions& options, Arguments& arguments) {
                 {.range = {{0, 1e9}}});
   arguments.Add("--dpi", options.dpi, "Pixels per inch of a .png",
                 {.shows_default = true, .range = {{10.0, 2400.0}}});
+  arguments.ReportGiven(options.given);
 }
 
 Expected<DrawingFormat> FormatOf(const std::string& out) {
@@ -63,7 +65,12 @@ std::string SourceOf(const PrintBoardOptions& options) {
 
 // The boards as a file, or drawn.
 Expected<std::string> Content(const PrintBoardOptions& options, const std::vector<Board>& boards) {
-  if (std::filesystem::path(options.out).extension() == ".yaml") return FormatBoards(boards);
+  const std::filesystem::path extension = std::filesystem::path(options.out).extension();
+  if (extension != ".png") {
+    SEXTANT_RETURN_IF_ERROR(RefuseGiven(options.given, {"--dpi"},
+                                        "is for a .png; the other formats are true to scale"));
+  }
+  if (extension == ".yaml") return FormatBoards(boards);
   SEXTANT_ASSIGN_OR_RETURN(const DrawingFormat format, FormatOf(options.out));
   return DrawBoards(boards, SourceOf(options), format, options.dpi);
 }

@@ -119,13 +119,11 @@ int Run(const RefineSceneOptions& options) {
   std::string text = Describe(result, *input);
   const Expected<void> written =
       WriteFileAtomically(options.out_path, FormatCalibrationResult(result));
-  if (!written) {
-    PrintBesideJson(options.json_path, text);
-    return Refuse("refine-scene", written.error());
-  }
-  text += WroteLine(options.out_path, "the result, for project and export");
-  return Deliver("refine-scene", options.json_path, text, FormatCalibrationResultJson(result),
-                 result.verdict->usability == Usability::kNotUsable ? kNotUsable : kAnswered);
+  if (written) text += WroteLine(options.out_path, "the result, for project and export");
+  const int code =
+      Deliver("refine-scene", options.json_path, text, FormatCalibrationResultJson(result),
+              result.verdict->usability == Usability::kNotUsable ? kNotUsable : kAnswered);
+  return written ? code : Refuse("refine-scene", written.error());
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ struct RunOptions {
   ExperimentOptions experiment{};
   std::string shard{};          ///< "2/8"; empty: all.
   std::string export_folder{};  ///< Folder for the problems, instead of a run; empty: none.
+  GivenOptions given{};
 };
 
 void Declare(RunOptions& options, Arguments& arguments) {
@@ -31,6 +32,7 @@ void Declare(RunOptions& options, Arguments& arguments) {
       "Instead of a run, write the problem of each trial for other programs, whose poses\n"
       "come back as the solver imported(\"poses.csv\")",
       {.writes = Writes::kFolder});
+  arguments.ReportGiven(options.given);
 }
 
 Expected<Shard> ParseShard(const std::string& text) {
@@ -62,6 +64,12 @@ void PrintKept(const RunOutcome& outcome, const std::filesystem::path& rows) {
 
 int Run(const RunOptions& all) {
   const ExperimentOptions& options = all.experiment;
+  if (!all.export_folder.empty()) {
+    const Expected<void> ok =
+        RefuseGiven(all.given, {"--out", "--shard", "--threads", "--fresh", "--no-csv"},
+                    "is for a run, which --export-problems replaces");
+    if (!ok) return Refuse("run", ok.error());
+  }
   const Expected<Experiment> experiment = LoadExperiment(options);
   if (!experiment) return Refuse("run", experiment.error());
   if (!all.export_folder.empty()) {

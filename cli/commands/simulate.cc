@@ -33,6 +33,7 @@ struct SimulateOptions {
   bool bag = false;
   double lidar_sigma_m = 0.0068;
   std::optional<double> pixel_sigma_px{};  ///< None: the default of the level.
+  GivenOptions given{};
 };
 
 void Declare(SimulateOptions& options, Arguments& arguments) {
@@ -67,11 +68,24 @@ void Declare(SimulateOptions& options, Arguments& arguments) {
   arguments.Add("--sheet", options.sheet_path,
                 "Draw image, scan and edges of the first scan (.png)",
                 {.writes = Writes::kCheckedByCommand});
+  arguments.ReportGiven(options.given);
+}
+
+// What the level does not write, or does not draw.
+Expected<void> CheckLevel(const GivenOptions& given, SessionLevel level) {
+  if (level == SessionLevel::kFull) {
+    return RefuseGiven(given, {"--lidar-sigma", "--pixel-sigma"},
+                       "is for the levels corners and pairs; the level full has the noise of the "
+                       "scene's sensors");
+  }
+  return RefuseGiven(given, {"--unit", "--ideal", "--pcd"},
+                     "is for the level full, which alone has scans and images");
 }
 
 Expected<SessionOptions> SessionOptionsOf(const SimulateOptions& options) {
   SEXTANT_ASSIGN_OR_RETURN(const SessionLevel level, FindSessionLevel(options.level));
   SEXTANT_ASSIGN_OR_RETURN(const PcdEncoding encoding, FindPcdEncoding(options.pcd));
+  SEXTANT_RETURN_IF_ERROR(CheckLevel(options.given, level));
   SessionOptions session;
   session.folder = options.out;
   session.level = level;
@@ -147,19 +161,18 @@ int Run(const SimulateOptions& options) {
   if (!report) {
     return Refuse("simulate", WithScene(report.error(), options.scene_path));
   }
-  if (const Expected<void> ok = WriteExtras(*scene, report->scans, options); !ok) {
-    return Refuse("simulate", ok.error());
-  }
+  const Expected<void> extras = WriteExtras(*scene, report->scans, options);
   Print("{}",
-        WroteLine(options.out,
-                  fmt::format("scene {}, scans: {}, files written: {}, kept: {}{}; the truth is "
-                              "in truth.yaml{}",
-                              scene->name, options.scans, report->written, report->kept,
-                              report->removed > 0
-                                  ? fmt::format(", removed: {} of more scans", report->removed)
-                                  : "",
-                              options.bag ? ", scans and images also in session.bag" : "")));
-  return kAnswered;
+        WroteLine(
+            options.out,
+            fmt::format("scene {}, scans: {}, files written: {}, kept: {}{}; the truth is "
+                        "in truth.yaml{}",
+                        scene->name, options.scans, report->written, report->kept,
+                        report->removed > 0
+                            ? fmt::format(", removed: {} of more scans", report->removed)
+                            : "",
+                        options.bag && extras ? ", scans and images also in session.bag" : "")));
+  return extras ? kAnswered : Refuse("simulate", extras.error());
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace {
 struct SimulatePairsOptions {
   PairSimulation simulation{};
   std::string out = "session.yaml";
+  GivenOptions given{};
 };
 
 void Declare(SimulatePairsOptions& options, Arguments& arguments) {
@@ -39,10 +40,16 @@ void Declare(SimulatePairsOptions& options, Arguments& arguments) {
                 {.shows_default = true, .range = {{0.0, 1000.0}}});
   arguments.Add("--pixel-sigma", simulation.pixel_sigma_px, "Corner noise in the image [px]",
                 {.shows_default = true, .range = {{0.0, 1e4}}});
+  arguments.ReportGiven(options.given);
 }
 
 int Run(const SimulatePairsOptions& options) {
   const PairSimulation& simulation = options.simulation;
+  if (simulation.outliers == 0) {
+    const Expected<void> ok =
+        RefuseGiven(options.given, {"--outlier-shift"}, "is for --outliers, and there are none");
+    if (!ok) return Refuse("simulate pairs", ok.error());
+  }
   const Expected<SimulatedSession> session = SimulatePairs(simulation);
   if (!session) return Refuse("simulate pairs", session.error());
   const ProblemFile file{

@@ -61,12 +61,12 @@ int Run(const SolveOptions& options) {
     PrintNoAnswer("solve", options.input, *input, row);
     return DeliverAnswers("solve", options.input, *input, rows, "", false);
   }
-  if (!options.overlay.empty()) {
-    const Expected<void> drawn =
-        DrawOverlay(problem, *row.report, options.overlay[0], options.overlay[1]);
-    if (!drawn) return Refuse("solve", drawn.error());
-  }
-  return DeliverAnswers("solve", options.input, *input, rows, TextOf(problem, **solver, row), true);
+  const int code =
+      DeliverAnswers("solve", options.input, *input, rows, TextOf(problem, **solver, row), true);
+  if (options.overlay.empty()) return code;
+  const Expected<void> drawn = DrawOverlay(problem, *row.report, (*solver)->spec().needs,
+                                           options.overlay[0], options.overlay[1]);
+  return drawn ? code : Refuse("solve", drawn.error());
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ void Declare(MarkOptions& options, Arguments& arguments) {
                 "Rough pose: results (JSON), rts.txt, or X Y Z QW QX QY QZ; default: the camera\n"
                 "looks along the LiDAR's x axis",
                 {.min_values = 1, .max_values = 7});
-  DeclarePoseIs(options.pose_is, arguments);
+  DeclarePoseIs(options.pose_is, arguments, "--cam-from-lidar");
   arguments.Add(
       "--yaw", options.yaw_deg,
       "Without a pose: turn the assumed camera to the left by this angle [deg]",

@@ -18,12 +18,12 @@ constexpr double kSameSize_m = 0.03;  // Boards closer in size are distinguished
 class Assignment {
  public:
   Assignment(const ScanRings& scan, std::span<const Board> boards,
-             std::vector<BoardProposal> proposals, BoardSearch& search)
+             std::vector<PatchProposal> proposals, BoardSearch& search)
       : scan_(scan), boards_(boards), proposals_(std::move(proposals)), search_(search) {}
 
   void Run() {
-    for (BoardProposal& proposal : proposals_) std::ranges::sort(proposal, {}, Disagreement);
-    std::ranges::stable_sort(proposals_, {}, [](const BoardProposal& proposal) {
+    for (PatchProposal& proposal : proposals_) std::ranges::sort(proposal, {}, Disagreement);
+    std::ranges::stable_sort(proposals_, {}, [](const PatchProposal& proposal) {
       return Disagreement(proposal.front());
     });
     DropDuplicates();
@@ -44,13 +44,13 @@ class Assignment {
 
  private:
   void DropDuplicates() {
-    std::vector<BoardProposal> kept;
-    for (BoardProposal& proposal : proposals_) {
+    std::vector<PatchProposal> kept;
+    for (PatchProposal& proposal : proposals_) {
       const BoardPatch& patch = proposal.front();
       const Eigen::Vector3d center = patch.plane.At(patch.fit.center);
       const Board& board = boards_[static_cast<std::size_t>(patch.board)];
       const double reach = 0.5 * std::hypot(board.top_right_m, board.right_bottom_m);
-      const bool is_known = std::ranges::any_of(kept, [&](const BoardProposal& other) {
+      const bool is_known = std::ranges::any_of(kept, [&](const PatchProposal& other) {
         return (other.front().plane.At(other.front().fit.center) - center).norm() < reach;
       });
       if (!is_known) kept.push_back(std::move(proposal));
@@ -110,7 +110,7 @@ class Assignment {
 
   const ScanRings& scan_;
   std::span<const Board> boards_;
-  std::vector<BoardProposal> proposals_;
+  std::vector<PatchProposal> proposals_;
   BoardSearch& search_;
   std::vector<std::size_t> owner_;  // For each board, its proposal.
 };
@@ -128,7 +128,7 @@ double Disagreement(const BoardPatch& patch) {
 }
 
 void AssignBoards(const ScanRings& scan, std::span<const Board> boards,
-                  std::vector<BoardProposal> proposals, BoardSearch& search) {
+                  std::vector<PatchProposal> proposals, BoardSearch& search) {
   Assignment(scan, boards, std::move(proposals), search).Run();
 }
 

@@ -9,7 +9,7 @@
 namespace sextant {
 
 /// The boards that one patch of a scan may be, placed on it; at least one.
-using BoardProposal = std::vector<BoardPatch>;
+using PatchProposal = std::vector<BoardPatch>;
 
 /// Small if the outline agrees on all sides and is supported by many edge points and returns.
 /// Compares boards on one patch and patches for one board.
@@ -20,6 +20,6 @@ double Disagreement(const BoardPatch& patch);
 /// where the clustering split a board, only the best is used. Appends to `search.found` and, for
 /// patches without a board, to `search.others`.
 void AssignBoards(const ScanRings& scan, std::span<const Board> boards,
-                  std::vector<BoardProposal> proposals, BoardSearch& search);
+                  std::vector<PatchProposal> proposals, BoardSearch& search);
 
 }  // namespace sextant

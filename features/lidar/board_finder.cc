@@ -131,7 +131,7 @@ class Finder {
 
   // Removes the remaining points on or close in front of a board that was found: its noisiest
   // returns would make a second one.
-  void Erase(const BoardProposal& proposal, std::vector<std::size_t>& places) const {
+  void Erase(const PatchProposal& proposal, std::vector<std::size_t>& places) const {
     const BoardPatch& patch = proposal.front();
     const Board& board = boards_[static_cast<std::size_t>(patch.board)];
     std::erase_if(places, [&](std::size_t place) {
@@ -145,7 +145,7 @@ class Finder {
                const PlaneBox& box) {
     const PlaneRays rays = RaysAround(scan_, plane, box.Middle(), 0.5 * box.Diagonal() + kRays_m);
     std::string why;
-    BoardProposal accepted;
+    PatchProposal accepted;
     for (std::size_t b = 0; b < boards_.size(); ++b) {
       const std::optional<BoardPatch> patch = Place(b, plane, on_plane, rays);
       if (!patch) {
@@ -260,7 +260,7 @@ class Finder {
   const BoardSearchOptions& options_;
   Random random_;
   BoardSearch search_;
-  std::vector<BoardProposal> proposals_;
+  std::vector<PatchProposal> proposals_;
 };
 
 }  // namespace

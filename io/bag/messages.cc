@@ -107,6 +107,13 @@ PointCloud BuildCloud(const CloudLayout& layout, MessageReader& in) {
   return std::move(builder).Finish();
 }
 
+// sensor_msgs/PointCloud2 without its header.
+PointCloud ReadPointCloud2(MessageReader& in) {
+  const CloudLayout layout = ReadLayout(in);
+  if (in.ok()) CheckLayout(layout, in);
+  return in.ok() ? BuildCloud(layout, in) : PointCloud{};
+}
+
 // livox_ros_driver/CustomMsg without its header. Its lines are lasers that scan a rosette, no
 // rings.
 PointCloud ReadLivoxPoints(MessageReader& in) {
@@ -163,13 +170,9 @@ Expected<CloudMessage> DecodePointCloud(const BagMessage& message) {
   MessageReader in(message);
   CloudMessage decoded;
   decoded.header = in.Header();
-  if (IsLivox(message.topic->type)) {
-    decoded.cloud = ReadLivoxPoints(in);
-    return Finished(in, decoded);
-  }
-  const CloudLayout layout = ReadLayout(in);
-  if (in.ok()) CheckLayout(layout, in);
-  if (in.ok()) decoded.cloud = BuildCloud(layout, in);
+  decoded.cloud = IsLivox(message.topic->type) ? ReadLivoxPoints(in) : ReadPointCloud2(in);
+  const Expected<void> metres = in.ok() ? CheckMetres(decoded.cloud) : Expected<void>();
+  if (!metres) in.Fail(metres.error().code, "points", metres.error().message);
   return Finished(in, decoded);
 }
 

@@ -51,7 +51,8 @@ struct CameraInfoMessage {
 /// Each decodes a message of its kind, of ROS 1 or ROS 2.
 /// Errors, which name the topic, the time and the field: kParse for a message that does not match
 /// its type (lengths beyond its end, fields beyond a point, inconsistent sizes); kInvalidInput for
-/// an invalid camera (never calibrated: K is zero; of a model with xi). Time is linear in the
+/// an invalid camera (never calibrated: K is zero; of a model with xi), and for a scan in
+/// millimetres (CheckMetres in io/clouds/cloud_builder.h). Time is linear in the
 /// message; memory is at most 40 times it.
 Expected<CloudMessage> DecodePointCloud(const BagMessage& message);
 Expected<ImageMessage> DecodeImage(const BagMessage& message);

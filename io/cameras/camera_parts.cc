@@ -58,9 +58,9 @@ Expected<CameraModel> ModelOf(const CameraParts& parts) {
   if (all_zero && parts.matrix[1] == 0.0) return CameraModel::kPinhole;
   if (all_zero || (count >= 4 && count <= kMaxDistortion)) return CameraModel::kBrownConrady;
   return MakeError(ErrorCode::kInvalidInput,
-                   fmt::format("expected 4, 5, 8, 12 or 14 distortion coefficients (k1 k2 p1 p2 k3 "
-                               "k4 k5 k6 s1 s2 s3 s4 tau_x tau_y), got {}",
-                               count));
+                   fmt::format("expected 4 to {} distortion coefficients (of k1 k2 p1 p2 k3 k4 k5 "
+                               "k6 s1 s2 s3 s4 tau_x tau_y, the others are 0), got {}",
+                               kMaxDistortion, count));
 }
 
 }  // namespace

@@ -115,6 +115,23 @@ PointCloud CloudBuilder::Finish() && {
   return std::move(*this).Take();
 }
 
+Expected<void> CheckMetres(const PointCloud& cloud) {
+  constexpr double kFarthest_m = 600.0;
+  std::vector<double> ranges_m;
+  for (const Eigen::Vector3d& point : cloud.points) {
+    if (point.allFinite() && !point.isZero()) ranges_m.push_back(point.norm());
+  }
+  if (ranges_m.empty()) return {};
+  const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
+  std::nth_element(ranges_m.begin(), middle, ranges_m.end());
+  if (*middle <= kFarthest_m) return {};
+  return MakeError(ErrorCode::kInvalidInput,
+                   fmt::format("half of the points are {:.0f} m away and more; coordinates are in "
+                               "metres and begin at the sensor. If these are millimetres, divide "
+                               "by 1000",
+                               *middle));
+}
+
 void OrderRings(PointCloud& cloud) {
   std::vector<Ring> rings = RingsWithReturns(cloud);
   if (rings.size() < 2) return;

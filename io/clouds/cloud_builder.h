@@ -45,6 +45,10 @@ class CloudBuilder {
   PointCloud cloud_;
 };
 
+/// Refuses a scan in millimetres: no sensor measures as far as half of its points. Error:
+/// kInvalidInput, without the file. Time is linear; memory 8 bytes a point.
+Expected<void> CheckMetres(const PointCloud& cloud);
+
 /// Numbers the rings by ascending elevation if the sensor numbers them from above (Ouster) or in
 /// the order of firing (Velodyne's laser_id). Numbers that already ascend with elevation are kept,
 /// gaps included, as is a single ring.

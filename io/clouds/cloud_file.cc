@@ -88,25 +88,6 @@ Expected<PointCloud> ParseByContent(std::string_view bytes, const std::string& f
                   PathText(file), HintFor(bytes)));
 }
 
-// No sensor measures as far as half of the points of a scan in millimetres.
-Expected<void> CheckMetres(const PointCloud& cloud, const std::string& file) {
-  constexpr double kFarthest_m = 600.0;
-  std::vector<double> ranges_m;
-  for (const Eigen::Vector3d& point : cloud.points) {
-    if (point.allFinite() && !point.isZero()) ranges_m.push_back(point.norm());
-  }
-  if (ranges_m.empty()) return {};
-  const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
-  std::ranges::nth_element(ranges_m, middle);
-  if (*middle <= kFarthest_m) return {};
-  return MakeError(
-      ErrorCode::kInvalidInput,
-      fmt::format("{}: half of the points are {:.0f} m away and more; coordinates are "
-                  "in metres and begin at the sensor. If these are millimetres, divide "
-                  "by 1000",
-                  PathText(file), *middle));
-}
-
 }  // namespace
 
 Expected<PointCloud> ReadCloud(const std::filesystem::path& path) {
@@ -121,7 +102,9 @@ bool IsCloudName(const std::filesystem::path& path) {
 
 Expected<PointCloud> ParseCloud(std::string_view bytes, const std::string& file) {
   SEXTANT_ASSIGN_OR_RETURN(PointCloud cloud, ParseByContent(bytes, file));
-  SEXTANT_RETURN_IF_ERROR(CheckMetres(cloud, file));
+  if (const Expected<void> ok = CheckMetres(cloud); !ok) {
+    return MakeError(ok.error().code, fmt::format("{}: {}", PathText(file), ok.error().message));
+  }
   return cloud;
 }
 

@@ -245,15 +245,10 @@ class FeatureTableReader {
     const auto equation = Vector<4>(kEquation);
     if (!normal && !equation) return std::nullopt;
     MeasuredPlane plane;
-    // a x + b y + c z + d = 0 of any length is the plane with the distance -d / |(a, b, c)|.
+    // The distance is that of the unit normal, whatever the length of this one; of an equation
+    // a x + b y + c z + d = 0 of any length it is -d / |(a, b, c)|.
     const Eigen::Vector4d values = normal ? *normal : *equation;
     plane.normal = Direction(values.head<3>(), "a normal");
-    constexpr double kMaxOff = 0.02;
-    if (normal && in_.ok() && std::abs(values.head<3>().norm() - 1.0) > kMaxOff) {
-      in_.Fail(ErrorCode::kParse,
-               "expected a normal of length 1; the columns a, b, c, d take an equation of any "
-               "length, a x + b y + c z + d = 0");
-    }
     plane.distance_m = normal ? values[3] : -values[3] / std::max(values.head<3>().norm(), 1e-9);
     plane.sigma_m = sigma_m.value_or(plane.sigma_m);
     if (const auto sigma_deg = Sigma("sigma_deg")) plane.sigma_rad = kRadPerDeg * *sigma_deg;

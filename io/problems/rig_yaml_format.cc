@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "base/text/escape.h"
 #include "io/blocks/board_block.h"
 #include "io/blocks/board_view_block.h"
@@ -31,6 +35,14 @@ void WriteSensor(YamlText& out, const RigFile& rig, std::size_t index) {
   }
 }
 
+// One number where all points have the same.
+std::string SigmasText(const std::vector<MeasuredPoint>& points) {
+  std::vector<double> sigmas;
+  for (const MeasuredPoint& point : points) sigmas.push_back(point.sigma_m);
+  const bool is_one = std::ranges::all_of(sigmas, [&](double s) { return s == sigmas[0]; });
+  return is_one ? fmt::format("{}", sigmas[0]) : YamlList(sigmas);
+}
+
 void WriteFeatures(YamlText& out, const RigObservation& seen) {
   if (!seen.points.empty()) {
     std::vector<double> in_board;
@@ -38,7 +50,7 @@ void WriteFeatures(YamlText& out, const RigObservation& seen) {
       in_board.insert(in_board.end(), {point.in_board_m.x(), point.in_board_m.y()});
     }
     out.Line("        in_board_m: {}", YamlList(in_board));
-    out.Line("        sigma_m: {}", seen.points[0].sigma_m);
+    out.Line("        sigma_m: {}", SigmasText(seen.points));
     out.Line("        points_m:");
     for (const MeasuredPoint& point : seen.points) {
       out.Line("          - {}", YamlList(point.in_sensor_m));

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <map>
 
 #include "base/units.h"
@@ -265,6 +267,9 @@ class RigReader {
       in_.Fail(node.line, "board", fmt::format("expected the id of one of the boards, got {}", id));
     }
     if (!in_.ok()) return 0;
+    CheckUsed(node, "sigma_px", {"pixels"});
+    CheckUsed(node, "sigma_m", {"points_m"});
+    CheckUsed(node, "in_board_m", {"pixels", "points_m"});
     std::vector<Eigen::Vector2d> points = board->second.points;
     if (node.Find("in_board_m") != nullptr) points = Points2At(node, "in_board_m");
     if (node.Find("time_s") != nullptr) observation_.time_s = in_.RealAt(node, "time_s");
@@ -277,6 +282,16 @@ class RigReader {
       observation_.sensor_from_board = ReadPoseBlock(in_, *pose, "sensor_from_board");
     }
     return id;
+  }
+
+  // Refuses a key that describes measurements which are not there.
+  void CheckUsed(const YamlNode& node, std::string_view key,
+                 std::initializer_list<std::string_view> measured) {
+    const auto is_there = [&](std::string_view name) { return node.Find(name) != nullptr; };
+    if (!in_.ok() || !is_there(key) || std::ranges::any_of(measured, is_there)) return;
+    in_.Fail(node.line, key,
+             fmt::format("describes {}, which the observation does not have; leave it out",
+                         fmt::join(measured, " or ")));
   }
 
   // Whether there are as many measurements as points of the board.
@@ -303,13 +318,28 @@ class RigReader {
                   const std::vector<Eigen::Vector2d>& points) {
     if (!in_.IsSequence(list, "points_m", kMaxNumbers)) return;
     if (!IsAsMany(list.line, "points_m", list.items.size(), points.size())) return;
-    MeasuredPoint point;
-    point.sigma_m = in_.RealAt(node, "sigma_m", point.sigma_m);
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::vector<double> sigmas = SigmasAt(node, points.size());
+    for (std::size_t i = 0; i < points.size() && in_.ok(); ++i) {
+      MeasuredPoint point{.sigma_m = sigmas[i]};
       point.in_board_m << points[i], 0.0;
       point.in_sensor_m = in_.Point(list.items[i], "points_m");
       observation_.points.push_back(point);
     }
+  }
+
+  // One of all points, or a list with that of each.
+  std::vector<double> SigmasAt(const YamlNode& node, std::size_t points) {
+    const YamlNode* list = node.Find("sigma_m");
+    if (list == nullptr || list->kind != YamlNode::Kind::kSequence) {
+      return std::vector<double>(points, in_.RealAt(node, "sigma_m", MeasuredPoint{}.sigma_m));
+    }
+    std::vector<double> sigmas = in_.RealList(*list, "sigma_m", kMaxNumbers);
+    if (in_.ok() && sigmas.size() != points) {
+      in_.Fail(list->line, "sigma_m",
+               fmt::format("expected one number, or {}, as many as points_m, got {}", points,
+                           sigmas.size()));
+    }
+    return sigmas;
   }
 
   void ReadPlane(const YamlNode& node) {

@@ -13,12 +13,10 @@
 #include "geometry/scan_marks.h"
 #include "geometry/so3.h"
 #include "report/collect/page_views.h"
+#include "report/rig_text.h"
 
 namespace sextant {
 namespace {
-
-// A pair that differs by more from the answer of all sensors is named.
-constexpr double kMaxLoopSigmas = 3.0;
 
 std::string LeastCertain(const std::optional<Matrix6d>& covariance) {
   if (!covariance) return "–";
@@ -38,28 +36,18 @@ std::string AnglesInDeg(const Rigid3d& pose) {
                      kDegPerRad * euler.roll);
 }
 
-std::vector<const RigResultPair*> DisagreeingPairs(const RigResult& result) {
-  std::vector<const RigResultPair*> pairs;
-  for (const RigResultPair& pair : result.pairs) {
-    if (pair.alone_sigmas && *pair.alone_sigmas > kMaxLoopSigmas) pairs.push_back(&pair);
-  }
-  return pairs;
-}
-
 PageVerdict RigVerdictOf(const RigResult& result) {
-  const std::string again = "Correct that and calibrate again";
   if (!result.refutations.empty()) {
-    return {PageTone::kBad, "NOT USABLE", result.refutations.front(), again};
+    return {PageTone::kBad, "NOT USABLE", result.refutations.front(),
+            "Correct that and calibrate again"};
   }
   if (!result.unconnected.empty()) {
-    return {PageTone::kBad, "NOT USABLE", result.unconnected.front(), again};
+    return {PageTone::kCaution, "USABLE WITH CARE", UnconnectedFindings(result).front(),
+            "To have the pose of every sensor, record that and calibrate again"};
   }
-  const auto off = DisagreeingPairs(result);
-  if (!off.empty()) {
-    return {PageTone::kCaution, "USABLE WITH CARE",
-            fmt::format("{} and {} alone differ from the answer of all sensors by {:.1f} sigmas",
-                        off.front()->a, off.front()->b, *off.front()->alone_sigmas),
-            "Look for an error that their views share, such as wrong intrinsics or board sizes"};
+  if (const auto off = LoopFindings(result); !off.empty()) {
+    return {PageTone::kCaution, "USABLE WITH CARE", off.front(),
+            fmt::format("Look for {}", kLoopCause)};
   }
   if (!result.warnings.empty()) {
     return {PageTone::kCaution, "USABLE WITH CARE", result.warnings.front(),
@@ -231,8 +219,8 @@ ReportPage CollectRigPage(const RigResult& result) {
       {"boards", "The boards", "Boards", {}, RigBoardTable(result)},
       {"estimated", "Estimated with the poses", "Estimated", {}, RigNumberTable(result)}};
   page.diagnostics = result.refutations;
-  for (const auto* lines : {&result.unconnected, &result.warnings}) {
-    page.diagnostics.insert(page.diagnostics.end(), lines->begin(), lines->end());
+  for (const auto& lines : {UnconnectedFindings(result), result.warnings, LoopFindings(result)}) {
+    page.diagnostics.insert(page.diagnostics.end(), lines.begin(), lines.end());
   }
   return page;
 }

@@ -19,17 +19,23 @@ std::string DayText(const std::chrono::year_month_day& day) {
                      static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()));
 }
 
+std::string TimeText(const Seconds& time, std::string_view between, std::string_view after) {
+  const auto day = std::chrono::floor<std::chrono::days>(time);
+  const std::chrono::hh_mm_ss clock(time - day);
+  return fmt::format("{}{}{:02}:{:02}:{:02}{}", DayText(day), between, clock.hours().count(),
+                     clock.minutes().count(), clock.seconds().count(), after);
+}
+
 }  // namespace
+
+std::string UtcText(std::chrono::sys_seconds time) { return TimeText(time, " ", " UTC"); }
+std::string UtcIsoText(std::chrono::sys_seconds time) { return TimeText(time, "T", "Z"); }
 
 std::string UtcText(double seconds) {
   constexpr double kYear1980 = 315'532'800.0;
   constexpr double kYear2200 = 7'258'118'400.0;
   if (!(seconds > kYear1980 && seconds < kYear2200)) return {};
-  const Seconds time{std::chrono::seconds(static_cast<long long>(std::floor(seconds)))};
-  const auto day = std::chrono::floor<std::chrono::days>(time);
-  const std::chrono::hh_mm_ss clock(time - day);
-  return fmt::format("{} {:02}:{:02}:{:02} UTC", DayText(day), clock.hours().count(),
-                     clock.minutes().count(), clock.seconds().count());
+  return UtcText(Seconds{std::chrono::seconds(static_cast<long long>(std::floor(seconds)))});
 }
 
 std::string TodayText() {

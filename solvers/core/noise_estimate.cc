@@ -25,6 +25,24 @@ PointTerm UnitTerm(const Pair3d3d& pair) {
 }
 PixelTerm UnitTerm(const Pair2d3d& pair) { return {pair.pixel, pair.point_in_lidar, 1.0}; }
 
+double LargestNumber(const Pair3d3d& pair) {
+  return std::max(pair.point_in_cam.cwiseAbs().maxCoeff(),
+                  pair.point_in_lidar.cwiseAbs().maxCoeff());
+}
+double LargestNumber(const Pair2d3d& pair) { return pair.pixel.cwiseAbs().maxCoeff(); }
+
+// The error that rounding makes in the pairs of an answer, with a margin. No measurement is as
+// fine.
+template <class Pair>
+double RoundingOf(std::span<const Pair> pairs, std::span<const int> indices) {
+  constexpr double kShare = 1e-12;
+  double largest = 0.0;
+  for (const int i : indices) {
+    largest = std::max(largest, LargestNumber(pairs[static_cast<std::size_t>(i)]));
+  }
+  return kShare * largest;
+}
+
 // Indices of the pairs, those of one board and view next to each other.
 template <class Pair>
 std::vector<int> ByBoard(std::span<const Pair> pairs, std::span<const int> indices) {
@@ -177,13 +195,27 @@ void Complete(std::span<const Pair> pairs, const Camera* camera, const SolverSpe
   const bool tellable = grouped && sums->boards > kMaxUntellableBoards;
   const Components parts = Separate(*sums, *inverse, kResiduals, unknowns, tellable);
   if (!(noise.*sigma)) noise.*sigma = std::sqrt(parts.independent + parts.shared);
+  // A sigma of zero would state that the answer is without error.
+  const double rounding = RoundingOf(pairs, estimate.inliers);
+  const bool is_exact = *(noise.*sigma) <= rounding;
+  if (is_exact) noise.*sigma = rounding;
   noise.boards = grouped ? sums->boards : 0;
   noise.board_errors = tellable  ? BoardErrors::kEstimated
                        : grouped ? BoardErrors::kTooFewBoards
                                  : BoardErrors::kAssumedIndependent;
-  noise.shared_sigma = std::sqrt(parts.shared);
+  noise.shared_sigma = is_exact ? 0.0 : std::sqrt(parts.shared);
   noise.freedom = parts.freedom;
   estimate.noise = noise;
+  if (is_exact) {
+    AddWarning(
+        "the pairs agree to the last digit, as measurements never do: their noise is not known, "
+        "and the sigmas are of rounding alone",
+        estimate);
+    if (estimate.covariance && spec.estimates_rotation) {
+      estimate.covariance = rounding * rounding * *inverse;
+    }
+    return;
+  }
   if (!estimate.covariance) return;
   if (parts.shared > 0.0) {
     const double variance = sums->squares / (sums->residuals - unknowns);

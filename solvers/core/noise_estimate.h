@@ -21,7 +21,8 @@ enum class BoardErrors {
 /// The name in result files: "assumed_independent", "too_few_boards", "estimated".
 std::string_view ToString(BoardErrors errors);
 
-/// The noise of pairs that state none.
+/// The noise of pairs that state none. Of exact pairs, as made without noise, it is what rounding
+/// makes, with a warning, and so is the covariance of the answer: neither is ever zero.
 struct NoiseEstimate {
   /// Standard deviation per axis of the pairs used; of one kind only, unless both were used.
   std::optional<double> sigma_m;

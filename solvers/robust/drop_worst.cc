@@ -2,8 +2,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "solvers/core/inner_solver.h"
 #include "solvers/core/registry.h"
@@ -18,15 +23,18 @@ struct DropWorstOptions : InlierOptions {
   int keep = 0;
 };
 
+// Of so many pairs one is dropped at a time, so that up to 199 are dropped one by one.
+constexpr std::size_t kPairsPerDropped = 100;
+
 /// Solves, removes the pair with the largest residual, and solves again: the paper's elimination
-/// by hand (20 points, then 11, then 8) as a method.
+/// by hand (20 points, then 11, then 8) as a method. Of 200 pairs and more the worst hundredth is
+/// removed at once.
 ///
 /// Ends with `keep` pairs and the inner solver on these; with keep=0 as soon as all remaining pairs
 /// are within the threshold. These must be a consensus (see CheckConsensus), and the answer is that
 /// of BetterOnInliers. Residuals are in sigmas, so that a pair that is known to be noisy is not
-/// dropped for it. One solution of the inner solver for each pair dropped, so that time is
-/// quadratic in the pairs. Errors: kNoConsensus, kTooFewPairs (fewer than `keep`), those of the
-/// inner solver.
+/// dropped for it. At most 200 + 100 log(pairs / 100) solutions of the inner solver. Errors:
+/// kNoConsensus, kTooFewPairs (fewer than `keep`), those of the inner solver.
 class DropWorstSolver final : public Solver {
  public:
   DropWorstSolver(const SolverArguments& arguments, PairKind kind, const DropWorstOptions& options)
@@ -67,12 +75,14 @@ class DropWorstSolver final : public Solver {
       ++solves;
       SEXTANT_ASSIGN_OR_RETURN(pose, PoseOfSubset(*inner_, problem, scorer, kept));
       scorer.SquaredResiduals(pose, squared);
-      const auto worst = std::max_element(kept.begin(), kept.end(), [&](int a, int b) {
-        return squared[static_cast<std::size_t>(a)] < squared[static_cast<std::size_t>(b)];
-      });
-      all_within = squared[static_cast<std::size_t>(*worst)] <= max_squared;
-      if (static_cast<int>(kept.size()) <= min_kept || (options_.keep == 0 && all_within)) break;
-      kept.erase(worst);
+      const auto beyond = std::ranges::count_if(
+          kept, [&](int i) { return !(squared[static_cast<std::size_t>(i)] <= max_squared); });
+      all_within = beyond == 0;
+      auto most = std::ssize(kept) - min_kept;
+      if (options_.keep == 0) most = std::min<std::ptrdiff_t>(most, beyond);
+      if (most <= 0) break;
+      const auto share = static_cast<std::ptrdiff_t>(kept.size() / kPairsPerDropped);
+      Drop(std::min(most, std::max<std::ptrdiff_t>(1, share)), squared, kept);
     }
     if (options_.keep == 0) {
       const std::span<const int> agreeing = all_within ? kept : std::span<const int>();
@@ -86,6 +96,22 @@ class DropWorstSolver final : public Solver {
     estimate->iterations = solves;
     estimate->termination = Termination::kConverged;
     return estimate;
+  }
+
+  // Removes so many with the largest residuals; the others stay in their order.
+  static void Drop(std::ptrdiff_t count, const std::vector<double>& squared,
+                   std::vector<int>& kept) {
+    const auto residual = [&](int i) {
+      const double value = squared[static_cast<std::size_t>(i)];
+      return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
+    };
+    std::vector<int> worst = kept;
+    std::ranges::nth_element(worst, worst.begin() + count - 1, [&](int a, int b) {
+      return std::pair(-residual(a), a) < std::pair(-residual(b), b);
+    });
+    worst.resize(static_cast<std::size_t>(count));
+    std::ranges::sort(worst);
+    std::erase_if(kept, [&](int i) { return std::ranges::binary_search(worst, i); });
   }
 
   // As ransac and gnc: an algebraic inner solver weighs the pairs by their depth, so that the one
@@ -116,7 +142,8 @@ OptionSet<DropWorstOptions> DropWorstOptionSet() {
 SolverEntry DropWorstEntry() {
   return {
       .name = "drop_worst",
-      .summary = "removes the pair with the largest residual and solves again, until keep are left",
+      .summary =
+          "removes the worst pair (of 200 or more 1 percent) and solves again, until keep are left",
       .needs = "keep pairs, or what the inner solver needs and at least one pair more",
       .reference = "the manual elimination of the paper (20 to 11 to 8 points)",
       .example = "drop_worst(kabsch)",

@@ -69,6 +69,19 @@ TEST_F(RigSessionFiles, StarsInFoldersDistinguishMoments) {
   EXPECT_EQ(pairs.pairs[1].cloud, At("day_10/top.pcd"));
 }
 
+TEST_F(RigSessionFiles, ASessionFileMayHaveAnyName) {
+  Write("a.pcd");
+  Write("b.pcd");
+  for (const char* name : {"drive", "drive.txt", "drive.YAML"}) {
+    Write(name,
+          "sextant_session: 1\nsensors:\n  - {name: a, clouds: a.pcd}\n"
+          "  - {name: b, clouds: b.pcd}\n");
+    const auto session = ReadRigSession(At(name));
+    ASSERT_TRUE(session) << session.error().message;
+    EXPECT_TRUE(*session) << name;
+  }
+}
+
 TEST_F(RigSessionFiles, OneCameraIsNoRig) {
   Write("a.png");
   Write("a.pcd");

@@ -193,6 +193,23 @@ TEST_F(SessionFiles, AFolderOfASimulatedSession) {
   EXPECT_THAT(none.error().message, testing::HasSubstr("cam, cam_right"));
 }
 
+TEST_F(SessionFiles, ATopicIsRefusedWithoutARecording) {
+  Write("session.yaml",
+        "sextant_session: 1\nimages: a.png\nclouds: a.pcd\nimage_topic: /cam/image_raw\n");
+  const Expected<Session> session = ReadSession(folder_.path());
+  ASSERT_FALSE(session);
+  EXPECT_THAT(session.error().message, testing::HasSubstr("image_topic: is for a recording"));
+}
+
+TEST_F(SessionFiles, ANameOfACameraIsRefusedWhereThereAreNone) {
+  Write("session.yaml", "sextant_session: 1\nimages: a.png\nclouds: a.pcd\n");
+  for (const fs::path& path : {folder_.path(), At("session.yaml"), At("drive.bag")}) {
+    const Expected<Session> session = ReadSession(path, "left");
+    ASSERT_FALSE(session) << path;
+    EXPECT_THAT(session.error().message, testing::HasSubstr("'left'")) << path;
+  }
+}
+
 TEST_F(SessionFiles, RecordingsByTheirEndings) {
   EXPECT_EQ(ReadSession(At("drive.mcap"))->bag, At("drive.mcap"));
   Write("rosbag2/drive.db3");

@@ -28,6 +28,8 @@ unsigned StatusFor(std::string_view method, std::string_view target, std::string
 TEST(AnswerLocally, OnlyForBrowsersThatNameThisMachine) {
   EXPECT_EQ(StatusFor("GET", "/", "127.0.0.1:8735"), 200U);
   EXPECT_EQ(StatusFor("GET", "/", "localhost:8735"), 200U);
+  EXPECT_EQ(AnswerLocally({"GET", "/", "127.0.0.1"}, 80, kServed).status, 200U) << "no port: 80";
+  EXPECT_EQ(AnswerLocally({"GET", "/", "evil.example"}, 80, kServed).status, 403U);
   // A name of another site that leads here, and other ports.
   for (const char* host : {"evil.example:8735", "evil.example", "127.0.0.1", "127.0.0.1:80", "",
                            "127.0.0.1:8735.evil.example", "127.0.0.1:87350", "[::1]:8735"}) {
@@ -47,6 +49,8 @@ TEST(AnswerLocally, HasTwoAddressesAndNoFile) {
   for (const char* method : {"POST", "PUT", "DELETE", "HEAD", "OPTIONS", "get"}) {
     EXPECT_EQ(StatusFor(method, "/", host), 405U) << method;
   }
+  EXPECT_EQ(AnswerLocally({"HEAD", "/", host}, kPort, kServed).body, "");
+  EXPECT_NE(AnswerLocally({"POST", "/", host}, kPort, kServed).body, "");
 }
 
 class PageServerTest : public testing::Test {

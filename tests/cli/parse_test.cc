@@ -30,6 +30,8 @@ struct Everything {
   std::vector<double> region{};
   std::vector<std::string> models{};
   std::vector<std::string> pose{};
+  std::string direction{};
+  GivenOptions given{};
 };
 
 void Declare(Everything& options, Arguments& arguments) {
@@ -49,6 +51,8 @@ void Declare(Everything& options, Arguments& arguments) {
   arguments.Add("--models", options.models, "A list", {.separator = ','});
   arguments.Add("--pose", options.pose, "One to seven values",
                 {.min_values = 1, .max_values = 7, .excludes = "--name"});
+  arguments.Add("--direction", options.direction, "Of the pose", {.needs = "--pose"});
+  arguments.ReportGiven(options.given);
 }
 
 // The options that the last run was given.
@@ -171,6 +175,34 @@ TEST(Parse, RefusesValuesThatTheRulesForbid) {
   EXPECT_THAT(ErrorOf({"all", "a", "--region", "1", "2"}), HasSubstr("--region"));
   EXPECT_THAT(ErrorOf({"all", "a", "--pose", "1", "--name", "b"}), HasSubstr("excludes"));
   EXPECT_THAT(ErrorOf({"all", "a", "--unknown"}), HasSubstr("--unknown"));
+}
+
+TEST(Parse, RefusesAnOptionWithoutTheOneThatItIsAbout) {
+  EXPECT_EQ(ErrorOf({"all", "a", "--direction", "up"}),
+            "--direction has no effect without --pose: add --pose, or leave --direction out\n");
+  EXPECT_EQ(RunLine({"all", "a", "--direction", "up", "--pose", "1"}), 5);
+}
+
+TEST(Parse, RefusesWhatABareCommandWouldTakeBeforeASubcommand) {
+  EXPECT_THAT(ErrorOf({"simulate", "a.txt", "pairs"}),
+              AllOf(HasSubstr("FILE does not go before pairs"),
+                    HasSubstr("sextant simulate pairs --help")));
+}
+
+TEST(Parse, TellsAGivenValueFromADefault) {
+  EXPECT_EQ(RunLine({"all", "a", "--name", "kabsch", "--quick"}), 5);
+  EXPECT_THAT(Seen().given, ElementsAre("FILE", "--name", "--quick")) << "kabsch is the default";
+  EXPECT_EQ(RunLine({"all", "a"}), 5);
+  EXPECT_THAT(Seen().given, ElementsAre("FILE"));
+}
+
+TEST(Parse, NamesTheFirstGivenOptionThatHasNoEffect) {
+  const GivenOptions given = {"FILE", "--seed", "--name"};
+  EXPECT_TRUE(RefuseGiven(given, {"--quick", "--trials"}, "is for others"));
+  const Expected<void> refused =
+      RefuseGiven(given, {"--quick", "--name", "--seed"}, "is for others");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "--name is for others; leave it out");
 }
 
 TEST(Parse, SuggestsTheOptionThatIsMeant) {

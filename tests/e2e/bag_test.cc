@@ -11,6 +11,9 @@
 #include "support/real_data.h"
 #include "support/run_program.h"
 #include "support/source_tree.h"
+#ifdef SEXTANT_WITH_BAG
+#include "io/bag/rosbag1_writer.h"
+#endif
 
 namespace sextant {
 namespace {
@@ -53,6 +56,33 @@ TEST(BagCommand, ExtractsFilesThatOtherCommandsRead) {
             "p/000000_5000000007.pcd,i/000000_5000000007.png,0.000000000\n"
             "p/000000_5000000007.pcd,c/000000_5000000007.jpg,0.000000000\n");
 }
+
+#ifdef SEXTANT_WITH_BAG
+TEST(BagCommand, PairsNameEachImageByItsOwnFormat) {
+  const std::string path = test::TestPath("mixed.bag");
+  Expected<Rosbag1Writer> writer = Rosbag1Writer::Create(path);
+  ASSERT_TRUE(writer) << writer.error().message;
+  for (int i = 0; i < 2; ++i) {
+    const std::int64_t stamp = (i + 1) * 1'000'000'000LL;
+    CloudMessage scan{{stamp, "lidar"}, {}};
+    scan.cloud.points.emplace_back(1.0, 2.0, 3.0);
+    EncodedImageMessage image;
+    image.header = {stamp, "cam"};
+    image.data = i == 0 ? "\xff\xd8\xff" : "\x89PNG";
+    ASSERT_TRUE(writer->Write("/p", stamp, scan));
+    ASSERT_TRUE(writer->Write("/c", stamp, image));
+  }
+  ASSERT_TRUE(writer->Close());
+  const std::filesystem::path folder = TestFolder() / "out";
+  const ProgramRun run = RunBag(path + " --extract " + folder.string());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(test::ReadText(folder / "pairs.csv"),
+            "scan,image,image_less_scan_s\n"
+            "p/000000_1000000000.pcd,c/000000_1000000000.jpg,0.000000000\n"
+            "p/000001_2000000000.pcd,c/000001_2000000000.png,0.000000000\n");
+  EXPECT_TRUE(std::filesystem::exists(folder / "c/000001_2000000000.png"));
+}
+#endif
 
 TEST(BagCommand, CameraInfoIsWrittenAsAFileThatIsReadBack) {
   SKIP_WHERE_NOT_BUILT();

@@ -65,6 +65,10 @@ TEST(Boards, FindsThemInManyScansAndDrawsOne) {
   EXPECT_EQ(found[0]["corners"]["in_lidar_m"].size(), 4U);
   EXPECT_EQ(found[0]["corners"]["covariance_m2"].size(), 12U);
   EXPECT_FALSE(test::ReadPicture(picture.string()).empty());
+  const ProgramRun lost =
+      RunSextant("boards " + first + boards + " --overlay " + (TestFolder() / "scan.xyz").string());
+  EXPECT_EQ(lost.exit_code, 2);
+  EXPECT_THAT(lost.out, HasSubstr("2 of 2 boards found")) << "the answer does not need the overlay";
 }
 
 TEST(Boards, AMissingBoardIsReportedAndEndsInOne) {

@@ -59,6 +59,10 @@ TEST(Detect, BoardPoseCornersAndOverlay) {
               AllOf(HasSubstr("1 of 1 tags"), HasSubstr("cam_from_board"), HasSubstr("corner 3")));
   const cv::Mat overlay = test::ReadPicture(TestPath("overlay.png"));
   EXPECT_EQ(overlay.size(), picture.image.size());
+  const ProgramRun lost = Detect(arguments + " --overlay " + TestPath("overlay.xyz"));
+  EXPECT_EQ(lost.exit_code, 2);
+  EXPECT_THAT(lost.err, HasSubstr("overlay.xyz"));
+  EXPECT_THAT(lost.out, HasSubstr("cam_from_board")) << "the answer does not need the overlay";
 
   const ProgramRun machine = Detect(arguments + " --json -");
   ASSERT_EQ(machine.exit_code, 0) << machine.err;

@@ -63,6 +63,47 @@ TEST(Refused, CountsOutOfRange) {
   ExpectRefused("solve ''", "expected a text, got an empty one");
 }
 
+// An option that is given is never silently ignored.
+TEST(Refused, OptionsThatWouldHaveNoEffect) {
+  const auto expect = [](const std::string& arguments, const std::string& reason) {
+    SCOPED_TRACE(arguments);
+    test::ExpectRefused(RunSextant(arguments), reason);
+  };
+  const std::string pose_is = " --pose-is cam_from_lidar";
+  expect("detect a.png --camera c.yaml",
+         "--camera has no effect without --board: add --board, or leave --camera out");
+  expect("compare a.yaml" + pose_is, "--pose-is has no effect without --truth");
+  expect("calibrate session" + pose_is, "--pose-is has no effect without --initial");
+  expect("mark --cloud a.pcd" + pose_is, "--pose-is has no effect without --cam-from-lidar");
+  expect("list extractors --lidars vlp16", "--lidars is for the scans of --trials");
+  expect("list detectors --trials 0 --seed 1", "--seed is for the tags of --trials");
+  expect("list solvers kabsch --markdown", "excludes");
+  expect("simulate pairs --outliers 0 --outlier-shift 1", "--outlier-shift is for --outliers");
+  expect("run e.yaml --shard 1/2 --export-problems " + TestPath("problems"),
+         "--shard is for a run, which --export-problems replaces");
+  expect("boards a.pcd --board b.yaml --raw-edges --edge-growth 0.1", "excludes");
+  expect("print-board --template fast_calib --dpi 150 --out " + TestPath("board.pdf"),
+         "--dpi is for a .png");
+  expect("export result.yaml --to kitti --lidar-frame top", "--lidar-frame has no effect: kitti");
+  const std::string scene =
+      (test::SourceRoot() / "experiments/scenes/paper_two_boards.yaml").string();
+  expect("simulate " + scene + " --pixel-sigma 1", "--pixel-sigma is for the levels");
+  expect("simulate " + scene + " --level pairs --ideal", "--ideal is for the level full");
+}
+
+TEST(Refused, OptionsOfARecordingForFiles) {
+  for (const char* name : {"a_1.png", "a_1.pcd", "board.yaml", "camera.yaml"}) {
+    WriteText(TestPath(name), "");
+  }
+  const std::string files = "calibrate --image " + TestPath("a_1.png") + " --cloud " +
+                            TestPath("a_1.pcd") + " --board " + TestPath("board.yaml") +
+                            " --camera " + TestPath("camera.yaml");
+  test::ExpectRefused(RunSextant(files + " --tolerance 0.05"), "--tolerance is for a recording");
+  test::ExpectRefused(RunSextant(files + " --image-topic /a"), "--image-topic is for a recording");
+  test::ExpectRefused(RunSextant(files + " --camera-name left"),
+                      "--camera-name is for the folder of a simulated session");
+}
+
 std::string ScaledPoints(const std::string& exponent) {
   std::string text = "4\n";
   for (int sensor = 0; sensor < 2; ++sensor) {

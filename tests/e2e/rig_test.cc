@@ -158,6 +158,43 @@ TEST(RigCommand, CloudsOfNamedSensorsAreFused) {
   test::ExpectRefused(RunSextant(fuse + " --sensors top rear"), "--sensors needs --result");
   test::ExpectRefused(RunSextant(fuse + " --sensors top rear --result " + TestPath("top.csv")),
                       "expected rig.json");
+  test::ExpectRefused(RunSextant(fuse + rig + " --sensors top rear --pose-is lidar_from_cam"),
+                      "--pose-is has no effect with --result");
+  test::ExpectRefused(
+      RunSextant("export " + TestPath("rig.json") + " --to ros2 --pose-is lidar_from_cam"),
+      "--pose-is has no effect on a rig's result");
+  result.sensors.push_back({.name = "lost"});
+  result.unconnected = {"'lost' shares no board with another sensor"};
+  std::ofstream(TestPath("part.json")) << FormatRigResult(result);
+  const ProgramRun part = RunSextant("export " + TestPath("part.json") + " --to ros2");
+  EXPECT_EQ(part.exit_code, 0) << part.err;
+  EXPECT_THAT(part.err, HasSubstr("warning: 'lost' shares no board"));
+}
+
+TEST(RigCommand, OptionsOfOneCameraAndOneLidarAreRefused) {
+  const std::string calibrate =
+      "calibrate " + SessionOfRig().string() + " --out " + TestPath("out.json");
+  for (const std::string option : {"--need 5,0.05", "--bootstrap 0", "--tolerance 0.05",
+                                   "--solver kabsch", "--image-topic /left"}) {
+    test::ExpectRefused(RunSextant(calibrate + " " + option),
+                        option.substr(0, option.find(' ')) + " is for one camera and one LiDAR");
+  }
+  ASSERT_EQ(Solved().run.exit_code, 0);
+  for (const std::string option : {"--pixel-sigma 0.3", "--count 1", "--lidar vlp16"}) {
+    test::ExpectRefused(RunSextant("advise " + Solved().problem + " " + option),
+                        option.substr(0, option.find(' ')) + " is for a result of one camera");
+  }
+}
+
+TEST(RigCommand, APathThatIsGivenIsKeptAlsoWhereItIsTheDefaultOfOthers) {
+  const std::string cd = "cd " + test::TestFolder().string() + " && ";
+  const ProgramRun run =
+      test::RunProgram(cd, SEXTANT_BINARY " calibrate " + SessionOfRig().string() +
+                               " --out result.yaml --problem /dev/full");
+  EXPECT_EQ(run.exit_code, 4) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("left_from_right")) << "the answer does not need the problem";
+  EXPECT_TRUE(std::filesystem::exists(TestPath("result.yaml")));
+  EXPECT_FALSE(std::filesystem::exists(TestPath("rig.json")));
 }
 
 TEST(RigCommand, AWrongSizeOfTheTagIsNotUsable) {

@@ -91,6 +91,23 @@ TEST(RigFile, KeepsTheRoundHolesOfABoard) {
   EXPECT_EQ(board.hole->width_m, 0.1);
 }
 
+TEST(RigFile, KeepsTheSigmaOfEachPoint) {
+  const std::string points = "points_m: [[3, 0.3, 0.4]";
+  const Expected<RigFile> rig = ParseRigFile(
+      RigWith(points, "sigma_m: [0.01, 0.02, 0.03, 0.04]\n        " + points), "rig.yaml");
+  ASSERT_TRUE(rig) << rig.error().message;
+  const Expected<RigFile> again = ParseRigFile(FormatRigFile(*rig), "rig.yaml");
+  ASSERT_TRUE(again) << again.error().message;
+  const auto& seen = again->problem.placements.at(0).seen.at(1).points;
+  ASSERT_EQ(seen.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_NEAR(seen[i].sigma_m, 0.01 * static_cast<double>(i + 1), 1e-15);
+  const Expected<RigFile> few =
+      ParseRigFile(RigWith(points, "sigma_m: [0.01, 0.02]\n        " + points), "rig.yaml");
+  ASSERT_FALSE(few);
+  EXPECT_THAT(few.error().message, HasSubstr("expected one number, or 4"));
+}
+
 TEST(RigFile, RefusesWhatIsWrongAndNamesIt) {
   const BadText cases[] = {
       {"unknown sensor", RigWith("sensor: rear", "sensor: back"), ErrorCode::kParse,
@@ -105,6 +122,11 @@ TEST(RigFile, RefusesWhatIsWrongAndNamesIt) {
        "has board 3 of sensor 'top' twice"},
       {"no direction", RigWith("[0, 3, 0]", "[0, 0, 0]"), ErrorCode::kParse, "not zeros"},
       {"unknown key", RigWith("sigma_px", "sigma_pixels"), ErrorCode::kParse, "sigma_px"},
+      {"sigma without pixels", RigWith("sensor: top\n", "sensor: top\n        sigma_px: 0.2\n"),
+       ErrorCode::kParse, "describes pixels, which the observation does not have"},
+      {"points without a measurement",
+       RigWith("sensor: rear\n", "sensor: rear\n        in_board_m: [0, 0]\n"), ErrorCode::kParse,
+       "describes pixels or points_m"},
       {"unknown root", RigWith("root: top", "root: roof"), ErrorCode::kParse, "'roof'"}};
   for (const BadText& bad : cases) test::ExpectRefused(ParseRigFile(bad.text, "rig.yaml"), bad);
 }
@@ -128,6 +150,11 @@ TEST(FeatureTable, HasTheRowsOfEachKind) {
   ASSERT_TRUE(planes) << planes.error().message;
   EXPECT_EQ((*planes)[0].plane->normal, Eigen::Vector3d::UnitZ());
   EXPECT_EQ((*planes)[0].plane->distance_m, 3.0);  // 2 z - 6 = 0.
+  const auto normals =
+      ParseFeatureTable("moment,sensor,nx,ny,nz,distance\n1,top,0,0,2,3\n", "f.csv");
+  ASSERT_TRUE(normals) << normals.error().message;
+  EXPECT_EQ((*normals)[0].plane->normal, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ((*normals)[0].plane->distance_m, 3.0) << "that of the unit normal, as in a rig file";
   const auto sides =
       ParseFeatureTable("time_s,sensor,side,x,y,z,x2,y2,z2\n0.5,top,2,1,0,0,1,0,2\n", "f.csv");
   ASSERT_TRUE(sides) << sides.error().message;

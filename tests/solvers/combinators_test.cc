@@ -2,6 +2,7 @@
 // Properties of each robust solver; outliers_test.cc has those that all share.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "solvers/builtin_solvers.h"
@@ -127,6 +128,46 @@ TEST(DropWorst, KeepsTheGivenNumberAndDropsOutliersFirst) {
             ErrorCode::kInvalidOption);
   EXPECT_EQ(Solve("drop_worst(kabsch,keep=21)", scene.problem).error().code,
             ErrorCode::kTooFewPairs);
+}
+
+TEST(DropWorst, ManyPairsTakeFewSolutions) {
+  Random random(8);
+  const SceneOptions options{.pairs = 10'000, .sigma_m = 0.01};
+  PairScene scene = MakeScene(options, random);
+  AddOutliers(0.2, options, random, scene);
+  const Expected<SolveReport> report = Solve("drop_worst(kabsch,keep=20)", scene.problem);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->inliers.size(), 20U);
+  EXPECT_TRUE(std::ranges::is_sorted(report->inliers));
+  EXPECT_LT(report->iterations, 700);
+  const Expected<SolveReport> within = Solve("drop_worst(kabsch)", scene.problem);
+  ASSERT_TRUE(within) << within.error().message;
+  EXPECT_LT(within->iterations, 100);
+  EXPECT_LT(DistanceBetween(within->cam_from_lidar, scene.cam_from_lidar).translation_m, 0.003);
+}
+
+// Points in one frame twice: every residual is zero.
+TEST(ExactPairs, HaveSigmasOfRoundingAndSayIt) {
+  Random random(9);
+  CalibrationProblem problem;
+  for (int i = 0; i < 20; ++i) {
+    Pair3d3d pair;
+    for (int axis = 0; axis < 3; ++axis) pair.point_in_cam[axis] = random.Uniform(-5.0, 5.0);
+    pair.point_in_lidar = pair.point_in_cam;
+    problem.pairs_3d3d.push_back(pair);
+  }
+  for (const char* spec : {"kabsch", "ransac(kabsch)", "gnc(kabsch)", "drop_worst(kabsch)"}) {
+    const Expected<SolveReport> report = Solve(spec, problem);
+    ASSERT_TRUE(report && report->covariance && report->noise) << spec;
+    const Vector6d sigmas = report->covariance->diagonal().cwiseSqrt();
+    EXPECT_GT(sigmas.minCoeff(), 1e-14) << spec;
+    EXPECT_LT(sigmas.maxCoeff(), 1e-9) << spec;
+    EXPECT_GT(*report->noise->sigma_m, 0.0) << spec;
+    const auto is_said = [](const std::string& warning) {
+      return warning.find("to the last digit") != std::string::npos;
+    };
+    EXPECT_TRUE(std::ranges::any_of(report->warnings, is_said)) << spec;
+  }
 }
 
 TEST(Gnc, LeavesCleanDataAlone) {

@@ -156,7 +156,7 @@ class RealTrials final : public Trials {
         continue;
       }
       values.Set(kRealAnswered, 1.0);
-      MeasureAnswer(*report, train, values);
+      MeasureAnswer(*report, solvers_[k]->spec().needs, train, values);
       MeasureHeldOut(*report, held_out, values);
       if (settings_.resampling == Resampling::kHalves) {
         const Expected<SolveReport> other = solvers_[k]->Solve(held_out);
@@ -166,9 +166,11 @@ class RealTrials final : public Trials {
   }
 
  private:
-  void MeasureAnswer(const SolveReport& report, const CalibrationProblem& train,
-                     MetricValues& values) const {
-    const auto pairs = static_cast<double>(train.pairs_3d3d.size() + train.pairs_2d3d.size());
+  void MeasureAnswer(const SolveReport& report, const DataNeeds& needs,
+                     const CalibrationProblem& train, MetricValues& values) const {
+    // Inliers are of one kind of pairs.
+    const auto pairs = static_cast<double>(needs.pairs_3d3d > 0 ? train.pairs_3d3d.size()
+                                                                : train.pairs_2d3d.size());
     if (!report.inliers.empty()) {
       values.Set(kRealUsedShare, static_cast<double>(report.inliers.size()) / pairs);
     }
@@ -248,7 +250,7 @@ const ParameterSet<RealSettings>& RealParameters() {
 const std::vector<Metric>& RealMetrics() {
   static const std::vector<Metric> metrics = {
       {"answered", "1 if the solver returned a pose, 0 if it returned an error"},
-      {"used_share", "share of the pairs that the answer is based on"},
+      {"used_share", "share of the pairs of the solver's kind that the answer is based on"},
       {"reference_deg", "angle between the answer's rotation and the reference's"},
       {"reference_mm", "distance between the answer's translation and the reference's"},
       {"near_reference", "1 if both are within success_deg and success_mm, else 0"},

@@ -102,6 +102,24 @@ TEST_F(FolderWatchTest, PatternsChooseAmongSeveralSensors) {
   EXPECT_THAT(Names(files->clouds), ElementsAre("scan.txt"));
 }
 
+TEST_F(FolderWatchTest, AFolderWithinItThatCannotBeReadIsNamedOnce) {
+  Write("scans/a.pcd", "x");
+  Write("images/a.png", "x");
+  std::filesystem::permissions(folder_.path() / "scans", std::filesystem::perms::none);
+  std::error_code denied;
+  std::filesystem::directory_iterator(folder_.path() / "scans", denied);
+  if (!denied) GTEST_SKIP() << "this user may read every folder";
+  const FolderFiles first = Look();
+  ASSERT_EQ(first.warnings.size(), 1U);
+  EXPECT_THAT(first.warnings[0], testing::HasSubstr("scans"));
+  const FolderFiles second = Look();
+  EXPECT_THAT(second.warnings, IsEmpty());
+  EXPECT_THAT(Names(second.images), ElementsAre("a.png"));
+  std::filesystem::permissions(folder_.path() / "scans", std::filesystem::perms::owner_all);
+  Look();
+  EXPECT_THAT(Names(Look().clouds), ElementsAre("a.pcd"));
+}
+
 TEST_F(FolderWatchTest, AFolderThatIsNotThereIsAnError) {
   FolderWatch nowhere(folder_.path() / "nowhere");
   const Expected<FolderFiles> files = nowhere.Look();

@@ -209,6 +209,17 @@ TEST_F(CaptureRun, CtrlCWithoutAPairIsNoAnswer) {
   EXPECT_FALSE(fs::exists(TestPath("result.yaml")));
 }
 
+TEST_F(CaptureRun, FilesThatAreGoneAreNotSaidNeverToHaveAppeared) {
+  Start("1,0.01");
+  Drop(0);
+  EXPECT_TRUE(Eventually(kPatience_s, [&] { return PageHas("<li>000: boards"); }));
+  for (const char* kind : {"cam", "scan"}) fs::remove(folder_ / NameOf(kind, 0));
+  EXPECT_TRUE(Eventually(kPatience_s, [&] { return PageHas("NOTHING YET"); }));
+  program_->Interrupt();
+  EXPECT_EQ(program_->Wait(kPatience_s), 1);
+  EXPECT_THAT(ReadText(log_), HasSubstr("are gone, and the answer with them"));
+}
+
 TEST(CaptureCommand, WhatIsMissingIsNamedBeforeItWaits) {
   fs::create_directories(TestPath("empty"));
   test::ExpectRefused(test::RunSextant("capture " + TestPath("empty")), "--board is missing");

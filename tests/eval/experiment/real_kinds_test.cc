@@ -13,6 +13,7 @@
 #include "eval/experiment/definition/experiment.h"
 #include "geometry/rigid3d.h"
 #include "io/problems/pairs_csv.h"
+#include "io/problems/problem_yaml.h"
 #include "solvers/builtin_solvers.h"
 #include "support/run_program.h"
 #include "support/scenes.h"
@@ -97,6 +98,26 @@ TEST_F(RealKinds, BootstrapOverBoardsMeasuresHeldOutErrorAndReference) {
   // The median of the norm of three axes with 5 mm each is 7.7 mm.
   for (const double mm : Values(*experiment, "held_out_mm")) EXPECT_NEAR(mm, 7.7, 5.0);
   EXPECT_EQ(Values(*experiment, "held_out_mm"), Values(*experiment, "held_out_mm"));
+}
+
+TEST_F(RealKinds, TheUsedShareIsOfTheSolversKindOfPairs) {
+  Random random(5);
+  ProblemFile file;
+  file.problem = MakeScene({.pairs = 40, .sigma_m = 0.005, .sigma_px = 0.5}, random).problem;
+  ASSERT_EQ(file.problem.pairs_3d3d.size(), 40U);
+  ASSERT_EQ(file.problem.pairs_2d3d.size(), 40U);
+  for (int i = 0; i < 40; ++i) {
+    const PairId id{.view = 0, .board = i / 4, .corner = i % 4};
+    file.problem.pairs_3d3d[static_cast<std::size_t>(i)].id = id;
+    file.problem.pairs_2d3d[static_cast<std::size_t>(i)].id = id;
+  }
+  const std::string text = FormatProblemYaml(file);
+  WriteText(TestFolder() / "data" / "both.yaml", text);
+  WriteText(TestFolder() / "both.yaml", Manifest("both.yaml", text.size(), Crc32(text)));
+  const Expected<Experiment> experiment = Parse("  - {name: a, manifest: both.yaml}\n");
+  ASSERT_TRUE(experiment) << experiment.error().message;
+  // The first solver, kabsch, uses every 3D-3D pair.
+  for (const double share : Values(*experiment, "used_share")) EXPECT_EQ(share, 1.0);
 }
 
 TEST_F(RealKinds, HalvesAgreeWithinTheirStatedCovariances) {

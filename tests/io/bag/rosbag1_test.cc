@@ -29,7 +29,7 @@ CloudMessage SomeScan(int seed, int points) {
   CloudMessage scan{{kStart + seed, "velodyne"}, {}};
   for (int i = 0; i < points; ++i) {
     // Values that a float32 represents exactly.
-    scan.cloud.points.emplace_back(static_cast<float>(random.Uniform(-9, 9)), 0.5 * i, -0.25);
+    scan.cloud.points.emplace_back(static_cast<float>(random.Uniform(-9, 9)), 0.125 * i, -0.25);
     scan.cloud.intensity.push_back(static_cast<float>(i));
     scan.cloud.ring.push_back(static_cast<std::uint16_t>(i % 2 == 0 ? 3 : 0));
     scan.cloud.time_s.push_back(0.125 * (i % 8));
@@ -396,6 +396,26 @@ TEST(Rosbag1, ReadsLivoxCustomMessagesOfARealRecording) {
       });
   EXPECT_TRUE(read) << read.error().message;
   EXPECT_GT(clouds, 0U);
+}
+
+// As in a file: the scan is refused, with what to do.
+TEST(Rosbag1, AScanInMillimetresIsRefused) {
+  const std::string path = test::TestPath("mm.bag");
+  Expected<Rosbag1Writer> writer = Rosbag1Writer::Create(path);
+  ASSERT_TRUE(writer) << writer.error().message;
+  CloudMessage scan{{kStart, "lidar"}, {}};
+  for (int i = 0; i < 9; ++i) scan.cloud.points.emplace_back(3000.0, 100.0 * i, -250.0);
+  Require(writer->Write("/points", kStart, scan));
+  Require(writer->Close());
+  const Expected<std::unique_ptr<Bag>> bag = OpenBag(path);
+  ASSERT_TRUE(bag) << bag.error().message;
+  const Expected<void> read = (*bag)->Read({0}, [](const BagMessage& message) -> Expected<void> {
+    const Expected<CloudMessage> cloud = DecodePointCloud(message);
+    if (!cloud) return tl::unexpected<Error>(cloud.error());
+    return {};
+  });
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().message, testing::HasSubstr("If these are millimetres"));
 }
 
 }  // namespace

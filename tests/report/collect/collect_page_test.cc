@@ -212,6 +212,10 @@ TEST(FileHash, AgreesWithTheStandard) {
 
 TEST(UtcText, IsACalendarTime) {
   EXPECT_EQ(UtcText(1493815925.9), "2017-05-03 12:52:05 UTC");
+  const std::chrono::sys_seconds time{std::chrono::seconds(1493815925)};
+  EXPECT_EQ(UtcText(time), "2017-05-03 12:52:05 UTC");
+  EXPECT_EQ(UtcIsoText(time), "2017-05-03T12:52:05Z");
+  EXPECT_EQ(UtcText(std::chrono::sys_seconds{}), "1970-01-01 00:00:00 UTC");
   EXPECT_EQ(UtcText(12.0), "");
   EXPECT_EQ(UtcText(NAN), "");
   EXPECT_THAT(TodayText(), testing::MatchesRegex("2[0-9]+-[0-9]+-[0-9]+"));
