@@ -13,6 +13,7 @@
 #include "base/units.h"
 #include "features/lidar/rings/ring_following.h"
 #include "features/lidar/rings/ring_order.h"
+#include "features/lidar/rings/ring_turns.h"
 #include "geometry/symmetric.h"
 
 namespace sextant {
@@ -190,7 +191,8 @@ RingNumbers RecoverRings(std::span<const UnsortedReturn> returns, std::size_t cl
     rings = CheckRings(returns, std::move(numbers));
     if (!rings.of_return.empty()) return rings;
   }
-  rings.of_return = RingsByFollowing(returns);
+  rings.of_return = RingsByTurns(returns);
+  if (rings.of_return.empty()) rings.of_return = RingsByFollowing(returns);
   if (rings.of_return.empty()) rings.of_return = std::move(repeating);
   return rings;
 }
