@@ -172,7 +172,7 @@ RingNumbers CheckRings(std::span<const UnsortedReturn> returns, std::vector<int>
     const RingSpread about_axis = SpreadOf(numbers, ElevationsAbout(returns, axis));
     if (AreRings(about_axis) && about_axis.spread_rad < 0.5 * about_z.spread_rad &&
         about_z.spread_rad > kNarrow_rad) {
-      return {std::move(numbers), axis};
+      return {.of_return = std::move(numbers), .axis = axis};
     }
   }
   if (AreRings(about_z)) rings.of_return = std::move(numbers);
@@ -192,6 +192,7 @@ RingNumbers RecoverRings(std::span<const UnsortedReturn> returns, std::size_t cl
     if (!rings.of_return.empty()) return rings;
   }
   rings.of_return = RingsByTurns(returns);
+  rings.ascend = !rings.of_return.empty();
   if (rings.of_return.empty()) rings.of_return = RingsByFollowing(returns);
   if (rings.of_return.empty()) rings.of_return = std::move(repeating);
   return rings;

@@ -19,6 +19,7 @@ struct UnsortedReturn {
 struct RingNumbers {
   std::vector<int> of_return{};  ///< One per return; empty if the scan has no rings.
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< Unit, in the LiDAR frame.
+  bool ascend = false;  ///< Whether numbers are known to ascend with elevation.
 };
 
 /// Checks ring numbers of a file: each must be one elevation about a common axis. The axis is z

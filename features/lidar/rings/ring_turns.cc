@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <numeric>
 #include <optional>
+#include <utility>
 
 #include "base/median.h"
 #include "base/units.h"
@@ -19,14 +19,31 @@ namespace {
 constexpr std::size_t kMinTurns = 16;
 constexpr std::size_t kMaxTurns = 128;
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
-constexpr double kMaxBackward = 0.05;  // Of the steps; near returns of a beam beside the axis.
-constexpr double kMaxBackward_rad = 20.0 * kRadPerDeg;
-constexpr double kMaxUnseen_rad = 90.0 * kRadPerDeg;
-constexpr double kStartStep_rad = 0.02 * kRadPerDeg;
+constexpr double kMaxBackward_rad = 20.0 * kRadPerDeg;  // Near returns of a beam beside the axis.
+constexpr double kMaxPartial = 0.25;  // Of the turns, that miss half a turn or more.
 constexpr double kMinStepping = 0.7;  // Of the turns, that begin with a step in elevation.
-constexpr double kMinOrdered = 0.9;   // Of the compared returns of two neighbouring turns.
+constexpr double kMinStep = 0.5;      // Relative to the step to the next ring.
+constexpr double kMaxStep = 1.5;
+constexpr double kMinOrdered = 0.9;  // Of the compared returns of two neighbouring turns.
 constexpr std::size_t kMinCompared = 16;
 constexpr double kEqualNearness = 0.01;  // [1/m]; 0.1 degrees for a beam 0.2 m off the origin.
+
+// From one direction to the next, about z, in [-pi, pi].
+double StepBetween(const UnsortedReturn& last, const UnsortedReturn& now) {
+  const Eigen::Vector2d a = last.direction.head<2>();
+  const Eigen::Vector2d b = now.direction.head<2>();
+  return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+}
+
+// The sense in which most azimuths run on: 1 or -1.
+double SenseOf(std::span<const UnsortedReturn> returns) {
+  std::ptrdiff_t sum = 0;
+  for (std::size_t i = 1; i < returns.size(); ++i) {
+    const double step = StepBetween(returns[i - 1], returns[i]);
+    sum += (step > 0.0 ? 1 : 0) - (step < 0.0 ? 1 : 0);
+  }
+  return sum < 0 ? -1.0 : 1.0;
+}
 
 // A return of a list that turns in one sense.
 struct TurningPlace {
@@ -34,50 +51,32 @@ struct TurningPlace {
   ConePlace cone{};
 };
 
-// Empty unless the azimuths run on in one sense, but for a few steps.
-std::vector<TurningPlace> PlacesOfTurning(std::span<const UnsortedReturn> returns) {
-  std::vector<TurningPlace> places = {{0.0, ConePlace::Of(returns.front())}};
-  places.reserve(returns.size());
-  std::size_t positive = 0;
-  std::size_t negative = 0;
-  double widest_positive = 0.0;
-  double widest_negative = 0.0;
-  for (std::size_t i = 1; i < returns.size(); ++i) {
-    const Eigen::Vector3d& last = returns[i - 1].direction;
-    const Eigen::Vector3d& now = returns[i].direction;
-    const double step = std::atan2(last.x() * now.y() - last.y() * now.x(),
-                                   last.x() * now.x() + last.y() * now.y());
-    positive += step > 0.0 ? 1U : 0U;
-    negative += step < 0.0 ? 1U : 0U;
-    widest_positive = std::max(widest_positive, step);
-    widest_negative = std::max(widest_negative, -step);
-    places.push_back({places.back().turned_rad + step, ConePlace::Of(returns[i])});
-  }
-  const bool is_clockwise = negative > positive;
-  const auto most = static_cast<double>(std::max(positive, negative));
-  const double backward_rad = is_clockwise ? widest_positive : widest_negative;
-  const bool run_on = most >= (1.0 - kMaxBackward) * static_cast<double>(returns.size() - 1);
-  if (!run_on || backward_rad > kMaxBackward_rad) return {};
-  if (is_clockwise) {
-    for (TurningPlace& place : places) place.turned_rad = -place.turned_rad;
-  }
-  return places;
-}
-
-// The turns of a list, the first of which begins up to `unseen_rad` before the first return.
-struct TurnSpan {
-  std::size_t count = 0;
-  double unseen_rad = 0.0;
+struct TurningList {
+  std::vector<TurningPlace> places{};
+  std::size_t turns = 0;
+  double unseen_rad = 0.0;  // The first turn begins at most so much before the first return.
 };
 
-std::optional<TurnSpan> WholeTurns(std::span<const TurningPlace> places) {
-  if (places.empty()) return std::nullopt;
-  const double turned = places.back().turned_rad;
-  const double count = std::floor(turned / kTurn_rad) + 1.0;
-  const TurnSpan turns{static_cast<std::size_t>(std::max(count, 0.0)), count * kTurn_rad - turned};
-  const bool are_rings = turns.count >= kMinTurns && turns.count <= kMaxTurns;
-  if (!are_rings || turns.unseen_rad > kMaxUnseen_rad) return std::nullopt;
-  return turns;
+// None unless the list turns often enough, and most turns go round.
+std::optional<TurningList> FindTurning(std::span<const UnsortedReturn> returns) {
+  const double sense = SenseOf(returns);
+  TurningList list{.places = {{0.0, ConePlace::Of(returns.front())}}};
+  list.places.reserve(returns.size());
+  std::size_t partial = 0;
+  double turned = 0.0;
+  for (std::size_t i = 1; i < returns.size(); ++i) {
+    const double step = sense * StepBetween(returns[i - 1], returns[i]);
+    const bool is_wide = step < -kMaxBackward_rad;  // More than half a turn forward.
+    partial += is_wide ? 1U : 0U;
+    turned += is_wide ? step + kTurn_rad : step;
+    list.places.push_back({turned, ConePlace::Of(returns[i])});
+  }
+  const double turns = std::floor(turned / kTurn_rad) + 1.0;
+  list.turns = static_cast<std::size_t>(std::max(turns, 0.0));
+  list.unseen_rad = turns * kTurn_rad - turned;
+  if (list.turns < kMinTurns || list.turns > kMaxTurns) return std::nullopt;
+  if (static_cast<double>(partial) > kMaxPartial * turns) return std::nullopt;
+  return list;
 }
 
 // The turn of each return, if the first begins `before_rad` before the first return.
@@ -138,45 +137,49 @@ std::vector<double> StepsOfTurns(std::span<const TurningPlace> places, std::size
   return steps;
 }
 
-// How far before the first return the turns begin: where most of them step by half the distance to
-// the next ring or more.
+// How far before the first return the turns begin: where most of them step to the next ring.
 std::optional<double> FindStart(std::span<const TurningPlace> places, double unseen_rad,
                                 std::span<const double> steps) {
-  const auto cells = static_cast<std::size_t>(std::ceil(unseen_rad / kStartStep_rad));
-  const auto cell_of = [&](double before_rad) {
-    const double cell = std::ceil(before_rad / kStartStep_rad);
-    return static_cast<std::size_t>(std::clamp(cell, 0.0, static_cast<double>(cells)));
-  };
-  std::vector<int> changes(cells + 1, 0);  // Of the number of turns that step, by cell.
+  std::vector<std::pair<double, int>> changes;  // Of the number of turns that step, by the start.
   for (std::size_t i = 1; i < places.size(); ++i) {
-    const double last = places[i - 1].turned_rad;
-    const double now = places[i].turned_rad;
-    const double turn = std::ceil(last / kTurn_rad);
-    if (now <= last || turn < 1.0 || turn > static_cast<double>(steps.size())) continue;
+    const double turn = std::ceil(places[i - 1].turned_rad / kTurn_rad);
+    if (turn < 1.0 || turn > static_cast<double>(steps.size())) continue;
+    const double low = std::max(turn * kTurn_rad - places[i].turned_rad, 0.0);
+    const double high = std::min(turn * kTurn_rad - places[i - 1].turned_rad, unseen_rad);
     const double whole = steps[static_cast<std::size_t>(turn) - 1];
-    if ((places[i].cone.tangent - places[i - 1].cone.tangent) / whole < 0.5) continue;
-    ++changes[cell_of(turn * kTurn_rad - now)];
-    --changes[cell_of(turn * kTurn_rad - last)];
+    const double step = (places[i].cone.tangent - places[i - 1].cone.tangent) / whole;
+    if (low >= high || step < kMinStep || step > kMaxStep) continue;
+    changes.emplace_back(low, 1);
+    changes.emplace_back(high, -1);
   }
-  std::vector<int> stepping(cells);
-  std::partial_sum(changes.begin(), changes.end() - 1, stepping.begin());
-  const auto most = std::ranges::max_element(stepping);
-  if (*most < kMinStepping * static_cast<double>(steps.size())) return std::nullopt;
-  const auto end = std::find_if(most, stepping.end(), [&](int count) { return count < *most; });
-  const auto middle = (most - stepping.begin()) + (end - most - 1) / 2;
-  return static_cast<double>(middle) * kStartStep_rad;
+  std::ranges::sort(changes);
+  int stepping = 0;
+  int most = 0;
+  double start = 0.0;
+  for (std::size_t i = 0; i + 1 < changes.size(); ++i) {
+    stepping += changes[i].second;
+    if (stepping <= most) continue;
+    most = stepping;
+    start = 0.5 * (changes[i].first + changes[i + 1].first);
+  }
+  const bool begin = most >= kMinStepping * static_cast<double>(steps.size());
+  return begin ? std::optional(start) : std::nullopt;
 }
 
 }  // namespace
 
 std::vector<int> RingsByTurns(std::span<const UnsortedReturn> returns) {
-  const std::vector<TurningPlace> places = PlacesOfTurning(returns);
-  const std::optional<TurnSpan> turns = WholeTurns(places);
-  if (!turns) return {};
-  const std::vector<double> steps = StepsOfTurns(places, turns->count);
+  const std::optional<TurningList> list = FindTurning(returns);
+  if (!list) return {};
+  const std::vector<double> steps = StepsOfTurns(list->places, list->turns);
   if (steps.empty()) return {};
-  const std::optional<double> start = FindStart(places, turns->unseen_rad, steps);
-  return start ? NumbersOf(places, *start) : std::vector<int>{};
+  const std::optional<double> start = FindStart(list->places, list->unseen_rad, steps);
+  if (!start) return {};
+  std::vector<int> numbers = NumbersOf(list->places, *start);
+  if (steps.front() < 0.0) {
+    for (int& number : numbers) number = static_cast<int>(steps.size()) - number;
+  }
+  return numbers;
 }
 
 }  // namespace sextant

@@ -8,13 +8,13 @@
 
 namespace sextant {
 
-/// Ring numbers of returns that are listed ring after ring, in the order of elevation: each ring is
-/// one whole turn, from an azimuth that all rings share, in either sense (KITTI). That order is
-/// evidence enough, so that rings may be wider than the distance to the next one, as those of beams
-/// that start up to 0.2 m beside the origin. Neighbouring turns must be ordered where they have the
-/// same azimuth and distance, and elevations must step where the turns begin, unlike in a spiral.
-/// Empty otherwise, also where less than half a turn was kept of each ring. `returns` are in the
-/// order of the cloud. Time: O(n).
+/// Ring numbers, from the lowest up, of returns that are listed ring after ring in the order of
+/// elevation: each ring is a turn from an azimuth that all share, in either sense (KITTI). That
+/// order is evidence enough, so that rings may be wider than the distance to the next one, as those
+/// of beams that start up to 0.2 m beside the origin or whose motion was removed. Neighbouring
+/// turns must be ordered where they have the same azimuth and distance, and elevations must step
+/// where turns begin, unlike in a spiral. Empty otherwise, or if many turns miss half of their
+/// azimuths. `returns` are in the order of the cloud. Time: O(n).
 std::vector<int> RingsByTurns(std::span<const UnsortedReturn> returns);
 
 }  // namespace sextant
