@@ -13,6 +13,7 @@
 #include "base/units.h"
 #include "features/lidar/rings/ring_following.h"
 #include "features/lidar/rings/ring_order.h"
+#include "features/lidar/rings/ring_turns.h"
 #include "geometry/symmetric.h"
 
 namespace sextant {
@@ -171,7 +172,7 @@ RingNumbers CheckRings(std::span<const UnsortedReturn> returns, std::vector<int>
     const RingSpread about_axis = SpreadOf(numbers, ElevationsAbout(returns, axis));
     if (AreRings(about_axis) && about_axis.spread_rad < 0.5 * about_z.spread_rad &&
         about_z.spread_rad > kNarrow_rad) {
-      return {std::move(numbers), axis};
+      return {.of_return = std::move(numbers), .axis = axis};
     }
   }
   if (AreRings(about_z)) rings.of_return = std::move(numbers);
@@ -190,7 +191,9 @@ RingNumbers RecoverRings(std::span<const UnsortedReturn> returns, std::size_t cl
     rings = CheckRings(returns, std::move(numbers));
     if (!rings.of_return.empty()) return rings;
   }
-  rings.of_return = RingsByFollowing(returns);
+  rings.of_return = RingsByTurns(returns);
+  rings.ascend = !rings.of_return.empty();
+  if (rings.of_return.empty()) rings.of_return = RingsByFollowing(returns);
   if (rings.of_return.empty()) rings.of_return = std::move(repeating);
   return rings;
 }

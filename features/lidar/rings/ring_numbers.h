@@ -19,6 +19,7 @@ struct UnsortedReturn {
 struct RingNumbers {
   std::vector<int> of_return{};  ///< One per return; empty if the scan has no rings.
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< Unit, in the LiDAR frame.
+  bool ascend = false;  ///< Whether numbers are known to ascend with elevation.
 };
 
 /// Checks ring numbers of a file: each must be one elevation about a common axis. The axis is z
@@ -30,9 +31,12 @@ RingNumbers CheckRings(std::span<const UnsortedReturn> returns, std::vector<int>
 /// 1. elevations that repeat exactly, as for beams that start at the origin;
 /// 2. the order of the points: an organised cloud (one row per ring or per column), or returns that
 ///    are listed ring by ring in each column, where invalid returns keep their place;
-/// 3. elevations that change slowly from far returns to near ones, as for beams that start beside
+/// 3. whole turns that follow each other in the order of elevation (ring_turns.h), as in KITTI's
+///    files, however wide the rings are;
+/// 4. elevations that change slowly from far returns to near ones, as for beams that start beside
 ///    the origin, or along the azimuth, as for mirrors that tilt the fan.
-/// `cloud_size` includes invalid points. Time: O(n (log n + rings)).
+/// `returns` are in the order of the cloud; `cloud_size` includes invalid points. Time: O(n (log n
+/// + rings)).
 RingNumbers RecoverRings(std::span<const UnsortedReturn> returns, std::size_t cloud_size);
 
 }  // namespace sextant

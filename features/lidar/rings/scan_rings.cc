@@ -103,6 +103,26 @@ RingNumbers RingsOf(const PointCloud& cloud, const std::vector<UnsortedReturn>& 
   return rings;
 }
 
+// The numbers of the rings that have returns, from the lowest up. Numbers may be sparse or descend
+// with elevation, so rings are sorted by median elevation, unless they are so wide that medians do
+// not tell. The median is taken of the sines, which have the same order.
+std::vector<int> FromTheLowest(const std::vector<RingPoint>& points, const RingNumbers& numbers) {
+  const int highest = *std::ranges::max_element(numbers.of_return);
+  std::vector<std::vector<double>> of_ring(static_cast<std::size_t>(highest) + 1);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    of_ring[static_cast<std::size_t>(numbers.of_return[i])].push_back(points[i].sine);
+  }
+  std::vector<std::pair<double, int>> by_elevation;
+  for (int ring = 0; ring <= highest; ++ring) {
+    std::vector<double>& sines = of_ring[static_cast<std::size_t>(ring)];
+    if (!sines.empty()) by_elevation.emplace_back(UpperMedian(sines), ring);
+  }
+  if (!numbers.ascend) std::ranges::sort(by_elevation);
+  std::vector<int> from_the_lowest;
+  for (const auto& [sine, ring] : by_elevation) from_the_lowest.push_back(ring);
+  return from_the_lowest;
+}
+
 // The rotation that takes the axis to z; x stays as it is as far as possible.
 Eigen::Matrix3d LevelFrom(const Eigen::Vector3d& axis) {
   if (axis == Eigen::Vector3d::UnitZ()) return Eigen::Matrix3d::Identity();
@@ -139,6 +159,7 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
     bands = BandsOf(points);
     numbers.of_return = bands.of_point;
   }
+  scan.numbers_ = FromTheLowest(points, numbers);
   scan.SortByRing(points, numbers.of_return);
   scan.MeasureSteps();
   if (!scan.has_rings_) {
@@ -149,25 +170,15 @@ Expected<ScanRings> ScanRings::Build(const PointCloud& cloud) {
   return scan;
 }
 
-// Ring numbers may be sparse or descend with elevation, so rings are sorted by median elevation.
-// The median is taken of the sines, which have the same order.
+// Sorts the points by the rings of numbers_, and each ring by azimuth.
 void ScanRings::SortByRing(const std::vector<RingPoint>& points, const std::vector<int>& ring_of) {
-  const int highest = *std::ranges::max_element(ring_of);
-  std::vector<std::vector<double>> of_ring(static_cast<std::size_t>(highest) + 1);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    of_ring[static_cast<std::size_t>(ring_of[i])].push_back(points[i].sine);
-  }
-  std::vector<std::pair<double, std::size_t>> by_elevation;
-  for (std::size_t ring = 0; ring < of_ring.size(); ++ring) {
-    if (!of_ring[ring].empty()) by_elevation.emplace_back(UpperMedian(of_ring[ring]), ring);
-  }
-  std::ranges::sort(by_elevation);
-  std::vector<std::size_t> place(of_ring.size(), 0);
+  std::vector<std::size_t> place(1U + static_cast<std::size_t>(std::ranges::max(ring_of)), 0);
+  for (const int ring : ring_of) ++place[static_cast<std::size_t>(ring)];
   starts_.assign(1, 0);
-  for (const auto& [sine, ring] : by_elevation) {
-    place[ring] = starts_.back();
-    numbers_.push_back(static_cast<int>(ring));
-    starts_.push_back(place[ring] + of_ring[ring].size());
+  for (const int number : numbers_) {
+    const std::size_t count =
+        std::exchange(place[static_cast<std::size_t>(number)], starts_.back());
+    starts_.push_back(starts_.back() + count);
   }
   points_.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {

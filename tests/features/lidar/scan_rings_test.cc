@@ -4,17 +4,23 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/random.h"
 #include "base/units.h"
+#include "features/lidar/rings/ring_turns.h"
 #include "io/clouds/pcd_file.h"
+#include "simulator/lidar/lidar_model.h"
+#include "simulator/lidar/scan.h"
+#include "simulator/scene/everyday_scene.h"
 #include "support/real_data.h"
 
 namespace sextant::test {
@@ -212,6 +218,135 @@ TEST(ScanRings, OfARotatedCloudTurnAboutItsOwnAxis) {
   }
 }
 
+// The points in another order: ascending by `key`, those of one key as they were.
+template <typename Key>
+PointCloud Sorted(const PointCloud& cloud, Key key) {
+  std::vector<std::size_t> order(cloud.points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, key);
+  PointCloud sorted;
+  for (const std::size_t i : order) {
+    sorted.points.push_back(cloud.points[i]);
+    sorted.ring.push_back(cloud.ring[i]);
+  }
+  return sorted;
+}
+
+double TurnedFrom(double start_deg, const Eigen::Vector3d& point) {
+  const double azimuth = std::atan2(point.y(), point.x()) - start_deg * kRadPerDeg;
+  return azimuth < 0.0 ? azimuth + 2.0 * std::numbers::pi : azimuth;
+}
+
+// A street seen by a moving HDL-64E, whose two blocks are 13 and 20 cm above the origin, written
+// ring by ring, each from an azimuth on, counter-clockwise. The motion was removed, a metre in a
+// turn from the rear to the rear: rings are wide.
+PointCloud StreetFrom(double start_deg, std::uint64_t seed) {
+  LidarModel model = *FindLidarModel("hdl64e");
+  for (LidarRing& ring : model.rings) {
+    ring.origin_height_m = ring.elevation_rad < -8.5 * kRadPerDeg ? 0.13 : 0.2;
+  }
+  const Scene scene = EverydayScene(EverydayPlace::kStreet, seed);
+  PointCloud scan = SimulateScan(scene, model, {.seed = seed})->cloud;
+  for (Eigen::Vector3d& point : scan.points) {
+    point.x() += 0.5 - TurnedFrom(180.0, point) / (2.0 * std::numbers::pi);
+  }
+  const PointCloud turn =
+      Sorted(scan, [&](std::size_t i) { return TurnedFrom(start_deg, scan.points[i]); });
+  return Sorted(turn, [&](std::size_t i) { return 63 - turn.ring[i]; });
+}
+
+// Without the returns between two azimuths of every third ring.
+PointCloud WithGaps(const PointCloud& cloud, double from_deg, double to_deg) {
+  PointCloud kept;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const double turned_deg = TurnedFrom(0.0, cloud.points[i]) * kDegPerRad;
+    if (cloud.ring[i] % 3 == 0 && turned_deg > from_deg && turned_deg < to_deg) continue;
+    kept.points.push_back(cloud.points[i]);
+    kept.ring.push_back(cloud.ring[i]);
+  }
+  return kept;
+}
+
+TEST(ScanRings, AreRecoveredFromTurnsHoweverWideTheyAre) {
+  for (const std::uint64_t seed : {1U, 2U}) {
+    const PointCloud scan = StreetFrom(0.0, seed);
+    ExpectRings(scan, 64, "from azimuth 0 on");
+    ExpectRings(StreetFrom(70.0, seed), 64, "from azimuth 70 on");
+    ExpectRings(WithGaps(scan, 0.0, 20.0), 64, "without the first returns of some rings");
+    ExpectRings(WithGaps(scan, 350.0, 360.0), 64, "without the last returns of some rings");
+    PointCloud backwards = scan;
+    std::ranges::reverse(backwards.points);
+    std::ranges::reverse(backwards.ring);
+    ExpectRings(backwards, 64, "clockwise, from the lowest ring up");
+  }
+}
+
+std::vector<int> TurnsOf(const PointCloud& cloud) {
+  std::vector<UnsortedReturn> returns;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    returns.push_back({cloud.points[i].normalized(), cloud.points[i].norm(), i});
+  }
+  return RingsByTurns(returns);
+}
+
+// What elevation(azimuth) sees of a room, azimuths from 0 to the end.
+template <typename Elevation>
+PointCloud Swept(double end_rad, Elevation elevation) {
+  PointCloud cloud;
+  for (double a = 0.0; a < end_rad; a += 0.5 * kRadPerDeg) {
+    const double range = 6.0 + 2.0 * std::sin(3.0 * a);
+    const double e = elevation(a);
+    cloud.points.emplace_back(range * std::cos(e) * std::cos(a), range * std::cos(e) * std::sin(a),
+                              range * std::sin(e));
+  }
+  return cloud;
+}
+
+TEST(ScanRings, TurnsAreRingsOnlyIfTheyAreLevel) {
+  const double turn = 2.0 * std::numbers::pi;
+  const auto level = [&](double a) { return -0.3 + 0.01 * std::floor(a / turn); };
+  const auto spiral = [&](double a) { return -0.3 + 0.01 * a / turn; };
+  const auto rosette = [&](double a) { return 0.4 * std::sin(0.37 * a); };
+  const auto woven = [&](double a) { return level(a) + 0.1 * std::sin(2.5 * a); };
+  const auto slow_rosette = [&](double a) { return 0.3 * std::sin(0.02 * a); };
+  EXPECT_FALSE(TurnsOf(Swept(40.0 * turn, level)).empty());
+  EXPECT_TRUE(TurnsOf(Swept(12.0 * turn, level)).empty()) << "too few";
+  EXPECT_TRUE(TurnsOf(Swept(40.0 * turn, spiral)).empty());
+  EXPECT_TRUE(TurnsOf(Swept(40.0 * turn, rosette)).empty());
+  EXPECT_TRUE(TurnsOf(Swept(40.0 * turn, slow_rosette)).empty());
+  EXPECT_TRUE(TurnsOf(Swept(40.0 * turn, woven)).empty());
+}
+
+TEST(ScanRings, TurnsAreRingsOnlyIfTheyFollowEachOther) {
+  const PointCloud scan = StreetFrom(0.0, 1);
+  ASSERT_FALSE(TurnsOf(scan).empty());
+  const auto sorted = [&](auto key) { return TurnsOf(Sorted(scan, key)); };
+  EXPECT_TRUE(sorted([&](std::size_t i) { return TurnedFrom(0.0, scan.points[i]); }).empty())
+      << "by column";
+  EXPECT_TRUE(sorted([&](std::size_t i) { return 27 * scan.ring[i] % 64; }).empty())
+      << "not in the order of elevation";
+  Random random(1);
+  std::vector<double> any;
+  while (any.size() < scan.points.size()) any.push_back(random.Uniform());
+  EXPECT_TRUE(sorted([&](std::size_t i) { return any[i]; }).empty()) << "shuffled";
+  PointCloud twice = scan;
+  twice.points.insert(twice.points.end(), scan.points.begin(), scan.points.end());
+  EXPECT_TRUE(TurnsOf(twice).empty()) << "accumulated";
+}
+
+TEST(ScanRings, TurnsAreRingsOnlyIfTheyGoRound) {
+  PointCloud front;
+  for (const Eigen::Vector3d& point : StreetFrom(0.0, 1).points) {
+    if (point.x() > std::abs(point.y())) front.points.push_back(point);
+  }
+  EXPECT_TRUE(TurnsOf(front).empty()) << "cropped to a quarter of each turn";
+  PointCloud ground;
+  for (double x = 5.0; x < 15.0; x += 0.25) {
+    for (double y = -10.0; y < 10.0; y += 0.05) ground.points.emplace_back(x, y, -1.7);
+  }
+  EXPECT_TRUE(TurnsOf(ground).empty()) << "a grid of heights";
+}
+
 // The number of rings with returns in one scan of each sensor.
 TEST(ScanRings, OfRealSensorsWithoutARingField) {
   SEXTANT_REAL_DATA(folder, "field/rings");
@@ -245,6 +380,35 @@ TEST(ScanRings, OfARealSensorWhoseBeamsStartBesideTheOrigin) {
     ASSERT_TRUE(rings);
     EXPECT_EQ(rings->rings(), 16) << name;
     EXPECT_NEAR(rings->azimuth_step_rad(), 0.2 * kRadPerDeg, 0.01 * kRadPerDeg) << name;
+  }
+}
+
+// Each begins at azimuth 0, the highest first. Returns of a laser beside the axis may have a
+// slightly negative azimuth at the beginning of a turn.
+TEST(ScanRings, OfKittiAreTheTurnsOfItsFiles) {
+  SEXTANT_REAL_DATA(folder, "field/kitti/pcd");
+  for (const char* name : {"000000", "000649", "001297", "001946", "002595", "003244", "003892"}) {
+    const Expected<PointCloud> cloud = ReadPcd(folder / (std::string(name) + ".pcd"));
+    ASSERT_TRUE(cloud) << cloud.error().message;
+    const Expected<ScanRings> rings = ScanRings::Build(*cloud);
+    ASSERT_TRUE(rings);
+    EXPECT_TRUE(rings->has_rings()) << name;
+    ASSERT_EQ(rings->rings(), 64) << name;
+    EXPECT_NEAR(rings->azimuth_step_rad(), 0.18 * kRadPerDeg, 0.01 * kRadPerDeg) << name;
+    std::vector<int> turns(1, 0);
+    for (std::size_t i = 1; i < cloud->points.size(); ++i) {
+      const Eigen::Vector3d& last = cloud->points[i - 1];
+      const Eigen::Vector3d& now = cloud->points[i];
+      const bool begins = now.x() > 0.0 && last.y() < 0.0 && now.y() >= 0.0;
+      turns.push_back(turns.back() + (begins ? 1 : 0));
+    }
+    int others = 0;
+    for (int ring = 0; ring < 64; ++ring) {
+      for (const RingPoint& point : rings->ring(ring)) {
+        others += turns[static_cast<std::size_t>(point.index)] != 63 - ring ? 1 : 0;
+      }
+    }
+    EXPECT_LE(others, 10) << name;
   }
 }
 
