@@ -130,8 +130,9 @@ Expected<void> DrawScan(const std::string& scan, const ScanReport& report,
   cv::putText(panorama.canvas(),
               fmt::format("{}: as seen from the LiDAR, near blue to far red", scan), {12, 28},
               cv::FONT_HERSHEY_SIMPLEX, 0.6, {255, 255, 255}, 1, cv::LINE_AA);
-  SEXTANT_ASSIGN_OR_RETURN(const std::string png, EncodeImage(".png", panorama.canvas()));
-  return WriteFileAtomically(out, png);
+  SEXTANT_ASSIGN_OR_RETURN(const std::string bytes,
+                           EncodeImage(out.extension().string(), panorama.canvas()));
+  return WriteFileAtomically(out, bytes);
 }
 
 }  // namespace sextant

@@ -10,9 +10,9 @@
 namespace sextant {
 
 /// Draws the scan around its boards as seen from the sensor: azimuth to the right, elevation up,
-/// returns coloured by range, with the outlines and corners found. The file (.png) is written whole
-/// or not at all.
-/// Errors: kIo, and those of ReadCloud.
+/// returns coloured by range, with the outlines and corners found. The file (.png, .jpg, by its
+/// name) is written whole or not at all.
+/// Errors: kIo, kInvalidOption for another extension, and those of ReadCloud.
 Expected<void> DrawScan(const std::string& scan, const ScanReport& report,
                         const std::vector<Board>& boards, const std::filesystem::path& out);
 

@@ -46,7 +46,7 @@ void Declare(BoardsOptions& options, Arguments& arguments) {
                 "Use the edges marked with sextant mark instead of a search");
   DeclareSearch(options.search, arguments);
   arguments.Add("--overlay", options.overlay_path,
-                "Draw the scan around the boards with their corners (.png; one scan)",
+                "Draw the scan around the boards with their corners (.png or .jpg; one scan)",
                 {.writes = Writes::kFile});
   arguments.Add("--json", options.json_path, "Write the results as JSON; - for standard output",
                 {.writes = Writes::kFileOrStandardOutput});

@@ -113,8 +113,8 @@ TEST_F(RealKinds, TheUsedShareIsOfTheSolversKindOfPairs) {
   }
   const std::string text = FormatProblemYaml(file);
   WriteText(TestFolder() / "data" / "both.yaml", text);
-  WriteText(TestFolder() / "both.yaml", Manifest("both.yaml", text.size(), Crc32(text)));
-  const Expected<Experiment> experiment = Parse("  - {name: a, manifest: both.yaml}\n");
+  WriteText(TestFolder() / "both_set.yaml", Manifest("both.yaml", text.size(), Crc32(text)));
+  const Expected<Experiment> experiment = Parse("  - {name: a, manifest: both_set.yaml}\n");
   ASSERT_TRUE(experiment) << experiment.error().message;
   // The first solver, kabsch, uses every 3D-3D pair.
   for (const double share : Values(*experiment, "used_share")) EXPECT_EQ(share, 1.0);
