@@ -52,7 +52,7 @@ struct ArgumentRules {
   std::vector<std::string> offers{};     ///< What shells complete where there are no choices.
   std::string excludes{};                ///< Name of an option that may not be given as well.
   std::string needs{};  ///< Name of an option without which this one would have no effect.
-  Writes writes = Writes::kNothing;      ///< Only for strings.
+  Writes writes = Writes::kNothing;  ///< Only for strings.
 };
 
 /// An option ("--json") or a positional argument ("FILE").
