@@ -9,6 +9,7 @@
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "eval/experiment/definition/trials.h"
 #include "eval/statistics/text_table.h"
 #include "io/output/standard_output.h"
 #include "solvers/all/all_solvers.h"
@@ -62,7 +63,7 @@ int Run(const ReproduceOptions& options) {
                              .threads = options.threads};
   if (settings.out.empty()) settings.out = options.quick ? "build/paper-quick" : "paper";
   settings.progress = progress.Callback();
-  const Expected<Reproduction> reproduction = Reproduce(settings, AllSolvers());
+  const Expected<Reproduction> reproduction = Reproduce(settings, BuiltinKinds(), AllSolvers());
   if (!reproduction) return Refuse("reproduce", reproduction.error());
   TextTable table({"claim", "printed", "ours [95 %]", "verdict"}, TextTable::Columns::kWords);
   for (const JudgedClaim& judged : reproduction->claims) {

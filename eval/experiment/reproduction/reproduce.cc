@@ -25,10 +25,11 @@ struct Done {
 };
 
 Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const std::string& name,
+                                       const std::vector<TrialKind>& kinds,
                                        const SolverRegistry& registry) {
   SEXTANT_ASSIGN_OR_RETURN(
       Experiment experiment,
-      ReadExperiment(settings.experiments / (name + ".yaml"), BuiltinKinds(), registry));
+      ReadExperiment(settings.experiments / (name + ".yaml"), kinds, registry));
   const bool is_recording = experiment.trials == 1;
   if (settings.quick) experiment.trials = experiment.quick_trials;
   const fs::path folder = settings.out / name;
@@ -51,6 +52,7 @@ Expected<std::unique_ptr<Done>> RunOne(const ReproduceSettings& settings, const 
 }  // namespace
 
 Expected<Reproduction> Reproduce(const ReproduceSettings& settings,
+                                 const std::vector<TrialKind>& kinds,
                                  const SolverRegistry& registry) {
   const auto start = std::chrono::steady_clock::now();
   SEXTANT_ASSIGN_OR_RETURN(const ClaimsFile file, ReadClaims(settings.claims));
@@ -62,7 +64,7 @@ Expected<Reproduction> Reproduce(const ReproduceSettings& settings,
   std::map<std::string, std::unique_ptr<Done>> done;
   std::map<std::string, RowsOf> rows;
   for (const std::string& name : file.experiments) {
-    Expected<std::unique_ptr<Done>> one = RunOne(settings, name, registry);
+    Expected<std::unique_ptr<Done>> one = RunOne(settings, name, kinds, registry);
     if (!one && one.error().code == ErrorCode::kMissingData) {
       reproduction.skipped.push_back(name + ": " + one.error().message);
       continue;

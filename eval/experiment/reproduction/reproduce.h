@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "eval/experiment/definition/trials.h"
 #include "eval/experiment/reproduction/judge_claim.h"
 #include "solvers/core/registry.h"
 
@@ -33,7 +35,9 @@ struct Reproduction {
 /// all claims to out/REPRODUCTION.md. Rows are stored in out/NAME/rows.sxtrows, so an interrupted
 /// run can be continued. Except for plots, the bytes do not depend on the number of threads.
 /// Errors: those of reading and running experiments and of judging claims; kIo.
-Expected<Reproduction> Reproduce(const ReproduceSettings& settings, const SolverRegistry& registry);
+Expected<Reproduction> Reproduce(const ReproduceSettings& settings,
+                                 const std::vector<TrialKind>& kinds,
+                                 const SolverRegistry& registry);
 
 /// The page in Markdown. `command` is the command that wrote it.
 std::string FormatReproduction(const ClaimsFile& file, const std::vector<JudgedClaim>& claims,
