@@ -232,8 +232,8 @@ ParsedLine LineOf(const Chosen& chosen, const CLI::App& app, bool overwrites) {
   if (chosen.command->declare) chosen.command->declare(arguments);
   const GivenOptions given = GivenOf(arguments, app);
   if (arguments.given() != nullptr) *arguments.given() = given;
-  if (std::string error = NeededOption(arguments, given); !error.empty()) {
-    return {.exit_code = kWrongUse, .err = std::move(error)};
+  if (const std::string error = NeededOption(arguments, given); !error.empty()) {
+    return {.exit_code = kWrongUse, .err = fmt::format("sextant {}: {}", chosen.name, error)};
   }
   for (const Argument& argument : arguments.all()) {
     const std::string error = AddOutput(argument, line.outputs);

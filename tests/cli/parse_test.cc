@@ -179,7 +179,8 @@ TEST(Parse, RefusesValuesThatTheRulesForbid) {
 
 TEST(Parse, RefusesAnOptionWithoutTheOneThatItIsAbout) {
   EXPECT_EQ(ErrorOf({"all", "a", "--direction", "up"}),
-            "--direction has no effect without --pose: add --pose, or leave --direction out\n");
+            "sextant all: --direction has no effect without --pose: add --pose, or leave "
+            "--direction out\n");
   EXPECT_EQ(RunLine({"all", "a", "--direction", "up", "--pose", "1"}), 5);
 }
 
