@@ -69,9 +69,9 @@ bool BeginsWithMatrix(std::string_view text) {
          std::string_view("+-.0123456789").find(text[begin]) != std::string_view::npos;
 }
 
-Expected<RigResult> ResultOfTransforms(const RigCommandOptions& options, std::string_view text) {
-  SEXTANT_ASSIGN_OR_RETURN(const std::vector<Rigid3d> transforms,
-                           ParseTransformList(text, options.path));
+Expected<RigResult> ResultOfTransforms(const RigCommandOptions& options,
+                                       const Expected<std::vector<Rigid3d>>& transforms) {
+  if (!transforms) return tl::unexpected(transforms.error());
   if (!options.root.empty() || options.estimate_time) {
     return MakeError(
         ErrorCode::kInvalidOption,
@@ -79,14 +79,13 @@ Expected<RigResult> ResultOfTransforms(const RigCommandOptions& options, std::st
                     "out",
                     options.root.empty() ? "--estimate-time" : "--root", PathText(options.path)));
   }
-  return RigOfTransforms(transforms);
+  return RigOfTransforms(*transforms);
 }
 
 Expected<RigResult> ResultFrom(const RigCommandOptions& options) {
   SEXTANT_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(options.path));
-  if (BeginsWithMatrix(text) || ParseTransformList(text, options.path)) {
-    return ResultOfTransforms(options, text);
-  }
+  const Expected<std::vector<Rigid3d>> transforms = ParseTransformList(text, options.path);
+  if (transforms || BeginsWithMatrix(text)) return ResultOfTransforms(options, transforms);
   SEXTANT_ASSIGN_OR_RETURN(RigFile rig, ParseRigFile(text, options.path));
   SEXTANT_RETURN_IF_ERROR(ChooseRoot(options.root, rig));
   Progress progress;
