@@ -198,7 +198,7 @@ class Fitter {
     const Eigen::Vector2d half =
         inner ? Eigen::Vector2d(0.5 * board_.hole->width_m, 0.5 * board_.hole->height_m) : half_;
     const Eigen::Vector2d q = in_board - offset;
-    const int side = inner ? EnteredSide(q, out, half) : LeftSide(q, out, half);
+    const int side = inner ? LeftSide(q, -out, half) : LeftSide(q, out, half);
     const Eigen::Vector2d& normal = kNormals[static_cast<std::size_t>(side)];
     SidePlace place;
     place.side = inner ? side + kCornersPerBoard : side;
@@ -391,7 +391,8 @@ class Fitter {
     return interval;
   }
 
-  // The side through which a line from q along `out` leaves the rectangle.
+  // The side through which a line from q along `out` leaves the rectangle; along -`out`, the one
+  // through which it enters.
   static int LeftSide(const Eigen::Vector2d& q, const Eigen::Vector2d& out,
                       const Eigen::Vector2d& half) {
     int side = 0;
@@ -403,24 +404,6 @@ class Fitter {
       const double t = (normal.cwiseAbs().dot(half) - normal.dot(q)) / along;
       if (t < soonest) {
         soonest = t;
-        side = k;
-      }
-    }
-    return side;
-  }
-
-  // The side through which such a line enters the rectangle.
-  static int EnteredSide(const Eigen::Vector2d& q, const Eigen::Vector2d& out,
-                         const Eigen::Vector2d& half) {
-    int side = 0;
-    double latest = std::numeric_limits<double>::lowest();
-    for (int k = 0; k < kCornersPerBoard; ++k) {
-      const Eigen::Vector2d& normal = kNormals[static_cast<std::size_t>(k)];
-      const double along = normal.dot(out);
-      if (along > -1e-9) continue;
-      const double t = (normal.cwiseAbs().dot(half) - normal.dot(q)) / along;
-      if (t > latest) {
-        latest = t;
         side = k;
       }
     }
