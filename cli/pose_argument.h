@@ -15,8 +15,9 @@ namespace sextant::cli {
 
 /// Help on the files that are read as a pose.
 inline constexpr const char* kPoseHelp =
-    "result.yaml, a 4x4 matrix, KITTI's calib.txt, a TransformStamped (YAML), a static transform\n"
-    "of ROS 1 or 2, a URDF, x y z qx qy qz qw, or JSON; recognised by its content";
+    "result.yaml, truth.yaml (truth.yaml:CAMERA of several), a 4x4 matrix, KITTI's calib.txt, a\n"
+    "TransformStamped (YAML), a static transform of ROS 1 or 2, a URDF, x y z qx qy qz qw, or\n"
+    "JSON; recognised by its content";
 
 /// --pose-is: the direction of poses whose file does not state it. `of`: the option that gives the
 /// poses; empty: a required argument does.

@@ -23,6 +23,12 @@ bool IsKitti(std::string_view text, const std::string& file) {
   return false;
 }
 
+// The truth of a simulated session begins with this key.
+bool IsTruth(std::string_view text, const std::string& file) {
+  LineReader in(file, text);
+  return in.Next() && in.Field(0) == "sextant_truth:";
+}
+
 bool BeginsWithNumber(std::string_view text, const std::string& file) {
   LineReader in(file, text);
   return in.Next() && ParseFinite(in.Field(0), {}).has_value();
@@ -60,11 +66,12 @@ Expected<StatedPose> ParsePose(std::string_view text, const std::string& file,
                                std::string_view name) {
   if (IsKitti(text, file)) return ParsePoseKitti(text, file, name);
   if (!IsXml(text) && BeginsWithNumber(text, file)) return ParsePoseNumbers(text, file, name);
+  if (IsTruth(text, file)) return ParsePoseTruth(text, file, name);
   if (!name.empty()) {
     return MakeError(
         ErrorCode::kParse,
-        fmt::format("{}: has nothing named {}; only a camera of KITTI's calibration and a matrix "
-                    "of several can be chosen",
+        fmt::format("{}: has nothing named {}; only a camera of KITTI's calibration or of "
+                    "truth.yaml, and a matrix of several, can be chosen",
                     file, Quoted(name)));
   }
   if (IsXml(text)) return ParsePoseXml(text, file);

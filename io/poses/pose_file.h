@@ -33,6 +33,7 @@ struct StatedPose {
 /// Reads a pose from any of these, recognised by the content:
 /// - result.yaml of sextant calibrate or its JSON, JSON of sextant solve (its first answer), and
 ///   any YAML or JSON with the key cam_from_lidar or lidar_from_cam (also as OpenCV's matrix);
+/// - truth.yaml of sextant simulate; truth.yaml:left chooses the camera of several;
 /// - geometry_msgs/TransformStamped as YAML, alone or as the list `transforms` of a TFMessage;
 /// - static transforms of ROS 1 (.launch) and ROS 2 (.launch.py, YAML), joints of a URDF;
 /// - KITTI's calibration: Tr_velo_to_cam or Tr, rotated by R0_rect and moved by the fourth column
@@ -60,8 +61,8 @@ struct PoseText {
 };
 Expected<PoseText> ReadPoseText(const std::filesystem::path& path);
 
-/// `name` chooses the camera of a KITTI file, or the number of a matrix from 1; empty: the only
-/// one.
+/// `name` chooses the camera of a KITTI file or of truth.yaml, or the number of a matrix from 1;
+/// empty: the only one.
 Expected<StatedPose> ParsePose(std::string_view text, const std::string& file,
                                std::string_view name = {});
 

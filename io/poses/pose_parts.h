@@ -53,6 +53,9 @@ Expected<FrameTransform> PublishedTransform(std::string_view arguments, const st
                                             int line);
 
 Expected<StatedPose> ParsePoseYaml(std::string_view text, const std::string& file);
+/// The camera `name` of the truth of a simulated session; empty: the only one.
+Expected<StatedPose> ParsePoseTruth(std::string_view text, const std::string& file,
+                                    std::string_view name);
 Expected<StatedPose> ParsePoseXml(std::string_view text, const std::string& file);
 Expected<StatedPose> ParsePoseLaunch(std::string_view text, const std::string& file);
 Expected<StatedPose> ParsePoseKitti(std::string_view text, const std::string& file,

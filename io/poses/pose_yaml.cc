@@ -11,6 +11,8 @@
 namespace sextant {
 namespace {
 
+constexpr std::size_t kMaxTruthCameras = 1000;
+
 bool IsMapNode(const YamlNode* node) {
   return node != nullptr && node->kind == YamlNode::Kind::kMap;
 }
@@ -160,6 +162,31 @@ Expected<StatedPose> FromSolve(std::string_view text, const std::string& file) {
   return MakeError(ErrorCode::kMissingData, file + ": expected a result with an answer");
 }
 
+// The camera with the name; without one, the only camera.
+Expected<const YamlNode*> ChosenCamera(YamlFields& in, const YamlNode& root,
+                                       std::string_view name) {
+  const YamlNode& cameras = in.Require(root, "cameras");
+  std::string all;
+  const YamlNode* chosen = nullptr;
+  if (in.ok() && in.IsSequence(cameras, "cameras", kMaxTruthCameras)) {
+    for (const YamlNode& camera : cameras.items) {
+      const std::string its_name = in.TextAt(camera, "camera");
+      if (its_name == name || (name.empty() && cameras.items.size() == 1)) chosen = &camera;
+      all += (all.empty() ? "" : ", ") + its_name;
+    }
+  }
+  if (!in.ok()) return in.TakeError();
+  if (chosen != nullptr) return chosen;
+  if (!name.empty()) {
+    return MakeError(ErrorCode::kUnknownName, fmt::format("{}: has no camera {}; there are: {}",
+                                                          in.file(), Quoted(name), all));
+  }
+  return MakeError(ErrorCode::kInvalidOption,
+                   fmt::format("{0}: expected the name of one of its cameras behind a colon, as in "
+                               "{0}:NAME; there are: {1}",
+                               in.file(), all.empty() ? "none" : all));
+}
+
 // `ros2 topic echo` ends each message with this line.
 std::string_view FirstMessage(std::string_view text) {
   while (text.ends_with('\n') || text.ends_with('\r')) text.remove_suffix(1);
@@ -168,6 +195,21 @@ std::string_view FirstMessage(std::string_view text) {
 }
 
 }  // namespace
+
+Expected<StatedPose> ParsePoseTruth(std::string_view text, const std::string& file,
+                                    std::string_view name) {
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(text, file));
+  YamlFields in(file);
+  SEXTANT_ASSIGN_OR_RETURN(const YamlNode* camera, ChosenCamera(in, root, name));
+  const YamlNode& pose = in.Require(*camera, "cam_from_lidar");
+  if (!in.ok()) return in.TakeError();
+  SEXTANT_ASSIGN_OR_RETURN(const Rigid3d cam_from_lidar, KeyedPose(in, pose));
+  return StatedPose{.transform = cam_from_lidar,
+                    .direction = PoseDirection::kCamFromLidar,
+                    .basis = "its key cam_from_lidar",
+                    .camera_frame = "camera",
+                    .lidar_frame = "lidar"};
+}
 
 Expected<StatedPose> ParsePoseYaml(std::string_view text, const std::string& file) {
   SEXTANT_ASSIGN_OR_RETURN(const YamlNode root, ParseYaml(FirstMessage(text), file));

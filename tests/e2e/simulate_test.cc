@@ -182,6 +182,13 @@ TEST(Simulate, TheFastLevelsWriteProblemFiles) {
         RunSextant("compare " + out + "/" + level + "_cam.yaml --solvers " + solver);
     EXPECT_EQ(compared.exit_code, 0) << compared.err;
     EXPECT_THAT(compared.out, HasSubstr("error [mm]"));
+    const std::string of_truth = "compare " + out + "/" + level + "_cam.yaml --solvers " + solver +
+                                 " --truth " + out + "/truth.yaml";
+    const ProgramRun with_truth = RunSextant(of_truth + ":cam");
+    EXPECT_EQ(with_truth.exit_code, 0) << with_truth.err;
+    EXPECT_THAT(with_truth.out, HasSubstr("error [mm]"));
+    EXPECT_EQ(RunSextant(of_truth).exit_code, 0);
+    test::ExpectRefused(RunSextant(of_truth + ":left"), "has no camera 'left'; there are: cam");
     const ProgramRun with_boards =
         RunSextant("compare " + out + "/" + level + "_cam.yaml --solvers " + solver + " --boards " +
                    out + "/boards.yaml");

@@ -243,6 +243,35 @@ TEST(PoseFile, AsksWhichOfSeveralMatrices) {
   EXPECT_THAT(none.error().message, HasSubstr("number of a matrix from 1 to 2, got '3'"));
 }
 
+// One camera of the truth of a simulated session.
+std::string TruthCamera(const std::string& name, const Rigid3d& pose) {
+  const Eigen::Vector3d& t = pose.translation;
+  const Eigen::Quaterniond& q = pose.rotation;
+  return fmt::format(
+      "  - camera: {}\n    cam_from_lidar: {{translation_m: [{}, {}, {}], quaternion_wxyz: [{}, "
+      "{}, "
+      "{}, {}]}}\n",
+      name, t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
+}
+
+TEST(PoseFile, ReadsTheTruthOfASimulationByTheCamerasName) {
+  const std::string head = "sextant_truth: 1\nscene: small\nseed: 1\ncameras:\n";
+  const std::string one = head + TruthCamera("left", ForwardPose());
+  ExpectPose(one);
+  EXPECT_THAT(ErrorOf(one, PoseDirection::kLidarFromCam), HasSubstr("contradicts"));
+  const Rigid3d second{ForwardPose().rotation, {0.5, 0.0, 0.0}};
+  const std::string two = one + TruthCamera("right", second);
+  EXPECT_THAT(ErrorOf(two), HasSubstr("pose.txt:NAME; there are: left, right"));
+  const Expected<StatedPose> chosen = ParsePose(two, "truth.yaml", "right");
+  ASSERT_TRUE(chosen) << chosen.error().message;
+  EXPECT_LT(PoseDifference(chosen->transform, second).norm(), 1e-12);
+  const Expected<StatedPose> none = ParsePose(two, "truth.yaml", "rear");
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().message, HasSubstr("has no camera 'rear'; there are: left, right"));
+  EXPECT_THAT(ErrorOf(head + "  []\n"), HasSubstr("there are: none"));
+  EXPECT_THAT(ErrorOf(head + "  - {camera: left}\n"), HasSubstr("cam_from_lidar"));
+}
+
 TEST(PoseFile, RefusesWhatIsNoPose) {
   EXPECT_THAT(ErrorOf("a: 1\n"), HasSubstr("expected a pose"));
   EXPECT_THAT(ErrorOf("<robot></robot>"), HasSubstr("expected a static_transform_publisher"));
