@@ -6,7 +6,9 @@
 #include <cmath>
 #include <optional>
 
+#include "base/units.h"
 #include "geometry/coordinate_range.h"
+#include "geometry/so3.h"
 #include "io/export/export_rig.h"
 #include "io/output/standard_output.h"
 #include "io/text/number_text.h"
@@ -49,6 +51,18 @@ std::optional<PoseDirection> AskedDirection(const std::string& pose_is) {
                                                            : PoseDirection::kLidarFromCam;
 }
 
+PoseDirection OtherThan(PoseDirection direction) {
+  return direction == PoseDirection::kCamFromLidar ? PoseDirection::kLidarFromCam
+                                                   : PoseDirection::kCamFromLidar;
+}
+
+// Of a direction that only the user states, or the default.
+void WarnOfAxes(const std::string& source, const Rigid3d& transform, PoseDirection read_as) {
+  if (const auto doubt = DoubtOfDirection(transform, read_as)) {
+    PrintError("warning: {}: {}\n", source, *doubt);
+  }
+}
+
 bool IsUpright(const Rigid3d& cam_from_lidar) {
   return (cam_from_lidar.rotation * Eigen::Vector3d::UnitZ()).y() < -0.7;
 }
@@ -62,6 +76,8 @@ void WarnOfNumbers(const std::string& option, const Rigid3d& pose, const std::st
   for (const std::string& doubt : DoubtsOf({}, cam_from_lidar(pose))) {
     PrintError("warning: {}: {}\n", option, doubt);
   }
+  WarnOfAxes(option, pose,
+             is_inverse ? PoseDirection::kLidarFromCam : PoseDirection::kCamFromLidar);
   const Eigen::Quaterniond& q = pose.rotation;
   const Rigid3d other{Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()), pose.translation};
   if (!IsUpright(cam_from_lidar(pose)) && IsUpright(cam_from_lidar(other))) {
@@ -79,6 +95,7 @@ Expected<Rigid3d> CamFromLidarWithNote(const StatedPose& pose, const std::string
   for (const std::string& doubt : DoubtsOf(pose, cam_from_lidar)) {
     PrintError("warning: {}: {}\n", path, doubt);
   }
+  if (asked && pose.camera_frame.empty()) WarnOfAxes(path, pose.transform, *asked);
   if (!asked && pose.camera_frame.empty()) {
     PrintError("{}: read as {}: {}. If it is not, add --pose-is\n", path, ToString(*pose.direction),
                pose.basis);
@@ -181,6 +198,24 @@ Expected<Rigid3d> PoseFromArgument(const std::string& option,
   SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, PoseFromNumbers(option, values));
   WarnOfNumbers(option, pose, pose_is);
   return AskedDirection(pose_is) == PoseDirection::kLidarFromCam ? pose.Inverse() : pose;
+}
+
+void WarnOfDirection(const std::string& option, const std::vector<std::string>& values,
+                     const std::string& pose_is, const Rigid3d& given, const Rigid3d& answer) {
+  constexpr double kFar_rad = 45.0 * kRadPerDeg;
+  constexpr double kNear_rad = 15.0 * kRadPerDeg;
+  const double apart_rad = RotationDistance(given.rotation, answer.rotation);
+  const double inverse_rad = RotationDistance(given.rotation.conjugate(), answer.rotation);
+  if (apart_rad < kFar_rad || inverse_rad > kNear_rad) return;
+  // What a file states is not known here.
+  const bool is_known = !pose_is.empty() || values.size() != 1;
+  const PoseDirection read_as = AskedDirection(pose_is).value_or(PoseDirection::kCamFromLidar);
+  PrintError(
+      "warning: {}: the pose is {:.0f} deg from the answer, but its inverse {:.0f} deg; it "
+      "seems to be {}\n",
+      option, apart_rad * kDegPerRad, inverse_rad * kDegPerRad,
+      is_known ? fmt::format("{0} (--pose-is {0})", ToString(OtherThan(read_as)))
+               : "of the other direction than its file states");
 }
 
 Expected<GivenPose> GivenPoseOfFile(const std::string& path, const std::string& pose_is,

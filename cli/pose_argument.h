@@ -34,6 +34,12 @@ Expected<Rigid3d> PoseFromArgument(const std::string& option,
                                    const std::vector<std::string>& values,
                                    const std::string& pose_is);
 
+/// A warning on standard error where the inverse of a given pose has the rotation of an answer (to
+/// 15 deg) and the pose itself is more than 45 deg off. `given`: what PoseFromArgument returned for
+/// the other arguments.
+void WarnOfDirection(const std::string& option, const std::vector<std::string>& values,
+                     const std::string& pose_is, const Rigid3d& given, const Rigid3d& answer);
+
 /// Two sensors of a rig; an empty name is not chosen.
 struct PairNames {
   std::string camera{};

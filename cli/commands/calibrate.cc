@@ -14,6 +14,7 @@
 #include "cli/calibrate_arguments.h"
 #include "cli/commands/commands.h"
 #include "cli/output.h"
+#include "cli/pose_argument.h"
 #include "cli/progress.h"
 #include "cli/report_file.h"
 #include "cli/rig_output.h"
@@ -180,9 +181,17 @@ Expected<void> ClaimResult(const std::string& path) {
 Expected<Calibration> CalibrateWithProgress(const CalibrateCommandOptions& options) {
   SEXTANT_ASSIGN_OR_RETURN(const Session session, SessionFrom(options));
   SEXTANT_ASSIGN_OR_RETURN(CalibrateOptions settings, SettingsFrom(options));
-  Progress progress;
-  settings.progress = progress.Callback();
-  return Calibrate(session, settings);
+  const auto calibrate = [&] {
+    Progress progress;
+    settings.progress = progress.Callback();
+    return Calibrate(session, settings);
+  };
+  Expected<Calibration> calibration = calibrate();
+  if (calibration && calibration->result && settings.match.initial) {
+    WarnOfDirection("--initial", options.how.initial, options.how.pose_is, *settings.match.initial,
+                    calibration->result->cam_from_lidar);
+  }
+  return calibration;
 }
 
 // The result first: where the disk is full, it is worth most. The first error; the files after it

@@ -134,6 +134,10 @@ int Run(const CompareOptions& options) {
                                      [](const ComparisonRow& row) { return !row.report; });
     PrintNoAnswer("compare", options.input, *input, *failed);
   }
+  if (answered && !options.truth.empty() && rows.front().report) {
+    WarnOfDirection("--truth", options.truth, options.pose_is, **truth,
+                    rows.front().report->cam_from_lidar);
+  }
   const std::string text = answered ? DescribeComparison(scored) : std::string();
   const int code = DeliverAnswers("compare", options.input, *input, rows, text, answered);
   // After the answers, which do not need gnuplot; without any there is nothing to draw.

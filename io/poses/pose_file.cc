@@ -126,4 +126,13 @@ std::vector<std::string> DoubtsOf(const StatedPose& pose, const Rigid3d& cam_fro
   return doubts;
 }
 
+std::optional<std::string> DoubtOfDirection(const Rigid3d& transform, PoseDirection read_as) {
+  StatedPose by_axes{.transform = transform};
+  RecogniseByAxes(by_axes);
+  if (!by_axes.direction || *by_axes.direction == read_as) return std::nullopt;
+  return fmt::format(
+      "read as {}, the camera is not upright; read as {}, it would be (--pose-is {})",
+      ToString(read_as), ToString(*by_axes.direction), ToString(*by_axes.direction));
+}
+
 }  // namespace sextant

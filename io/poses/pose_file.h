@@ -75,4 +75,8 @@ Expected<Rigid3d> CamFromLidar(const StatedPose& pose, std::optional<PoseDirecti
 /// axis along the z axis of the LiDAR, unless it is a result of calibrate.
 std::vector<std::string> DoubtsOf(const StatedPose& pose, const Rigid3d& cam_from_lidar);
 
+/// A sentence where the camera is upright only with `transform` in the other direction than
+/// `read_as`; none otherwise.
+std::optional<std::string> DoubtOfDirection(const Rigid3d& transform, PoseDirection read_as);
+
 }  // namespace sextant

@@ -119,6 +119,27 @@ TEST(External, ImportedPosesAndATruthJoinTheComparison) {
               HasSubstr("has 1001 poses, expected at most 1000 to compare"));
 }
 
+TEST(External, ATruthOfTheOtherDirectionIsNoted) {
+  // The camera looks along the LiDAR's x axis.
+  WriteText(TestFolder() / "forward.csv",
+            "camx,camy,camz,lidarx,lidary,lidarz\n0,0,3,3,0,0\n1,0,4,4,-1,0\n0,1,5,5,0,-1\n"
+            "1,2,3,3,-1,-2\n");
+  const auto errors_with = [](const std::string& truth) {
+    const ProgramRun run = RunSextant("compare " + TestPath("forward.csv") +
+                                      " --solvers kabsch --truth 0 0 0 " + truth);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.err;
+  };
+  EXPECT_EQ(errors_with("0.5 0.5 -0.5 0.5"), "");
+  EXPECT_EQ(errors_with("0.5 -0.5 0.5 -0.5 --pose-is lidar_from_cam"), "");
+  EXPECT_THAT(errors_with("0.5 -0.5 0.5 -0.5"),
+              AllOf(HasSubstr("read as cam_from_lidar, the camera is not upright"),
+                    HasSubstr("the pose is 120 deg from the answer, but its inverse 0 deg; it "
+                              "seems to be lidar_from_cam")));
+  EXPECT_THAT(errors_with("0.5 0.5 -0.5 0.5 --pose-is lidar_from_cam"),
+              HasSubstr("it seems to be cam_from_lidar (--pose-is cam_from_lidar)"));
+}
+
 TEST(External, AnExperimentHasPosesThatWereFoundElsewhere) {
   const std::string experiment = TestPath("theirs.yaml");
   const auto write = [&](const std::string& solvers) {

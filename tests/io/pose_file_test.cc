@@ -196,6 +196,18 @@ TEST(PoseFile, DoubtsWhatIsImprobable) {
   EXPECT_TRUE(DoubtsOf(StatedPose{}, ForwardPose()).empty());
 }
 
+TEST(PoseFile, DoubtsADirectionInWhichTheCameraIsNotUpright) {
+  const auto doubt = DoubtOfDirection(ForwardPose(), PoseDirection::kLidarFromCam);
+  ASSERT_TRUE(doubt);
+  EXPECT_THAT(*doubt, HasSubstr("read as cam_from_lidar, it would be"));
+  EXPECT_FALSE(DoubtOfDirection(ForwardPose(), PoseDirection::kCamFromLidar));
+  EXPECT_TRUE(DoubtOfDirection(ForwardPose().Inverse(), PoseDirection::kCamFromLidar));
+  // The axes tell nothing of this one.
+  const Rigid3d sideways{ExpSo3({0.4, 0.2, -0.1}), {0.1, 0.2, 0.3}};
+  EXPECT_FALSE(DoubtOfDirection(sideways, PoseDirection::kCamFromLidar));
+  EXPECT_FALSE(DoubtOfDirection(sideways, PoseDirection::kLidarFromCam));
+}
+
 TEST(PoseFile, RefusesSevenNumbersOfUnknownOrder) {
   const std::string other = "0.048 -0.055 -0.288 -0.50032536 -0.49988836 0.50370142 -0.49605548\n";
   EXPECT_THAT(ErrorOf(other), HasSubstr("x y z w, and as w x y z too"));
