@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -38,6 +39,15 @@ bool HasInliersOf(const SolveReport& report, bool in_pixels) {
   return in_pixels ? is_px && !is_m : is_m && !is_px;
 }
 
+// By the names in its spec: a report has no other trace of it where every pair was kept.
+bool IsRobust(const std::string& spec) {
+  constexpr std::array kRobust = {"ransac",     "gnc(",       "clique(",    "drop_worst(",
+                                  "robust(",    "magsac",     "loss=huber", "loss=cauchy",
+                                  "loss=tukey", "loss=barron"};
+  return std::ranges::any_of(
+      kRobust, [&](const char* name) { return spec.find(name) != std::string::npos; });
+}
+
 void AddOutliers(const SolveReport& report, bool in_pixels, std::span<const RepeatedPairs> repeated,
                  std::vector<std::string>& lines) {
   const std::vector<int> outliers = OutlyingPairs(report, in_pixels);
@@ -47,11 +57,13 @@ void AddOutliers(const SolveReport& report, bool in_pixels, std::span<const Repe
     return std::binary_search(report.inliers.begin(), report.inliers.end(), i);
   };
   const bool are_used = !HasInliersOf(report, in_pixels) || std::ranges::any_of(outliers, is_used);
+  const char* advice = !are_used ? "the answer leaves them out; check or remove them"
+                       : IsRobust(report.solver) ? "check or remove them"
+                                                 : "check or remove them, or use a robust solver";
   lines.push_back(fmt::format(
       "outliers: {} of {} pairs are farther off than the others' noise explains: {}; {}",
       outliers.size(), residuals.size(), OutlierList(residuals, outliers, in_pixels, repeated),
-      are_used ? "check or remove them, or use a robust solver"
-               : "the answer leaves them out; check or remove them"));
+      advice));
 }
 
 // The residual in sigmas that one of `count` pairs exceeds with a probability of 1 %. The tail of

@@ -24,7 +24,8 @@ std::vector<int> OutlyingResiduals(std::span<const double> residuals, int dimens
 std::vector<int> OutlyingPairs(const SolveReport& report, bool in_pixels);
 
 /// One sentence for each kind of pairs with outliers, by their place in the file,
-/// from which `repeated` pairs have been removed.
+/// from which `repeated` pairs have been removed. A robust solver is advised only where the answer
+/// is of another one.
 std::vector<std::string> DescribeOutliers(const SolveReport& report,
                                           std::span<const RepeatedPairs> repeated);
 

@@ -17,6 +17,7 @@
 namespace sextant {
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
 
 constexpr std::uint64_t kCauseSeeds = 10;
@@ -86,6 +87,21 @@ TEST(OutlyingPairs, AreThoseThatARobustAnswerLeavesOut) {
     EXPECT_THAT(DescribeOutliers(*report, {}),
                 testing::ElementsAre(HasSubstr("the answer leaves them out")));
   }
+}
+
+// Where pairs of both kinds state their noise, nothing says of which kind the inliers are.
+TEST(OutlyingPairs, AdviseARobustSolverOnlyWhereNoneWasUsed) {
+  CalibrationProblem problem = SceneOf(1, 40);
+  for (Pair3d3d& pair : problem.pairs_3d3d) pair.sigma_m = 0.01;
+  for (Pair2d3d& pair : problem.pairs_2d3d) pair.sigma_px = 1.0;
+  problem.pairs_3d3d[3].point_in_cam.x() += 0.5;
+  const auto advice_of = [&](const char* spec) {
+    const auto report = BuiltinSolvers().Make(spec).value()->Solve(problem);
+    const std::vector<std::string> lines = DescribeOutliers(report.value(), {});
+    return lines.empty() ? std::string() : lines.front();
+  };
+  EXPECT_THAT(advice_of("kabsch"), HasSubstr("or use a robust solver"));
+  EXPECT_THAT(advice_of("robust(kabsch)"), EndsWith("mm); check or remove them"));
 }
 
 // A robust solver leaves the farthest of the true pairs out of many scenes, but only in one scene
