@@ -215,7 +215,7 @@ int Run(const AdviseCommandOptions& options) {
   if (!sensors) return Refuse("advise", sensors.error());
   std::string text;
   const auto proposals = Propose(*result, *sensors, options.count, text);
-  Print("{}{}", CautionAbout(*result), text);
+  Print("{}{}", CautionAbout(*result), Narrow(text));
   if (!proposals) return Refuse("advise", proposals.error(), kNoAnswer);
   if (options.picture_path.empty()) return kAnswered;
   const Expected<void> written =
