@@ -6,11 +6,13 @@
 #include <cairo.h>
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
 
 #include "base/text/printable.h"
+#include "base/units.h"
 #include "features/camera/tags/tag_pattern.h"
 
 namespace sextant {
@@ -32,6 +34,9 @@ cairo_status_t Append(void* text, const unsigned char* bytes, unsigned int count
 
 double PageWidth(const Board& board) { return board.top_right_m + 2.0 * kBorder_m; }
 double PageHeight(const Board& board) { return board.right_bottom_m + 2.0 * kBorder_m; }
+double RulerLength(const Board& board) {
+  return std::min(kRuler_m, std::floor(board.top_right_m * 100.0) / 100.0);
+}
 
 void StrokeRectangle(cairo_t* cr, const Eigen::Vector2d& centre, double width, double height) {
   cairo_rectangle(cr, centre.x() - 0.5 * width, centre.y() - 0.5 * height, width, height);
@@ -80,7 +85,7 @@ void DrawText(cairo_t* cr, double x, double y, const std::string& text) {
 void DrawLegend(cairo_t* cr, const Board& board, const std::string& source) {
   const double left = -0.5 * board.top_right_m;
   const double top = 0.5 * board.right_bottom_m + 0.006;
-  const double ruler_m = std::min(kRuler_m, std::floor(board.top_right_m * 100.0) / 100.0);
+  const double ruler_m = RulerLength(board);
   cairo_move_to(cr, left, top);
   cairo_line_to(cr, left + ruler_m, top);
   for (int mm = 0; mm <= std::lround(ruler_m * 1e3); mm += 5) {
@@ -182,6 +187,20 @@ Expected<std::string> DrawBoards(const std::vector<Board>& boards, const std::st
     return MakeError(ErrorCode::kInvalidInput, fmt::format("{}: cannot be drawn: {}", source,
                                                            cairo_status_to_string(status)));
   }
+  return text;
+}
+
+std::string DescribePages(const std::vector<Board>& boards) {
+  constexpr std::size_t kMaxListed = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(boards.size(), kMaxListed); ++i) {
+    const Board& board = boards[i];
+    text += fmt::format(
+        "{}board {} of {:g} x {:g} mm on a page of {:g} x {:g} mm with a ruler of {:g} mm",
+        i == 0 ? "" : ", ", board.id, board.top_right_m * kMmPerM, board.right_bottom_m * kMmPerM,
+        PageWidth(board) * kMmPerM, PageHeight(board) * kMmPerM, RulerLength(board) * kMmPerM);
+  }
+  if (boards.size() > kMaxListed) text += fmt::format(", and {} more", boards.size() - kMaxListed);
   return text;
 }
 

@@ -19,4 +19,8 @@ enum class DrawingFormat { kPdf, kSvg, kPng };
 Expected<std::string> DrawBoards(const std::vector<Board>& boards, const std::string& source,
                                  DrawingFormat format, double png_dpi);
 
+/// The sizes of the boards, of their pages and of their rulers, for people; of many boards, those
+/// of the first three.
+std::string DescribePages(const std::vector<Board>& boards);
+
 }  // namespace sextant

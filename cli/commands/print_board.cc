@@ -9,7 +9,9 @@
 #include "io/boards/board_file.h"
 #include "io/boards/board_templates.h"
 #include "io/output/output_file.h"
+#include "io/output/standard_output.h"
 #include "report/board_drawing.h"
+#include "report/wrapped_text.h"
 
 namespace sextant::cli {
 namespace {
@@ -75,6 +77,14 @@ Expected<std::string> Content(const PrintBoardOptions& options, const std::vecto
   return DrawBoards(boards, SourceOf(options), format, options.dpi);
 }
 
+std::string WrittenText(const PrintBoardOptions& options, const std::vector<Board>& boards) {
+  if (std::filesystem::path(options.out).extension() == ".yaml") {
+    return WroteLine(options.out, "the board file; measure what was made and correct it");
+  }
+  return Narrow(WroteLine(options.out, DescribePages(boards))) +
+         "Print at 100 %, without fitting to the page, and check the ruler's length.\n";
+}
+
 int Run(const PrintBoardOptions& options) {
   Expected<std::vector<Board>> boards = BoardsOf(options);
   if (!boards) return Refuse("print-board", boards.error());
@@ -91,6 +101,7 @@ int Run(const PrintBoardOptions& options) {
   if (const Expected<void> ok = WriteFileAtomically(options.out, *content); !ok) {
     return Refuse("print-board", ok.error());
   }
+  Print("{}", WrittenText(options, *boards));
   return kAnswered;
 }
 

@@ -16,6 +16,7 @@ using test::ProgramRun;
 using test::ReadText;
 using test::TestFolder;
 using test::WriteText;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -81,7 +82,12 @@ TEST(PrintBoard, PagesHaveTheBoardsSizeAndName) {
   std::smatch match;
   ASSERT_TRUE(std::regex_search(svg, match, std::regex("width=\"([0-9.]+)(pt)?\"")));
   EXPECT_NEAR(std::stod(match[1]), 0.34 * 72.0 / 0.0254, 0.1);
-  ASSERT_EQ(Print(kHollow, "target.pdf").exit_code, 0);
+  const ProgramRun run = Print(kHollow, "target.pdf");
+  ASSERT_EQ(run.exit_code, 0);
+  EXPECT_THAT(test::Unbroken(run.out),
+              AllOf(HasSubstr("target.pdf: board 4 of 300 x 250 mm on a page of 340 x 290 mm with "
+                              "a ruler of 100 mm"),
+                    HasSubstr("Print at 100 %")));
   const std::string pdf = ReadText(TestFolder() / "target.pdf");
   EXPECT_THAT(pdf, StartsWith("%PDF"));
   ASSERT_TRUE(std::regex_search(pdf, match, std::regex("MediaBox \\[ 0 0 ([0-9.]+) ([0-9.]+)")));
@@ -95,7 +101,9 @@ TEST(PrintBoard, RefusesWhatItCannotPrint) {
   const std::string two =
       "boards:\n  - {id: 0, top_right_m: 0.2, right_bottom_m: 0.2}\n"
       "  - {id: 1, top_right_m: 0.2, right_bottom_m: 0.2}\n";
-  EXPECT_EQ(Print(two, "two.pdf").exit_code, 0);
+  EXPECT_THAT(test::Unbroken(Print(two, "two.pdf").out),
+              AllOf(HasSubstr("board 0 of 200 x 200 mm"), HasSubstr(", board 1 of 200 x 200 mm")));
+  EXPECT_THAT(Print(two, "two.yaml").out, HasSubstr("two.yaml: the board file"));
   const ProgramRun several = Print(two, "two.png");
   EXPECT_EQ(several.exit_code, 2);
   EXPECT_THAT(several.err, HasSubstr("--id"));
