@@ -194,7 +194,17 @@ Expected<Rigid3d> PoseOfFile(const std::string& path, const std::string& pose_is
 Expected<Rigid3d> PoseFromArgument(const std::string& option,
                                    const std::vector<std::string>& values,
                                    const std::string& pose_is) {
-  if (values.size() == 1) return PoseOfFile(values.front(), pose_is);
+  if (values.size() == 1) {
+    Expected<Rigid3d> pose = PoseOfFile(values.front(), pose_is);
+    // Numbers in quotes are one value, too.
+    if (!pose && pose.error().code == ErrorCode::kIo) {
+      pose.error().message = fmt::format(
+          "{}: {}; expected a file with a pose, or seven separate numbers X Y Z QW QX QY QZ, "
+          "without quotes",
+          option, pose.error().message);
+    }
+    return pose;
+  }
   SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, PoseFromNumbers(option, values));
   WarnOfNumbers(option, pose, pose_is);
   return AskedDirection(pose_is) == PoseDirection::kLidarFromCam ? pose.Inverse() : pose;

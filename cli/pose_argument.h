@@ -29,7 +29,8 @@ Expected<Rigid3d> PoseOfFile(const std::string& path, const std::string& pose_is
 
 /// A pose given as an option: a file for PoseOfFile, or the seven values X Y Z QW QX QY QZ of
 /// cam_from_lidar, or of what --pose-is states.
-/// Errors: kInvalidOption, with the option's name; those of PoseOfFile.
+/// Errors: kInvalidOption, with the option's name; those of PoseOfFile, and where there is no such
+/// file, both forms.
 Expected<Rigid3d> PoseFromArgument(const std::string& option,
                                    const std::vector<std::string>& values,
                                    const std::string& pose_is);

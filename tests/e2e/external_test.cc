@@ -140,6 +140,13 @@ TEST(External, ATruthOfTheOtherDirectionIsNoted) {
               HasSubstr("it seems to be cam_from_lidar (--pose-is cam_from_lidar)"));
 }
 
+TEST(External, APoseInQuotesIsRefusedWithBothForms) {
+  ExpectRefused(
+      RunSextant("compare " + PairsFile() + " --truth '1 0 0 1 0 0 0'"),
+      "--truth: cannot read '1 0 0 1 0 0 0': No such file or directory; expected a file with a "
+      "pose, or seven separate numbers X Y Z QW QX QY QZ, without quotes");
+}
+
 TEST(External, AnExperimentHasPosesThatWereFoundElsewhere) {
   const std::string experiment = TestPath("theirs.yaml");
   const auto write = [&](const std::string& solvers) {
