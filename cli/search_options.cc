@@ -26,15 +26,17 @@ void DeclareSearch(SearchArguments& search, Arguments& arguments) {
   arguments.Add("--raw-edges", search.raw_edges,
                 "Put edges at the last return, uncorrected for sample steps and beam width");
   arguments.Add("--lidar", search.lidar,
-                "Sensor, for the width of its beam: vlp16, os1_64, ... of sextant list lidars",
+                "Sensor, for the width of its beam: vlp16, os1_64, ... of sextant list lidars;\n"
+                "--beam-aperture, --beam-divergence and --edge-growth each replace its value",
                 {.shows_default = true});
   arguments.Add("--beam-aperture", search.aperture_m,
-                "For another sensor: width of the beam at the sensor [m]", {.range = {{0.0, 1.0}}});
+                "Width of the beam at the sensor, instead of that of --lidar [m]",
+                {.range = {{0.0, 1.0}}});
   arguments.Add("--beam-divergence", search.divergence_rad,
-                "For another sensor: full divergence angle [rad]", {.range = {{0.0, 1.0}}});
+                "Full divergence angle, instead of that of --lidar [rad]", {.range = {{0.0, 1.0}}});
   arguments.Add("--edge-growth", search.growth,
                 "How far beyond an edge the board still gives returns, as a share of the beam's\n"
-                "width",
+                "width, instead of that of --lidar",
                 {.range = {{-10.0, 10.0}}, .excludes = "--raw-edges"});
   arguments.Add("--seed", search.seed, "Seed of the search for planes", {.shows_default = true});
 }

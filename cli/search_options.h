@@ -16,8 +16,8 @@ namespace sextant::cli {
 struct SearchArguments {
   std::vector<double> region{};  ///< Low and high corner in the LiDAR frame [m]; empty: everywhere.
   bool raw_edges = false;
-  std::string lidar = "vlp16";         ///< Sensor that determines the width of the beam...
-  std::optional<double> aperture_m{};  ///< ...or these, for another sensor.
+  std::string lidar = "vlp16";         ///< Sensor that determines the width of the beam.
+  std::optional<double> aperture_m{};  ///< Each of these replaces that of the sensor.
   std::optional<double> divergence_rad{};
   std::optional<double> growth{};
   std::uint64_t seed = 1;
