@@ -11,7 +11,8 @@
 namespace sextant {
 
 /// The files behind a result with their SHA-256: boards, camera and recording where the calibration
-/// is known (it may be null), photos and scans. Reads every file once, on all cores.
+/// is known (it may be null), photos and scans. Reads every file on all cores, and in later calls
+/// only those that are new or changed.
 PageInputs InputsOf(const CalibrationResult& result, const Calibration* calibration,
                     const std::filesystem::path& folder);
 

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <filesystem>
 #include <opencv2/core.hpp>
 #include <string>
 
@@ -208,6 +210,24 @@ TEST(FileHash, AgreesWithTheStandard) {
   EXPECT_EQ(HashOfFile(test::TestPath("abc")), kAbc);
   EXPECT_EQ(HashOfFile(test::TestPath("absent")), std::nullopt);
   EXPECT_EQ(HashOfFile(test::TestFolder()), std::nullopt);
+}
+
+TEST(FileHash, ReadsAFileAgainOnlyWhereItsSizeOrTimeDiffers) {
+  const std::filesystem::path path = test::TestPath("scan");
+  const auto now = std::filesystem::file_time_type::clock::now();
+  const auto write = [&](const std::string& text, std::chrono::seconds age) {
+    test::WriteText(path, text);
+    std::filesystem::last_write_time(path, now - age);
+  };
+  const std::string abc = HashOfBytes("abc");
+  write("abc", std::chrono::seconds(30));
+  EXPECT_EQ(HashOfFile(path), abc);
+  write("xyz", std::chrono::seconds(30));
+  EXPECT_EQ(HashOfFile(path), abc);
+  write("xyz", std::chrono::seconds(20));
+  EXPECT_EQ(HashOfFile(path), HashOfBytes("xyz"));
+  write("wxyz", std::chrono::seconds(20));
+  EXPECT_EQ(HashOfFile(path), HashOfBytes("wxyz"));
 }
 
 TEST(UtcText, IsACalendarTime) {
