@@ -56,7 +56,7 @@ PoseDirection OtherThan(PoseDirection direction) {
                                                    : PoseDirection::kCamFromLidar;
 }
 
-// Of a direction that only the user states, or the default.
+// For a direction that no file states: it is the user's, or the default.
 void WarnOfAxes(const std::string& source, const Rigid3d& transform, PoseDirection read_as) {
   if (const auto doubt = DoubtOfDirection(transform, read_as)) {
     PrintError("warning: {}: {}\n", source, *doubt);

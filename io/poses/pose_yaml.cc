@@ -11,7 +11,7 @@
 namespace sextant {
 namespace {
 
-constexpr std::size_t kMaxTruthCameras = 1000;
+constexpr std::size_t kMaxTruthCameras = 16;  // As many as a scene may have.
 
 bool IsMapNode(const YamlNode* node) {
   return node != nullptr && node->kind == YamlNode::Kind::kMap;
