@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/units.h"
+#include "geometry/intrinsics.h"
 
 namespace sextant {
 namespace {
@@ -118,8 +119,7 @@ int ColumnOf(const Camera& camera, const Eigen::Vector2d& pixel) {
 
 Expected<ScenePair> MakeScenePair(const cv::Mat& grey, const PointCloud& scan, Camera camera,
                                   const Rigid3d& cam_from_lidar) {
-  camera.width_px = grey.cols;
-  camera.height_px = grey.rows;
+  camera = WithImageSize(camera, grey.cols, grey.rows);
   SEXTANT_RETURN_IF_ERROR(ValidateCamera(camera));
   const double scale = std::min(1.0, kFocal_px / camera.fx_px);
   if (scale * std::min(grey.cols, grey.rows) < kMinSide_px) {
