@@ -15,7 +15,7 @@ namespace sextant {
 namespace {
 
 constexpr double kFocal_px = 720.0;   // Larger images are reduced to this resolution.
-constexpr double kMinSide_px = 16.0;  // Of the reduced image, which the fields halve three times.
+constexpr double kMinSide_px = 16.0;  // The fields halve the reduced image three times.
 constexpr double kMargin_rad = 4.0 * kRadPerDeg;
 constexpr double kMinDepth_m = 0.3;
 // Between sweeps a beam that grazes an edge still returns the nearer surface, which moves the edge

@@ -92,7 +92,7 @@ TEST(RigTime, BoardsAtRestDoNotTellAnOffset) {
     return number.name == "time_offset_s";
   };
   EXPECT_TRUE(std::ranges::none_of(estimate->numbers, is_offset));
-  // Whoever knows better is believed.
+  // Where the boards are stated to move, the offsets are estimated all the same.
   const auto known = SolveRig(rig.problem, {.estimate_time = true, .boards_move = true});
   ASSERT_TRUE(known) << known.error().message;
   EXPECT_EQ(std::ranges::count_if(known->numbers, is_offset), 2);
