@@ -11,7 +11,7 @@
 namespace sextant {
 namespace {
 
-// Of a longer text, which is no mistyped name, only the beginning is compared.
+// A longer text is no mistyped name; only its beginning is compared.
 constexpr std::size_t kMaxCompared = 60;
 
 // The optimal string alignment distance: insertions, deletions, substitutions, and swaps of

@@ -51,7 +51,7 @@ bool MeasureSolve(const Solver& solver, const CalibrationProblem& problem, const
   return off.rotation_rad < kMaxRadians && off.translation_m < kMaxMetres;
 }
 
-void Tell(const std::string& curve, double x, const std::optional<Cost>& cost) {
+void PrintCost(const std::string& curve, double x, const std::optional<Cost>& cost) {
   fmt::print(stderr, "{} at {:.7g}: {}\n", curve, x,
              cost ? fmt::format("{:.3g} s, {:.1f} MB", cost->seconds, cost->peak_mb)
                   : "wrong or failed, left out");
@@ -79,7 +79,7 @@ Curve SolverCurve(const std::string& spec, const std::vector<SceneAt>& places) {
       if (!from_pixels) scene.problem.pairs_2d3d.clear();
       return MeasureSolve(*solver, scene.problem, scene.cam_from_lidar, measure);
     });
-    Tell(spec, at.x, cost);
+    PrintCost(spec, at.x, cost);
     if (cost) curve.points.push_back({at.x, *cost});
     if (cost && cost->seconds > kMaxSeconds) break;
   }
@@ -153,7 +153,7 @@ Chart ViewsChart(const Settings& settings) {
         return session &&
                MeasureSolve(*solver, session->problem, session->true_cam_from_lidar, measure);
       });
-      Tell(spec, views, cost);
+      PrintCost(spec, views, cost);
       if (cost) curve.points.push_back({static_cast<double>(views), *cost});
     }
     chart.curves.push_back(std::move(curve));
@@ -214,7 +214,7 @@ Chart TrialsChart(const Settings& settings, const Sweep& sweep) {
               .curves = {{.name = "sextant run", .points = {}}}};
   for (long trials = 1000; trials <= (settings.quick ? 100'000 : 10'000'000); trials *= 10) {
     const std::optional<Cost> cost = sweep.Run({sweep.Program("sextant")}, trials, Cores());
-    Tell("sextant run", static_cast<double>(trials), cost);
+    PrintCost("sextant run", static_cast<double>(trials), cost);
     if (cost) chart.curves[0].points.push_back({static_cast<double>(trials), *cost});
   }
   return chart;
@@ -239,14 +239,14 @@ Chart CoresChart(const Settings& settings, const Sweep& sweep) {
   Curve ranks{.name = "ranks", .points = {}};
   for (int count = 1; count <= 2 * Cores(); count *= 2) {
     const std::optional<Cost> of_threads = sweep.Run({sweep.Program("sextant")}, trials, count);
-    Tell(threads.name, count, of_threads);
+    PrintCost(threads.name, count, of_threads);
     if (of_threads) threads.points.push_back({static_cast<double>(count), *of_threads});
 #ifdef SEXTANT_MPIRUN
     const std::optional<Cost> of_ranks =
         sweep.Run({SEXTANT_MPIRUN, "-n", std::to_string(count), "--oversubscribe", "--bind-to",
                    "none", sweep.Program("sextant-mpi")},
                   trials, 1);
-    Tell(ranks.name, count, of_ranks);
+    PrintCost(ranks.name, count, of_ranks);
     if (of_ranks) ranks.points.push_back({static_cast<double>(count), *of_ranks});
 #endif
   }

@@ -88,8 +88,8 @@ std::string RefutingVerdict(const ProblemInputOptions& options, const LoadedProb
     return "NOT USABLE: the data diagnostics below name a fault that no solver corrects\n";
   }
   if (input.rivals) {
-    return "NOT USABLE: two groups of pairs contradict each other, and nothing says which is "
-           "right\n";
+    return "NOT USABLE: two groups of pairs contradict each other, and the data does not determine "
+           "which is right\n";
   }
   double least = std::numeric_limits<double>::infinity();
   for (const ComparisonRow& row : rows) {
@@ -135,7 +135,7 @@ Expected<LoadedProblem> LoadProblem(const ProblemInputOptions& options) {
   if (options.reorder && input.diagnostics.order.better) {
     problem = Reordered(problem, *input.diagnostics.order.better);
   }
-  // A contradiction between boards, or data that is not what it seems, says more.
+  // A contradiction between boards, or data that is not what it seems, explains more.
   if (!input.diagnostics.contradiction && !RefutesPoses(input.diagnostics, options.reorder)) {
     input.rivals = FindRivalGroups(AllSolvers(), problem);
   }

@@ -116,7 +116,7 @@ class Extractor {
   std::map<std::size_t, std::string> folders_;
   std::unordered_set<std::string> taken_;
   std::unordered_map<std::string, std::size_t> numbers_of_name_;  // The last number of each name.
-  // Of each message by topic and number: a topic may have images of several formats.
+  // By topic and number of the message: a topic may have images of several formats.
   std::map<std::pair<std::size_t, std::size_t>, std::string> extensions_;
   std::map<std::size_t, std::string> cameras_;
   int files_ = 0;

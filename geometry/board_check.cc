@@ -18,7 +18,7 @@ using Part = BoardFault::Part;
 
 // Files have decimal numbers: parts that touch exactly there may overlap by rounding.
 constexpr double kTouch_m = 1e-9;
-constexpr double kSamePlace_m = 1e-3;  // Of openings, after a turn of their board.
+constexpr double kSamePlace_m = 1e-3;  // Between openings, after a turn of their board.
 
 Quad Rectangle(const Eigen::Vector2d& center, double width, double height) {
   const double a = 0.5 * width;
@@ -236,7 +236,7 @@ std::optional<BoardFault> FindTagFault(const Board& board, int index) {
 }  // namespace
 
 std::optional<std::string> DoubtfulSize(double size_m) {
-  constexpr double kMaxSize_m = 10.0;  // Of anything that people make, print and carry.
+  constexpr double kMaxSize_m = 10.0;  // More than people make, print and carry.
   if (!(size_m > kMaxSize_m)) return std::nullopt;
   return InMetres(size_m);
 }

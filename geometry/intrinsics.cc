@@ -108,6 +108,13 @@ Camera WithIntrinsics(const Camera& camera, const IntrinsicVector& numbers) {
   return changed;
 }
 
+Camera WithImageSize(const Camera& camera, int width_px, int height_px) {
+  Camera changed = camera;
+  changed.width_px = width_px;
+  changed.height_px = height_px;
+  return changed;
+}
+
 std::span<const double> WrittenDistortion(const Camera& camera) {
   const std::span<const double> all = camera.distortion;
   const std::span<const double> beyond = all.subspan(kIntrinsicCount - kFirstDistortion);

@@ -21,6 +21,9 @@ IntrinsicVector IntrinsicsOf(const Camera& camera);
 /// `camera` with these intrinsics in place of its own; not validated.
 Camera WithIntrinsics(const Camera& camera, const IntrinsicVector& numbers);
 
+/// `camera` for images of this size in place of its own; not validated.
+Camera WithImageSize(const Camera& camera, int width_px, int height_px);
+
 /// The coefficients that files have: the first eight, or all where one of the others is not zero.
 std::span<const double> WrittenDistortion(const Camera& camera);
 

@@ -4,7 +4,7 @@
 namespace sextant {
 namespace {
 
-// The sign tells on which side of the line from a to b the point c lies.
+// The sign states on which side of the line from a to b the point c lies.
 double Side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   const Eigen::Vector2d ab = b - a;
   const Eigen::Vector2d ac = c - a;

@@ -38,7 +38,7 @@ std::string DescribeSeenTag(const SeenTag& seen) {
                      seen.refined->blur_px);
 }
 
-// Of the orientations that are possible.
+// The choice among the orientations that are possible.
 constexpr std::string_view kAssumedUpright = ", in the orientation with its corner 0 at the top";
 
 std::string DescribeChecker(const CheckerDetection& checker) {

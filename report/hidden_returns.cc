@@ -159,7 +159,7 @@ class ReturnTiles {
   Eigen::Vector2d low_;
   int columns_ = 0;
   int rows_ = 0;
-  std::vector<std::uint32_t> starts_;  // Of each tile in sorted_.
+  std::vector<std::uint32_t> starts_;  // Start of each tile in sorted_.
   std::vector<std::uint32_t> sorted_;
 };
 

@@ -23,7 +23,7 @@ struct Candidate {
   Rigid3d cam_from_board;
 };
 
-// Faces the camera, rotated by 45 degrees in its plane, then leant and turned.
+// Faces the camera, rotated by 45 degrees in its plane, then tilted and turned.
 Eigen::Quaterniond Orientation(double turn_deg, double lean_deg) {
   constexpr double kInPlane_deg = 45.0;
   const auto about = [](double deg, const Eigen::Vector3d& axis) {

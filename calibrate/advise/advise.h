@@ -39,8 +39,8 @@ struct Advice {
 
 /// Proposes the next board pose from a grid: the one that both sensors would see and that minimises
 /// the determinant of the predicted covariance (D-optimality: Pukelsheim 1993). The grid covers the
-/// image at ranges of 1.2 to 5 m, with the board turned and leant by up to 40 degrees and hung from
-/// a corner.
+/// image at ranges of 1.2 to 5 m, with the board turned and tilted by up to 40 degrees, with one
+/// corner up.
 ///
 /// The information of the present views is taken from the result or, where the file does not have
 /// it, predicted from the poses of their boards. `sensors` are those of the result.

@@ -143,7 +143,7 @@ SensorIndices WeakestPairOf(const RigEstimate& estimate, double distance_m) {
 }
 
 // Boards as they were held so far and halfway between two of them, nearer and farther, turned and
-// leant.
+// tilted.
 std::vector<Rigid3d> GridAbout(const std::vector<BoardInformation>& seen,
                                const RigEstimate& estimate) {
   constexpr std::size_t kMaxPlaces = 25;

@@ -116,7 +116,7 @@ void ListRows(std::span<const SessionView> views, std::span<const Board> boards,
   }
 }
 
-// The views whose image shows a board, by what the scans say of it.
+// The views whose image shows a board, by what the scans show of it.
 struct Support {
   std::size_t kept = 0;
   std::size_t missing = 0;

@@ -203,7 +203,7 @@ Expected<void> Observer::ObserveScan(const PointCloud& cloud, Observation& obser
   SEXTANT_ASSIGN_OR_RETURN(const ScanRings rings, ScanRings::Build(cloud));
   observation.lidar = PatternOf(rings, options_.search.beam);
   SEXTANT_ASSIGN_OR_RETURN(const BoardSearch search, FindBoards(rings, boards(), options_.search));
-  // Further patches compete, because the image may tell them apart by their distance.
+  // Further patches compete, because the image may distinguish them by their distance.
   std::vector<BoardPatch> patches = search.found;
   patches.insert(patches.end(), search.others.begin(),
                  search.others.begin() + std::min(kMaxOthers, std::ssize(search.others)));

@@ -37,7 +37,7 @@ ScanAsImage AsImage(const Observation& scan, std::span<const Rigid3d> known) {
     const BoardPlacement& best = placements[chosen];
     CameraSighting sighting{.board = best.board, .corners = OuterCorners(best.corners)};
     sighting.pose.cam_from_board = best.lidar_from_board;
-    // Of the corners: their scatter over the board's size is the angle's.
+    // The scatter of the corners over the board's size is that of the angle.
     const double variance = sighting.corners.covariance.trace() / (3.0 * kCornersPerBoard);
     sighting.pose.covariance.diagonal().head<3>().setConstant(
         variance / (sighting.corners.points[0] - sighting.corners.points[2]).squaredNorm());

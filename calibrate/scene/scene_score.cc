@@ -9,12 +9,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/units.h"
+#include "geometry/intrinsics.h"
 
 namespace sextant {
 namespace {
 
 constexpr double kFocal_px = 720.0;   // Larger images are reduced to this resolution.
-constexpr double kMinSide_px = 16.0;  // Of the reduced image, which the fields halve three times.
+constexpr double kMinSide_px = 16.0;  // The fields halve the reduced image three times.
 constexpr double kMargin_rad = 4.0 * kRadPerDeg;
 constexpr double kMinDepth_m = 0.3;
 // Between sweeps a beam that grazes an edge still returns the nearer surface, which moves the edge
@@ -118,8 +119,7 @@ int ColumnOf(const Camera& camera, const Eigen::Vector2d& pixel) {
 
 Expected<ScenePair> MakeScenePair(const cv::Mat& grey, const PointCloud& scan, Camera camera,
                                   const Rigid3d& cam_from_lidar) {
-  camera.width_px = grey.cols;
-  camera.height_px = grey.rows;
+  camera = WithImageSize(camera, grey.cols, grey.rows);
   SEXTANT_RETURN_IF_ERROR(ValidateCamera(camera));
   const double scale = std::min(1.0, kFocal_px / camera.fx_px);
   if (scale * std::min(grey.cols, grey.rows) < kMinSide_px) {

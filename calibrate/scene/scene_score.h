@@ -22,7 +22,7 @@ struct ScenePair {
   std::vector<ScanEdge> edges;
   EdgeFields fields;
   cv::Mat
-      thumbnail;  ///< 32 x 20 pixels, of mean 0 and length 1; tells whether two views are alike.
+      thumbnail;  ///< 32 x 20 pixels, of mean 0 and length 1; shows whether two views are alike.
 };
 
 /// `grey`: 8 bits. Keeps the edges within 4 degrees of the view of `cam_from_lidar`.

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of one pattern; '/*/*/*/*' would list the whole disk.
+// A limit for one pattern; '/*/*/*/*' would list the whole disk.
 constexpr std::size_t kMaxMatches = 100'000;
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }

@@ -9,6 +9,7 @@
 #include "base/text/path_text.h"
 #include "calibrate/session/session.h"
 #include "calibrate/session/simulated_folder.h"
+#include "io/text/recording_name.h"
 #include "io/text/text_file.h"
 #include "io/text/yaml_fields.h"
 

@@ -11,6 +11,7 @@
 #include "calibrate/session/simulated_folder.h"
 #include "io/blocks/pose_block.h"
 #include "io/text/number_text.h"
+#include "io/text/recording_name.h"
 #include "io/text/text_file.h"
 #include "io/text/yaml_fields.h"
 
@@ -150,11 +151,6 @@ tl::unexpected<Error> HintToSolve(const std::string& file) {
 }
 
 }  // namespace
-
-bool IsRecording(const fs::path& path) {
-  const std::string extension = path.extension().string();
-  return extension == ".bag" || extension == ".db3" || extension == ".mcap";
-}
 
 Expected<Session> ParseSession(std::string_view text, const std::string& file) {
   if (BeginsWithNumber(text)) return HintToSolve(file);

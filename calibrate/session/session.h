@@ -28,9 +28,6 @@ struct Session {
   std::optional<Rigid3d> true_cam_from_lidar{};  ///< Simulated sessions; not given to solvers.
 };
 
-/// Whether it is named as a recording of ROS is: .bag, .db3 or .mcap.
-bool IsRecording(const std::filesystem::path& path);
-
 /// Reads a session by its path:
 /// - a YAML file (docs/formats.md), whose paths are relative to its folder;
 /// - a folder with session.yaml in it;

@@ -39,7 +39,7 @@ void DiagnoseScale(const CalibrationProblem& problem, const Rigid3d& pose,
       is_print
           ? fmt::format("board file: distances in the images are {:.1f} percent {} than in the "
                         "scans, in all directions (1 sigma {:.1f}): the print is {} than the "
-                        "board file says, or the focal length is wrong; measure the print",
+                        "board file states, or the focal length is wrong; measure the print",
                         percent, sign, 100.0 * fit.sigma, size)
           : fmt::format("intrinsics: boards are {:.1f} percent {} away in the images than in the "
                         "scans, in depth only (1 sigma {:.1f}): the focal length is too {}, or the "

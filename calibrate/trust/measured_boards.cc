@@ -13,9 +13,9 @@
 namespace sextant {
 namespace {
 
-constexpr double kNoticeable = 0.015;  // Of an edge.
+constexpr double kNoticeable = 0.015;  // Share of the edge.
 constexpr double kEdgeSigmas = 3.0;
-constexpr double kEdgeNoise_m = 0.002;  // Of one view, besides the scatter between views.
+constexpr double kEdgeNoise_m = 0.002;  // Noise of one view, besides the scatter between views.
 
 // Standard deviation of the median of normally distributed values (1.2533 / sqrt(n)), whose scatter
 // is taken from their median absolute deviation.
@@ -81,7 +81,7 @@ std::vector<std::string> DescribeEdges(std::span<const MeasuredEdge> edges,
   for (const MeasuredEdge& edge : edges) {
     if (ContradictsFile(edge)) {
       lines.push_back(fmt::format(
-          "board file: board {} measures {:.3f} m from {} in the scans, the file says {:.3f} m: "
+          "board file: board {} measures {:.3f} m from {} in the scans, the file states {:.3f} m: "
           "measure the board",
           assembly.problem.boards[static_cast<std::size_t>(edge.board)].id, edge.measured_m,
           edge.edge == 0 ? "top to right" : "right to bottom", edge.stated_m));

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFamilyLevel = 0.01;
 
-// Of a standard normal variable beyond `quantile`.
+// The probability that a standard normal variable exceeds `quantile`.
 double TailProbability(double quantile) { return 0.5 * std::erfc(quantile / std::numbers::sqrt2); }
 
 bool Disagrees(std::span<const ViewComparison> compared, int view, double level) {

@@ -133,7 +133,7 @@ class Judge {
     if (size < kRangeExcess.no_use) return;
     Add(Usability::kUsableWithCare,
         fmt::format("Boards may be {:.1f} percent {} in the images than in the scans (1 sigma "
-                    "{:.1f}); these views cannot tell",
+                    "{:.1f}); these views do not determine it",
                     100.0 * size, *f_.range_excess > 0.0 ? "farther away" : "nearer",
                     100.0 * f_.range_excess_sigma),
         "Add views with the board at other distances, and check the focal length and the size of "
@@ -182,7 +182,7 @@ class Judge {
       // With equal views and noise alone the mean squares differ by (n + 1) / (n - 1).
       const double n = f_.independent_views;
       Add(kHeldOutExcess.Of(*f_.held_out_over_fit / std::sqrt((n + 1.0) / (n - 1.0))),
-          fmt::format("Views left out of the answer fit it {:.1f} times worse than those in it",
+          fmt::format("Held-out views fit the answer {:.1f} times worse than those in it",
                       *f_.held_out_over_fit),
           "Add views with the board in other places and tilts");
     }
@@ -200,8 +200,8 @@ class Judge {
     if (n < kMinViewsForGood) {
       Add(Usability::kUsableWithCare,
           n == 1 ? std::string("One view only: nothing shows whether it is right")
-                 : fmt::format("{} views with the board in different places are too few to tell a "
-                               "wrong one from the others",
+                 : fmt::format("{} views with the board in different places are too few to single "
+                               "out a wrong one",
                                n),
           fmt::format("Add {} or more views with the board in other places and tilts",
                       std::max(1, 6 - n)));

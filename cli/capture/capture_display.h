@@ -33,7 +33,7 @@ class CaptureDisplay {
   ReportPage page_{};
   std::string html_{};
   std::string state_ = "Waiting for the first photo and scan.";
-  std::string start_{};  ///< Tells this run's revisions from those of the one before it.
+  std::string start_{};  ///< Distinguishes this run's revisions from those before it.
   std::uint64_t count_ = 0;
 };
 

@@ -23,7 +23,7 @@ int KeyOf(int code) {
   return key & 0xff;
 }
 
-// Only OpenCV's build information tells which library draws its windows ("QT: YES ...").
+// Only OpenCV's build information states which library draws its windows ("QT: YES ...").
 bool HasQtWindows() {
   const std::string information = cv::getBuildInformation();
   const std::size_t line = information.find(" QT:");

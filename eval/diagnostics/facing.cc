@@ -40,7 +40,7 @@ class GroupPlane {
   // Nobody measures a board that he sees at less than 10 degrees, and few points that lie near a
   // plane by chance are seen at more by both sensors, which are close to each other.
   static constexpr double kMinSine = 0.1736;
-  // Of the error of the normal, which noise as large as the thickness causes.
+  // In sigmas of the normal, whose error comes from noise as large as the thickness.
   static constexpr double kSigmas = 3.0;
   // In widths of the group; a sensor that sees it is nearer, and a far origin is no sensor.
   static constexpr double kMinDistance = 0.1;

@@ -100,9 +100,9 @@ double TailOfEstimate(std::size_t count, int dimension, double freedom) {
   return tail * TailOf(count, dimension) / normal;
 }
 
-// Of the pairs that an answer leaves out. Even among true pairs those left out are the farthest, so
-// that they are tried one by one, the nearest first, and one that the noise of those before it
-// explains counts for the noise from then on.
+// Outliers among the pairs that an answer leaves out. Even among true pairs those left out are the
+// farthest, so they are tried one by one, the nearest first, and one that the noise of those before
+// it explains counts for the noise from then on.
 std::vector<int> OutlyingAmongLeftOut(std::span<const double> residuals,
                                       const std::vector<int>& inliers, int dimension) {
   constexpr double kUnknowns = 6.0;

@@ -82,7 +82,7 @@ void AddMirrors(const Camera& camera, std::vector<Fault>& faults) {
   faults.push_back(
       {"v is counted from below", "replace v by the image's height - 1 - v",
        EachPixel([bottom](const Vector2d& p) { return Vector2d(p.x(), bottom - p.y()); })});
-  // Which axis it is, the pixels do not say: a rotation turns one into the other.
+  // The pixels do not determine which axis it is: a rotation turns one into the other.
   faults.push_back(
       {"the LiDAR's points are mirrored (an axis has the wrong sign, or two are exchanged)",
        "correct the LiDAR's axes", [](Pairs& pairs, Camera&) {

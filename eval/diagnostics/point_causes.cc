@@ -183,7 +183,7 @@ std::optional<std::string> SlightScale(const CalibrationProblem& problem) {
   constexpr double kMinDeviation = 0.003;
   constexpr double kMinF = 30.0;
   constexpr double kMinHalfF = 8.0;
-  constexpr double kMaxApart = 0.5;  // Of the halves' deviations, relative to that of all.
+  constexpr double kMaxApart = 0.5;  // The halves' deviations relative to that of all.
   if (problem.pairs_3d3d.size() < kMinPairs) return std::nullopt;
   Points in_cam;
   Points in_lidar;

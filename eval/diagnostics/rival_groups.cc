@@ -97,9 +97,9 @@ std::string Describe(const RivalGroups& rivals, std::span<const RepeatedPairs> r
   const PoseDistance apart = DistanceBetween(larger.cam_from_lidar, smaller.cam_from_lidar);
   return fmt::format(
       "groups: two groups of the {} pairs contradict each other: {} agree {}, {} others (pair {}) "
-      "{}, {:.0f} mm and {:.1f} deg from the first. Nothing in the data says which is right: did a "
-      "sensor or a board move in between, or do the points of one group not belong together? Solve "
-      "the right group alone",
+      "{}, {:.0f} mm and {:.1f} deg from the first. The data does not determine which is right: "
+      "did a sensor or a board move in between, or do the points of one group not belong together? "
+      "Solve the right group alone",
       rivals.pairs, larger.members.size(), Agreement(larger, rivals.in_pixels),
       smaller.members.size(), rows, Agreement(smaller, rivals.in_pixels),
       apart.translation_m * kMmPerM, apart.rotation_rad * kDegPerRad);

@@ -22,7 +22,7 @@ struct PairGroup {
 
 /// Two groups of about the same size, each of which contradicts the pose of the other. Least
 /// squares on all pairs then is a compromise that neither supports, and a robust solver keeps one
-/// of them: nothing in the data says which is right.
+/// of them: the data does not determine which is right.
 struct RivalGroups {
   bool in_pixels = false;
   std::size_t pairs = 0;  ///< All of this kind, in either group or none.

@@ -47,7 +47,7 @@ void AddSquares(const std::vector<double>& residuals, double sigma, double& sum,
 }
 
 void SetScores(std::vector<ScoredRow>& rows) {
-  // Of exact data, whose residuals are rounding errors.
+  // The residuals of exact data are rounding errors.
   constexpr double kMinSigma_px = 1e-3;
   constexpr double kMinSigma_m = 1e-5;
   const double sigma_px = SmallestSigma(rows, &Evaluation::per_pair_px, 2.0, kMinSigma_px);
@@ -62,7 +62,7 @@ void SetScores(std::vector<ScoredRow>& rows) {
   }
 }
 
-// Of answers for which no pair is within kMaxDeviations, the score is the same.
+// All answers for which no pair is within kMaxDeviations have the same score.
 double RmsOfAll(const ScoredRow& scored) {
   if (!scored.row.report) return 0.0;
   const Evaluation& evaluation = scored.row.report->evaluation;

@@ -93,7 +93,7 @@ bool FindCorners(const cv::Mat& grey, const cv::Size& size, int flags,
 }
 
 struct Reduced {
-  double scale = 0.5;  // Of the sides.
+  double scale = 0.5;  // Factor of the sides.
   int flags = 0;
   double min_spacing_px = 10.0;
 };

@@ -12,6 +12,7 @@
 #include "features/camera/marked_corners.h"
 #include "features/camera/tags/tag_pattern.h"
 #include "geometry/board_check.h"
+#include "geometry/intrinsics.h"
 
 namespace sextant {
 namespace {
@@ -139,12 +140,6 @@ bool HasAllTags(const SeenBoards& seen) {
   });
 }
 
-Camera WithSize(Camera camera, const cv::Mat& image) {
-  camera.width_px = image.cols;
-  camera.height_px = image.rows;
-  return camera;
-}
-
 }  // namespace
 
 Expected<BoardFinder> BoardFinder::Make(std::vector<Board> boards, std::optional<Camera> camera,
@@ -181,7 +176,7 @@ Expected<SeenBoards> BoardFinder::Find(const cv::Mat& image) const {
                                  grey.cols, grey.rows, camera_->width_px, camera_->height_px));
   }
   if (camera_ && camera_->width_px == 0) {
-    SEXTANT_RETURN_IF_ERROR(ValidateCamera(WithSize(*camera_, grey)));
+    SEXTANT_RETURN_IF_ERROR(ValidateCamera(WithImageSize(*camera_, grey.cols, grey.rows)));
   }
   Detections checkers;
   SEXTANT_RETURN_IF_ERROR(DetectAll(grey, checkers_, checkers));

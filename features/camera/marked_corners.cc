@@ -16,11 +16,11 @@
 namespace sextant {
 namespace {
 
-constexpr double kAdjacent = 0.8;  // Of a square: 0.71 to the middle of an adjacent one.
+constexpr double kAdjacent = 0.8;  // In squares: 0.71 to the middle of an adjacent one.
 constexpr int kMinHalfWindow_px = 2;
 constexpr int kMaxHalfWindow_px = 11;
-constexpr double kHalfWindow = 0.65;  // Of the distance to a tag: its diagonal just reaches it.
-constexpr double kMaxMove = 0.5;      // Of that distance.
+constexpr double kHalfWindow = 0.65;  // Share of the way to a tag: its diagonal just reaches it.
+constexpr double kMaxMove = 0.5;      // Share of that distance.
 
 cv::Point2d ToCv(const Eigen::Vector2d& point) { return {point.x(), point.y()}; }
 

@@ -13,16 +13,16 @@ namespace sextant {
 namespace {
 
 constexpr double kBand_m = 0.08;  // Width of the band around the board in which its plane must end.
-constexpr std::size_t kParts = 4;  // Of each side, judged separately.
+constexpr std::size_t kParts = 4;  // Parts of each side, judged separately.
 constexpr double kMinFilled = 0.9;
 constexpr double kMaxContinued =
     0.2;                            // Furniture of the board's width continues along a side: 0.25.
-constexpr double kMaxClosed = 0.7;  // Of one side.
+constexpr double kMaxClosed = 0.7;  // Share of one side.
 constexpr double kMainPart = 0.5;
 constexpr double kThreeSides = 1.5;  // Sum of the visible fractions of three or four sides.
 constexpr double kMinVisible = 0.5;
-// Of the edge points, on the outline. Hands, cables and uneven ranges spoil many edge points of a
-// real board; furniture that fits as well is not free on all sides.
+// Share of the edge points on the outline. Hands, cables and uneven ranges spoil many edge points
+// of a real board; furniture that fits as well is not free on all sides.
 constexpr double kMinShare = 0.8;
 constexpr double kMinShareIfFree = 0.6;
 constexpr double kPartlyFree = 2.5;  // Sum of the visible fractions of the four sides.
@@ -33,7 +33,7 @@ constexpr double kMinDensity = 0.3;
 constexpr int kMinEdgePoints = 10;
 constexpr int kMinEdgePointsOnMinRings = 12;  // With kMinRings, furniture has up to 11 by chance.
 constexpr int kMinPointsOfBoard = 16;
-constexpr double kMaxPlaneSigma = 0.12;  // Of the shorter edge: more is no flat plate.
+constexpr double kMaxPlaneSigma = 0.12;  // Share of the shorter edge: more is no flat plate.
 constexpr double kThroughCost = 4.0;
 constexpr double kBeyondCost = 2.0;
 constexpr int kMinRims = 3;

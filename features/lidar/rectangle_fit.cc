@@ -35,7 +35,7 @@ bool IsSamePlacement(const RectangleFit& a, const RectangleFit& b) {
          (a.center - b.center).norm() < kSamePlace_m;
 }
 
-// Those by the outline, turned every way that it allows and the openings tell apart, and the given
+// Those by the outline, turned every way that it allows and the openings distinguish, and the given
 // ones.
 std::vector<Eigen::Vector3d> AllStarts(std::span<const EdgePoint> edges, const Board& board,
                                        const Eigen::Vector2d& half,

@@ -19,19 +19,19 @@ namespace {
 
 constexpr double kHuber = 2.0;      // In sigmas; a uniform error stays within 1.73.
 constexpr double kOutlier = 4.0;    // In sigmas.
-constexpr double kMaxSigma = 0.15;  // Of the position, relative to half the diagonal.
+constexpr double kMaxSigma = 0.15;  // Position, relative to half the diagonal.
 constexpr int kMinCrossing = 3;     // Ends of rings on the sides of an axis that determine it.
 constexpr double kMinCrossingSine =
-    0.12;                             // Of the angle between a ring and a side that it crosses.
+    0.12;  // Sine of the angle between a ring and a side that it crosses.
 constexpr int kMinCrossingOfFew = 2;  // A single end may be that of another side.
 // Standard deviation of the growth, in spots, at a side that rings meet slantwise or not at all:
 // successive returns then have ever less of their spot on the board, and mix with what is behind,
 // so that the side appears further in instead of further out.
 constexpr double kSlantGrowthSigma = 0.4;
 constexpr double kSlantSine = 0.3;
-constexpr double kMinVariance_m2 = 1e-6;      // Of a position within an interval.
+constexpr double kMinVariance_m2 = 1e-6;      // A position within an interval.
 constexpr std::size_t kMaxSides = kFirstRim;  // Straight ones.
-constexpr std::size_t kRimParts = 4;          // Of a rim, to tell how much of it is seen.
+constexpr std::size_t kRimParts = 4;          // Parts of a rim, to count how much of it is seen.
 constexpr std::size_t kMinRimParts = 3;
 constexpr int kMinRimPoints = 4;
 // Prior sigma of the distance of all sides beyond where the board's size has them, relative to half
@@ -333,7 +333,7 @@ class Fitter {
     return fit;
   }
 
-  // Of the angles at which the outline looks the same, the one with corner 0 highest.
+  // The angle with corner 0 highest, among those at which the outline looks the same.
   double UprightAngle(double angle) const {
     const bool square = IsSquare(half_) && !board_.hole && board_.round_holes.empty();
     const double half_turn = HolesAllowTurns(board_, 2) ? 1.0 : 2.0;

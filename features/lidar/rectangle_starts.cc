@@ -18,7 +18,7 @@ constexpr std::size_t kPlacesPerAxis = 2;
 
 struct Vote {
   double center = 0.0;
-  int sign = 0;  // Of the side: +1 for the one in the direction of the axis.
+  int sign = 0;  // Sign of the side: +1 for the one in the direction of the axis.
 };
 
 // A position along one axis of the rectangle, and how many edge points support it.

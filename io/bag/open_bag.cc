@@ -8,16 +8,12 @@
 #include "io/bag/topic_table.h"
 #include "io/text/git_lfs.h"
 #include "io/text/number_text.h"
+#include "io/text/recording_name.h"
 
 namespace sextant {
 namespace {
 
 using std::string_view_literals::operator""sv;
-
-bool IsRecording(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
-  return extension == ".db3" || extension == ".mcap" || extension == ".bag";
-}
 
 // The only recording in a folder, as ROS 2 writes it next to its metadata.yaml.
 Expected<std::filesystem::path> RecordingIn(const std::filesystem::path& folder) {

@@ -24,7 +24,7 @@ constexpr std::size_t kScaleAt = 131;
 constexpr std::size_t kOffsetAt = 155;
 constexpr std::size_t kLongCountAt = 247;
 constexpr std::size_t kHeaderBytes = 227;
-constexpr std::size_t kLongHeaderBytes = 375;  // Of version 1.4.
+constexpr std::size_t kLongHeaderBytes = 375;  // Version 1.4.
 constexpr std::size_t kIntensityInRecord = 12;
 // The smallest record of each point format, and where its time is; 0 for none.
 struct LasFormat {

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kMaxNpyHeader = std::size_t{1} << 16;
 constexpr std::size_t kMaxNpyColumns = 16;
-constexpr std::size_t kMaxSize = std::size_t{1} << 18;  // Of a field; sums of them cannot overflow.
+constexpr std::size_t kMaxSize = std::size_t{1} << 18;  // Sums of such fields cannot overflow.
 
 // A number of each point, or bytes that are none (padding, text).
 struct NpyField {
@@ -79,7 +79,7 @@ class PythonReader {
     const auto [stop, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), number);
     if (error != std::errc()) return std::nullopt;
     rest_.remove_prefix(static_cast<std::size_t>(stop - rest_.data()));
-    Take('L');  // Of Python 2.
+    Take('L');  // Python 2 writes it.
     return number;
   }
   // "(3,)" or "(64, 1024)"; none for anything else.

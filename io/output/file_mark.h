@@ -10,7 +10,7 @@ namespace sextant {
 /// size and the time of its last change. A file system without attributes stays without the mark.
 void MarkAsWritten(int fd);
 
-/// What the mark of a file tells of it.
+/// What the mark of a file states about it.
 enum class FileOrigin {
   kSextant,   ///< sextant wrote it and nobody has changed it since; or it has no bytes to lose.
   kChanged,   ///< It was changed since sextant wrote it.

@@ -46,7 +46,7 @@ std::string DescribeHolders(int lock_file) {
   for (const pid_t number : all) {
     if (kill(number, 0) == 0 || errno != ESRCH) running.push_back(number);
   }
-  // On another machine, or in another container, its number says nothing here.
+  // On another machine, or in another container, its number means nothing here.
   if (running.empty()) running = all;
   return Describe(running);
 }

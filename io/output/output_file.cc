@@ -19,7 +19,7 @@ namespace {
 Descriptor CreateFile(int folder, const std::string& name, mode_t mode) {
   constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
   Descriptor file(openat(folder, name.c_str(), kFlags, mode));
-  // The lock tells a process that cleans up that this one still lives (OutputFolder).
+  // The lock shows a process that cleans up that this one still runs (OutputFolder).
   if (file.is_open()) flock(file.get(), LOCK_EX | LOCK_NB);
   return file;
 }

@@ -21,7 +21,7 @@ std::string_view ToString(PoseDirection direction);
 /// A transform between a LiDAR and a camera as a file states it.
 struct StatedPose {
   Rigid3d transform;
-  std::optional<PoseDirection> direction{};  ///< None: neither names nor axes tell.
+  std::optional<PoseDirection> direction{};  ///< None: neither names nor axes show it.
   std::string basis{};         ///< What the direction follows from; a phrase for people.
   std::string camera_frame{};  ///< Empty: the file has no names.
   std::string lidar_frame{};

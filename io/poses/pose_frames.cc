@@ -151,7 +151,7 @@ StatedPose OfSingle(const FrameTransform& t, const std::string& camera, const st
   const bool known = !camera.empty() && (lidar.empty() || lidar != camera) &&
                      (lidar == (camera_is_parent ? t.child : t.parent));
   if (!known) {
-    pose.basis += ", and these names do not say which is the LiDAR and which the camera";
+    pose.basis += ", and these names do not state which is the LiDAR and which the camera";
     return pose;
   }
   pose.direction = camera_is_parent ? PoseDirection::kCamFromLidar : PoseDirection::kLidarFromCam;

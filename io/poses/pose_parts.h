@@ -39,7 +39,7 @@ std::string OpticalFrameIn(std::string_view text);
 inline constexpr double kUprightCosine = -0.7;
 bool IsUprightEitherWay(const Rigid3d& pose);
 
-/// The only direction in which the camera is upright; none if that does not tell.
+/// The only direction in which the camera is upright; none if that does not decide.
 void RecogniseByAxes(StatedPose& pose);
 
 /// A unit quaternion w x y z to 1e-3 and a translation. Error: kParse, of `file` and `line`.

@@ -60,7 +60,7 @@ class Columns {
   CsvHeader header_;
 };
 
-// Whether the ids are names, such as p2, which say nothing of boards.
+// Whether the ids are names, such as p2, which do not name boards.
 bool IsNameOfPoint(std::string_view id) {
   return !id.empty() && id.find(':') == std::string_view::npos && (id[0] < '0' || id[0] > '9') &&
          id[0] != '-' && id[0] != '+';

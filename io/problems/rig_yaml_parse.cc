@@ -27,8 +27,8 @@ namespace {
 using RigKeys = std::vector<std::string>;
 
 constexpr std::size_t kMaxSensors = 100;
-constexpr std::size_t kMaxNumbers = 2 * kMaxPointsSeen;  // Of the points of one board.
-// Of the covariances of all pixels, which grow with the square of the pixels of one observation.
+constexpr std::size_t kMaxNumbers = 2 * kMaxPointsSeen;  // For the points of one board.
+// For the covariances of all pixels, which grow with the square of the pixels of an observation.
 constexpr std::size_t kMaxCovarianceNumbers = std::size_t{128} << 20;
 
 class RigReader {
@@ -372,7 +372,7 @@ class RigReader {
     }
   }
 
-  // Of any length, as other programs write it.
+  // The vector may have any length, as other programs write it.
   Eigen::Vector3d DirectionAt(const YamlNode& map, std::string_view key) {
     const Eigen::Vector3d direction = in_.PointAt(map, key);
     const double length = direction.norm();

@@ -157,7 +157,7 @@ PageTable SigmaTable(const CalibrationResult& result) {
     table.rows.push_back(SigmaRow("bootstrap over the views", *trust.bootstrap_sigma));
   }
   if (trust.jackknife_sigma) {
-    table.rows.push_back(SigmaRow("jackknife (leave one view out)", *trust.jackknife_sigma));
+    table.rows.push_back(SigmaRow("jackknife (leave-one-view-out)", *trust.jackknife_sigma));
   }
   return table;
 }

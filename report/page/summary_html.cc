@@ -93,7 +93,7 @@ std::string CellColour(double value) {
                      static_cast<int>(rgb.z()));
 }
 
-// The first digits, which tell two sets of inputs apart; the whole is beside the files.
+// The first digits, which distinguish two sets of inputs; the whole is beside the files.
 std::string HashHtml(const std::string& hash) {
   constexpr std::size_t kDigits = 16;
   if (hash.empty()) return {};
@@ -168,7 +168,7 @@ std::string CorrelationHtml(const PageCorrelation& correlation) {
     html += "</tr>\n";
   }
   return html +
-         "</tbody></table></div><figcaption>Near 1 or -1: the views do not tell the two apart, and "
+         "</tbody></table></div><figcaption>Near 1 or -1: the views do not separate the two, and "
          "an error in one is compensated by the other. Boards at other ranges, places in the image "
          "and tilts separate them.</figcaption></figure>\n";
 }

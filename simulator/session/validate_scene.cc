@@ -106,11 +106,11 @@ class SceneCheck {
     if (!rendering) return Fail(rendering.error());
     const Expected<Camera> assumed = PublishedCamera(camera);
     if (!assumed) return Fail(assumed.error());
-    Require(
-        assumed->width_px == rendering->width_px && assumed->height_px == rendering->height_px,
-        what,
-        fmt::format("its image has {} x {} px, assumed_intrinsics say {} x {}", rendering->width_px,
-                    rendering->height_px, assumed->width_px, assumed->height_px));
+    Require(assumed->width_px == rendering->width_px && assumed->height_px == rendering->height_px,
+            what,
+            fmt::format("its image has {} x {} px, assumed_intrinsics state {} x {}",
+                        rendering->width_px, rendering->height_px, assumed->width_px,
+                        assumed->height_px));
     cameras_.push_back(*rendering);
   }
 

@@ -36,7 +36,7 @@ class LocalFrame {
   Eigen::Vector3d lidar_centre_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d cam_centre_ = Eigen::Vector3d::Zero();
   double unit_m_ = 1.0;
-  bool is_far_ = false;  ///< So far that the sigma of the translation says little.
+  bool is_far_ = false;  ///< So far that the sigma of the translation means little.
 };
 
 }  // namespace sextant

@@ -18,7 +18,7 @@
 namespace sextant {
 namespace {
 
-constexpr int kMaxUntellableBoards = 3;
+constexpr int kMaxTooFewBoards = 3;
 
 PointTerm UnitTerm(const Pair3d3d& pair) {
   return {pair.point_in_cam, pair.point_in_lidar, Eigen::Matrix3d::Identity()};
@@ -68,7 +68,7 @@ struct BoardSums {
   double between = 0.0;                     // sum_g n_g |mean r_g|^2
   double residuals = 0.0;                   // Count of numbers.
   int boards = 0;
-  bool has_names = false;  // False where nothing says which pairs are of one board.
+  bool has_names = false;  // False where nothing states which pairs are of one board.
 };
 
 // None where a point does not project.
@@ -116,7 +116,7 @@ struct Components {
   double freedom = 0.0;
 };
 
-// Expects as many boards as pairs, or more than kMaxUntellableBoards.
+// Expects as many boards as pairs, or more than kMaxTooFewBoards.
 Components Separate(const BoardSums& sums, const Matrix6d& inverse, int dimension, int unknowns,
                     bool boards_known) {
   const double within_freedom = sums.residuals - unknowns;
@@ -192,17 +192,17 @@ void Complete(std::span<const Pair> pairs, const Camera* camera, const SolverSpe
   if (!inverse || !std::isfinite(sums->squares)) return;
   NoiseEstimate noise = estimate.noise.value_or(NoiseEstimate{});
   const bool grouped = sums->has_names && sums->boards < static_cast<int>(estimate.inliers.size());
-  const bool tellable = grouped && sums->boards > kMaxUntellableBoards;
-  const Components parts = Separate(*sums, *inverse, kResiduals, unknowns, tellable);
+  const bool is_estimable = grouped && sums->boards > kMaxTooFewBoards;
+  const Components parts = Separate(*sums, *inverse, kResiduals, unknowns, is_estimable);
   if (!(noise.*sigma)) noise.*sigma = std::sqrt(parts.independent + parts.shared);
   // A sigma of zero would state that the answer is without error.
   const double rounding = RoundingOf(pairs, estimate.inliers);
   const bool is_exact = *(noise.*sigma) <= rounding;
   if (is_exact) noise.*sigma = rounding;
   noise.boards = grouped ? sums->boards : 0;
-  noise.board_errors = tellable  ? BoardErrors::kEstimated
-                       : grouped ? BoardErrors::kTooFewBoards
-                                 : BoardErrors::kAssumedIndependent;
+  noise.board_errors = is_estimable ? BoardErrors::kEstimated
+                       : grouped    ? BoardErrors::kTooFewBoards
+                                    : BoardErrors::kAssumedIndependent;
   noise.shared_sigma = is_exact ? 0.0 : std::sqrt(parts.shared);
   noise.freedom = parts.freedom;
   estimate.noise = noise;
@@ -223,19 +223,20 @@ void Complete(std::span<const Pair> pairs, const Camera* camera, const SolverSpe
         parts.independent * *inverse + parts.shared * *inverse * sums->by_board * *inverse;
     estimate.covariance = Correlated(*estimate.covariance, variance * *inverse, correlated);
   }
-  if (tellable) *estimate.covariance *= CovarianceInflation(parts.freedom);
+  if (is_estimable) *estimate.covariance *= CovarianceInflation(parts.freedom);
   constexpr double kFewFreedom = 6.0;
   if (!grouped && parts.freedom <= kFewFreedom) {
     AddWarning(
         fmt::format("the noise is estimated from {:.0f} redundant numbers only: the region that "
                     "holds the truth with 95 percent is {:.1f} times as wide as these sigmas "
-                    "make it; more pairs would tell",
+                    "make it; more pairs narrow it",
                     parts.freedom, std::sqrt(CovarianceInflation(parts.freedom))),
         estimate);
   }
-  if (grouped && !tellable) {
-    AddWarning(fmt::format("the pairs are of {} board{}, too few to tell what error the pairs of a "
-                           "board share; the sigmas assume none and may be several times too small",
+  if (grouped && !is_estimable) {
+    AddWarning(fmt::format("the pairs are of {} board{}, too few to estimate the error that the "
+                           "pairs of a board share; the sigmas assume none and may be several "
+                           "times too small",
                            sums->boards, sums->boards == 1 ? "" : "s"),
                estimate);
   }

@@ -14,7 +14,7 @@ struct SolverSpec;
 /// How the covariance of an answer treats the errors of pairs of one board.
 enum class BoardErrors {
   kAssumedIndependent,  ///< No two pairs are known to be of one board and view.
-  kTooFewBoards,        ///< Three boards or fewer: too few to tell, so independence was assumed.
+  kTooFewBoards,        ///< Three boards or fewer: too few to estimate one; assumed independent.
   kEstimated,           ///< An error common to the pairs of a board and view was estimated.
 };
 
@@ -49,7 +49,7 @@ struct NoiseEstimate {
 /// As the variances of few boards are estimates with f effective degrees of freedom (Satterthwaite
 /// 1946), the covariance of correlated pairs is multiplied by 6 F(6, f) / chi2(6), quantiles at 95
 /// percent: then the 95 percent region of a Gaussian is that of the answer. Independent pairs keep
-/// the least-squares covariance s^2 H^-1, and `freedom` tells how well s is known. Time N log N.
+/// the least-squares covariance s^2 H^-1, and `freedom` states how well s is known. Time N log N.
 void CompleteNoise(const CalibrationProblem& problem, const SolverSpec& spec, Estimate& estimate);
 
 }  // namespace sextant

@@ -32,7 +32,7 @@ double LeastExtent(std::span<const Pair2d3d> pairs, std::span<const int> indices
   return 0.5 * (first - last).squaredNorm();
 }
 
-// Of all pairs, in one pass of vector instructions; infinite where one does not project.
+// The sum over all pairs, in one vectorised pass; infinite where one does not project.
 double SumOfSquares(const std::vector<double>& residuals) {
   return Eigen::Map<const Eigen::VectorXd>(residuals.data(),
                                            static_cast<Eigen::Index>(residuals.size()))

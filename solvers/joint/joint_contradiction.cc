@@ -24,7 +24,7 @@ double ViewsCompared(const std::vector<ViewSums>& sums) {
 }  // namespace
 
 double ContradictionScale(const std::vector<ViewSums>& sums) {
-  constexpr double kMedianOfSix = 5.348 / 6.0;  // Of chi-square with 6 degrees, over its mean.
+  constexpr double kMedianOfSix = 5.348 / 6.0;  // Chi-square of 6 degrees, over its mean.
   std::vector<double> ratios;
   for (const ViewSums& of : sums) {
     if (of.freedom > 0) ratios.push_back(of.contradiction / (kMedianOfSix * of.freedom));

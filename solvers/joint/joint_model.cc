@@ -102,7 +102,7 @@ class ModelMaker {
     }
   }
 
-  // Of the ranges and of the outlines.
+  // The crossing distance moves the ranges and the outlines.
   void AddCrossing() {
     const double sigma = kCrossingOverRing * problem_.lidar_errors.ring_offset_sigma_m;
     if (!(sigma > 0.0) || !BeamsStartAtOrigin(problem_)) return;
@@ -115,7 +115,7 @@ class ModelMaker {
     }
   }
 
-  // Of each board, as a common range offset would be determined by its bend. Where rings have
+  // Each board may bend; otherwise its bend would determine a common range offset. Where rings have
   // offsets, these are as large.
   void AddBends() {
     const double sigma_m = kBendOverRange * problem_.lidar_errors.range_offset_sigma_m;
@@ -188,8 +188,8 @@ class ModelMaker {
     }
   }
 
-  // Of the rims of round holes, whose points are placed by their deviation from a circle of free
-  // radius.
+  // Growth of the rims of round holes, whose points are placed by their deviation from a circle of
+  // free radius.
   void AddRimGrowth() {
     std::optional<std::size_t> shared;
     for (std::size_t i = 0; i < model_.views.size(); ++i) {

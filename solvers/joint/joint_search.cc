@@ -166,7 +166,7 @@ class JointSearch {
 
   /// Residuals against their expectation at the current state.
   struct Sums {
-    Eigen::MatrixXd covariance;  // Of the shared numbers.
+    Eigen::MatrixXd covariance;  // Covariance of the shared numbers.
     std::vector<ViewSums> views;
     KindSum rings;
   };

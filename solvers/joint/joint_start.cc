@@ -12,7 +12,7 @@ double Limited(double squared) {
   return kScale * kScale * std::log1p(squared / (kScale * kScale));
 }
 
-// Of a view's printed points.
+// The cost of a view's printed points.
 double CostAt(const JointModel& model, const JointState& state, std::size_t view) {
   double cost = 0.0;
   for (const double value : ResidualsAt(model, state, view).printed) cost += Limited(value * value);

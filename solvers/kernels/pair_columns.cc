@@ -41,7 +41,7 @@ SEXTANT_MULTIVERSION void MarkInliers(const PairColumns& pairs, const ColumnPose
   }
 }
 
-// Of the 64 pairs from `begin` on, in the order of the columns.
+// The squared residuals of the 64 pairs from `begin` on, in the order of the columns.
 SEXTANT_MULTIVERSION void SquareBlock(const PairColumns& pairs, const ColumnPose& pose,
                                       std::size_t begin, double* squared) {
   for (std::size_t at = 0; at < kColumnBlock; at += kSimdWidth) {

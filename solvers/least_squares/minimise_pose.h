@@ -77,7 +77,7 @@ class PoseProblem {
   PoseMinimum<Equations>& best_;
   std::optional<Vector6d> step_;
   Equations there_;
-  double last_size_ = 0.0;  // Of the last step, 0 where it was rejected.
+  double last_size_ = 0.0;  // Size of the last step, 0 if it was rejected.
 };
 
 /// argmin over SE(3) of the squared residuals' sum near `start`, on the 6 numbers of Perturb.

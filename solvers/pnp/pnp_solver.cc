@@ -50,7 +50,7 @@ std::optional<Matrix6d> ThroughMoments(const PnpKernel& kernel, double focal_len
     const Expected<PnpPoses> found =
         kernel({image, view.points, focal_length_px, {.near = &view_from_lidar}});
     if (!found) return std::nullopt;
-    // Of several poses, the one nearest to the solution.
+    // Takes the pose nearest to the solution.
     const auto distance = [&](const Rigid3d& pose) {
       return PoseDifference(pose, view_from_lidar).squaredNorm();
     };

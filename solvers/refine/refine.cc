@@ -94,7 +94,7 @@ class RefineSolver final : public Solver {
         : estimate(std::move(answer)), is_certain(certain) {}
 
     Estimate estimate;
-    bool is_certain;  // Of small residuals; else the start may have been a bad one.
+    bool is_certain;  // The residuals are small; else the start may have been a bad one.
   };
 
   Expected<Estimate> DoSolve(const CalibrationProblem& problem) const override {

@@ -23,7 +23,7 @@ struct RobustLoss {
 RefinedPose RefinePoseWithCeres(const TermsView& terms, const Rigid3d& start,
                                 const RobustLoss& loss, const RefineLimits& limits);
 
-/// A pair with a smaller weight rho' is no inlier: it has hardly a say in the pose, and its
+/// A pair with a smaller weight rho' is no inlier: it hardly affects the pose, and its
 /// residual is not one of the noise.
 inline constexpr double kMinLossWeight = 0.25;
 

@@ -7,7 +7,7 @@
 
 namespace sextant {
 
-/// What one observation tells of the board's pose.
+/// The information of one observation on the board's pose.
 struct BoardInformation {
   std::size_t placement = 0;
   std::size_t sensor = 0;

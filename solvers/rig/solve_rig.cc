@@ -213,7 +213,7 @@ class RigSolution {
 
   void RefuteByPrints(RigEstimate& estimate) const {
     constexpr double kMaxSigmas = 4.0;
-    constexpr double kMinShare = 0.005;  // Of usual prints and focal lengths.
+    constexpr double kMinShare = 0.005;  // Usual error of prints and focal lengths.
     for (const RigPrintScale& scale : scales_) {
       const double share = std::abs(scale.share);
       if (share < kMinShare || share < kMaxSigmas * scale.sigma) continue;

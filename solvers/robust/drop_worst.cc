@@ -23,7 +23,7 @@ struct DropWorstOptions : InlierOptions {
   int keep = 0;
 };
 
-// Of so many pairs one is dropped at a time, so that up to 199 are dropped one by one.
+// One of so many pairs is dropped at a time, so that up to 199 are dropped one by one.
 constexpr std::size_t kPairsPerDropped = 100;
 
 /// Solves, removes the pair with the largest residual, and solves again: the paper's elimination

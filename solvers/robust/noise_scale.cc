@@ -51,7 +51,7 @@ class ScaleSearch {
   /// The scale of the best pose, after least squares on the pairs within it.
   NoiseScale Scale() {
     constexpr int kMaxRounds = 10;
-    constexpr double kMaxGrowth = 4.0;  // Of the variance; more are outliers that were let in.
+    constexpr double kMaxGrowth = 4.0;  // In variance; more are outliers that were let in.
     scorer_.SquaredResiduals(best_->pose, squared_);
     NoiseScale scale{best_->pose, 0.0, best_->rating.inliers};
     double variance = Variance(best_->rating.max_squared);
@@ -144,7 +144,7 @@ class ScaleSearch {
     double squares = 0.0;
   };
 
-  // Of those that are in, the pairs within max_squared.
+  // The pairs that are in and within max_squared.
   static Selection SelectionOf(const std::vector<double>& squared, const std::vector<bool>& is_in,
                                double max_squared) {
     Selection selection;

@@ -60,7 +60,7 @@ class TripleSearch {
   // 50 entries of the graph.
   static constexpr double kMinBudget = 200.0;
   static constexpr double kBudgetShare = 1.0 / 200.0;
-  // Of least squares on the inliers; far fewer are needed.
+  // Rounds of least squares on the inliers; far fewer are needed.
   static constexpr int kMaxRounds = 20;
 
   // Draws three pairs; the third only where the first two agree, which outliers hardly ever do.

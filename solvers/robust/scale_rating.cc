@@ -12,7 +12,7 @@
 namespace sextant {
 namespace {
 
-// Of the extent of the measurements: noise below this is rounding.
+// Share of the extent of the measurements: noise below this is rounding.
 constexpr double kMinShare = 1e-7;
 // No measurement is finer than this share of the extent: a few pairs that agree even better,
 // because one was computed from the other, are no stronger evidence than many that agree as well as

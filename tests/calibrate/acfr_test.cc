@@ -69,7 +69,7 @@ Eigen::Vector3d Corrected(const Eigen::Vector3d& point_in_lidar, const SolveRepo
   return point;
 }
 
-// Of the corners of each view under the answer of the others [m], with its corrections.
+// RMSE of the corners of each view under the answer of the others [m], with its corrections.
 double HeldOutRmse(const CalibrationProblem& problem, const char* spec) {
   const SolverPtr solver = *BuiltinSolvers().Make(spec);
   std::set<int> views;

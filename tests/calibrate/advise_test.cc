@@ -103,8 +103,9 @@ TEST(PredictView, RefusesWhatASensorWouldNotFind) {
   const SensorPair sensors = SensorsOf(session, kFineStep_deg);
   const Board& board = session.problem.boards[0];
   const auto at = [&](double turn_deg, const Eigen::Vector3d& where) {
-    const Eigen::Quaterniond hung = ExpSo3({0.0, 0.0, 45.0 * kRadPerDeg});
-    return PredictView(sensors, board, {ExpSo3({0.0, turn_deg * kRadPerDeg, 0.0}) * hung, where})
+    const Eigen::Quaterniond corner_up = ExpSo3({0.0, 0.0, 45.0 * kRadPerDeg});
+    return PredictView(sensors, board,
+                       {ExpSo3({0.0, turn_deg * kRadPerDeg, 0.0}) * corner_up, where})
         .has_value();
   };
   EXPECT_TRUE(at(0.0, {0.0, 0.0, 2.0}));
@@ -234,7 +235,7 @@ TEST(WeakestOf, NamesDirectionsAsAPersonAtTheCameraWould) {
   EXPECT_EQ(AxisName(Eigen::Vector3d(1, 1, 0).normalized()), "(0.71, 0.71, 0.00)");
 }
 
-// What the words say of its sides is so of its corners.
+// The words on its sides and its top are true of its corners.
 TEST(DescribePlacement, SidesAndTopAreAsSaid) {
   const Board board{.id = 4, .top_right_m = 0.5, .right_bottom_m = 0.5};
   const auto turned = [](double turn_deg, double lean_deg) {

@@ -83,8 +83,9 @@ TEST(Diagnose, ABoardOfAnotherSizeInTheScans) {
   }
   const std::vector<std::string> lines = DiagnoseIt(faked);
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_THAT(lines[0],
-              HasSubstr("measures 0.555 m from top to right in the scans, the file says 0.500 m"));
+  EXPECT_THAT(
+      lines[0],
+      HasSubstr("measures 0.555 m from top to right in the scans, the file states 0.500 m"));
 }
 
 TEST(Diagnose, PrintsThatTheLensDoesNotFit) {

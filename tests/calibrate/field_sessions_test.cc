@@ -167,8 +167,8 @@ TEST(FieldSessions, YardWithACameraThatLooksBackwards) {
 }
 
 // One view of a board with four round holes and four tags, the scan of a rosette cropped so that
-// two sides are missing. Half a turn looks the same to the LiDAR; a rough rotation tells the two
-// apart.
+// two sides are missing. Half a turn looks the same to the LiDAR; a rough rotation decides
+// between the two.
 TEST(FieldSessions, RoundHolesInACroppedScan) {
   SEXTANT_REAL_DATA(folder, "field/mid360_circles");
   const Camera camera = *ReadCamera(folder / "camera.yaml");

@@ -124,8 +124,8 @@ TEST(Match, AnInitialRotationDecidesOtherwise) {
 TEST(Match, TwoEqualBoardsInOnePlaneAreAmbiguous) {
   Random random(11);
   const std::vector<Board> boards = Squares(2);
-  const Eigen::Quaterniond hung = ExpSo3({0.0, 0.0, 0.25 * std::numbers::pi});
-  const std::vector<Rigid3d> poses = {{hung, {-0.5, 0.0, 2.0}}, {hung, {0.5, 0.0, 2.0}}};
+  const Eigen::Quaterniond corner_up = ExpSo3({0.0, 0.0, 0.25 * std::numbers::pi});
+  const std::vector<Rigid3d> poses = {{corner_up, {-0.5, 0.0, 2.0}}, {corner_up, {0.5, 0.0, 2.0}}};
   const std::vector<Observation> views = {
       FakeObservation(boards, poses, kFakeCamFromLidar, random)};
   const Expected<Matching> matching = MatchViews(views);

@@ -45,7 +45,7 @@ const Seen& See(std::uint64_t seed) {
   return known != all.end() ? known->second : all.emplace(seed, SeeAnew(seed)).first->second;
 }
 
-// The patch and the placement that the truth says.
+// The true patch and the true placement.
 MatchedBoard TrueMatch(const Seen& seen, int board) {
   MatchedBoard match{.sighting = board};
   double nearest = 1e9;

@@ -27,7 +27,7 @@ constexpr double kSigma = 0.01;
 
 const Rigid3d kTruth = {ExpSo3({1.2, -1.2, 1.2}), {0.1, -0.2, -0.1}};
 
-// Views of four points each, every one with noise of its own; `stated` is what the pairs say of it.
+// Views of four points each, each with its own noise; `stated` is the sigma that the pairs state.
 CalibrationProblem SomeViews(int views, std::uint64_t seed, double stated = kSigma) {
   Random random(seed);
   CalibrationProblem problem;
@@ -206,7 +206,7 @@ TEST(DisagreeingViews, AreBeyondChanceByTheirOwnSigmas) {
   const std::vector<int> views = {3, 5, 8, 9};
   const std::vector<ViewComparison> compared = {
       {3, true, 2.5}, {5, true, 3.2}, {8, true, 0.1}, {8, true, 4.0}};
-  // Of four boards each may exceed 2.8 sigma; view 9 was left out.
+  // Each of four boards may exceed 2.8 sigma; view 9 was left out.
   EXPECT_THAT(DisagreeingViews(compared, views), ElementsAre(false, true, true, true));
 }
 

@@ -36,9 +36,8 @@ TEST(UnexplainedShare, IsSmallForMeasurementsAndLargeForUnrelatedPoints) {
     ASSERT_TRUE(measured);
     EXPECT_LT(*measured, 0.15) << seed;
     const auto unrelated = ShareOfKabsch(PairsWithNoise(3.0, seed));
-    if (unrelated) {
-      EXPECT_GT(*unrelated, kMaxUnexplainedShare) << seed;
-    }
+    ASSERT_TRUE(unrelated) << seed;
+    EXPECT_GT(*unrelated, kMaxUnexplainedShare) << seed;
   }
 }
 

@@ -58,6 +58,19 @@ TEST_P(Intrinsics, VectorHoldsTheWholeCamera) {
   EXPECT_EQ(IntrinsicName(CameraModel::kEquidistant, 6), "k3");
 }
 
+TEST_P(Intrinsics, AnImageSizeReplacesOnlyTheSize) {
+  const Camera camera = CameraOf(GetParam());
+  const Camera sized = WithImageSize(camera, 640, 480);
+  EXPECT_EQ(sized.width_px, 640);
+  EXPECT_EQ(sized.height_px, 480);
+  EXPECT_EQ(sized.model, camera.model);
+  EXPECT_EQ(IntrinsicsOf(sized), IntrinsicsOf(camera));
+  EXPECT_EQ(sized.distortion, camera.distortion);
+  EXPECT_EQ(sized.skew_px, camera.skew_px);
+  EXPECT_EQ(sized.xi, camera.xi);
+  EXPECT_EQ(sized.alpha, camera.alpha);
+}
+
 TEST_P(Intrinsics, DerivativeIsThatOfProject) {
   const Camera camera = CameraOf(GetParam());
   const IntrinsicVector numbers = IntrinsicsOf(camera);

@@ -65,7 +65,7 @@ TEST(WideModels, UnprojectInvertsProjectOverTheWholeDomain) {
       const auto back = Unproject(camera, *pixel);
       ASSERT_TRUE(back);
       EXPECT_NEAR(back->norm(), 1.0, 1e-14);
-      // Where the image hardly grows any more, the pixel tells less of the ray. Near the end of a
+      // Where the image hardly grows any more, the pixel determines it less well. Near the end of a
       // domain without a border, pixels are up to 1e9, and their rounding with them.
       EXPECT_LT((*Project(camera, *back) - *pixel).norm(), 1e-9 + 1e-12 * pixel->norm());
       if (from_axis < 0.9 * end) {

@@ -283,7 +283,7 @@ TEST(CloudForms, AllFormsOfARealScanGiveTheSamePoints) {
   struct Form {
     const char* file;
     std::size_t rings;
-    double tolerance_m;  // Of coordinates as text.
+    double tolerance_m;  // For coordinates as text.
     std::size_t points = 19026;
   };
   for (const Form& form : std::vector<Form>{{"livox_driver2.pcd", 0, 0.0},

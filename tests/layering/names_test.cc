@@ -20,7 +20,7 @@ struct Wording {
 
 constexpr std::array<Wording, 18> kWordings = {{
     {"///< Of ", "a noun, or a sentence with a subject"},
-    {"/// Of ", "a noun, or a sentence with a subject"},
+    {"// Of ", "a noun, or a sentence with a subject"},
     {"drawn anew", "bootstrap over views"},
     {"views left out", "jackknife (leave-one-view-out)"},
     {"says of itself", "data diagnostics"},

@@ -26,7 +26,7 @@ struct PlanarViewOptions {
   int count = 4;
   double depth = 3.0;
   double max_tilt_rad = 0.8;  // About each axis; 0 faces the camera.
-  double sigma = 0.0;         // Of the image points on the plane z = 1.
+  double sigma = 0.0;         // Noise of the image points on the plane z = 1.
 };
 
 PlanarView MakePlanarView(const PlanarViewOptions& options, Random& random) {

@@ -23,7 +23,7 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// Of many sessions: a third of the returns of the default. What the tests of errors are about, the
+// Many sessions have a third of the returns of the default. What the tests of errors are about, the
 // offsets of rings and of views, is as large for few returns.
 constexpr double kCoarseAzimuth_deg = 0.6;
 
@@ -235,8 +235,8 @@ TEST(Joint, ContradictionOfNoViewsIsAsExpected) {
 }
 
 // Named estimate within five of its own sigmas.
-void ExpectTold(const std::vector<EstimatedNumber>& numbers, const std::string& name,
-                double truth) {
+void ExpectEstimated(const std::vector<EstimatedNumber>& numbers, const std::string& name,
+                     double truth) {
   for (const EstimatedNumber& number : numbers) {
     if (number.name != name) continue;
     ASSERT_TRUE(number.sigma);
@@ -254,7 +254,7 @@ TEST(Joint, EstimatesTheRangeBias) {
   const auto plain = Solve(session.problem, "joint(kabsch)");
   const auto report = Solve(session.problem, "joint(kabsch,range_bias=true)");
   ASSERT_TRUE(plain && report);
-  ExpectTold(report->extras, "range_bias_m", 0.04);
+  ExpectEstimated(report->extras, "range_bias_m", 0.04);
   EXPECT_LT(*report->extras.front().sigma, 0.02);
   EXPECT_LT((report->cam_from_lidar.translation - session.true_cam_from_lidar.translation).norm(),
             0.02);
@@ -268,13 +268,13 @@ TEST(Joint, EstimatesTheSizeOfTheBoard) {
   session.problem.boards[0].right_bottom_m = 0.52;
   const auto sides = Solve(session.problem, "joint(kabsch,board_size=sides)");
   ASSERT_TRUE(exact && sides) << sides.error().message;
-  ExpectTold(sides->extras, "board_0_top_right_m", 0.5);
-  ExpectTold(sides->extras, "board_0_right_bottom_m", 0.5);
+  ExpectEstimated(sides->extras, "board_0_top_right_m", 0.5);
+  ExpectEstimated(sides->extras, "board_0_right_bottom_m", 0.5);
   session.problem.boards[0].top_right_m = 0.51;
   session.problem.boards[0].right_bottom_m = 0.51;
   const auto scale = Solve(session.problem, "joint(kabsch,board_size=scale)");
   ASSERT_TRUE(scale) << scale.error().message;
-  ExpectTold(scale->extras, "board_scale", 0.5 / 0.51);
+  ExpectEstimated(scale->extras, "board_scale", 0.5 / 0.51);
   EXPECT_LT(*scale->extras.front().sigma, 0.002);
 }
 
@@ -285,9 +285,9 @@ TEST(Joint, EstimatesIntrinsics) {
   const auto report = Solve(session.problem, "joint(kabsch,intrinsics=focal+center)");
   ASSERT_TRUE(report) << report.error().message;
   ASSERT_TRUE(report->camera);
-  ExpectTold(report->camera->estimated, "fx_px", 700.0);
-  ExpectTold(report->camera->estimated, "fy_px", 700.0);
-  ExpectTold(report->camera->estimated, "cx_px", 639.5);
+  ExpectEstimated(report->camera->estimated, "fx_px", 700.0);
+  ExpectEstimated(report->camera->estimated, "fy_px", 700.0);
+  ExpectEstimated(report->camera->estimated, "cx_px", 639.5);
 }
 
 const EstimatedNumber* Find(const std::vector<EstimatedNumber>& numbers, const std::string& name) {
@@ -337,7 +337,7 @@ struct ErrorStatistics {
   double number = 0.0;  ///< Mean of an estimated number.
 };
 
-// Of each solver on the same sessions.
+// The errors of each solver on the same sessions.
 std::vector<ErrorStatistics> StatisticsOf(const ViewSimulation& simulation, int sessions,
                                           const std::vector<const char*>& specs,
                                           const char* number = "") {

@@ -100,7 +100,7 @@ TEST(Kabsch, StatesTheCovarianceOfThePropagation) {
       PairScene scene = MakeScene({.pairs = pairs, .sigma_m = 0.05}, random);
       for (Pair3d3d& pair : scene.problem.pairs_3d3d) {
         pair.sigma_m = known ? 0.05 * random.Uniform(0.5, 2.0) : 0.0;
-        pair.id = {};  // Of no board, so that no errors in common are looked for.
+        pair.id = {};  // On no board, so that no errors in common are looked for.
       }
       const Expected<SolveReport> report = solver->Solve(scene.problem);
       ASSERT_TRUE(report) << report.error().message;

@@ -152,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(Every, Elimination,
                            return spec.param.find("11") != std::string::npos ? "to_11" : "to_8";
                          });
 
-// Of 5000 pairs 200 are true: a solver finds them, or says that it found no consensus.
+// 200 of 5000 pairs are true: a solver finds them, or reports that there is no consensus.
 TEST(ManyOutliers, AreSeenThroughOrReported) {
   const SceneOptions options{.pairs = 5000, .sigma_m = 0.01};
   Random random(DeriveSeed(4, "many outliers", 0, 0));

@@ -256,7 +256,7 @@ TEST(P3pSolver, CovarianceIsConsistentWhereTheNoiseIsNotStated) {
     const Expected<SolveReport> known = p3p->Solve(scene.problem);
     for (Pair2d3d& pair : scene.problem.pairs_2d3d) {
       pair.sigma_px = 0.0;
-      pair.id = {};  // Of no board, so that no errors in common are looked for.
+      pair.id = {};  // On no board, so that no errors in common are looked for.
     }
     const Expected<SolveReport> unknown = p3p->Solve(scene.problem);
     ASSERT_TRUE(known && unknown);

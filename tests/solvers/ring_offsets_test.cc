@@ -55,33 +55,33 @@ std::vector<double> Difference(std::vector<double> a, const std::vector<double>&
 TEST(RingOffsets, AreFoundExceptWhatPlanesAbsorb) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const ScanPair pair = Room(seed, kRingSigma_m);
-    const RingOffsets told = EstimateRingOffsets(ScanWindows(pair.in_target, kCell_rad),
-                                                 ScanWindows(pair.in_source, kCell_rad));
-    ASSERT_EQ(told.target_m.size(), static_cast<std::size_t>(kRings));
-    EXPECT_EQ(told.target_m, told.source_m) << "of one unit";
+    const RingOffsets estimated = EstimateRingOffsets(ScanWindows(pair.in_target, kCell_rad),
+                                                      ScanWindows(pair.in_source, kCell_rad));
+    ASSERT_EQ(estimated.target_m.size(), static_cast<std::size_t>(kRings));
+    EXPECT_EQ(estimated.target_m, estimated.source_m) << "of one unit";
     const std::vector<double> truth = TrueOffsets(seed);
     EXPECT_GT(Rms(truth), 0.005);
-    EXPECT_LT(Rms(Difference(told.target_m, truth)), 0.002) << "room " << seed;
+    EXPECT_LT(Rms(Difference(estimated.target_m, truth)), 0.002) << "room " << seed;
   }
 }
 
 TEST(RingOffsets, OfTwoUnitsAreSeparated) {
   const ScanPair one = Room(1, kRingSigma_m);
   const ScanPair other = Room(2, kRingSigma_m);
-  const RingOffsets told = EstimateRingOffsets(ScanWindows(one.in_target, kCell_rad),
-                                               ScanWindows(other.in_source, kCell_rad));
-  ASSERT_EQ(told.target_m.size(), static_cast<std::size_t>(kRings));
-  ASSERT_EQ(told.source_m.size(), static_cast<std::size_t>(kRings));
-  EXPECT_LT(Rms(Difference(told.target_m, TrueOffsets(1))), 0.002);
-  EXPECT_LT(Rms(Difference(told.source_m, TrueOffsets(2))), 0.002);
+  const RingOffsets estimated = EstimateRingOffsets(ScanWindows(one.in_target, kCell_rad),
+                                                    ScanWindows(other.in_source, kCell_rad));
+  ASSERT_EQ(estimated.target_m.size(), static_cast<std::size_t>(kRings));
+  ASSERT_EQ(estimated.source_m.size(), static_cast<std::size_t>(kRings));
+  EXPECT_LT(Rms(Difference(estimated.target_m, TrueOffsets(1))), 0.002);
+  EXPECT_LT(Rms(Difference(estimated.source_m, TrueOffsets(2))), 0.002);
 }
 
 TEST(RingOffsets, AreEmptyWithoutAny) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const ScanPair pair = Room(seed, 0.0);
-    const RingOffsets told = EstimateRingOffsets(ScanWindows(pair.in_target, kCell_rad),
-                                                 ScanWindows(pair.in_source, kCell_rad));
-    EXPECT_TRUE(told.target_m.empty() && told.source_m.empty()) << "room " << seed;
+    const RingOffsets estimated = EstimateRingOffsets(ScanWindows(pair.in_target, kCell_rad),
+                                                      ScanWindows(pair.in_source, kCell_rad));
+    EXPECT_TRUE(estimated.target_m.empty() && estimated.source_m.empty()) << "room " << seed;
   }
 }
 
@@ -94,8 +94,8 @@ TEST(RingOffsets, AreEmptyForPointsThatAreNoScan) {
   }
   for (const std::size_t count : {std::size_t{1}, cloud.size()}) {
     const ScanWindows windows(std::span<const Eigen::Vector3d>(cloud).first(count), kCell_rad);
-    const RingOffsets told = EstimateRingOffsets(windows, windows);
-    EXPECT_TRUE(told.target_m.empty() && told.source_m.empty()) << count;
+    const RingOffsets estimated = EstimateRingOffsets(windows, windows);
+    EXPECT_TRUE(estimated.target_m.empty() && estimated.source_m.empty()) << count;
   }
 }
 

@@ -50,7 +50,7 @@ TEST(CompareViews, AFarViewMayDifferMoreThanANearOne) {
     ASSERT_EQ(views->size(), static_cast<std::size_t>(kComparedViews));
     alarms += std::ranges::any_of(*views, IsMarked) ? 1 : 0;
   }
-  EXPECT_LE(alarms, 4);  // Of 1 on average, at most 3 sigma more.
+  EXPECT_LE(alarms, 4);  // 1 on average, and at most 3 sigma more.
 }
 
 TEST(CompareViews, TheScanOfAnotherMomentIsMarked) {

@@ -42,7 +42,7 @@ std::vector<Metric> PoseCheckMetrics() {
       {"unknown", "1 if the answer is cannot tell"},
       {"p_value",
        "probability of a change that is as far in its sigmas, if the pose had not moved; 1 where "
-       "nothing can be told"},
+       "the change is unknown"},
       {"rotation_deg", "error of the measured pose's rotation"},
       {"translation_mm", "error of the measured pose's translation"},
       {"nees",
@@ -70,7 +70,7 @@ const ParameterSet<PoseCheckSettings>& PoseCheckParameters() {
   return set;
 }
 
-// Of a chi-square distribution of 6, in closed form.
+// The tail of the chi-square distribution with 6 degrees of freedom, in closed form.
 double ProbabilityAbove(double squared_distance) {
   const double half = 0.5 * squared_distance;
   return std::exp(-half) * (1.0 + half + 0.5 * half * half);

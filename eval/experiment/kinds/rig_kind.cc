@@ -38,7 +38,7 @@ const std::vector<Metric>& RigMetrics() {
   static const std::vector<Metric> metrics = {
       {"translation_mm", "translation error of the pair's pose, all sensors solved together"},
       {"rotation_deg", "rotation error of the same"},
-      {"nees", "squared error of the same over the stated covariance, per axis: 1 if it is honest"},
+      {"nees", "squared error of the same over the stated covariance, per axis: 1 if it is right"},
       {"over_bound", "error of the same over the Cramer-Rao bound, root of the mean over the axes"},
       {"chained_mm", "translation error of the pair by chaining pairs through the first LiDAR"},
       {"chained_deg", "rotation error of the same"},

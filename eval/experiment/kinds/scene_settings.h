@@ -76,7 +76,7 @@ ParameterSet<Options>& AddSceneSettings(ParameterSet<Options>& set) {
               "board corners marked in the image (2D-3D), tag corners with noise, or a rendered "
               "image with the tag detector")
       .Real("mark_sigma_px", &Options::mark_sigma_px, "px", 0.0, 1e3,
-            "noise per axis with camera=marked; the paper says 3 to 4")
+            "noise per axis with camera=marked; the paper states 3 to 4")
       .Real("tag_sigma_px", &Options::tag_sigma_px, "px", 1e-6, 1e3,
             "noise per axis and tag corner with camera=tags")
       .Count("outliers", &Options::outliers, 0, 1000, "number of marked corners that are displaced")

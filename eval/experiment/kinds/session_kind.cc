@@ -158,7 +158,7 @@ class SessionTrials final : public Trials {
     values.Set(kStatedMm, kMmPerM * stated.translation_m);
   }
 
-  // Of the views that were assembled, with the sensor's true white noise and the true spread of its
+  // The bound of the assembled views, with the sensor's true white noise and the true spread of its
   // rings' offsets; all else that is unknown to the solver is unknown here, too.
   void MeasureBound(const RecordedSession& session, CalibrationProblem problem,
                     MetricValues& values) const {

@@ -11,7 +11,7 @@
 namespace sextant {
 
 std::string LineStyle(std::size_t i) {
-  // Okabe and Ito's colours, which colour-blind people tell apart, from dark to light and back.
+  // Okabe and Ito's colours, which colour-blind people distinguish, from dark to light and back.
   constexpr std::array<const char*, 7> kColours = {"#000000", "#D55E00", "#0072B2", "#009E73",
                                                    "#CC79A7", "#56B4E9", "#E69F00"};
   constexpr std::array<int, 8> kMarkers = {6, 4, 8, 10, 12, 2, 1, 3};

@@ -14,8 +14,8 @@ namespace sextant {
 namespace {
 
 std::string FigureText(const Statistic& statistic, const Figure& figure, bool with_interval) {
-  // A figure over the answered trials alone says how many these are: who answers only the easy ones
-  // looks better.
+  // A figure over the answered trials alone states how many these are: a solver that answers only
+  // the easy ones looks better.
   const std::string share = figure.trials < figure.all_trials
                                 ? fmt::format(" ({}/{})", figure.trials, figure.all_trials)
                                 : std::string();

@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kMinFollowed = 4;
 constexpr std::size_t kMaxFollowed = 256;
 constexpr std::size_t kMinOfFollowed = 3;  // Fewer returns do not show that elevations repeat.
-constexpr double kMaxAmbiguous = 0.05;     // Of the returns.
-constexpr double kClear = 0.001;           // Of the returns; so few need no other tolerance.
+constexpr double kMaxAmbiguous = 0.05;     // Share of the returns.
+constexpr double kClear = 0.001;           // Share of the returns; so few need no other tolerance.
 constexpr double kClearlyNearer = 0.3;     // Distance to a ring relative to that to the next.
 
 // Predicts the elevation of a ring's next return from the ring's line.

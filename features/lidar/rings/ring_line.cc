@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kMinLines = 4;
 constexpr std::size_t kMinTested = 3;  // Fewer returns of a ring do not show that it is narrow.
-constexpr double kMaxSpread = 0.25;    // Of a ring about its line, relative to the next ring.
-constexpr double kNarrowRings = 0.9;   // Of the tested returns, on rings as narrow as that.
+constexpr double kMaxSpread = 0.25;    // Spread about the line, relative to the next ring.
+constexpr double kNarrowRings = 0.9;   // Share of the tested returns, on rings as narrow as that.
 
 // A ring's line, where far from everything, and the spread of its returns about it.
 struct TestedRing {

@@ -23,7 +23,7 @@ constexpr int kMaxRings = 256;
 constexpr int kMinRepeating = 4;  // Fewer rings are recognised by being narrow.
 constexpr double kNarrow_rad = 0.0035;
 constexpr std::size_t kMinPerRing = 3;  // Fewer returns do not show that elevations repeat.
-constexpr double kNarrowShare = 0.95;   // Of the returns, on rings narrower than their gaps.
+constexpr double kNarrowShare = 0.95;   // Share of the returns on rings narrower than their gaps.
 constexpr double kMinTilt_rad = 0.005;  // A smaller tilt of the axis is noise.
 
 std::vector<double> ElevationsAbout(std::span<const UnsortedReturn> returns,

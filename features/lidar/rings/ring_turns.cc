@@ -20,11 +20,11 @@ constexpr std::size_t kMinTurns = 16;
 constexpr std::size_t kMaxTurns = 128;
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr double kMaxBackward_rad = 20.0 * kRadPerDeg;  // Near returns of a beam beside the axis.
-constexpr double kMaxPartial = 0.25;  // Of the turns, that miss half a turn or more.
-constexpr double kMinStepping = 0.5;  // Of the turns, that begin with a step in elevation.
+constexpr double kMaxPartial = 0.25;  // Share of the turns that miss half a turn or more.
+constexpr double kMinStepping = 0.5;  // Share of the turns that begin with a step in elevation.
 constexpr double kMinStep = 0.5;      // Relative to the step to the next ring.
 constexpr double kMaxStep = 1.5;
-constexpr double kMinOrdered = 0.9;  // Of the compared returns of two neighbouring turns.
+constexpr double kMinOrdered = 0.9;  // Share of the compared returns of two neighbouring turns.
 constexpr std::size_t kMinCompared = 16;
 constexpr double kEqualNearness = 0.01;  // [1/m]; 0.1 degrees for a beam 0.2 m off the origin.
 
@@ -140,7 +140,7 @@ std::vector<double> StepsOfTurns(std::span<const TurningPlace> places, std::size
 // How far before the first return the turns begin: where most of them step to the next ring.
 std::optional<double> FindStart(std::span<const TurningPlace> places, double unseen_rad,
                                 std::span<const double> steps) {
-  std::vector<std::pair<double, int>> changes;  // Of the number of turns that step, by the start.
+  std::vector<std::pair<double, int>> changes;  // In the number of turns that step, by the start.
   for (std::size_t i = 1; i < places.size(); ++i) {
     const double turn = std::ceil(places[i - 1].turned_rad / kTurn_rad);
     if (turn < 1.0 || turn > static_cast<double>(steps.size())) continue;

@@ -105,7 +105,7 @@ RingNumbers RingsOf(const PointCloud& cloud, const std::vector<UnsortedReturn>& 
 
 // The numbers of the rings that have returns, from the lowest up. Numbers may be sparse or descend
 // with elevation, so rings are sorted by median elevation, unless they are so wide that medians do
-// not tell. The median is taken of the sines, which have the same order.
+// not order them. The median is taken of the sines, which have the same order.
 std::vector<int> FromTheLowest(const std::vector<RingPoint>& points, const RingNumbers& numbers) {
   const int highest = *std::ranges::max_element(numbers.of_return);
   std::vector<std::vector<double>> of_ring(static_cast<std::size_t>(highest) + 1);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrate/trust/verdict.h"
 #include "eval/experiment/definition/experiment.h"
 #include "eval/experiment/kinds/session_fault.h"
 #include "solvers/builtin_solvers.h"
@@ -16,6 +17,7 @@
 namespace sextant::test {
 namespace {
 
+using testing::AnyOf;
 using testing::HasSubstr;
 
 Expected<Experiment> Parse(const std::string& parameters) {
@@ -66,7 +68,8 @@ TEST(SessionKind, TheWordsOnAFaultAreJudged) {
   ASSERT_TRUE(experiment) << experiment.error().message;
   const Row row(*experiment, 0);
   EXPECT_EQ(row["good"], 0.0) << "without a bootstrap nothing is GOOD";
-  EXPECT_FALSE(std::isnan(row["cause_named"]));
+  EXPECT_EQ(row["care"] + row["not_usable"], 1.0);
+  EXPECT_THAT(row["cause_named"], AnyOf(0.0, 1.0));
 }
 
 TEST(SessionKind, RefusesWhatCannotBeRecorded) {
@@ -90,6 +93,29 @@ TEST(SessionFault, StatesAreWrongAsNamed) {
   EXPECT_EQ(NamesCause(SessionFault::kSensorMoved, "Check whether a sensor moved"), true);
   EXPECT_EQ(NamesCause(SessionFault::kSensorMoved, "Add views"), false);
   EXPECT_EQ(NamesCause(SessionFault::kNone, "Add views"), std::nullopt);
+}
+
+// NamesCause looks for words that the verdict on such a session uses.
+TEST(SessionFault, IsNamedByTheVerdictOnIt) {
+  const auto names = [](SessionFault fault, const VerdictFigures& figures) {
+    const ResultVerdict verdict = JudgeResult(figures);
+    return NamesCause(fault, verdict.reason + "\n" + verdict.next);
+  };
+  const VerdictFigures ranges{.range_excess = 0.03, .range_excess_sigma = 0.002};
+  const VerdictFigures halves{.halves_off = 6.0};
+  const VerdictFigures moments{.views_with_board = 10, .views_used = 5, .views_contradicting = 5};
+  const VerdictFigures prints{.print_rms_px = 5.0, .print_over_noise = 10.0};
+  EXPECT_EQ(names(SessionFault::kFocalLength, ranges), true);
+  EXPECT_EQ(names(SessionFault::kSquareSize, ranges), true);
+  EXPECT_EQ(names(SessionFault::kBoardSize, ranges), true);
+  EXPECT_EQ(names(SessionFault::kSensorMoved, halves), true);
+  EXPECT_EQ(names(SessionFault::kExchangedScans, moments), true);
+  EXPECT_EQ(names(SessionFault::kUnsynchronised, moments), true);
+  EXPECT_EQ(names(SessionFault::kOtherLens, prints), true);
+  EXPECT_EQ(names(SessionFault::kSensorMoved, ranges), false);
+  EXPECT_EQ(names(SessionFault::kFocalLength, halves), false);
+  EXPECT_EQ(names(SessionFault::kFocalLength, moments), false);
+  EXPECT_EQ(names(SessionFault::kExchangedScans, prints), false);
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ BoardSearch SearchFor(const Board& described, const Scene& scene, const LidarMod
   return SearchIn(RingsInRoom(scene, model, seed), described, model);
 }
 
-// The corners of the board in the numbering nearest to the one found: a scan does not tell which of
+// The corners of the board in the numbering nearest to the one found: a scan does not show which of
 // the placements of the outline is true.
 std::vector<Eigen::Vector3d> NumberedAs(const LidarCorners& found, const SceneBoard& truth) {
   std::vector<Eigen::Vector3d> best;
@@ -121,7 +121,7 @@ TEST_P(EveryRoll, OfASquareBoard) {
 INSTANTIATE_TEST_SUITE_P(Models, EveryRoll, testing::Values("vlp16", "os1_64", "livox"),
                          [](const auto& test) { return test.param; });
 
-// Of the equivalent numberings, the one with corner 0 highest is stated.
+// The numbering with corner 0 highest is stated, among the equivalent ones.
 TEST(BoardOrientation, CornerZeroIsTheHighestOfTheEquivalentOnes) {
   const LidarModel model = QuietModel("os1_64");
   for (const double roll : {40.0, 130.0, 220.0, 310.0}) {

@@ -101,7 +101,7 @@ TEST(BoardsInScans, UsingPlaneAndSizeReducesTheErrorAsStated) {
     const double allowed = 2.0 * StandardError(of.nees);
     EXPECT_GT(Mean(of.nees), 0.8 - allowed) << name;
     EXPECT_LT(Mean(of.nees), 1.25 + allowed) << name;
-    EXPECT_LT(allowed, 0.5) << name << ": too few scans to tell";
+    EXPECT_LT(allowed, 0.5) << name << ": too few scans for this limit";
   }
 }
 
@@ -125,7 +125,7 @@ std::vector<double> WorstCorners(const Scene& scene, const BoardSearch& search) 
   return worst;
 }
 
-// An opening beside the middle tells both halves of a turn apart, without the image.
+// An opening beside the middle distinguishes both halves of a turn, without the image.
 TEST(BoardsInScans, AnOpeningBesideTheMiddleTellsWhichWayRoundABoardIs) {
   Random random(1);
   Scene scene = TwoBoardsInRoom({}, random);

@@ -88,7 +88,7 @@ TEST(ScanRings, SortsByElevationAndAzimuth) {
 // A room's walls at 4 to 8 m, without the ring numbers: `beam` gives the returns of a ring.
 struct Beams {
   std::vector<double> elevations_deg;
-  double height_m = 0.0;   // Of the beams' origin above the cloud's.
+  double height_m = 0.0;   // Height of the beams' origin above the cloud's.
   double drift_deg = 0.0;  // Change of the elevations along half a turn.
 };
 
@@ -147,7 +147,7 @@ TEST(ScanRings, AreRecoveredFromElevationsOfEvenAndUnevenFans) {
 }
 
 // Beams 5 cm above the origin: at half a metre, elevations are 6 degrees off. The order of the
-// points tells rings apart, invalid points keep their place.
+// points distinguishes the rings; invalid points keep their place.
 TEST(ScanRings, AreRecoveredFromTheOrderOfThePoints) {
   PointCloud by_column = RoomSeenBy({UnevenFan(), 0.05}, 400);
   for (std::size_t i = 0; i < by_column.points.size(); i += 7) {
