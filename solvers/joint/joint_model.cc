@@ -85,8 +85,8 @@ class ModelMaker {
   void AddRanges() {
     const double common =
         options_.range_bias ? kFreeOffset_m : problem_.lidar_errors.range_offset_sigma_m;
-    std::vector<std::size_t> everywhere;
-    if (common > 0.0) everywhere.push_back(AddOffset("range_bias_m", common, true));
+    std::optional<std::size_t> everywhere;
+    if (common > 0.0) everywhere = AddOffset("range_bias_m", common, true);
     std::map<int, std::size_t> rings;
     for (std::size_t i = 0; i < model_.views.size(); ++i) {
       std::map<int, FaceGroup> groups;
@@ -94,7 +94,7 @@ class ModelMaker {
         groups[RingOf(problem_.board_views[i], k)].members.push_back(k);
       }
       for (auto& [ring, group] : groups) {
-        group.shared = everywhere;
+        if (everywhere) group.shared.push_back(*everywhere);
         if (ring >= 0) group.shared.push_back(OffsetOf(ring, rings));
         group.by.setOnes(std::ssize(group.members), std::ssize(group.shared));
         model_.views[i].face.push_back(std::move(group));
