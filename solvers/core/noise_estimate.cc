@@ -209,7 +209,7 @@ void AddSharedErrors(std::span<const Pair> pairs, const Camera* camera, const So
   const std::optional<BoardSums> sums =
       SumByBoard<kResiduals>(pairs, estimate.inliers, camera, estimate, spec.estimates_rotation);
   if (!sums || !(sums->residuals > unknowns) || !sums->has_names) return;
-  if (sums->boards <= kMaxUntellableBoards || sums->boards == std::ssize(estimate.inliers)) return;
+  if (sums->boards <= kMaxTooFewBoards || sums->boards == std::ssize(estimate.inliers)) return;
   const std::optional<Matrix6d> inverse = InvertSymmetric(sums->information);
   if (!inverse || !std::isfinite(sums->squares)) return;
   const Components parts = Separate(*sums, *inverse, kResiduals, unknowns, true);
