@@ -301,7 +301,8 @@ std::string_view ToString(BoardErrors errors) {
 }
 
 void CompleteNoise(const CalibrationProblem& problem, const SolverSpec& spec, Estimate& estimate) {
-  if (estimate.inliers.empty()) return;
+  // A solver of raw observations knows its covariance from them; pairs give it a start at most.
+  if (estimate.inliers.empty() || spec.needs.board_views > 0) return;
   if (estimate.noise && (estimate.noise->is_given || estimate.noise->freedom > 0.0)) return;
   if (spec.needs.pairs_3d3d > 0) {
     if (HasKnownNoise(problem.pairs_3d3d.front())) {
