@@ -34,9 +34,8 @@ struct NoiseEstimate {
   double freedom = 0.0;       ///< Effective degrees of freedom of the covariance; 0: not known yet.
 };
 
-/// Completes the covariance of an answer: where the pairs that `spec` needs state no noise, by an
-/// estimate; where they do, by what those of a board share beyond it, as far as chance (1 percent)
-/// does not explain it. Once, at the end of a solve. Sets `estimate.noise`, unless it is complete.
+/// Completes the covariance at the end of a solve, and sets `noise` unless it is complete: by the
+/// noise where pairs state none, else by what a board's pairs share beyond it and 1 % chance.
 ///
 /// The error of pair j of board g is b_g + e_gj, with one common error per board and view. With
 /// residuals r and derivatives J by the pose at the answer, H = sum J^T J, S_g = sum_j J_gj and
