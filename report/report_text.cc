@@ -84,16 +84,10 @@ std::string DescribeUncertainty(const SolveReport& report) {
       sigma[4] * kMmPerM, sigma[5] * kMmPerM);
 }
 
-// The noise of one kind of pairs; empty where it is stated and the pairs of a board share none.
+// The noise of one kind of pairs; empty where it is stated.
 std::string DescribeNoise(const SolveReport& report) {
   if (!report.noise) return {};
   const NoiseEstimate& noise = *report.noise;
-  if (!noise.sigma_m && !noise.sigma_px) {
-    return fmt::format(
-        "  noise of a pair, 1 sigma   as stated, and {:.1f} times that common to each of {} "
-        "boards\n",
-        noise.shared_sigma, noise.boards);
-  }
   const bool of_points = noise.sigma_m.has_value();
   const auto text_of = [&](double sigma) {
     return of_points ? fmt::format("{:.2f} mm", sigma * kMmPerM) : fmt::format("{:.3f} px", sigma);

@@ -53,11 +53,6 @@ void AddNoise(const NoiseEstimate& noise, PageTable& table) {
   if (noise.sigma_px) {
     table.rows.push_back({"pixel, per axis", Fixed(*noise.sigma_px, 3) + " px", "–", how});
   }
-  if (!noise.sigma_m && !noise.sigma_px) {
-    table.rows.push_back({"common to the corners of a board",
-                          Fixed(noise.shared_sigma, 1) + " stated sigmas", "–",
-                          "estimated from the residuals"});
-  }
 }
 
 // RMS over the boards of what a solver of raw observations left over; 1 if the noise is as stated.

@@ -5,14 +5,12 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 #include <numeric>
 #include <span>
 #include <tuple>
 #include <vector>
 
-#include "geometry/pair_noise.h"
 #include "geometry/symmetric.h"
 #include "solvers/core/solver.h"
 #include "solvers/least_squares/term_derivatives.h"
@@ -22,15 +20,10 @@ namespace {
 
 constexpr int kMaxTooFewBoards = 3;
 
-// In units of the stated noise, or in m and px where none is stated.
-PointTerm TermOf(const Pair3d3d& pair) {
-  const Eigen::LLT<Eigen::Matrix3d> factor(StatedCovariance(pair));
-  return {pair.point_in_cam, pair.point_in_lidar,
-          factor.matrixL().solve(Eigen::Matrix3d::Identity().eval())};
+PointTerm UnitTerm(const Pair3d3d& pair) {
+  return {pair.point_in_cam, pair.point_in_lidar, Eigen::Matrix3d::Identity()};
 }
-PixelTerm TermOf(const Pair2d3d& pair) {
-  return {pair.pixel, pair.point_in_lidar, HasKnownNoise(pair) ? 1.0 / pair.sigma_px : 1.0};
-}
+PixelTerm UnitTerm(const Pair2d3d& pair) { return {pair.pixel, pair.point_in_lidar, 1.0}; }
 
 double LargestNumber(const Pair3d3d& pair) {
   return std::max(pair.point_in_cam.cwiseAbs().maxCoeff(),
@@ -95,7 +88,7 @@ std::optional<BoardSums> SumByBoard(std::span<const Pair> pairs, std::span<const
     Eigen::Matrix<double, kResiduals, 1> residual = Eigen::Matrix<double, kResiduals, 1>::Zero();
     const std::size_t begin = k;
     for (; k < order.size() && IsSameBoard(id(k), id(begin)); ++k) {
-      const auto term = TermOf(pairs[static_cast<std::size_t>(order[k])]);
+      const auto term = UnitTerm(pairs[static_cast<std::size_t>(order[k])]);
       if (!Differentiate(term, camera, r, t, at)) return std::nullopt;
       Eigen::Matrix<double, kResiduals, 6> jacobian = at.Jacobian();
       if (!with_rotation) jacobian.template leftCols<3>().setZero();
@@ -121,13 +114,7 @@ struct Components {
   double independent = 0.0;  // s_e^2
   double shared = 0.0;       // s_b^2
   double freedom = 0.0;
-  double chance = 1.0;  // Probability of means that scatter so far if the boards share nothing.
 };
-
-// Probability that a variable of the distribution F(a, b) exceeds `ratio`.
-double ExceedsF(double ratio, double a, double b) {
-  return boost::math::ibeta(0.5 * b, 0.5 * a, b / (b + a * ratio));
-}
 
 // Expects as many boards as pairs, or more than kMaxTooFewBoards.
 Components Separate(const BoardSums& sums, const Matrix6d& inverse, int dimension, int unknowns,
@@ -144,9 +131,6 @@ Components Separate(const BoardSums& sums, const Matrix6d& inverse, int dimensio
   const double d = sums.residuals - 2.0 * board.trace() + (board * mean).trace();
   const double determinant = a * d - b * c;
   if (!(c > 0.0) || !(determinant > 1e-9 * a * d)) return result;
-  const double within = sums.squares - sums.between;
-  const double chance =
-      within > 0.0 ? ExceedsF(sums.between / c * (a - c) / within, c, a - c) : 0.0;
   result.independent = (d * sums.squares - b * sums.between) / determinant;
   result.shared = (a * sums.between - c * sums.squares) / determinant;
   if (result.shared <= 0.0) {
@@ -154,7 +138,6 @@ Components Separate(const BoardSums& sums, const Matrix6d& inverse, int dimensio
   } else if (result.independent < 0.0) {
     result = {0.0, sums.squares / b, within_freedom};
   }
-  result.chance = chance;
   // The mean variance of a direction is s_e^2 + weight s_b^2.
   const double weight = board.trace() / unknowns;
   const double pairs_per_board = sums.residuals / (dimension * sums.boards);
@@ -195,33 +178,6 @@ double CovarianceInflation(double freedom) {
 void AddWarning(std::string warning, Estimate& estimate) {
   std::vector<std::string>& all = estimate.warnings;
   if (std::find(all.begin(), all.end(), warning) == all.end()) all.push_back(std::move(warning));
-}
-
-// Pairs that state their noise: it is what each has of its own. What the pairs of a board share
-// beyond it is added where chance does not explain it, with the covariance of the header for
-// s_e^2 = 1 and s_b^2 in units of the stated variance.
-template <int kResiduals, class Pair>
-void AddSharedErrors(std::span<const Pair> pairs, const Camera* camera, const SolverSpec& spec,
-                     Estimate& estimate) {
-  constexpr double kMaxChance = 0.01;
-  if (!estimate.covariance) return;
-  const int unknowns = spec.estimates_rotation ? 6 : 3;
-  const std::optional<BoardSums> sums =
-      SumByBoard<kResiduals>(pairs, estimate.inliers, camera, estimate, spec.estimates_rotation);
-  if (!sums || !(sums->residuals > unknowns) || !sums->has_names) return;
-  if (sums->boards <= kMaxTooFewBoards || sums->boards == std::ssize(estimate.inliers)) return;
-  const std::optional<Matrix6d> inverse = InvertSymmetric(sums->information);
-  if (!inverse || !std::isfinite(sums->squares)) return;
-  const Components parts = Separate(*sums, *inverse, kResiduals, unknowns, true);
-  if (!(parts.shared > 0.0) || parts.chance > kMaxChance) return;
-  const double shared = parts.shared * CovarianceInflation(parts.freedom);
-  const Matrix6d correlated = *inverse + shared * *inverse * sums->by_board * *inverse;
-  estimate.covariance = Correlated(*estimate.covariance, *inverse, correlated);
-  estimate.noise = NoiseEstimate{.is_given = true,
-                                 .board_errors = BoardErrors::kEstimated,
-                                 .boards = sums->boards,
-                                 .shared_sigma = std::sqrt(parts.shared),
-                                 .freedom = parts.freedom};
 }
 
 // `sigma` is the member of the noise for this kind of pairs.
@@ -301,19 +257,14 @@ std::string_view ToString(BoardErrors errors) {
 }
 
 void CompleteNoise(const CalibrationProblem& problem, const SolverSpec& spec, Estimate& estimate) {
-  // A solver of raw observations knows its covariance from them; pairs give it a start at most.
-  if (estimate.inliers.empty() || spec.needs.board_views > 0) return;
+  if (estimate.inliers.empty()) return;
   if (estimate.noise && (estimate.noise->is_given || estimate.noise->freedom > 0.0)) return;
   if (spec.needs.pairs_3d3d > 0) {
-    if (HasKnownNoise(problem.pairs_3d3d.front())) {
-      return AddSharedErrors<3, Pair3d3d>(problem.pairs_3d3d, nullptr, spec, estimate);
-    }
+    if (HasKnownNoise(problem.pairs_3d3d.front())) return;
     Complete<3, Pair3d3d>(problem.pairs_3d3d, nullptr, spec, &NoiseEstimate::sigma_m, estimate);
   } else if (spec.needs.pairs_2d3d > 0) {
+    if (HasKnownNoise(problem.pairs_2d3d.front())) return;
     const Camera& camera = estimate.camera ? estimate.camera->camera : *problem.camera;
-    if (HasKnownNoise(problem.pairs_2d3d.front())) {
-      return AddSharedErrors<2, Pair2d3d>(problem.pairs_2d3d, &camera, spec, estimate);
-    }
     Complete<2, Pair2d3d>(problem.pairs_2d3d, &camera, spec, &NoiseEstimate::sigma_px, estimate);
   }
 }

@@ -27,15 +27,15 @@ struct NoiseEstimate {
   /// Standard deviation per axis of the pairs used; of one kind only, unless both were used.
   std::optional<double> sigma_m;
   std::optional<double> sigma_px;
-  bool is_given = false;  ///< By an option of the solver, or by the pairs (then without sigmas).
+  bool is_given = false;  ///< By an option of the solver; all else was estimated.
   BoardErrors board_errors = BoardErrors::kAssumedIndependent;
   int boards = 0;             ///< Number of boards and views among the pairs used.
-  double shared_sigma = 0.0;  ///< What the pairs of a board share [m or px; stated sigmas].
+  double shared_sigma = 0.0;  ///< The part of the sigma that the pairs of a board share [m or px].
   double freedom = 0.0;       ///< Effective degrees of freedom of the covariance; 0: not known yet.
 };
 
-/// Completes the covariance at the end of a solve, and sets `noise` unless it is complete: by the
-/// noise where pairs state none, else by what a board's pairs share beyond it and 1 % chance.
+/// Estimates the noise and completes the covariance of an answer, where the pairs that `spec` needs
+/// state no noise: once, at the end of a solve. Sets `estimate.noise`, unless that is complete.
 ///
 /// The error of pair j of board g is b_g + e_gj, with one common error per board and view. With
 /// residuals r and derivatives J by the pose at the answer, H = sum J^T J, S_g = sum_j J_gj and
