@@ -196,7 +196,17 @@ std::size_t LongestLine(std::string_view text) {
   return longest;
 }
 
-enum class PoseColumns { kAll, kTranslation, kNone };
+/// From the widest table to the narrowest.
+enum class PoseColumns {
+  kAll,
+  kTranslation,
+  kNone,
+  kErrorsAlone,  ///< No distance to the first, where that to a truth is known.
+};
+
+bool HasTranslation(PoseColumns pose) {
+  return pose == PoseColumns::kAll || pose == PoseColumns::kTranslation;
+}
 
 bool HasRmse(const ScoredRow& of, std::optional<double> Evaluation::*rmse) {
   return of.row.report && (of.row.report->evaluation.*rmse).has_value();
@@ -209,6 +219,8 @@ struct ComparisonColumns {
         pixels(Any(rows, [](const auto& r) { return HasRmse(r, &Evaluation::rmse_px); })),
         truth(Any(rows, [](const auto& r) { return r.row.from_truth.has_value(); })),
         score(Any(rows, [](const auto& r) { return r.score.has_value(); })) {}
+
+  bool HasFirst(PoseColumns pose) const { return !truth || pose != PoseColumns::kErrorsAlone; }
 
   bool metres;
   bool pixels;
@@ -225,9 +237,9 @@ std::vector<std::string> HeaderOf(const ComparisonColumns& columns, PoseColumns 
   add(columns.metres, {"RMSE [mm]"});
   add(columns.pixels, {"RMSE [px]"});
   add(true, {"used"});
-  add(pose != PoseColumns::kNone, {"x [m]", "y [m]", "z [m]"});
+  add(HasTranslation(pose), {"x [m]", "y [m]", "z [m]"});
   add(pose == PoseColumns::kAll, {"yaw [deg]", "pitch", "roll"});
-  add(true, {"to first [mm]", "[deg]"});
+  add(columns.HasFirst(pose), {"to first [mm]", "[deg]"});
   add(columns.truth, {"error [mm]", "[deg]"});
   add(true, {"time [us]"});
   return header;
@@ -255,14 +267,14 @@ std::vector<std::string> CellsOf(const ScoredRow& scored, const ComparisonColumn
             : knows_kind           ? fmt::format("{}/{}", report.inliers.size(), of)
                                    : std::to_string(report.inliers.size()));
   for (const double v : report.cam_from_lidar.translation) {
-    add(pose != PoseColumns::kNone, Fixed(v, 4));
+    add(HasTranslation(pose), Fixed(v, 4));
   }
   const EulerZyx euler = ToEulerZyx(report.cam_from_lidar.rotation);
   for (const double v : {euler.yaw, euler.pitch, euler.roll}) {
     add(pose == PoseColumns::kAll, Fixed(v * kDegPerRad, 3));
   }
-  add(true, TranslationText(row.from_first));
-  add(true, RotationText(row.from_first));
+  add(columns.HasFirst(pose), TranslationText(row.from_first));
+  add(columns.HasFirst(pose), RotationText(row.from_first));
   add(columns.truth, TranslationText(row.from_truth));
   add(columns.truth, RotationText(row.from_truth));
   add(true, std::isnan(report.wall_time_us) ? "-" : fmt::format("{:.1f}", report.wall_time_us));
@@ -335,8 +347,8 @@ std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& 
 std::string DescribeComparison(const std::vector<ScoredRow>& rows) {
   // The most of the pose that leaves lines short enough for a terminal; --json has all of it.
   std::string table;
-  for (const PoseColumns pose :
-       {PoseColumns::kAll, PoseColumns::kTranslation, PoseColumns::kNone}) {
+  for (const PoseColumns pose : {PoseColumns::kAll, PoseColumns::kTranslation, PoseColumns::kNone,
+                                 PoseColumns::kErrorsAlone}) {
     table = ComparisonTable(rows, pose);
     if (LongestLine(table) <= kMaxWidth) break;
   }

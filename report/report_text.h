@@ -19,8 +19,8 @@ std::string DescribeReport(const CalibrationProblem& problem, const SolverSpec& 
 
 /// The table of `sextant compare`, one row per solver, and the reasons of solvers without an
 /// answer. The RMSE is over the pairs that the answer is based on. Lines have at most 100
-/// characters as long as a name has at most 24: the angles of the pose are left out first, then all
-/// of it.
+/// characters as long as a name has at most 25: the angles of the pose are left out first, then all
+/// of it, then the distance to the best answer where that to a truth is known.
 std::string DescribeComparison(const std::vector<ScoredRow>& rows);
 /// The same in the order given, without scores, and with the RMSE over all pairs.
 std::string DescribeComparison(const std::vector<ComparisonRow>& rows);
