@@ -51,6 +51,19 @@ std::string RepeatedText(const LoadedProblem& input) {
   return fmt::format("; only {} of {} points differ", left, left + merged);
 }
 
+// What `input` shows of its only answer, where nothing else explains it.
+std::vector<std::string> AnswerDiagnostics(const LoadedProblem& input, const SolveReport& report) {
+  const CalibrationProblem& problem = input.file.problem;
+  std::vector<std::string> lines = DescribeOutliers(report, input.repeated);
+  const auto misfit = DescribeMisfit(problem, report);
+  if (misfit && !input.diagnostics.contradiction) lines.push_back(*misfit);
+  const Expected<SolverPtr> solver = AllSolvers().Make(report.solver);
+  if (!solver || !lines.empty()) return lines;
+  const auto understated = DescribeUnderstatedNoise(problem, (*solver)->spec(), report);
+  if (understated) lines.push_back(*understated);
+  return lines;
+}
+
 std::string DiagnosticsText(const LoadedProblem& input, const std::vector<ComparisonRow>& rows,
                             bool reordered) {
   std::string text;
@@ -64,11 +77,9 @@ std::string DiagnosticsText(const LoadedProblem& input, const std::vector<Compar
   const bool is_misordered = input.diagnostics.order.better && !reordered;
   const bool is_judged = has_cause || is_misordered || input.rivals;
   if (rows.size() == 1 && rows.front().report && !is_judged) {
-    for (const std::string& line : DescribeOutliers(*rows.front().report, input.repeated)) {
+    for (const std::string& line : AnswerDiagnostics(input, *rows.front().report)) {
       text += "  " + line + "\n";
     }
-    const auto misfit = DescribeMisfit(input.file.problem, *rows.front().report);
-    if (misfit && !input.diagnostics.contradiction) text += "  " + *misfit + "\n";
   }
   if (reordered) text += "  " + DescribeReordering(input.diagnostics.order) + "\n";
   if (text.empty()) return text;

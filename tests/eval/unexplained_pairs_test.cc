@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/diagnostics/unexplained_pairs.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/random.h"
@@ -75,6 +76,41 @@ TEST(UnexplainedShare, NeedsFourPairs) {
   CalibrationProblem problem = PairsWithNoise(0.01, 1);
   problem.pairs_3d3d.resize(3);
   EXPECT_FALSE(ShareOfKabsch(problem));
+}
+
+// Corners whose depth the camera knows ten times worse than the rest, and that state `stated` of
+// their noise.
+CalibrationProblem PairsThatState(double stated, std::uint64_t seed) {
+  Random random(seed);
+  CalibrationProblem problem;
+  const Eigen::Vector3d sigmas_m(0.001, 0.001, 0.01);
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Vector3d point(random.Uniform(2.0, 4.0), random.Uniform(-1.0, 1.0),
+                                random.Uniform(-1.0, 1.0));
+    const Eigen::Vector3d noise(random.Normal(), random.Normal(), random.Normal());
+    Pair3d3d& pair = problem.pairs_3d3d.emplace_back();
+    pair.point_in_lidar = point;
+    pair.point_in_cam =
+        Eigen::Vector3d(-point.y(), -point.z(), point.x()) + sigmas_m.cwiseProduct(noise);
+    pair.covariance_in_cam = (stated * sigmas_m).cwiseAbs2().asDiagonal();
+    pair.id.view = i;
+  }
+  return problem;
+}
+
+// Also for kabsch, whose answer is not the minimum of what these pairs state.
+TEST(UnderstatedNoise, IsNamedWhereChanceDoesNotExplainIt) {
+  const auto says = [](double stated, std::uint64_t seed) {
+    const CalibrationProblem problem = PairsThatState(stated, seed);
+    const auto solver = BuiltinSolvers().Make("kabsch").value();
+    const auto report = solver->Solve(problem);
+    return DescribeUnderstatedNoise(problem, solver->spec(), report.value()).value_or("");
+  };
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    EXPECT_EQ(says(1.0, seed), "") << seed;
+    EXPECT_EQ(says(2.0, seed), "") << seed;
+    EXPECT_THAT(says(0.5, seed), testing::HasSubstr("times what the pairs state")) << seed;
+  }
 }
 
 }  // namespace
