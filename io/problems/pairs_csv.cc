@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/text/printable.h"
 #include "io/problems/csv_header.h"
 #include "io/text/line_reader.h"
 #include "io/text/max_id.h"
@@ -28,7 +29,9 @@ class Columns {
     }
   }
   std::string RowForm() const {
-    return fmt::format("{} values ({})", names().size(), fmt::join(names(), ","));
+    constexpr std::size_t kMaxNames = 200;
+    return fmt::format("{} values ({})", names().size(),
+                       Printable(fmt::format("{}", fmt::join(names(), ",")), kMaxNames));
   }
   const std::vector<std::string>& names() const { return header_.columns; }
 

@@ -100,9 +100,10 @@ Expected<Estimate> EstimateOf(const AnswerJson& json, int pairs) {
   if (!json.is_object()) return BadAnswer("expected a JSON object");
   if (json.contains("error")) {
     const AnswerJson& error = json.at("error");
-    return MakeError(ErrorCode::kNoConsensus, error.is_string()
-                                                  ? Printable(error.get<std::string>(), kMaxQuoted)
-                                                  : "the program reports an error without a text");
+    const std::string text = error.is_string() ? error.get<std::string>() : std::string();
+    return MakeError(ErrorCode::kNoConsensus, text.empty()
+                                                  ? "the program reports an error without a text"
+                                                  : Printable(text, kMaxQuoted));
   }
   Estimate estimate;
   const bool nested = json.contains("cam_from_lidar") && json.at("cam_from_lidar").is_object();

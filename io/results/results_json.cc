@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <type_traits>
 
 #include "base/text/escape.h"
 #include "io/blocks/camera_block.h"
@@ -128,12 +129,31 @@ using ParsedJson = nlohmann::json;
 // Adds the name of the key to the library's message for a wrong type.
 template <class T>
 T Get(const ParsedJson& map, const char* key) {
+  static_assert(!std::is_same_v<T, int>, "the library does not check the range: GetInt does");
   const ParsedJson& value = map.at(key);
   try {
     return value.get<T>();
   } catch (const ParsedJson::type_error& error) {
     Refuse(fmt::format("key '{}': {}", key, error.what()));
   }
+}
+
+int IntOf(double number, const char* key) {
+  if (!(std::abs(number) <= std::numeric_limits<int>::max()) || number != std::floor(number)) {
+    Refuse(fmt::format("key '{}': expected a whole number up to {}, got {:g}", key,
+                       std::numeric_limits<int>::max(), number));
+  }
+  return static_cast<int>(number);
+}
+
+int GetInt(const ParsedJson& map, const char* key) { return IntOf(Get<double>(map, key), key); }
+
+std::vector<int> GetInts(const ParsedJson& map, const char* key) {
+  std::vector<int> numbers;
+  for (const double number : Get<std::vector<double>>(map, key)) {
+    numbers.push_back(IntOf(number, key));
+  }
+  return numbers;
 }
 
 std::optional<double> GetOptional(const ParsedJson& map, const char* key) {
@@ -195,8 +215,8 @@ CameraEstimate ParseCameraEstimate(const ParsedJson& json) {
   const std::optional<CameraModel> model = CameraModelNamed(name);
   if (!model) Refuse(fmt::format("key 'model': unknown value {}", Quoted(name)));
   camera.model = *model;
-  camera.width_px = Get<int>(json, "width_px");
-  camera.height_px = Get<int>(json, "height_px");
+  camera.width_px = GetInt(json, "width_px");
+  camera.height_px = GetInt(json, "height_px");
   camera.fx_px = Get<double>(json, "fx_px");
   camera.fy_px = Get<double>(json, "fy_px");
   camera.cx_px = Get<double>(json, "cx_px");
@@ -227,13 +247,14 @@ NoiseEstimate ParseNoise(const ParsedJson& json) {
           .sigma_px = GetOptional(json, "sigma_px"),
           .is_given = Get<bool>(json, "is_given"),
           .board_errors = GetEnum(json, "board_errors", BoardErrors::kEstimated),
-          .boards = Get<int>(json, "boards"),
+          .boards = GetInt(json, "boards"),
           .shared_sigma = Get<double>(json, "shared_sigma"),
           .freedom = Get<double>(json, "freedom")};
 }
 
 ObservationCount ParseCount(const ParsedJson& map, const char* key) {
-  const auto counts = Get<std::array<int, 2>>(map, key);
+  const std::vector<int> counts = GetInts(map, key);
+  if (counts.size() != 2) Refuse(fmt::format("key '{}': expected 2 numbers", key));
   return {counts[0], counts[1]};
 }
 
@@ -241,8 +262,8 @@ std::vector<BoardViewFit> ParseBoardViews(const ParsedJson& list) {
   std::vector<BoardViewFit> fits;
   for (const ParsedJson& json : list) {
     BoardViewFit fit;
-    fit.view = Get<int>(json, "view");
-    fit.board = Get<int>(json, "board");
+    fit.view = GetInt(json, "view");
+    fit.board = GetInt(json, "board");
     fit.used = Get<bool>(json, "used");
     fit.cam_from_board = ParsePose(json.at("cam_from_board"));
     fit.printed = ParseCount(json, "printed");
@@ -277,10 +298,10 @@ SolveReport ParseReport(const ParsedJson& json) {
   report.evaluation.rmse_px = GetOptional(json, "rmse_px");
   report.evaluation.per_pair_m = GetResiduals(json, "per_pair_m");
   report.evaluation.per_pair_px = GetResiduals(json, "per_pair_px");
-  report.inliers = Get<std::vector<int>>(json, "inliers");
+  report.inliers = GetInts(json, "inliers");
   for (const ParsedJson& pose : json.at("alternatives"))
     report.alternatives.push_back(ParsePose(pose));
-  report.iterations = Get<int>(json, "iterations");
+  report.iterations = GetInt(json, "iterations");
   report.termination = GetEnum(json, "termination", Termination::kMaxIterations);
   report.wall_time_us = GetOptional(json, "wall_time_us").value_or(std::nan(""));
   return report;
@@ -303,10 +324,10 @@ ResultFile ParseFile(const ParsedJson& json) {
   const ParsedJson& input = json.at("input");
   file.input = {.path = Get<std::string>(input, "path"),
                 .format = Get<std::string>(input, "format"),
-                .pairs_3d3d = Get<int>(input, "pairs_3d3d"),
-                .pairs_2d3d = Get<int>(input, "pairs_2d3d"),
-                .points_in_cam = Get<int>(input, "points_in_cam"),
-                .points_in_lidar = Get<int>(input, "points_in_lidar")};
+                .pairs_3d3d = GetInt(input, "pairs_3d3d"),
+                .pairs_2d3d = GetInt(input, "pairs_2d3d"),
+                .points_in_cam = GetInt(input, "points_in_cam"),
+                .points_in_lidar = GetInt(input, "points_in_lidar")};
   for (const ParsedJson& result : json.at("results")) file.results.push_back(ParseResult(result));
   return file;
 }
