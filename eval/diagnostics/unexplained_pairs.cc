@@ -102,8 +102,8 @@ std::optional<std::string> DescribeUnderstatedNoise(const CalibrationProblem& pr
   if (boost::math::gamma_q(0.5 * freedom, 0.5 * squares) > kMaxChance) return std::nullopt;
   return fmt::format(
       "noise: the residuals of the {} pairs used are {:.1f} times what the pairs state, which "
-      "chance "
-      "does not explain, so the stated uncertainty is too small by at least that; errors that all "
+      "chance does not explain, so the stated uncertainty is too small by at least that; errors "
+      "that all "
       "views have in common, as offsets of a LiDAR's rings, add to it",
       used.size(), ratio);
 }

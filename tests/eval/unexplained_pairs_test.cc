@@ -11,18 +11,24 @@
 namespace sextant {
 namespace {
 
-CalibrationProblem PairsWithNoise(double sigma_m, std::uint64_t seed) {
+// Noise of the given sigmas along the camera's axes.
+CalibrationProblem PairsWithNoise(const Eigen::Vector3d& sigmas_m, int count, std::uint64_t seed) {
   Random random(seed);
   CalibrationProblem problem;
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < count; ++i) {
     const Eigen::Vector3d point(random.Uniform(2.0, 4.0), random.Uniform(-1.0, 1.0),
                                 random.Uniform(-1.0, 1.0));
     const Eigen::Vector3d noise(random.Normal(), random.Normal(), random.Normal());
     Pair3d3d& pair = problem.pairs_3d3d.emplace_back();
     pair.point_in_lidar = point;
-    pair.point_in_cam = Eigen::Vector3d(-point.y(), -point.z(), point.x()) + sigma_m * noise;
+    pair.point_in_cam =
+        Eigen::Vector3d(-point.y(), -point.z(), point.x()) + sigmas_m.cwiseProduct(noise);
   }
   return problem;
+}
+
+CalibrationProblem PairsWithNoise(double sigma_m, std::uint64_t seed) {
+  return PairsWithNoise(Eigen::Vector3d::Constant(sigma_m), 8, seed);
 }
 
 std::optional<double> ShareOfKabsch(const CalibrationProblem& problem) {
@@ -81,19 +87,10 @@ TEST(UnexplainedShare, NeedsFourPairs) {
 // Corners whose depth the camera knows ten times worse than the rest, and that state `stated` of
 // their noise.
 CalibrationProblem PairsThatState(double stated, std::uint64_t seed) {
-  Random random(seed);
-  CalibrationProblem problem;
   const Eigen::Vector3d sigmas_m(0.001, 0.001, 0.01);
-  for (int i = 0; i < 20; ++i) {
-    const Eigen::Vector3d point(random.Uniform(2.0, 4.0), random.Uniform(-1.0, 1.0),
-                                random.Uniform(-1.0, 1.0));
-    const Eigen::Vector3d noise(random.Normal(), random.Normal(), random.Normal());
-    Pair3d3d& pair = problem.pairs_3d3d.emplace_back();
-    pair.point_in_lidar = point;
-    pair.point_in_cam =
-        Eigen::Vector3d(-point.y(), -point.z(), point.x()) + sigmas_m.cwiseProduct(noise);
+  CalibrationProblem problem = PairsWithNoise(sigmas_m, 20, seed);
+  for (Pair3d3d& pair : problem.pairs_3d3d) {
     pair.covariance_in_cam = (stated * sigmas_m).cwiseAbs2().asDiagonal();
-    pair.id.view = i;
   }
   return problem;
 }

@@ -260,9 +260,8 @@ std::string TruthCamera(const std::string& name, const Rigid3d& pose) {
   const Eigen::Vector3d& t = pose.translation;
   const Eigen::Quaterniond& q = pose.rotation;
   return fmt::format(
-      "  - camera: {}\n    cam_from_lidar: {{translation_m: [{}, {}, {}], quaternion_wxyz: [{}, "
-      "{}, "
-      "{}, {}]}}\n",
+      "  - camera: {}\n    cam_from_lidar: {{translation_m: [{}, {}, {}], "
+      "quaternion_wxyz: [{}, {}, {}, {}]}}\n",
       name, t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
 }
 
