@@ -17,11 +17,11 @@ enum class DecodedColor {
   kGrey,       ///< One channel of 8 bits.
 };
 
-/// Decodes an image in any format that OpenCV reads. Errors: kParse if the bytes are no image, or a
-/// JPEG or PNG that is cut off or far larger than its bytes (CheckImageExtent); kIo if OpenCV's
-/// library of image formats cannot be loaded. Time and memory are linear in the pixels: 67 million,
-/// or 100 for each byte if that is more, of at most 6 bytes; OpenCV's limit, 2^30 pixels, is that
-/// of other formats than JPEG and PNG.
+/// Decodes a PNG, JPEG, BMP, PBM/PGM/PPM, TIFF (not BigTIFF) or WebP. Errors: kParse if the bytes
+/// are none of these, cut off, or state far more pixels than bytes (CheckImageExtent); kIo if
+/// OpenCV's library of image formats cannot be loaded. Memory is linear in the pixels: 16.8
+/// million, or 100 for each byte if that is more, of at most 12 bytes. Time is, too; a JPEG has up
+/// to 200 passes over them.
 Expected<cv::Mat> DecodeImage(std::string_view bytes, DecodedColor color);
 
 /// Encodes an image in the format of a file name's extension (".png"). `jpeg_quality`: 0 to 100;

@@ -5,6 +5,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+
+#include "io/images/stated_size.h"
 
 namespace sextant {
 namespace {
@@ -28,7 +31,7 @@ std::uint32_t NumberAt(std::string_view bytes, std::size_t at, std::size_t size)
 }
 
 Expected<void> CheckPixels(std::uint64_t width, std::uint64_t height, std::size_t bytes) {
-  constexpr std::uint64_t kUnchecked = std::uint64_t{1} << 26;
+  constexpr std::uint64_t kUnchecked = std::uint64_t{1} << 24;
   constexpr std::uint64_t kMaxPerByte = 100;
   const std::uint64_t pixels = width * height;  // Both are below 2^32.
   if (pixels <= kUnchecked || pixels / kMaxPerByte <= bytes) return {};
@@ -57,6 +60,8 @@ bool StartsFrame(unsigned char marker) {
 
 Expected<void> CheckJpeg(std::string_view bytes) {
   constexpr std::string_view kEnd = "its end marker";
+  constexpr int kMaxScans = 200;
+  int scans = 0;
   std::size_t at = 2;
   while (true) {
     // Bytes between segments are skipped, as decoders do.
@@ -74,7 +79,14 @@ Expected<void> CheckJpeg(std::string_view bytes) {
           CheckPixels(NumberAt(bytes, at + 5, 2), NumberAt(bytes, at + 3, 2), bytes.size()));
     }
     at += length;
-    if (marker == 0xda) at = EndOfScan(bytes, at);
+    if (marker != 0xda) continue;
+    if (++scans > kMaxScans) {
+      return MakeError(ErrorCode::kParse,
+                       fmt::format("the image has more than {} scans, each of which is a pass over "
+                                   "all pixels; expected an image as a camera writes it",
+                                   kMaxScans));
+    }
+    at = EndOfScan(bytes, at);
   }
 }
 
@@ -100,7 +112,11 @@ Expected<void> CheckPng(std::string_view bytes) {
 Expected<void> CheckImageExtent(std::string_view bytes) {
   if (bytes.starts_with("\xff\xd8\xff"sv)) return CheckJpeg(bytes);
   if (bytes.starts_with("\x89PNG"sv)) return CheckPng(bytes);
-  return {};
+  if (const std::optional<StatedSize> size = FindStatedSize(bytes)) {
+    return CheckPixels(size->width, size->height, bytes.size());
+  }
+  return MakeError(ErrorCode::kParse,
+                   "expected an image: PNG, JPEG, BMP, PGM, PPM, TIFF or WebP; convert others");
 }
 
 }  // namespace sextant

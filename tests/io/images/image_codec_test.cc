@@ -97,15 +97,70 @@ TEST(ImageCodec, TheExifOrientationIsApplied) {
   }
 }
 
+TEST(ImageCodec, EveryFormatOfCamerasIsRead) {
+  for (const char* extension : {".png", ".jpg", ".bmp", ".pgm", ".ppm", ".tiff", ".webp"}) {
+    const Expected<std::string> bytes = EncodeImage(extension, Gradient(CV_8UC3));
+    ASSERT_TRUE(bytes) << extension << ": " << bytes.error().message;
+    const Expected<cv::Mat> decoded = DecodeImage(*bytes, DecodedColor::kGrey);
+    ASSERT_TRUE(decoded) << extension << ": " << decoded.error().message;
+    EXPECT_EQ(decoded->size(), cv::Size(30, 20)) << extension;
+  }
+}
+
+// The bytes of an image of 30 x 20 pixels with some of them replaced.
+std::string Altered(const char* extension, std::size_t at, std::string_view bytes) {
+  std::string image = EncodeImage(extension, Gradient(CV_8UC1)).value();
+  return image.replace(at, bytes.size(), bytes);
+}
+
+// Where a TIFF of low bytes first states the width, a number of 16 bits.
+std::size_t WidthOfTiff(std::string_view tiff) {
+  using std::string_view_literals::operator""sv;
+  const auto directory = static_cast<std::size_t>(static_cast<unsigned char>(tiff[4])) +
+                         256 * static_cast<std::size_t>(static_cast<unsigned char>(tiff[5]));
+  return tiff.find("\x00\x01\x03\x00\x01"sv, directory);
+}
+
 TEST(ImageCodec, FewBytesThatStateManyPixelsAreRefused) {
-  std::string bytes = EncodeImage(".png", Gradient(CV_8UC1)).value();
-  bytes[16] = '\x01';  // The width becomes 2^24 + 30.
-  EXPECT_THAT(DecodeImage(bytes, DecodedColor::kGrey).error().message,
-              HasSubstr("states 16777246 x 20 pixels"));
+  using std::string_literals::operator""s;
+  const std::string tiff = EncodeImage(".tiff", Gradient(CV_8UC1)).value();
+  const std::string jpeg = EncodeImage(".jpg", Gradient(CV_8UC1)).value();
+  const std::size_t frame = jpeg.find("\xff\xc0");
+  const struct {
+    std::string bytes, size;
+  } cases[] = {
+      {Altered(".png", 16, "\x01"), "16777246 x 20"},
+      {Altered(".jpg", frame + 5, "\x7f\xff\x7f\xff"), "32767 x 32767"},
+      {Altered(".bmp", 18, "\x1e\0\0\x10"s), "268435486 x 20"},
+      // Rows from top to bottom.
+      {Altered(".bmp", 22, "\x9c\xff\xff\x8f"), "30 x 1879048292"},
+      {"P5 # comment 7\n 30000\n30000 255\n", "30000 x 30000"},
+      {Altered(".tiff", WidthOfTiff(tiff) + 2, "\x04\0\x01\0\0\0\xff\xff\xff\x0f"s),
+       "268435455 x 20"},
+      {"RIFF\x1a\0\0\0WEBPVP8L\x0d\0\0\0\x2f\xff\xff\xff\x0f\0\0\0\0\0\0\0\0"s, "16384 x 16384"},
+      {"RIFF\x1a\0\0\0WEBPVP8X\x0a\0\0\0\0\0\0\0\xff\xff\xff\xff\0\0"s, "16777216 x 256"},
+      {"RIFF\x1a\0\0\0WEBPVP8 \x0d\0\0\0\0\0\0\x9d\x01\x2a\xff\x3f\xff\x3f\0\0"s, "16383 x 16383"},
+  };
+  for (const auto& [bytes, size] : cases) {
+    const Expected<cv::Mat> decoded = DecodeImage(bytes, DecodedColor::kGrey);
+    ASSERT_FALSE(decoded) << size;
+    EXPECT_THAT(decoded.error().message, HasSubstr("states " + size + " pixels"));
+  }
+}
+
+// Each scan of a progressive JPEG is a pass over all pixels.
+TEST(ImageCodec, AJpegOfManyScansIsRefused) {
+  const std::string bytes = EncodeImage(".jpg", Gradient(CV_8UC1)).value();
+  const std::size_t scan = bytes.find("\xff\xda");
+  std::string many = bytes.substr(0, bytes.size() - 2);
+  for (int i = 0; i < 200; ++i) many += bytes.substr(scan, bytes.size() - 2 - scan);
+  EXPECT_THAT(DecodeImage(many + "\xff\xd9", DecodedColor::kGrey).error().message,
+              HasSubstr("more than 200 scans"));
 }
 
 TEST(ImageCodec, WhatIsNoImageIsAnError) {
-  for (const char* text : {"", "this is not an image", "\x89PNG"}) {
+  for (const char* text : {"", "this is not an image", "\x89PNG", "BM", "P5", "P5 30", "II\x2a",
+                           "RIFF0000WEBPVP8 ", "#?RADIANCE\n\n-Y 99999 +X 99999\n"}) {
     const Expected<cv::Mat> decoded = DecodeImage(text, DecodedColor::kUnchanged);
     ASSERT_FALSE(decoded) << text;
     EXPECT_EQ(decoded.error().code, ErrorCode::kParse);
