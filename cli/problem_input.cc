@@ -57,10 +57,6 @@ std::vector<std::string> AnswerDiagnostics(const LoadedProblem& input, const Sol
   std::vector<std::string> lines = DescribeOutliers(report, input.repeated);
   const auto misfit = DescribeMisfit(problem, report);
   if (misfit && !input.diagnostics.contradiction) lines.push_back(*misfit);
-  const Expected<SolverPtr> solver = AllSolvers().Make(report.solver);
-  if (!solver || !lines.empty()) return lines;
-  const auto understated = DescribeUnderstatedNoise(problem, (*solver)->spec(), report);
-  if (understated) lines.push_back(*understated);
   return lines;
 }
 

@@ -4,13 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <span>
 #include <vector>
-
-#include "solvers/kernels/pair_terms.h"
-#include "solvers/least_squares/refine_pose.h"
 
 namespace sextant {
 namespace {
@@ -79,33 +75,6 @@ std::optional<std::string> DescribeMisfit(const CalibrationProblem& problem,
       "noise, may be wrong; "
       "check which point belongs to which, and that no sensor or board moved",
       100.0 * *share, 100.0 * kUsual);
-}
-
-std::optional<std::string> DescribeUnderstatedNoise(const CalibrationProblem& problem,
-                                                    const SolverSpec& spec,
-                                                    const SolveReport& report) {
-  constexpr double kUnknowns = 6.0;
-  constexpr double kNoticeable = 1.25;
-  constexpr double kMaxChance = 1e-4;
-  const bool of_points = spec.needs.pairs_3d3d > 0;
-  const bool of_pixels = !of_points && spec.needs.pairs_2d3d > 0;
-  if (of_points == of_pixels || spec.needs.board_views > 0) return std::nullopt;
-  const PairKind kind = of_points ? PairKind::k3d3d : PairKind::k2d3d;
-  PairTerms used;
-  used.AssignSubset(MakeTerms(problem, kind), report.inliers);
-  const double freedom = ResidualsPerPair(kind) * static_cast<double>(used.size()) - kUnknowns;
-  if (!used.noise_known || freedom < kUnknowns) return std::nullopt;
-  // Not at the answer, which need not be the minimum of what the pairs state.
-  const double squares = 2.0 * RefinePose(used.View(), report.cam_from_lidar, {}).cost;
-  const double ratio = std::sqrt(squares / freedom);
-  if (!(ratio > kNoticeable)) return std::nullopt;
-  if (boost::math::gamma_q(0.5 * freedom, 0.5 * squares) > kMaxChance) return std::nullopt;
-  return fmt::format(
-      "noise: the residuals of the {} pairs used are {:.1f} times what the pairs state, which "
-      "chance does not explain, so the stated uncertainty is too small by at least that; errors "
-      "that all "
-      "views have in common, as offsets of a LiDAR's rings, add to it",
-      used.size(), ratio);
 }
 
 }  // namespace sextant

@@ -27,11 +27,4 @@ inline constexpr double kMaxUnexplainedShare = 0.3;
 std::optional<std::string> DescribeMisfit(const CalibrationProblem& problem,
                                           const SolveReport& report);
 
-/// A sentence where the pairs that an answer uses state their noise, and it does not explain what
-/// they leave at the minimum next to the answer (chi-square, probability below 1e-4, residuals at
-/// least 1.25 times as large). None for solvers of raw observations. Time O(n).
-std::optional<std::string> DescribeUnderstatedNoise(const CalibrationProblem& problem,
-                                                    const SolverSpec& spec,
-                                                    const SolveReport& report);
-
 }  // namespace sextant

@@ -13,6 +13,7 @@
 #include "solvers/core/local_frame.h"
 #include "solvers/core/plausible.h"
 #include "solvers/core/rivals.h"
+#include "solvers/core/stated_noise.h"
 #include "solvers/core/subset.h"
 #include "solvers/core/unseen_pairs.h"
 
@@ -291,6 +292,7 @@ Expected<SolveReport> Solver::Solve(const CalibrationProblem& problem) const {
   const CalibrationProblem& local = moved ? *moved : problem;
   Expected<SolveReport> report = SolveSeenPairs(local);
   if (!report) return report;
+  WidenUnderstatedNoise(local, spec_, *report);
   if (HasUnseenPair(*report)) {
     const Camera& camera = report->camera ? report->camera->camera : *problem.camera;
     for (std::string& note : NotesOnUnseenPairs(local, camera, report->cam_from_lidar)) {
