@@ -76,7 +76,14 @@ class OpenWindow {
   }
 
   int Wait() { return program_.Wait(kSeconds); }
-  void Press(const std::string& key) { display_.Do("key " + key); }
+
+  // HighGUI keeps the last key only, and calls back for a click before the program sees the key
+  // that came first: each key is pressed when nothing else is waiting, and then handled.
+  void Press(const std::string& key) {
+    Eventually(kSeconds, [&] { return program_.Rests(); });
+    display_.Do("key " + key);
+    Eventually(kSeconds, [&] { return program_.Rests(); });
+  }
 
   // The window is in the corner of the screen, because no window manager moves it.
   void Click(const std::vector<Eigen::Vector2d>& canvas, int button = 1) {

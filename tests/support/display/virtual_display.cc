@@ -9,6 +9,7 @@
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <string>
 #include <thread>
 
 #include "base/process/run_process.h"
@@ -56,6 +57,19 @@ BackgroundProgram::~BackgroundProgram() {
 
 void BackgroundProgram::Interrupt() const {
   if (pid_ > 0) kill(pid_, SIGINT);
+}
+
+bool BackgroundProgram::Rests() const {
+  for (int i = 0; i < 10; ++i) {
+    std::ifstream stream("/proc/" + std::to_string(pid_) + "/stat");
+    std::string text;
+    std::getline(stream, text);
+    // The state is the letter after the name in parentheses.
+    const std::size_t state = text.rfind(')') + 2;
+    if (state < text.size() && text[state] != 'S' && text[state] != 'Z') return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return true;
 }
 
 int BackgroundProgram::Wait(double seconds) {

@@ -23,6 +23,10 @@ class BackgroundProgram {
   /// Ctrl-C.
   void Interrupt() const;
 
+  /// Whether its main thread sleeps for a tenth of a second or has ended: it has handled what it
+  /// got. False while it only waits for a processor.
+  bool Rests() const;
+
   /// Waits for the end and returns the exit code; -1 after a timeout or if it is killed by a
   /// signal.
   int Wait(double seconds);
