@@ -8,11 +8,9 @@
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <sstream>
-#include <thread>
 #include <vector>
 
 namespace sextant {
@@ -36,12 +34,7 @@ std::string Describe(const std::vector<pid_t>& processes) {
 }  // namespace
 
 std::string DescribeHolders(int lock_file) {
-  std::vector<pid_t> all = NumbersIn(lock_file);
-  // The holder writes its number right after it has taken the lock.
-  for (int i = 0; all.empty() && i < 50; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    all = NumbersIn(lock_file);
-  }
+  const std::vector<pid_t> all = NumbersIn(lock_file);
   std::vector<pid_t> running;
   for (const pid_t number : all) {
     if (kill(number, 0) == 0 || errno != ESRCH) running.push_back(number);

@@ -7,8 +7,10 @@
 #include <sys/stat.h>
 
 #include <cerrno>
+#include <chrono>
 #include <optional>
 #include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -79,8 +81,28 @@ class OutputFolder::Lock {
     unlinkat(folder_.get(), kLockFile, 0);
   }
 
-  // True once it is held; false if other processes hold it. Errors: kUnwritable.
+  // True once it is held; false if other processes hold it. A process that was killed a moment ago
+  // holds it until it has ended. Errors: kUnwritable.
   Expected<bool> Take(const fs::path& path, Sharing sharing) {
+    constexpr auto kPatience = std::chrono::seconds(2);
+    const auto begin = std::chrono::steady_clock::now();
+    while (true) {
+      SEXTANT_ASSIGN_OR_RETURN(const bool is_held, TryToTake(path, sharing));
+      if (is_held || std::chrono::steady_clock::now() - begin > kPatience) return is_held;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+
+  // After Take(): lets others in that share the folder.
+  bool Share() { return flock(file_.get(), LOCK_SH | LOCK_NB) == 0; }
+  void RemoveOnSignal() { on_signal_.emplace(folder_.get(), kLockFile); }
+
+  int folder() const { return folder_.get(); }
+  int file() const { return file_.get(); }
+  bool is_alone() const { return is_alone_; }
+
+ private:
+  Expected<bool> TryToTake(const fs::path& path, Sharing sharing) {
     while (true) {
       constexpr int kFlags = O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
       file_ = Descriptor(openat(folder_.get(), kLockFile, kFlags, 0666));
@@ -99,15 +121,6 @@ class OutputFolder::Lock {
     return true;
   }
 
-  // After Take(): lets others in that share the folder.
-  bool Share() { return flock(file_.get(), LOCK_SH | LOCK_NB) == 0; }
-  void RemoveOnSignal() { on_signal_.emplace(folder_.get(), kLockFile); }
-
-  int folder() const { return folder_.get(); }
-  int file() const { return file_.get(); }
-  bool is_alone() const { return is_alone_; }
-
- private:
   bool IsNamed() const {
     struct stat open_file {};
     struct stat named {};

@@ -28,8 +28,8 @@ enum class Sharing {
 class OutputFolder {
  public:
   /// Creates the folder with its parents if it does not exist, and locks it. If nobody else uses
-  /// it, removes temporary files that a killed process left. Errors: kInvalidOption with the
-  /// numbers of the processes that use it; kUnwritable.
+  /// it, removes temporary files that a killed process left. Waits up to two seconds for a process
+  /// that uses it. Errors: kInvalidOption with the numbers of these processes; kUnwritable.
   static Expected<OutputFolder> Open(const std::filesystem::path& path,
                                      Sharing sharing = Sharing::kAlone);
   OutputFolder(OutputFolder&&) noexcept;

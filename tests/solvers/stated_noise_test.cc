@@ -53,7 +53,7 @@ class StatedNoise : public testing::TestWithParam<const char*> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Solvers, StatedNoise,
-                         testing::Values("kabsch", "umeyama", "epnp", "refine(epnp)",
+                         testing::Values("kabsch", "eigen.umeyama", "epnp", "refine(epnp)",
                                          "refine(kabsch, on=3d3d)"));
 
 TEST_P(StatedNoise, OfTheRightSizeOrLargerStays) {
