@@ -98,8 +98,9 @@ TEST(ImageCodec, TheExifOrientationIsApplied) {
 }
 
 TEST(ImageCodec, EveryFormatOfCamerasIsRead) {
-  for (const char* extension : {".png", ".jpg", ".bmp", ".pgm", ".ppm", ".tiff", ".webp"}) {
-    const Expected<std::string> bytes = EncodeImage(extension, Gradient(CV_8UC3));
+  for (const std::string extension : {".png", ".jpg", ".bmp", ".pgm", ".ppm", ".tiff", ".webp"}) {
+    const int type = extension == ".pgm" ? CV_8UC1 : CV_8UC3;
+    const Expected<std::string> bytes = EncodeImage(extension, Gradient(type));
     ASSERT_TRUE(bytes) << extension << ": " << bytes.error().message;
     const Expected<cv::Mat> decoded = DecodeImage(*bytes, DecodedColor::kGrey);
     ASSERT_TRUE(decoded) << extension << ": " << decoded.error().message;
