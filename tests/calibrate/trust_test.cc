@@ -27,19 +27,23 @@ constexpr double kSigma = 0.01;
 
 const Rigid3d kTruth = {ExpSo3({1.2, -1.2, 1.2}), {0.1, -0.2, -0.1}};
 
-// Views of four points each, each with its own noise; `stated` is the sigma that the pairs state,
-// `shared` that of an error which the points of a view have in common.
+// Views of four points each, each with its own noise; `stated` is the sigma that the pairs state.
+// The points of a view lie within `extent` of its middle and have an error `shared` in common.
 CalibrationProblem SomeViews(int views, std::uint64_t seed, double stated = kSigma,
-                             double shared = 0.0) {
+                             double extent = 0.5, double shared = 0.0) {
   Random random(seed);
   CalibrationProblem problem;
   for (int view = 0; view < views; ++view) {
-    const Eigen::Vector3d common =
-        shared > 0.0 ? Eigen::Vector3d(shared * NormalVector(random)) : Eigen::Vector3d::Zero();
+    Eigen::Vector3d middle(2.5, 0.0, 0.0);
+    Eigen::Vector3d common = Eigen::Vector3d::Zero();
+    if (shared > 0.0) {
+      middle += 0.5 * NormalVector(random);
+      common = shared * NormalVector(random);
+    }
     for (int corner = 0; corner < 4; ++corner) {
       Pair3d3d pair;
       pair.id = {.view = view, .board = 0, .corner = corner};
-      pair.point_in_lidar = Eigen::Vector3d(2.5, 0.0, 0.0) + 0.5 * NormalVector(random);
+      pair.point_in_lidar = middle + extent * NormalVector(random);
       pair.point_in_cam = kTruth * pair.point_in_lidar + common + kSigma * NormalVector(random);
       pair.sigma_m = stated;
       problem.pairs_3d3d.push_back(pair);
@@ -97,7 +101,7 @@ TEST(Trust, CovarianceBootstrapAndCrossValidationAgreeWhereTheNoiseIsWhatIsState
 // The solver widens its covariance to what the residuals show, as if they were independent: four
 // points with one error are then taken for four measurements, and the ratio is about 2.
 TEST(Trust, SaysWhereTheStatedNoiseIsTooSmall) {
-  const Trust trust = TrustOf(SomeViews(30, 5, kSigma, 10.0 * kSigma));
+  const Trust trust = TrustOf(SomeViews(30, 5, kSigma, 0.05, 10.0 * kSigma));
   EXPECT_GT(*trust.figures.bootstrap_over_solver, 1.5);
   EXPECT_THAT(trust.figures.comparison, HasSubstr("times what the noise model allows"));
   EXPECT_THAT(TrustOf(SomeViews(30, 5)).figures.comparison, HasSubstr("They agree within"));
