@@ -18,7 +18,7 @@ struct FileId {
   ino_t inode = 0;
   std::string name{};  ///< Empty for a file that exists.
 
-  auto operator<=>(const FileId&) const = default;
+  auto operator<=>(const FileId&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 inline FileId IdOf(const struct stat& status) { return {status.st_dev, status.st_ino, {}}; }

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 struct Key {
   std::string task;
   long count = 0;
-  friend auto operator<=>(const Key&, const Key&) = default;
+  friend auto operator<=>(const Key&, const Key&) = default;  // NOLINT(modernize-use-nullptr)
 };
 
 using Row = std::map<std::string, Timing>;  // Timings by implementation.

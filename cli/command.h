@@ -105,13 +105,13 @@ struct Command {
 
 /// A command whose options are members of `Options`: `declare` binds them, `run` reads them.
 template <class Options>
-Command MakeCommand(std::string name, std::string summary, std::string footer,
+Command MakeCommand(const std::string& name, const std::string& summary, const std::string& footer,
                     void (*declare)(Options&, Arguments&), int (*run)(const Options&)) {
   // The parser writes to the options after this function has returned.
   const auto options = std::make_shared<Options>();
-  return {.name = std::move(name),
-          .summary = std::move(summary),
-          .footer = std::move(footer),
+  return {.name = name,
+          .summary = summary,
+          .footer = footer,
           .declare = [options, declare](Arguments& arguments) { declare(*options, arguments); },
           .run = [options, run] { return run(*options); }};
 }

@@ -121,10 +121,11 @@ std::string LatexText(std::string text) {
 
 std::string MarkdownText(std::string text) {
   text = PrintableLine(std::move(text));
+  const std::string_view all = text;
   std::string escaped;
   for (std::size_t i = 0; i < text.size(); ++i) {
     std::size_t bytes = 0;
-    const std::string code = CodeSpan(std::string_view(text).substr(i), bytes);
+    const std::string code = CodeSpan(all.substr(i), bytes);
     if (!code.empty()) {
       escaped += code;
       i += bytes - 1;
@@ -188,7 +189,7 @@ std::string HtmlText(std::string text) {
 
 // The library writes only the controls below 0x20 as \uNNNN; the others can stand in strings alone.
 std::string JsonText(const nlohmann::ordered_json& document, int indent) {
-  const std::string text =
+  std::string text =
       document.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x7f; };
   if (std::all_of(text.begin(), text.end(), is_ascii)) return text;

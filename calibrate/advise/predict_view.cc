@@ -119,7 +119,8 @@ class RingCrossings {
   void AddRing(double elevation, double from, double to, BoardView& view) const {
     const double step = lidar_.azimuth_step_rad;
     bool was_on = false;
-    for (double azimuth = from; azimuth <= to; azimuth += step) {
+    for (int i = 0; from + i * step <= to; ++i) {
+      const double azimuth = from + i * step;
       const bool is_on = IsOn(elevation, azimuth);
       if (is_on) view.face_in_lidar.push_back(PointAt(elevation, azimuth));
       if (is_on != was_on) AddEdge(elevation, azimuth - step, azimuth, view);

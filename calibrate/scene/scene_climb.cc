@@ -76,7 +76,7 @@ SceneScore SceneObjective::At(int level, const SceneModel& model) const {
 
 Vector9d ScaleOf(const SceneObjective& scenes, int level) {
   const ScenePair& first = scenes.pairs.front();
-  const double angle = first.fields.Sigma_px(level) / first.camera.fx_px;
+  const double angle = first.fields.SigmaPx(level) / first.camera.fx_px;
   Vector9d scale;
   scale << angle, angle, angle, kTypicalDepth_m * Eigen::Vector3d::Constant(angle), 2.0 * angle,
       angle, angle;

@@ -98,7 +98,7 @@ EdgeScore ScoreEdge(const ScenePair& pair, int level, const EdgeProjector& model
   const auto field = pair.fields.At(level, pixel, normal);
   if (!field) return result;
   result.pixel = pixel;
-  const double weight = WeightOf(edge, level, focal_px, pair.fields.Sigma_px(level)) /
+  const double weight = WeightOf(edge, level, focal_px, pair.fields.SigmaPx(level)) /
                         std::sqrt(static_cast<double>(pair.edges.size()));
   const Eigen::Vector2d by_pixel = weight * field->gradient;
   const Eigen::Vector3d by_point =

@@ -198,18 +198,18 @@ void AddFits(const CalibrationProblem& problem, const std::vector<int>& views,
   }
   ViewFit all;
   ViewFit all_held_out;
-  for (std::size_t i = 0; i < views.size(); ++i) {
+  for (const int of : views) {
     ViewTrust& view = trust.views.emplace_back();
-    view.view = views[i];
-    const ViewFit fit = FitOf(problem, views[i], answer.cam_from_lidar);
+    view.view = of;
+    const ViewFit fit = FitOf(problem, of, answer.cam_from_lidar);
     view.rmse_m = fit.metres.Value();
     view.rmse_px = fit.pixels.Value();
     all.metres.Add(fit.metres);
     all.pixels.Add(fit.pixels);
     if (folds.empty()) continue;
-    const std::optional<Rigid3d>& others = folds[group_of[views[i]] % folds.size()];
+    const std::optional<Rigid3d>& others = folds[group_of[of] % folds.size()];
     if (!others) continue;
-    const ViewFit held_out = FitOf(problem, views[i], *others);
+    const ViewFit held_out = FitOf(problem, of, *others);
     view.held_out_m = held_out.metres.Value();
     view.held_out_px = held_out.pixels.Value();
     all_held_out.metres.Add(held_out.metres);

@@ -97,7 +97,7 @@ class Judge {
         "Check that each photo and its scan are of one moment, with every board at rest, and "
         "record "
         "those views again");
-    Add(kOutlierShare.Of(f_.outlier_views / std::max(1.0, double(f_.views_used))),
+    Add(kOutlierShare.Of(f_.outlier_views / std::max(1.0, static_cast<double>(f_.views_used))),
         fmt::format("{} of {} used views disagree with the answer of the others", f_.outlier_views,
                     f_.views_used),
         "Remove or record again the views named in the diagnostics");

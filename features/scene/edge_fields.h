@@ -35,7 +35,7 @@ class EdgeFields {
                           const Eigen::Vector2d& normal) const;
 
   /// Standard deviation of the blur of a level [pixels of the image].
-  double Sigma_px(int level) const { return kSigma_px * static_cast<double>(1 << level) / scale_; }
+  double SigmaPx(int level) const { return kSigma_px * static_cast<double>(1 << level) / scale_; }
 
  private:
   static constexpr double kSigma_px = 1.5;
