@@ -35,8 +35,8 @@ std::string DefaultSpec(const SolverRegistry& registry, const CalibrationProblem
   const std::size_t points = problem.pairs_3d3d.size();
   const bool in_pixels = points == 0 && pixels > 0;
   if (in_pixels && pixels == 3) return "p3p";
-  const std::string least_squares = in_pixels ? "refine(sqpnp)" : "kabsch";
-  const std::string robust = in_pixels ? "refine(ransac(p3p))" : "robust(kabsch)";
+  std::string least_squares = in_pixels ? "refine(sqpnp)" : "kabsch";
+  std::string robust = in_pixels ? "refine(ransac(p3p))" : "robust(kabsch)";
   if (points + pixels == 0) return least_squares;
   const auto answer_of = [&](const std::string& spec, const CalibrationProblem& pairs) {
     return registry.Make(spec).and_then([&](const SolverPtr& s) { return s->Solve(pairs); });

@@ -34,12 +34,14 @@ class RingScan {
       double before = middle - reach - step * random.Uniform();
       if (Misses(ring)) continue;
       bool was_on = IsOn(ring, before);
-      for (double azimuth = before + step; azimuth < middle + reach + step; azimuth += step) {
+      double azimuth = before + step;
+      while (azimuth < middle + reach + step) {
         const bool is_on = IsOn(ring, azimuth);
         if (is_on) AddReturn(ring, azimuth, view, random);
         if (is_on != was_on) AddEdge(ring, before, azimuth, view, random);
         before = azimuth;
         was_on = is_on;
+        azimuth += step;
       }
     }
   }

@@ -87,7 +87,7 @@ class MarkedCorner {
   }
 
   static Eigen::Vector2d Refined(const cv::Mat& grey, const Eigen::Vector2d& start, int half) {
-    std::vector<cv::Point2f> corner = {cv::Point2f(ToCv(start))};
+    std::vector<cv::Point2f> corner = {static_cast<cv::Point2f>(ToCv(start))};
     const cv::TermCriteria until(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 30, 0.01);
     cv::cornerSubPix(grey, corner, cv::Size(half, half), cv::Size(-1, -1), until);
     return {corner[0].x, corner[0].y};
@@ -97,7 +97,7 @@ class MarkedCorner {
   static double LevelAt(const cv::Mat& grey, const Eigen::Vector2d& pixel) {
     if (!IsInside(grey, pixel, 1.0)) return std::numeric_limits<double>::quiet_NaN();
     cv::Mat patch;
-    cv::getRectSubPix(grey, cv::Size(1, 1), cv::Point2f(ToCv(pixel)), patch);
+    cv::getRectSubPix(grey, cv::Size(1, 1), static_cast<cv::Point2f>(ToCv(pixel)), patch);
     return patch.at<std::uint8_t>(0, 0);
   }
 
