@@ -56,6 +56,12 @@ Expected<AppendedFile> AppendedFile::Open(const std::filesystem::path& path) {
   SEXTANT_RETURN_IF_ERROR(appended.Lock());
   struct stat status {};
   if (fstat(appended.file_.get(), &status) != 0) return appended.Failed();
+  if (status.st_nlink > 1) {
+    return WriteError(ErrorCode::kInvalidOption, path,
+                      fmt::format("it has {} names (hard links) and would change under each; "
+                                  "replace this one by a copy",
+                                  status.st_nlink));
+  }
   appended.size_ = static_cast<std::uint64_t>(status.st_size);
   if (call != nullptr) call->FinishOutput(opened.id, IdOf(status));
   return appended;

@@ -24,6 +24,21 @@ Descriptor CreateFile(int folder, const std::string& name, mode_t mode) {
   return file;
 }
 
+// Waits for no reader of a pipe: that may never come.
+Expected<Descriptor> OpenStream(const std::filesystem::path& path) {
+  constexpr int kFlags = O_WRONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY;
+  Descriptor file(open(path.c_str(), kFlags));
+  if (!file.is_open() && errno == ENXIO) {
+    return WriteError(ErrorCode::kInvalidOption, path,
+                      "it is a pipe that no process reads; start the reader first, or remove it");
+  }
+  if (!file.is_open()) return WriteError(path);
+  // Writing then waits for the reader as usual.
+  const int flags = fcntl(file.get(), F_GETFL);
+  if (flags < 0 || fcntl(file.get(), F_SETFL, flags & ~O_NONBLOCK) != 0) return WriteError(path);
+  return file;
+}
+
 bool IsStillThere(const Descriptor& file) {
   struct stat status {};
   return fstat(file.get(), &status) == 0 && status.st_nlink > 0;
@@ -36,8 +51,7 @@ Expected<OutputFile> OutputFile::Open(const std::filesystem::path& path, Replace
   SEXTANT_ASSIGN_OR_RETURN(OutputTarget target, FindTarget(path));
   OutputFile output(std::move(target));
   if (output.target_.is_stream) {
-    output.file_ = Descriptor(open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
-    if (!output.file_.is_open()) return WriteError(path);
+    SEXTANT_ASSIGN_OR_RETURN(output.file_, OpenStream(path));
     return output;
   }
   if (CallFiles* const call = CallFiles::Current(); call != nullptr) {

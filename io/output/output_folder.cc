@@ -6,6 +6,8 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <optional>
@@ -28,6 +30,18 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLockFile = ".sextant.lock";
+
+// Whether the file is new, or one of ours: a regular one without another name, of numbers alone.
+bool IsLockFile(const Descriptor& file) {
+  struct stat status {};
+  if (fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink > 1) {
+    return false;
+  }
+  std::array<char, 64> bytes{};
+  const ssize_t got = pread(file.get(), bytes.data(), bytes.size(), 0);
+  return std::all_of(bytes.begin(), bytes.begin() + std::max<ssize_t>(got, 0),
+                     [](char c) { return c == '\n' || (c >= '0' && c <= '9'); });
+}
 
 // Temporaries whose writer has ended: nobody holds their locks.
 void RemoveLeftovers(const fs::path& path, int folder) {
@@ -107,6 +121,10 @@ class OutputFolder::Lock {
       constexpr int kFlags = O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
       file_ = Descriptor(openat(folder_.get(), kLockFile, kFlags, 0666));
       if (!file_.is_open()) return WriteError(path / kLockFile);
+      if (!IsLockFile(file_)) {
+        return WriteError(ErrorCode::kInvalidOption, path / kLockFile,
+                          "it is no lock of sextant, which needs this name; remove the file");
+      }
       // A file system without locks cannot keep others out.
       is_alone_ = flock(file_.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
       const bool is_shared = !is_alone_ && sharing == Sharing::kWithOthers &&

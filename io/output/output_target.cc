@@ -52,6 +52,7 @@ Expected<void> Examine(OutputTarget& target) {
   const bool is_link = S_ISLNK(status.st_mode);
   if (is_link && fstatat(folder, name, &status, 0) != 0) return RefusedLink(target.path);
   if (S_ISDIR(status.st_mode)) return Refused(target.path, "it is a folder, expected a file");
+  if (S_ISBLK(status.st_mode)) return Refused(target.path, "it is a disk, expected a file");
   target.is_stream = !S_ISREG(status.st_mode);
   if (target.is_stream) return {};
   if (is_link) return RefusedLink(target.path);

@@ -149,7 +149,8 @@ class CliqueSolver final : public Solver {
 OptionSet<CliqueOptions> CliqueOptionSet() {
   OptionSet<CliqueOptions> options;
   options.Count("max_nodes", &CliqueOptions::max_nodes, 1, 1'000'000'000'000,
-                "maximum nodes of the search tree; after them the largest clique so far is taken");
+                "maximum nodes of the search tree, (1000/N)^2 of them for more than 1000 pairs; "
+                "after them the largest clique so far is taken");
   return AddInlierOptions(options);
 }
 

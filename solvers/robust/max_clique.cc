@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <deque>
 #include <numeric>
 #include <utility>
@@ -109,6 +110,13 @@ std::vector<int> DegeneracyOrder(const BitGraph& graph) {
   }
   std::reverse(order.begin(), order.end());
   return order;
+}
+
+// The colouring of a node takes time as the square of the vertices: as much in all as for 1000.
+std::int64_t NodesFor(std::size_t vertices, std::int64_t max_nodes) {
+  constexpr double kVertices = 1000.0;
+  const double share = std::min(1.0, kVertices / static_cast<double>(vertices));
+  return std::max<std::int64_t>(1, std::llround(share * share * static_cast<double>(max_nodes)));
 }
 
 /// Searches for a clique larger than a known size.
@@ -219,7 +227,8 @@ Clique FindMaximumClique(const BitGraph& graph, std::int64_t max_nodes) {
   clique.vertices = GreedyClique(graph, degrees);
   const std::vector<int> core = CoreOf(graph, degrees, static_cast<int>(clique.vertices.size()));
   if (!core.empty()) {
-    CliqueSearch search(Subgraph(graph, core), clique.vertices.size(), max_nodes);
+    CliqueSearch search(Subgraph(graph, core), clique.vertices.size(),
+                        NodesFor(core.size(), max_nodes));
     search.Run();
     clique.is_maximum = search.is_maximum();
     clique.nodes = search.nodes();

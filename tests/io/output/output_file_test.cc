@@ -131,6 +131,15 @@ TEST(OutputFile, WritesToADeviceWithoutReplacingIt) {
   EXPECT_THAT(full.error().message, HasSubstr("No space left on device"));
 }
 
+// Opening it would wait for a reader that may never come.
+TEST(OutputFile, APipeThatNobodyReadsIsRefused) {
+  const ScratchFolder folder;
+  const fs::path pipe = folder.path() / "report.md";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  ExpectRefused(WriteFileAtomically(pipe, "x"), "a pipe that no process reads");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
 TEST(OutputFile, TheNamesOfTemporariesDiffer) {
   const ScratchFolder folder;
   const Expected<OutputFile> one = OutputFile::Open(folder.path() / "a");

@@ -101,6 +101,31 @@ TEST(OutputFolder, AFileInItsPlaceIsRefused) {
   EXPECT_THAT(folder.error().message, HasSubstr("cannot make the folder"));
 }
 
+TEST(OutputFolder, AFileOfTheLocksNameThatIsNoLockIsKept) {
+  const ScratchFolder scratch;
+  const fs::path lock = scratch.path() / ".sextant.lock";
+  WriteText(lock, "notes");
+  const Expected<OutputFolder> foreign = OutputFolder::Open(scratch.path());
+  ASSERT_FALSE(foreign);
+  EXPECT_THAT(foreign.error().message, HasSubstr("it is no lock of sextant"));
+  EXPECT_EQ(ReadText(lock), "notes");
+  fs::remove(lock);
+  WriteText(scratch.path() / "precious", "12");
+  fs::create_hard_link(scratch.path() / "precious", lock);
+  EXPECT_FALSE(OutputFolder::Open(scratch.path()));
+  EXPECT_EQ(ReadText(scratch.path() / "precious"), "12");
+}
+
+// A copy by a hard link would lose its rows to a run from the start.
+TEST(AppendedFile, OfTwoNamesIsRefused) {
+  const ScratchFolder scratch;
+  WriteText(scratch.path() / "rows", "old");
+  fs::create_hard_link(scratch.path() / "rows", scratch.path() / "copy");
+  const Expected<AppendedFile> file = AppendedFile::Open(scratch.path() / "rows");
+  ASSERT_FALSE(file);
+  EXPECT_THAT(file.error().message, HasSubstr("2 names (hard links)"));
+}
+
 TEST(AppendedFile, ContinuesAtItsEnd) {
   const ScratchFolder scratch;
   const fs::path path = scratch.path() / "rows";
