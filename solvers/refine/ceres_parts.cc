@@ -1,11 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solvers/refine/ceres_parts.h"
 
+#include <fmt/core.h>
+#include <glog/logging.h>
+
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
 #include "solvers/refine/barron_loss.h"
 
 namespace sextant {
+
+namespace {
+
+// Ceres writes to the log of a program that has not set one up, which is its standard error, where
+// it ends without an answer; our own messages state that.
+void SilenceUnwantedLog() {
+  static const bool is_silent = [] {
+    const bool is_wanted = google::IsGoogleLoggingInitialized();
+    if (!is_wanted) FLAGS_minloglevel = google::GLOG_FATAL;
+    return !is_wanted;
+  }();
+  static_cast<void>(is_silent);
+}
+
+}  // namespace
 
 ceres::LossFunction* NewLoss(const RobustLoss& loss) {
   switch (loss.kind) {
@@ -24,6 +44,7 @@ ceres::LossFunction* NewLoss(const RobustLoss& loss) {
 }
 
 ceres::Solver::Options CeresOptions(const RefineLimits& limits) {
+  SilenceUnwantedLog();
   ceres::Solver::Options options;
   options.max_num_iterations = limits.max_iterations;
   options.parameter_tolerance = limits.step_tolerance;
@@ -56,6 +77,28 @@ double LossVariance::Factor(double unknowns) const {
   const double slope = std::max(slopes_, kMinSlope * weights_) / rows_;
   const double variance = pulls_ / (rows_ - unknowns) / (slope * slope);
   return std::max(1.0, variance * weights_ / rows_);
+}
+
+bool OutlierPull::Widen(Eigen::Ref<Eigen::MatrixXd> covariance) const {
+  if (near_ == all_) return false;
+  const Eigen::LLT<Eigen::MatrixXd> others(information_);
+  const Eigen::LLT<Eigen::MatrixXd> stated(covariance);
+  if (others.info() != Eigen::Success || stated.info() != Eigen::Success) return false;
+  const Eigen::VectorXd shift = others.solve(slope_);
+  const double squared = shift.dot(stated.solve(shift));
+  const auto unknowns = static_cast<double>(shift.size());
+  if (!std::isfinite(squared) || squared <= unknowns) return false;
+  covariance += (1.0 - unknowns / squared) * shift * shift.transpose();
+  constexpr double kChance = 5.0;  // Standard deviations of chi-square above its mean.
+  return squared > unknowns + kChance * std::sqrt(2.0 * unknowns);
+}
+
+std::string OutlierPull::Describe() const {
+  return fmt::format(
+      "{} of {} residuals are of outliers, which pull at the answer under this loss more than "
+      "chance explains; the sigmas hold the shift, and loss=tukey, which gives outliers no weight, "
+      "avoids it",
+      all_ - near_, all_);
 }
 
 }  // namespace sextant

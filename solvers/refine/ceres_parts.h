@@ -3,6 +3,9 @@
 
 #include <ceres/ceres.h>
 
+#include <Eigen/Core>
+#include <string>
+
 #include "solvers/refine/refine_ceres.h"
 
 namespace sextant {
@@ -33,6 +36,40 @@ class LossVariance {
   double weights_ = 0.0;  // sum k w
   double pulls_ = 0.0;    // sum w^2 s
   double slopes_ = 0.0;   // sum k w + 2 w' s
+};
+
+/// How far the residuals that a loss all but ignores (weights below kMinLossWeight) pull the answer
+/// from where the others have it: the step d = (sum rho' J^T J)^-1 sum rho' J^T r of the others
+/// alone. LossVariance takes their pulls for random. Those of outliers that lie mostly on one side,
+/// as pixels anywhere in the image do, add up with their number, while the covariance shrinks.
+class OutlierPull {
+ public:
+  explicit OutlierPull(int unknowns)
+      : information_(Eigen::MatrixXd::Zero(unknowns, unknowns)),
+        slope_(Eigen::VectorXd::Zero(unknowns)) {}
+
+  template <class Jacobian, class Residual>
+  void Add(const Jacobian& jacobian, const Residual& residual, double weight) {
+    ++all_;
+    if (weight < kMinLossWeight) return;
+    ++near_;
+    information_.noalias() += weight * jacobian.transpose() * jacobian;
+    slope_.noalias() += weight * jacobian.transpose() * residual;
+  }
+
+  /// Adds what d shows beyond chance: (1 - k / D) d d^T for D = d^T C^-1 d above its mean k, the
+  /// number of unknowns, so that C holds the shift. Nothing without outliers, or where the others
+  /// determine no answer. True where chance hardly ever leaves so large a D.
+  bool Widen(Eigen::Ref<Eigen::MatrixXd> covariance) const;
+
+  /// For the sentence of an answer of which Widen was true.
+  std::string Describe() const;
+
+ private:
+  Eigen::MatrixXd information_;
+  Eigen::VectorXd slope_;
+  int all_ = 0;
+  int near_ = 0;
 };
 
 }  // namespace sextant

@@ -22,6 +22,7 @@
 #include "solvers/refine/refine_ceres.h"
 #include "solvers/refine/refine_noise.h"
 #include "solvers/refine/refine_options.h"
+#include "solvers/robust/noise_scale.h"
 
 namespace sextant {
 namespace {
@@ -101,6 +102,9 @@ class RefineSolver final : public Solver {
     std::optional<QuickAnswer> quick = FromTriples(problem);
     if (quick && quick->is_certain) return std::move(quick->estimate);
     Expected<SolveReport> start = inner_->Solve(problem);
+    if (!start && options_.Loss().kind != LossKind::kNone) {
+      return FromConsensus(problem, std::move(start.error()));
+    }
     if (!start) {
       // Outliers may leave the inner solver a pose that explains nothing, and the refined one much.
       const bool is_refuted = !quick || !CheckExplained(*problem.camera, problem.pairs_2d3d,
@@ -120,6 +124,34 @@ class RefineSolver final : public Solver {
     Expected<Estimate> estimate = RefineFrom(problem, other);
     if (!estimate) return std::nullopt;
     return *std::move(estimate);
+  }
+
+  // Outliers may leave the inner solver no pose of all pairs where a loss bears them: then from the
+  // pose that more pairs agree on than chance explains.
+  Expected<Estimate> FromConsensus(const CalibrationProblem& problem, Error of_inner) const {
+    const DataNeeds& needs = inner_->spec().needs;
+    const bool of_one_kind = (needs.pairs_3d3d > 0) != (needs.pairs_2d3d > 0);
+    if (of_inner.code != ErrorCode::kNoConsensus || !of_one_kind) {
+      return tl::unexpected<Error>(std::move(of_inner));
+    }
+    const PairKind kind = needs.pairs_3d3d > 0 ? PairKind::k3d3d : PairKind::k2d3d;
+    const Expected<Rigid3d> pose = FindConsensusPose(problem, kind, *inner_);
+    if (!pose) return tl::unexpected<Error>(std::move(of_inner));
+    Estimate start;
+    start.cam_from_lidar = *pose;
+    // Points behind the camera have no residual that a loss could bear.
+    const std::size_t count =
+        kind == PairKind::k3d3d ? problem.pairs_3d3d.size() : problem.pairs_2d3d.size();
+    for (const int i : AllOf(count)) {
+      if (kind == PairKind::k3d3d || IsSeen(problem, i, *pose)) start.inliers.push_back(i);
+    }
+    start.stages.push_back({"consensus", *pose, 0, 0.0});
+    return RefineFrom(problem, start);
+  }
+
+  static bool IsSeen(const CalibrationProblem& problem, int i, const Rigid3d& pose) {
+    const Eigen::Vector3d& point = problem.pairs_2d3d[static_cast<std::size_t>(i)].point_in_lidar;
+    return Project(*problem.camera, pose * point).has_value();
   }
 
   // Least squares from the pose of `start` over its inliers; keeps its alternatives and stages.
@@ -197,7 +229,7 @@ class RefineSolver final : public Solver {
 
   // The minimum of the lowest cost that is reached from the starts.
   Expected<Estimate> PoseOf(const PairTerms& terms, std::span<const Rigid3d> starts) const {
-    const RobustLoss loss = options_.Loss();
+    const RobustLoss loss = LossOn(terms);
     std::optional<RefinedPose> best;
     for (const Rigid3d& start : starts) {
       const RefinedPose refined = loss.kind == LossKind::kNone
@@ -208,7 +240,11 @@ class RefineSolver final : public Solver {
           (!best || best->outcome != RefineOutcome::kConverged || refined.cost < best->cost);
       if (!best || is_better) best = refined;
     }
-    return EstimateOf(terms, *best);
+    Expected<Estimate> estimate = EstimateOf(terms, *best);
+    if (!estimate || !estimate->covariance) return estimate;
+    auto pull = AddOutlierPull(terms.View(), best->cam_from_lidar, loss, *estimate->covariance);
+    if (pull) estimate->warnings.push_back(*std::move(pull));
+    return estimate;
   }
 
   // Whether the stated noise explains the residuals of the pixels: their sum of squares is
@@ -245,6 +281,7 @@ class RefineSolver final : public Solver {
           estimate.iterations = refined.iterations;
           estimate.covariance = refined.covariance;
           estimate.camera = refined.camera;
+          estimate.warnings = refined.warnings;
           return estimate;
         });
   }
@@ -255,7 +292,7 @@ class RefineSolver final : public Solver {
     const bool of_points = spec().needs.pairs_3d3d > 0;
     const std::vector<int>& all = of_points ? used.points : used.pixels;
     const bool are_refined = of_points ? Uses3d3d(options_.on) : Uses2d3d(options_.on);
-    const RobustLoss loss = options_.Loss();
+    const RobustLoss loss = LossOn(terms);
     if (loss.kind == LossKind::kNone || !are_refined) return all;
     TermsView view = terms.View();
     if (estimate.camera) view.camera = &estimate.camera->camera;
@@ -269,6 +306,12 @@ class RefineSolver final : public Solver {
       kept.push_back(all[static_cast<std::size_t>(i)]);
     }
     return kept.size() < static_cast<std::size_t>(kMinPairs) ? all : kept;
+  }
+
+  // None for pairs of unknown noise, which are too few to estimate it (RefinedPairs): a loss has no
+  // scale then. In the unit of the residuals it would take three pairs that fit exactly.
+  RobustLoss LossOn(const PairTerms& terms) const {
+    return terms.noise_known ? options_.Loss() : RobustLoss{};
   }
 
   RefineLimits Limits() const { return {options_.max_iterations, options_.step_tolerance}; }

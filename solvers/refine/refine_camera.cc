@@ -62,6 +62,7 @@ struct State {
   IntrinsicVector numbers;
   double cost = 0.0;  // 1/2 sum rho
   LossVariance variance{};
+  OutlierPull pull{6};
   Eigen::MatrixXd information{};  // Over (dphi, dt, free intrinsics), and LossVariance::Factor.
   Eigen::VectorXd levers{};  // Largest shift, in focal lengths, by one unit of each free intrinsic.
 };
@@ -75,6 +76,10 @@ void AddPoint(const PointTerm& term, const ceres::LossFunction* loss, State& sum
   sum.information.topLeftCorner<6, 6>() += rho[1] * jacobian.transpose() * jacobian;
   sum.cost += 0.5 * rho[0];
   sum.variance.Add(at.residual.squaredNorm(), 3, rho);
+  Eigen::Matrix<double, 3, Eigen::Dynamic> full =
+      Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, sum.information.cols());
+  full.leftCols<6>() = jacobian;
+  sum.pull.Add(full, at.residual, rho[1]);
 }
 
 bool AddPixel(const PixelTerm& term, const Camera& camera, const std::vector<int>& free,
@@ -99,6 +104,7 @@ bool AddPixel(const PixelTerm& term, const Camera& camera, const std::vector<int
   sum.information += rho[1] * jacobian.transpose() * jacobian;
   sum.cost += 0.5 * rho[0];
   sum.variance.Add(at.residual.squaredNorm(), 2, rho);
+  sum.pull.Add(jacobian, at.residual, rho[1]);
   return true;
 }
 
@@ -109,6 +115,7 @@ bool SumUp(const PairTerms& terms, const std::vector<int>& free, const RobustLos
   const auto count = static_cast<Eigen::Index>(free.size());
   sum.cost = 0.0;
   sum.variance = {};
+  sum.pull = OutlierPull(static_cast<int>(6 + count));
   sum.information.setZero(6 + count, 6 + count);
   sum.levers.setZero(count);
   const Camera camera = WithIntrinsics(terms.camera, sum.numbers);
@@ -223,8 +230,8 @@ Expected<RefinedPoseAndCamera> RefinePoseAndCamera(const PairTerms& terms, const
   const ceres::Solver::Summary summary = Minimise(terms, free, loss, limits, state);
   if (!SumUp(terms, free, loss, state)) return NotConverged("a point left the image");
   // Checked before the outcome: unobservable parameters also prevent convergence.
-  SEXTANT_ASSIGN_OR_RETURN(const Eigen::MatrixXd covariance,
-                           ObservableCovariance(terms, free, state));
+  SEXTANT_ASSIGN_OR_RETURN(Eigen::MatrixXd covariance, ObservableCovariance(terms, free, state));
+  const bool is_pulled = state.pull.Widen(covariance);
   const RefineOutcome outcome = OutcomeOf(summary.termination_type);
   if (outcome != RefineOutcome::kConverged) {
     return NotConverged(outcome == RefineOutcome::kMaxIterations
@@ -240,6 +247,7 @@ Expected<RefinedPoseAndCamera> RefinePoseAndCamera(const PairTerms& terms, const
   }
   const bool is_known = terms.noise_known || Freedom(terms, free.size()) > 0.0;
   if (is_known) refined.covariance = covariance.topLeftCorner<6, 6>();
+  if (is_pulled) refined.warnings.push_back(state.pull.Describe());
   for (std::size_t k = 0; k < free.size(); ++k) {
     const auto i = 6 + static_cast<Eigen::Index>(k);
     EstimatedIntrinsic estimated{std::string(IntrinsicName(terms.camera.model, free[k])),

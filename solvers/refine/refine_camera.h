@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "base/error.h"
@@ -26,6 +27,7 @@ struct RefinedPoseAndCamera {
   std::optional<Matrix6d> covariance;  ///< (dphi, dt), marginal over the intrinsics.
   CameraEstimate camera;
   int iterations = 0;
+  std::vector<std::string> warnings{};  ///< As of Estimate.
 };
 
 /// argmin over SE(3) and the intrinsics `free` of 1/2 sum rho(|r_i|^2), near `start` and the
@@ -34,7 +36,7 @@ struct RefinedPoseAndCamera {
 ///
 /// The covariance is the inverse of sum rho' J^T J over pose and intrinsics, times the factor by
 /// which the residuals show that the variance is larger (LossVariance), and times the residual
-/// variance where the noise was only assumed.
+/// variance where the noise was only assumed; with the shift that outliers make (OutlierPull).
 /// Errors: kTooFewPairs (fewer residuals than unknowns), kDegenerate (a singular information, or
 /// an intrinsic with a sigma of over a quarter of the focal length or radius that it acts on: with
 /// one plane that faces the camera, or all points at one depth, focal length and distance are not

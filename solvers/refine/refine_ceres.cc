@@ -74,6 +74,20 @@ void AppendWeighted(const Terms& terms, const TermsView& of, const Rigid3d& pose
   }
 }
 
+template <int kResiduals, class Terms>
+bool AddPulls(const Terms& terms, const Camera* camera, const Rigid3d& pose,
+              const ceres::LossFunction& loss, OutlierPull& pull) {
+  const Eigen::Matrix3d r = pose.rotation.toRotationMatrix();
+  TermDerivatives<kResiduals> at;
+  for (const auto& term : terms) {
+    if (!Differentiate(term, camera, r, pose.translation, at)) return false;
+    double rho[3];
+    loss.Evaluate(at.residual.squaredNorm(), rho);
+    pull.Add(at.Jacobian(), at.residual, rho[1]);
+  }
+  return true;
+}
+
 // Cost and information at the pose in `sum`; false where they are not numbers.
 bool SumUp(const TermsView& terms, const RobustLoss& loss, RefinedPose& sum) {
   const std::unique_ptr<ceres::LossFunction> rho(NewLoss(loss));
@@ -116,6 +130,18 @@ std::vector<int> WeightedTerms(const TermsView& terms, const Rigid3d& pose,
   AppendWeighted<2>(terms.pixels, terms, pose, rho.get(), static_cast<int>(terms.points.size()),
                     indices);
   return indices;
+}
+
+std::optional<std::string> AddOutlierPull(const TermsView& terms, const Rigid3d& pose,
+                                          const RobustLoss& loss, Matrix6d& covariance) {
+  const std::unique_ptr<ceres::LossFunction> rho(NewLoss(loss));
+  OutlierPull pull(6);
+  if (!rho || !AddPulls<3>(terms.points, nullptr, pose, *rho, pull) ||
+      !AddPulls<2>(terms.pixels, terms.camera, pose, *rho, pull)) {
+    return std::nullopt;
+  }
+  if (!pull.Widen(covariance)) return std::nullopt;
+  return pull.Describe();
 }
 
 std::optional<Matrix6d> CeresCovariance(const TermsView& terms, const Rigid3d& pose) {

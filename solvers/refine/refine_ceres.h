@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "solvers/least_squares/refine_pose.h"
@@ -30,6 +31,11 @@ inline constexpr double kMinLossWeight = 0.25;
 /// Indices of the terms, points before pixels, whose weight rho'(|r_i|^2) at `pose` is at least
 /// kMinLossWeight.
 std::vector<int> WeightedTerms(const TermsView& terms, const Rigid3d& pose, const RobustLoss& loss);
+
+/// Widens the covariance of a minimum of RefinePoseWithCeres by the shift that outliers make (see
+/// OutlierPull). A sentence where chance does not explain that shift.
+std::optional<std::string> AddOutlierPull(const TermsView& terms, const Rigid3d& pose,
+                                          const RobustLoss& loss, Matrix6d& covariance);
 
 /// The covariance of (dphi, dt) at `pose` under plain least squares by ceres::Covariance; none
 /// where the information is singular. Slower than InvertSymmetric; tests compare the two.

@@ -31,10 +31,12 @@ constexpr std::size_t kPairsPerDropped = 100;
 /// removed at once.
 ///
 /// Ends with `keep` pairs and the inner solver on these; with keep=0 as soon as all remaining pairs
-/// are within the threshold. These must be a consensus (see CheckConsensus), and the answer is that
-/// of BetterOnInliers. Residuals are in sigmas, so that a pair that is known to be noisy is not
-/// dropped for it. At most 200 + 100 log(pairs / 100) solutions of the inner solver. Errors:
-/// kNoConsensus, kTooFewPairs (fewer than `keep`), those of the inner solver.
+/// are within the threshold. These must be a consensus (see CheckConsensus); where outliers spoil
+/// the fits so that true pairs are dropped and none is left, those near the pose of
+/// FindConsensusPose must. The answer is that of BetterOnInliers. Residuals are in sigmas, so that
+/// a pair that is known to be noisy is not dropped for it. At most 200 + 100 log(pairs / 100)
+/// solutions of the inner solver. Errors: kNoConsensus, kTooFewPairs (fewer than `keep`), those of
+/// the inner solver.
 class DropWorstSolver final : public Solver {
  public:
   DropWorstSolver(const SolverArguments& arguments, PairKind kind, const DropWorstOptions& options)
@@ -62,6 +64,27 @@ class DropWorstSolver final : public Solver {
 
   // Requires pairs that state their noise, or keep.
   Expected<Estimate> SolveStated(const CalibrationProblem& problem) const {
+    Expected<Estimate> estimate = Eliminate(problem);
+    const bool is_spoilt = !estimate && estimate.error().code == ErrorCode::kNoConsensus;
+    if (!is_spoilt || options_.keep > 0) return estimate;
+    Expected<Estimate> near = NearConsensus(problem);
+    return near ? near : estimate;
+  }
+
+  Expected<Estimate> NearConsensus(const CalibrationProblem& problem) const {
+    const double max_squared = options_.MaxSquared(kind_);
+    SEXTANT_ASSIGN_OR_RETURN(const Rigid3d pose, FindConsensusPose(problem, kind_, *inner_));
+    TermScorer scorer(MakeTerms(problem, kind_));
+    Expected<Estimate> estimate = AnswerNear(problem, scorer, pose, max_squared);
+    if (!estimate) return estimate;
+    SEXTANT_RETURN_IF_ERROR(
+        CheckConsensus(scorer, max_squared, estimate->inliers, MinPairs(spec().needs)));
+    estimate->iterations = 1;
+    estimate->termination = Termination::kConverged;
+    return estimate;
+  }
+
+  Expected<Estimate> Eliminate(const CalibrationProblem& problem) const {
     const double max_squared = options_.MaxSquared(kind_);
     TermScorer scorer(MakeTerms(problem, kind_));
     std::vector<double> squared(scorer.size());

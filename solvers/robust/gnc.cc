@@ -104,7 +104,7 @@ class GncSolver final : public Solver {
     // there are weights of 1: where the largest residual is a thousand times the threshold, all
     // start near 0.
     constexpr double kSettled = 1e-3;
-    SEXTANT_ASSIGN_OR_RETURN(Rigid3d pose, FitAll(problem, scorer, std::nullopt));
+    SEXTANT_ASSIGN_OR_RETURN(Rigid3d pose, FirstFit(problem, scorer));
     iterations = 1;
     const double largest = scorer.LargestSquared(pose);
     if (largest <= max_squared) return pose;
@@ -123,15 +123,26 @@ class GncSolver final : public Solver {
     return pose;
   }
 
-  // Least squares from the pose of the inner solver, or from `before` if that costs less.
+  // Least squares on all pairs. Where outliers leave the inner solver no pose of all of them, it
+  // starts from the pose that more pairs agree on than chance explains.
+  Expected<Rigid3d> FirstFit(const CalibrationProblem& problem, PairScorer& scorer) const {
+    Expected<Rigid3d> pose = FitAll(problem, scorer, std::nullopt);
+    if (pose || pose.error().code != ErrorCode::kNoConsensus) return pose;
+    const Expected<Rigid3d> start = FindConsensusPose(problem, kind_, *inner_);
+    if (!start) return pose;
+    return FitAll(problem, scorer, *start);
+  }
+
+  // Least squares from the pose of the inner solver, or from `before` if that costs less or the
+  // inner solver has none.
   Expected<Rigid3d> FitAll(const CalibrationProblem& problem, PairScorer& scorer,
                            const std::optional<Rigid3d>& before) const {
     std::vector<int> all(scorer.size());
     std::iota(all.begin(), all.end(), 0);
     Expected<Rigid3d> pose = PoseOfSubset(*inner_, problem, scorer, all);
-    if (!pose || !spec().estimates_rotation) return pose;
+    if ((!pose && !before) || !spec().estimates_rotation) return pose;
     const bool is_better =
-        !before || scorer.Cost(*pose, kEveryPair) <= scorer.Cost(*before, kEveryPair);
+        !before || (pose && scorer.Cost(*pose, kEveryPair) <= scorer.Cost(*before, kEveryPair));
     const Rigid3d& start = is_better ? *pose : *before;
     // Points behind the camera, which an outlier may cause, are left out.
     return scorer.FitInliers(start, kEveryPair, {}).value_or(start);

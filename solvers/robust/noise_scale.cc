@@ -238,6 +238,15 @@ Expected<NoiseScale> FindNoiseScale(const CalibrationProblem& problem, PairKind 
   return search.Scale();
 }
 
+Expected<Rigid3d> FindConsensusPose(const CalibrationProblem& problem, PairKind kind,
+                                    const Solver& inner) {
+  CalibrationProblem unstated = WithSigma(problem, kind, 0.0);
+  for (Pair3d3d& pair : unstated.pairs_3d3d) pair.covariance_in_cam.reset();
+  return FindNoiseScale(unstated, kind, inner, kScaleSeed).map([](const NoiseScale& scale) {
+    return scale.cam_from_lidar;
+  });
+}
+
 CalibrationProblem WithSigma(const CalibrationProblem& problem, PairKind kind, double sigma) {
   CalibrationProblem stated;
   stated.camera = problem.camera;

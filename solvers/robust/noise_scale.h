@@ -42,6 +42,11 @@ inline constexpr std::uint64_t kScaleSeed = 1;
 Expected<NoiseScale> FindNoiseScale(const CalibrationProblem& problem, PairKind kind,
                                     const Solver& inner, std::uint64_t seed);
 
+/// The pose of FindNoiseScale for the pairs, without the noise that they state: a start where
+/// outliers leave a solver of all pairs no pose. Errors: those of FindNoiseScale.
+Expected<Rigid3d> FindConsensusPose(const CalibrationProblem& problem, PairKind kind,
+                                    const Solver& inner);
+
 /// The pairs of one kind with that sigma, and what solvers of pairs need besides.
 CalibrationProblem WithSigma(const CalibrationProblem& problem, PairKind kind, double sigma);
 

@@ -214,5 +214,28 @@ INSTANTIATE_TEST_SUITE_P(Every, NoConsensus,
                                          "drop_worst(epnp)", "gnc(sqpnp)", "drop_worst(sqpnp)"),
                          OuterName);
 
+// Where outliers leave the inner solver no pose of all pairs, or spoil it so that true pairs are
+// dropped first.
+class OutliersOfUnknownNoise : public testing::TestWithParam<const char*> {};
+
+TEST_P(OutliersOfUnknownNoise, FourOfTenAreBorne) {
+  constexpr int kTrials = 60;
+  const SceneOptions options{.pairs = 30, .sigma_px = 1.0, .states_noise = false};
+  int near = 0;
+  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
+    Random random(DeriveSeed(2, "outliers of unknown noise", 0, trial));
+    PairScene scene = MakeScene(options, random);
+    AddOutliers(0.4, options, random, scene);
+    const auto report = BuiltinSolvers().Make(GetParam()).value()->Solve(scene.problem);
+    if (!report) continue;
+    if (DistanceBetween(report->cam_from_lidar, scene.cam_from_lidar).rotation_rad < 0.05) ++near;
+  }
+  EXPECT_GE(near, kTrials - 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, OutliersOfUnknownNoise,
+                         testing::Values("gnc(p3p)", "gnc(sqpnp)", "drop_worst(epnp)"),
+                         [](const auto& spec) { return std::to_string(spec.index); });
+
 }  // namespace
 }  // namespace sextant

@@ -79,6 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Every, RefineLosses,
 struct RegionCount {
   int covered = 0;
   int answers = 0;  // The inner solver may not bear the outliers.
+  int warned = 0;   // Of outliers that pull at the answer.
   std::size_t most_inliers_beyond = 0;
 
   // 300 scenes have a standard error of 1.7 percent at 90; three are allowed.
@@ -87,20 +88,23 @@ struct RegionCount {
 
 constexpr int kOutlierTrials = 300;
 
-RegionCount CountRegions(const std::string& spec, const test::SceneOptions& options) {
+RegionCount CountRegions(const std::string& spec, const test::SceneOptions& options,
+                         double share = 0.3) {
   constexpr double kChiSquare6 = 12.591587243743977;  // Quantile at 0.95.
   const SolverPtr solver = BuiltinSolvers().Make(spec).value();
   RegionCount count;
   for (std::uint64_t trial = 0; trial < kOutlierTrials; ++trial) {
     Random random(DeriveSeed(5, "losses with outliers", 0, trial));
     test::PairScene scene = test::MakeScene(options, random);
-    const std::vector<int> inliers = test::AddOutliers(0.3, options, random, scene);
+    const std::vector<int> inliers = test::AddOutliers(share, options, random, scene);
     const Expected<SolveReport> report = solver->Solve(scene.problem);
     if (!report || !report->covariance) continue;
     ++count.answers;
     const std::size_t beyond =
         report->inliers.size() - std::min(report->inliers.size(), inliers.size());
     count.most_inliers_beyond = std::max(count.most_inliers_beyond, beyond);
+    const auto pulls = [](const std::string& text) { return text.find("pull") != text.npos; };
+    if (std::ranges::any_of(report->warnings, pulls)) ++count.warned;
     const Vector6d error = PoseDifference(report->cam_from_lidar, scene.cam_from_lidar);
     if (SquaredMahalanobis(error, *report->covariance) <= kChiSquare6) ++count.covered;
   }
@@ -130,6 +134,60 @@ TEST(RefineLossesOnPoints, HuberCountsThePullOfOutliers) {
   ASSERT_EQ(count.answers, kOutlierTrials);
   EXPECT_GT(count.covered, count.Least());
   EXPECT_LT(count.covered, kOutlierTrials);
+}
+
+// Pixels anywhere in the image lie mostly on one side of where they should be: their pulls add up.
+TEST(RefineLossesOnPixels, HuberHoldsTheShiftByOutliersOnOneSide) {
+  const RegionCount count =
+      CountRegions("refine(epnp,loss=huber,max_iterations=200)",
+                   {.pairs = 200, .sigma_m = 0.01, .sigma_px = 0.5, .states_noise = false}, 0.4);
+  ASSERT_GT(count.answers, kOutlierTrials / 2);
+  EXPECT_GT(count.covered, count.Least());
+  EXPECT_GT(count.warned, 0);
+}
+
+TEST(RefineLossesOnPixels, NothingIsSaidWithoutOutliers) {
+  const RegionCount count =
+      CountRegions("refine(epnp,loss=huber,max_iterations=200)",
+                   {.pairs = 50, .sigma_m = 0.01, .sigma_px = 0.5, .states_noise = false}, 0.0);
+  ASSERT_EQ(count.answers, kOutlierTrials);
+  EXPECT_EQ(count.warned, 0);
+}
+
+// A loss has no scale where four pairs state no noise: in pixels it took three that fit exactly.
+TEST(RefineLossesOnPixels, FourPairsOfUnknownNoiseAreAllUsed) {
+  for (const char* loss : {"huber", "cauchy", "tukey", "barron"}) {
+    Random random(3);
+    RandomScene scene = MakeRandomScene(
+        {.pairs = 4, .sigma_m = 0.01, .sigma_px = 0.5, .states_noise = false}, random);
+    scene.problem.pairs_2d3d.front().pixel.x() += 20.0;
+    const auto report = BuiltinSolvers()
+                            .Make(std::string("refine(sqpnp,loss=") + loss + ")")
+                            .value()
+                            ->Solve(scene.problem);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ(report->inliers.size(), 4U) << loss;
+  }
+}
+
+// sqpnp has no pose of all pairs with so many outliers, which the loss bears.
+TEST(RefineLossesOnPixels, OutliersThatSpoilTheInnerSolverAreBorne) {
+  int answers = 0;
+  int near = 0;
+  constexpr int kTrials = 50;
+  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
+    const test::SceneOptions options{.pairs = 40, .sigma_px = 1.0, .states_noise = false};
+    Random random(DeriveSeed(5, "spoilt inner solver", 0, trial));
+    test::PairScene scene = test::MakeScene(options, random);
+    test::AddOutliers(0.4, options, random, scene);
+    const auto report =
+        BuiltinSolvers().Make("refine(sqpnp,loss=cauchy)").value()->Solve(scene.problem);
+    if (!report) continue;
+    ++answers;
+    if (DistanceBetween(report->cam_from_lidar, scene.cam_from_lidar).rotation_rad < 0.05) ++near;
+  }
+  EXPECT_EQ(answers, kTrials);
+  EXPECT_EQ(near, answers);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, RefineLossesWithOutliers,
