@@ -12,6 +12,7 @@
 #include "calibrate/observe/face_returns.h"
 #include "features/camera/explain_missing.h"
 #include "features/camera/grey_image.h"
+#include "features/camera/tags/tag_pattern.h"
 
 namespace sextant {
 namespace {
@@ -38,28 +39,83 @@ std::string WhyUnseen(const Board& board, const SeenBoard& seen) {
                      board.checker->inner_columns, board.checker->inner_rows);
 }
 
-// Why the image is a mirror image; none where a tag was found as it is, and where none is in the
-// mirror image either. A checkerboard alone does not show it.
-std::optional<std::string> WhyMirrored(const cv::Mat& grey, const std::vector<Board>& boards,
-                                       const SeenBoards& seen) {
-  const bool any_tag =
-      !seen.other_tags.empty() || std::ranges::any_of(seen.boards, [](const SeenBoard& board) {
-        return !board.tags.empty() || !board.duplicate_tags.empty();
-      });
-  if (any_tag) return std::nullopt;
+TagPattern MirrorImageOf(const TagPattern& pattern) {
+  TagPattern mirrored = pattern;
+  for (auto row = mirrored.white.begin(); row != mirrored.white.end(); row += pattern.cells) {
+    std::reverse(row, row + pattern.cells);
+  }
+  return mirrored;
+}
+
+// Whether a mirror image of `seen` reads as the other tag of its family.
+bool IsMirrorImage(const TagPattern& seen, const std::string& family, int id) {
+  const Expected<TagPattern> other = MakeTagPattern(family, id);
+  return other && QuarterTurns(MirrorImageOf(seen), *other);
+}
+
+// Whether a tag of a board shows that the image is as it should be: in a mirrored one it could be
+// seen only if its mirror image were a tag of the boards.
+bool ShowsNoMirroring(const BoardTag& seen, const std::vector<Board>& boards) {
+  const Expected<TagPattern> pattern = MakeTagPattern(seen.family, seen.id);
+  if (!pattern) return true;
+  return std::ranges::none_of(boards, [&](const Board& board) {
+    return std::ranges::any_of(board.tags, [&](const BoardTag& tag) {
+      return tag.family == seen.family && IsMirrorImage(*pattern, tag.family, tag.id);
+    });
+  });
+}
+
+// The same for a tag of no board: any tag of its family may hang in the scene. Slow, a pattern for
+// each id.
+bool ShowsNoMirroring(const TagDetection& other) {
+  const Expected<TagPattern> pattern = MakeTagPattern(other.family, other.id);
+  const Expected<int> count = TagCount(other.family);
+  if (!pattern || !count) return true;
+  for (int id = 0; id < *count; ++id) {
+    if (IsMirrorImage(*pattern, other.family, id)) return false;
+  }
+  return true;
+}
+
+bool ShowsNoMirroring(const std::vector<Board>& boards, const SeenBoard& seen) {
+  const std::vector<BoardTag>& tags = boards[seen.index].tags;
+  return std::ranges::any_of(
+             seen.tags,
+             [&](const SeenTag& tag) { return ShowsNoMirroring(tags[tag.index], boards); }) ||
+         std::ranges::any_of(seen.duplicate_tags, [&](std::size_t index) {
+           return ShowsNoMirroring(tags[index], boards);
+         });
+}
+
+// The first tag of the boards that is missing, and found without an error in the mirror image.
+const BoardTag* FirstMirrored(const cv::Mat& grey, const std::vector<Board>& boards,
+                              const SeenBoards& seen) {
   TagTrials trials(grey);
-  for (const Board& board : boards) {
-    for (const BoardTag& tag : board.tags) {
+  for (const SeenBoard& board : seen.boards) {
+    for (const std::size_t missing : board.missing_tags) {
+      const BoardTag& tag = boards[board.index].tags[missing];
       const std::optional<TagDetection> found = trials.InMirrorImage(tag);
-      if (!found || found->hamming > 0) continue;
-      return fmt::format(
-          "it is mirrored: tag {} of {} is found in its mirror image only, so every pose from it "
-          "would be wrong; switch off the mirroring of the camera or of the program that wrote the "
-          "image, or print the tag unmirrored",
-          tag.id, tag.family);
+      if (found && found->hamming == 0) return &tag;
     }
   }
-  return std::nullopt;
+  return nullptr;
+}
+
+// Why the image is a mirror image; none where a tag was found that no mirrored image shows, and
+// where none that is missing is in the mirror image. A checkerboard alone does not show it.
+std::optional<std::string> WhyMirrored(const cv::Mat& grey, const std::vector<Board>& boards,
+                                       const SeenBoards& seen) {
+  const auto denies = [&](const SeenBoard& board) { return ShowsNoMirroring(boards, board); };
+  if (std::ranges::any_of(seen.boards, denies)) return std::nullopt;
+  const BoardTag* const tag = FirstMirrored(grey, boards, seen);
+  if (tag == nullptr) return std::nullopt;
+  const auto other_denies = [](const TagDetection& other) { return ShowsNoMirroring(other); };
+  if (std::ranges::any_of(seen.other_tags, other_denies)) return std::nullopt;
+  return fmt::format(
+      "it is mirrored: tag {} of {} is found in its mirror image only, so every pose from it would "
+      "be wrong; switch off the mirroring of the camera or of the program that wrote the image, or "
+      "print the tag unmirrored",
+      tag->id, tag->family);
 }
 
 CameraSighting MakeSighting(const Board& board, const SeenBoard& seen) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <opencv2/core.hpp>
 
 #include "calibrate/match/matched_board.h"
 #include "eval/extractors/board_scenes.h"
@@ -187,6 +188,34 @@ TEST(Observe, WhatIsMissingIsNamedWithItsReason) {
   EXPECT_EQ(observation.missing[0].why, "tag 582 of aruco_original was not found");
   EXPECT_FALSE(observation.missing[1].image);
   EXPECT_THAT(observation.missing[1].why, testing::HasSubstr("the scan shows 1 of 2 boards"));
+}
+
+// In aruco_original the mirror image of 582 is itself, and that of 26 is another tag, 656.
+TEST(Observe, AMirroredPhotoIsRefusedWhereMirrorImagesAreTagsToo) {
+  Random random(3);
+  const Scene scene = TaggedBoards(random);
+  const Observer observer = MakeObserver(scene);
+  const SensorData data = Record(scene, 3);
+  for (const int axis : {0, 1}) {
+    cv::Mat mirrored;
+    cv::flip(data.image, mirrored, axis);
+    const Expected<Observation> observation = observer.Observe(mirrored, data.cloud);
+    ASSERT_FALSE(observation);
+    EXPECT_EQ(observation.error().code, ErrorCode::kMirrored);
+    EXPECT_THAT(observation.error().message,
+                testing::HasSubstr("tag 26 of aruco_original is found in its mirror image only"));
+  }
+}
+
+TEST(Observe, ATagThatIsItsOwnMirrorImageIsNoReasonToRefuseAPhoto) {
+  Random random(3);
+  Scene scene = TaggedBoards(random);
+  const Observer observer = MakeObserver(scene);
+  scene.boards.erase(scene.boards.begin());
+  const SensorData data = Record(scene, 3);
+  const Expected<Observation> observation = observer.Observe(data.image, data.cloud);
+  ASSERT_TRUE(observation) << observation.error().message;
+  EXPECT_EQ(observation->in_image.size(), 1U);
 }
 
 TEST(Observe, UnknownExtractorAndBoardsWithoutSizeAreRefused) {
