@@ -78,8 +78,7 @@ void Umeyama(benchmark::State& state) {
   }
   std::size_t next = 0;
   for (auto _ : state) {
-    const Eigen::Matrix4d answer = Eigen::umeyama(in_lidar[next], in_cam[next], false);
-    benchmark::DoNotOptimize(answer);
+    benchmark::DoNotOptimize(Eigen::umeyama(in_lidar[next], in_cam[next], false));
     next = next + 1 < in_lidar.size() ? next + 1 : 0;
   }
 }
