@@ -57,6 +57,8 @@ std::vector<std::string> AnswerDiagnostics(const LoadedProblem& input, const Sol
   std::vector<std::string> lines = DescribeOutliers(report, input.repeated);
   const auto misfit = DescribeMisfit(problem, report);
   if (misfit && !input.diagnostics.contradiction) lines.push_back(*misfit);
+  if (const auto distance = DescribeDistance(problem, report)) lines.push_back(*distance);
+  if (const auto selection = DescribeSelection(problem, report)) lines.push_back(*selection);
   return lines;
 }
 
@@ -98,20 +100,36 @@ std::string RefutingVerdict(const ProblemInputOptions& options, const LoadedProb
     return "NOT USABLE: two groups of pairs contradict each other, and the data does not determine "
            "which is right\n";
   }
-  double least = std::numeric_limits<double>::infinity();
+  // Several answers are judged by those that speak for a pose, or else by the best: pairs without a
+  // pose let some solver fit five of twenty.
+  std::vector<const SolveReport*> judged;
+  const SolveReport* best = nullptr;
   for (const ComparisonRow& row : rows) {
-    if (!row.report) continue;
-    const std::optional<double> share = UnexplainedShare(input.file.problem, *row.report);
-    if (!share) return "";
-    least = std::min(least, *share);
+    if (!row.report || row.report->inliers.empty()) continue;
+    if (best == nullptr) best = &*row.report;
+    if (IsSupported(input.file.problem, *row.report)) judged.push_back(&*row.report);
   }
-  if (!(least > kMaxUnexplainedShare) || std::isinf(least)) return "";
-  return fmt::format(
-      "NOT USABLE: no pose explains these pairs: what it leaves is {:.0f} percent of their spread, "
-      "or "
-      "of 11 deg where pixels spread more (at most {:.0f} in measurements that belong together). "
-      "Check which point belongs to which\n",
-      100.0 * least, 100.0 * kMaxUnexplainedShare);
+  if (best == nullptr) return "";
+  if (rows.size() == 1 || judged.empty()) judged = {best};
+  std::string least;
+  double least_share = std::numeric_limits<double>::infinity();
+  for (const SolveReport* report : judged) {
+    std::optional<std::string> why = WhyUnusable(input.file.problem, *report);
+    const double share = UnexplainedShare(input.file.problem, *report).value_or(0.0);
+    const bool has_cause = !input.diagnostics.causes.empty();
+    if (!why && has_cause && share >= kUsualUnexplainedShare) {
+      why = fmt::format(
+          "the answer leaves {:.0f} percent of the spread of the measurements, and the data "
+          "diagnostics below name a cause",
+          100.0 * share);
+    }
+    if (!why) return "";
+    if (least.empty() || share < least_share) {
+      least = *why;
+      least_share = share;
+    }
+  }
+  return "NOT USABLE: " + least + "\n";
 }
 
 }  // namespace

@@ -290,6 +290,21 @@ std::string ComparisonTable(const std::vector<ScoredRow>& rows, PoseColumns pose
   return table.Plain(std::string::npos);
 }
 
+std::string DescribeAlternatives(const std::vector<Rigid3d>& alternatives) {
+  std::string text;
+  for (const Rigid3d& other : alternatives) {
+    const Eigen::Vector3d& t = other.translation;
+    const EulerZyx euler = ToEulerZyx(other.rotation);
+    text += fmt::format(
+        "  also explains the data     t {:.6f} {:.6f} {:.6f} m, yaw pitch roll {:.4f} {:.4f} "
+        "{:.4f} "
+        "deg\n",
+        t.x(), t.y(), t.z(), euler.yaw * kDegPerRad, euler.pitch * kDegPerRad,
+        euler.roll * kDegPerRad);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string DescribeAnswer(const SolveReport& report) {
@@ -315,16 +330,7 @@ std::string DescribeAnswer(const SolveReport& report) {
   }
   text += fmt::format("  {}, {} iterations, {:.1f} us\n", ToString(report.termination),
                       report.iterations, report.wall_time_us);
-  for (const Rigid3d& other : report.alternatives) {
-    const Eigen::Vector3d& t = other.translation;
-    const EulerZyx euler = ToEulerZyx(other.rotation);
-    text += fmt::format(
-        "  also explains the data     t {:.6f} {:.6f} {:.6f} m, yaw pitch roll {:.4f} {:.4f} "
-        "{:.4f} "
-        "deg\n",
-        t.x(), t.y(), t.z(), euler.yaw * kDegPerRad, euler.pitch * kDegPerRad,
-        euler.roll * kDegPerRad);
-  }
+  text += DescribeAlternatives(report.alternatives);
   return text;
 }
 
@@ -359,7 +365,16 @@ std::string DescribeComparison(const std::vector<ScoredRow>& rows) {
     failures.AddRow({scored.row.solver, scored.row.report.error().message});
     any_failure = true;
   }
-  return any_failure ? table + "\n" + failures.Plain(kMaxWidth) : table;
+  std::string text = table;
+  // The best answer shows them, as under `solve`; a pose of another program has none.
+  const auto best = std::ranges::find_if(rows, [](const ScoredRow& scored) {
+    return scored.row.report && !scored.row.report->inliers.empty();
+  });
+  if (best != rows.end() && !best->row.report->alternatives.empty()) {
+    text += Narrow(fmt::format("\nThe answer of {} is not the only one:\n", best->row.solver)) +
+            DescribeAlternatives(best->row.report->alternatives);
+  }
+  return any_failure ? text + "\n" + failures.Plain(kMaxWidth) : text;
 }
 
 std::string DescribeComparison(const std::vector<ComparisonRow>& rows) {

@@ -2,6 +2,7 @@
 #include "eval/metrics/score.h"
 
 #include <algorithm>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -14,15 +15,42 @@ constexpr double kMaxDeviations = 3.0;
 
 using Residuals = std::vector<double> Evaluation::*;
 
-// From the smaller half of the residuals and two more, of `dimension` numbers each, less the six
-// unknowns of a pose: an answer that fits three pairs exactly does not look exact.
+// The mean square of the smallest `share` of residuals with `dimension` normal numbers each, over
+// that of all: chi-square cut off at its quantile.
+double ShareOfSquares(double share, double dimension) {
+  if (!(share < 1.0)) return 1.0;
+  const double cut = boost::math::gamma_p_inv(0.5 * dimension, share);
+  return boost::math::gamma_p(0.5 * dimension + 1.0, cut) / share;
+}
+
+// From the smaller half of the residuals and two more, of `dimension` numbers each, as if all were
+// normal, and then from all within five of it, less the six unknowns of a pose: an answer that
+// fits three pairs exactly does not look exact, and one whose smaller half happens to be small does
+// not look better than it is.
 double RobustSigma(std::vector<double> residuals, double dimension) {
   std::ranges::sort(residuals);
   const std::size_t half = std::max<std::size_t>(3, (residuals.size() + 1) / 2);
   const std::size_t count = std::min(residuals.size(), half + 2);
   double sum = 0.0;
   for (std::size_t i = 0; i < count; ++i) sum += residuals[i] * residuals[i];
-  return std::sqrt(sum / std::max(1.0, dimension * static_cast<double>(count) - 6.0));
+  const double share = static_cast<double>(count) / static_cast<double>(residuals.size());
+  const double variance = sum / std::max(1.0, dimension * static_cast<double>(count) - 6.0);
+  double sigma = std::sqrt(variance / ShareOfSquares(share, dimension));
+  // The smaller half of one of many answers is small by chance, and three times that may leave out
+  // true pairs for good.
+  constexpr int kMaxRounds = 5;
+  constexpr double kFarOut = 5.0;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    double within = 0.0;
+    double freedom = -6.0;
+    for (const double residual : residuals) {
+      if (residual > kFarOut * sigma) break;
+      within += residual * residual;
+      freedom += dimension;
+    }
+    sigma = std::max(sigma, std::sqrt(within / std::max(1.0, freedom)));
+  }
+  return sigma;
 }
 
 // The smallest over the answers, but no less than `least`.

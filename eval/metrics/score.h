@@ -18,7 +18,8 @@ struct ScoredRow {
 
 /// The rows, best first, by a score that holds every answer to all pairs, whichever of them it
 /// used: the root of the mean of min(r / s, 3)^2 over the residuals r of all pairs, s the smallest
-/// over the answers of the standard deviation of the smaller half of their residuals of that kind.
+/// over the answers of the standard deviation that the smaller half of their residuals of that kind
+/// shows, as the smaller half of normal ones, and then all within five of it.
 /// A pair that does not project counts as 3. Of equal scores, as where no residual is below 3, the
 /// smaller RMSE over all pairs comes first; rows without an answer come last. from_first then is
 /// the distance to the best answer. `specs`: one for each row.

@@ -46,6 +46,21 @@ Rigid3d ToRigid(const cv::Mat& rotation_vector, const cv::Mat& translation) {
   return {ExpSo3(vector(rotation_vector)), vector(translation)};
 }
 
+// OpenCV's message has line ends and indents.
+std::string OnOneLine(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    const bool is_space = c == '\n' || c == '\r' || c == '\t' || c == ' ';
+    if (!is_space) {
+      line += c;
+    } else if (!line.empty() && line.back() != ' ') {
+      line += ' ';
+    }
+  }
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  return line;
+}
+
 /// Calls OpenCV and converts its exceptions to an error.
 template <class Function>
 Expected<void> Guard(const Function& function) {
@@ -53,7 +68,7 @@ Expected<void> Guard(const Function& function) {
     function();
   } catch (const cv::Exception& exception) {
     return MakeError(ErrorCode::kDegenerate,
-                     fmt::format("OpenCV rejects the pairs ({})", exception.err));
+                     fmt::format("OpenCV rejects the pairs ({})", OnOneLine(exception.err)));
   }
   return {};
 }

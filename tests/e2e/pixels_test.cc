@@ -250,5 +250,50 @@ TEST(Pixels, AMissingCameraIsReported) {
   }
 }
 
+// Pixels of another camera: whatever few pairs some solver fits, compare refuses what no answer to
+// most of them explains.
+TEST(Pixels, CompareRefusesWhatNoPoseExplains) {
+  std::string text = "u,v,x,y,z\n";
+  for (const Point& p : kPoints) {
+    for (const Point& q : {p, Point{-p[1], 0.9 * p[0] + 0.1, p[2] + 0.7}}) {
+      const double u = 639.5 + 1400.0 * q[0] / q[2];
+      const double v = 359.5 + 350.0 * q[1] / q[2];
+      text += std::to_string(u) + "," + std::to_string(v);
+      for (const double x : q) text += "," + std::to_string(x);
+      text += "\n";
+    }
+  }
+  const std::string pairs = InFolder("other_camera.csv", text);
+  const std::string camera = InFolder("camera.yaml", kCamera);
+  const ProgramRun run =
+      RunSextant("compare " + pairs + " --camera " + camera + " --solvers epnp,opencv.magsac");
+  EXPECT_EQ(run.exit_code, 3) << run.out << run.err;
+  EXPECT_THAT(run.out, HasSubstr("NOT USABLE"));
+}
+
+// Four corners of a small square far away have two poses.
+TEST(Pixels, CompareShowsTheSecondPoseOfTheBestAnswer) {
+  std::string text = kHeader;
+  for (const Point& corner : std::vector<Point>{
+           {-0.1, -0.1, 4.0}, {0.1, -0.1, 4.05}, {0.1, 0.1, 4.05}, {-0.1, 0.1, 4.0}}) {
+    text += Row(corner);
+  }
+  const std::string pairs = InFolder("square.csv", text);
+  const std::string camera = InFolder("camera.yaml", kCamera);
+  const ProgramRun run =
+      RunSextant("compare " + pairs + " --camera " + camera + " --solvers 'refine(sqpnp)'");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("also explains the data"));
+}
+
+TEST(Pixels, MessagesOfOpenCvAreOneLine) {
+  const std::vector<Point> five(kPoints.begin(), kPoints.begin() + 5);
+  const std::string pairs = InFolder("five.csv", Csv(five));
+  const std::string camera = InFolder("camera.yaml", kCamera);
+  const ProgramRun run =
+      RunSextant("solve " + pairs + " --camera " + camera + " --solver opencv.iterative");
+  EXPECT_THAT(run.err + run.out, Not(HasSubstr("\\x0a")));
+}
+
 }  // namespace
 }  // namespace sextant

@@ -54,5 +54,14 @@ TEST(SortByScore, HoldsAnAnswerToThePairsThatItLeftOut) {
               ElementsAre("keeps all", "drops a good pair"));
 }
 
+// Residuals of normal noise. The smaller half of some answer is always small by chance, and must
+// not make the scale so small that this half decides.
+TEST(SortByScore, SmallResidualsOfHalfThePairsDecideNothing) {
+  std::vector<ComparisonRow> rows;
+  rows.push_back(RowWith("half", {0.2, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 1.3, 1.5, 1.6}));
+  rows.push_back(RowWith("best", {0.4, 0.5, 0.6, 0.7, 0.7, 0.8, 0.9, 0.9, 1.0, 1.0}));
+  EXPECT_THAT(NamesByScore(std::move(rows), {{}, {}}), ElementsAre("best", "half"));
+}
+
 }  // namespace
 }  // namespace sextant

@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Every, RefineLosses,
 struct RegionCount {
   int covered = 0;
   int answers = 0;  // The inner solver may not bear the outliers.
-  int warned = 0;   // Of outliers that pull at the answer.
+  int warned = 0;   // That outliers pull at the answer.
   std::size_t most_inliers_beyond = 0;
 
   // 300 scenes have a standard error of 1.7 percent at 90; three are allowed.
