@@ -4,6 +4,7 @@
 #include <system_error>
 #include <vector>
 
+#include "base/text/path_text.h"
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "eval/experiment/definition/timing.h"
@@ -38,9 +39,21 @@ Expected<std::vector<TimingRow>> WriteTiming(const Experiment& experiment,
 
 int WriteTablesWith(const char* command, const ReportSettings& settings,
                     const Experiment& experiment, const std::filesystem::path& folder) {
+  const std::filesystem::path csv = folder / "rows.csv";
+  std::error_code ignored;
+  const bool had_csv = !settings.csv && std::filesystem::exists(csv, ignored);
   const Expected<std::string> tables =
       WriteReport(experiment, folder / "rows.sxtrows", folder, settings);
   if (!tables) return Refuse(command, tables.error());
+  if (had_csv && std::filesystem::exists(csv, ignored)) {
+    PrintError(
+        "sextant {}: note: {} is not of this run, which wrote none; sextant did not write it, or "
+        "it was changed, so it was left there\n",
+        command, PathText(csv));
+  } else if (had_csv) {
+    PrintError("sextant {}: {} of an earlier run was removed, because --no-csv writes no new one\n",
+               command, PathText(csv));
+  }
   Print("{}{}{}", *tables, tables->empty() ? "" : "\n",
         WroteLine(folder, "rows, tables and plots of " + experiment.name));
   return kAnswered;

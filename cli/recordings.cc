@@ -57,7 +57,8 @@ class Extractor {
     SEXTANT_ASSIGN_OR_RETURN(const std::optional<Extracted> file, Convert(message));
     if (!file) return {};
     const std::filesystem::path folder = FolderOf(message.topic_index);
-    SEXTANT_RETURN_IF_ERROR(MakeSubfolder(folder));
+    // Not for every message: it looks at all files of the folder.
+    if (made_.insert(message.topic_index).second) SEXTANT_RETURN_IF_ERROR(MakeSubfolder(folder));
     ++files_;
     extensions_[{message.topic_index, number}] = file->extension;
     return WriteFileAtomically(folder / (name + file->extension), file->bytes);
@@ -115,6 +116,7 @@ class Extractor {
   std::map<std::size_t, std::size_t> numbers_;  // The next message's, by topic.
   std::map<std::size_t, std::string> folders_;
   std::unordered_set<std::string> taken_;
+  std::unordered_set<std::size_t> made_;                          // Topics whose folder is there.
   std::unordered_map<std::string, std::size_t> numbers_of_name_;  // The last number of each name.
   // By topic and number of the message: a topic may have images of several formats.
   std::map<std::pair<std::size_t, std::size_t>, std::string> extensions_;

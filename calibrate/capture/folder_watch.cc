@@ -92,4 +92,25 @@ Expected<FolderFiles> FolderWatch::Look() {
   return files;
 }
 
+bool FolderWatch::IsWatched(const fs::path& folder) const {
+  std::error_code error;
+  if (fs::equivalent(folder, folder_, error)) return true;
+  fs::directory_iterator it(folder_, error);
+  for (const fs::directory_iterator end; !error && it != end; it.increment(error)) {
+    std::error_code gone;
+    if (it->is_directory(gone) && fs::equivalent(folder, it->path(), gone)) return true;
+  }
+  return false;
+}
+
+bool FolderWatch::WouldTake(const fs::path& path) const {
+  const auto is_it = [&path](const auto& file) {
+    std::error_code gone;
+    return fs::equivalent(file.first, path, gone);
+  };
+  if (std::ranges::any_of(last_, is_it)) return true;
+  if (path.filename().string().starts_with('.') || (!IsImage(path) && !IsCloud(path))) return false;
+  return IsWatched(path.has_parent_path() ? path.parent_path() : fs::path("."));
+}
+
 }  // namespace sextant

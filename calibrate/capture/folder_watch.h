@@ -45,12 +45,17 @@ class FolderWatch {
   /// count. Errors: kIo for a folder that cannot be read. Time: O(n log n) in the files.
   Expected<FolderFiles> Look();
 
+  /// Whether an output at the path would be one of these files, or replaces one that the last look
+  /// found.
+  bool WouldTake(const std::filesystem::path& path) const;
+
  private:
   using State = std::map<std::filesystem::path, WatchedFile>;
 
   /// Adds the files of a folder; returns why it cannot be read, if so, and its folders.
   std::error_code AddFiles(const std::filesystem::path& folder, State& found,
                            std::vector<std::filesystem::path>& folders) const;
+  bool IsWatched(const std::filesystem::path& folder) const;
   bool IsImage(const std::filesystem::path& path) const;
   bool IsCloud(const std::filesystem::path& path) const;
 

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -299,11 +300,31 @@ int Finish(const CaptureOptions& options, Capture& capture) {
   return written ? code : Refuse("capture", written.error());
 }
 
+// At the end, after all photos were read, it would be too late.
+Expected<void> CheckOutputs(const CaptureOptions& options, const FolderWatch& watch) {
+  const std::array<std::pair<const char*, const std::string*>, 3> outputs = {
+      {{"--out", &options.out_path},
+       {"--report", &options.report_path},
+       {"--json", &options.json_path}}};
+  for (const auto& [option, path] : outputs) {
+    if (path->empty() || *path == "-" || !watch.WouldTake(*path)) continue;
+    return MakeError(
+        ErrorCode::kInvalidOption,
+        fmt::format("{}: cannot write '{}': it is taken for a photo or a scan of '{}', which is "
+                    "watched; name another file",
+                    option, PathText(*path), PathText(options.folder)));
+  }
+  return {};
+}
+
 int RunCapture(const CaptureOptions& options) {
   FolderWatch watch(options.folder, options.image_pattern, options.cloud_pattern);
   const Expected<FolderFiles> files = watch.Look();
   if (!files) return Refuse("capture", files.error());
   PrintWarnings(*files);
+  if (const Expected<void> ok = CheckOutputs(options, watch); !ok) {
+    return Refuse("capture", ok.error());
+  }
   Progress progress;
   Expected<LiveSession> session = SessionFor(options, progress.Callback());
   if (!session) return Refuse("capture", session.error());

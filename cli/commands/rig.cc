@@ -79,6 +79,12 @@ Expected<RigResult> ResultOfTransforms(const RigCommandOptions& options,
                     "out",
                     options.root.empty() ? "--estimate-time" : "--root", PathText(options.path)));
   }
+  if (transforms->size() + 1 > kMaxRigSensors) {
+    return MakeError(ErrorCode::kParse,
+                     fmt::format("{}: sensors: expected at most {} items, got {}: the LiDAR, and a "
+                                 "camera for each matrix",
+                                 PathText(options.path), kMaxRigSensors, transforms->size() + 1));
+  }
   return RigOfTransforms(*transforms);
 }
 

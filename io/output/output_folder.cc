@@ -80,7 +80,15 @@ Expected<void> MakeSubfolder(const fs::path& path) {
         ErrorCode::kInvalidOption, path,
         fmt::format("it is a link to '{}'; remove it, or choose another folder", PathText(end)));
   }
-  return MakeFolder(path);
+  SEXTANT_RETURN_IF_ERROR(MakeFolder(path));
+  const Descriptor folder(open(path.c_str(), O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  if (!folder.is_open()) return {};
+  // It may be a folder of results itself, which another process uses.
+  const Descriptor lock(
+      openat(folder.get(), kLockFile, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  const bool is_used = lock.is_open() && flock(lock.get(), LOCK_EX | LOCK_NB) != 0;
+  if (!is_used) RemoveLeftovers(path, folder.get());
+  return {};
 }
 
 class OutputFolder::Lock {

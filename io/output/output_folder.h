@@ -12,8 +12,10 @@ namespace sextant {
 /// Creates the folder with its parents if it does not exist. Error: kUnwritable.
 Expected<void> MakeFolder(const std::filesystem::path& path);
 
-/// Creates a folder within a folder of results if it does not exist. A link in its place is
-/// refused, because it may lead out of that folder. Errors: kInvalidOption; kUnwritable.
+/// Creates a folder within a locked folder of results if it does not exist, and removes temporary
+/// files that a killed process left in it, unless others use it. A link in its place is refused,
+/// because it may lead out of that folder. Time: linear in the folder's files. Errors:
+/// kInvalidOption; kUnwritable.
 Expected<void> MakeSubfolder(const std::filesystem::path& path);
 
 /// Who may write into a folder at the same time.

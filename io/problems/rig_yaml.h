@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +12,9 @@
 #include "solvers/core/rig_problem.h"
 
 namespace sextant {
+
+/// More sensors are refused: the table of their pairs and the search grow with the square.
+inline constexpr std::size_t kMaxRigSensors = 100;
 
 /// The content of a rig file: the problem, and data that no solver may use.
 struct RigFile {

@@ -26,7 +26,6 @@ namespace {
 
 using RigKeys = std::vector<std::string>;
 
-constexpr std::size_t kMaxSensors = 100;
 constexpr std::size_t kMaxNumbers = 2 * kMaxPointsSeen;  // For the points of one board.
 // For the covariances of all pixels, which grow with the square of the pixels of an observation.
 constexpr std::size_t kMaxCovarianceNumbers = std::size_t{128} << 20;
@@ -64,7 +63,7 @@ class RigReader {
   void ReadSensors(const YamlNode& list) {
     static const RigKeys kKeys = {"name", "camera", "camera_file", "lidar_errors",
                                   "true_rig_from_sensor"};
-    if (!in_.IsSequence(list, "sensors", kMaxSensors)) return;
+    if (!in_.IsSequence(list, "sensors", kMaxRigSensors)) return;
     for (const YamlNode& node : list.items) {
       if (!in_.IsMap(node, "sensors", kKeys)) return;
       RigSensor sensor{.name = in_.FileName(in_.Require(node, "name"), "name")};

@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string WriteStudy(const std::string& name, const std::string& more, int trials) {
   const std::string path = TestPath(name);
@@ -53,6 +54,37 @@ TEST(ResultFolder, TheReportOfACopyIsReplacedUnlessItWasChanged) {
   const ProgramRun changed = RunSextant("run " + other + " --out " + copy);
   EXPECT_EQ(changed.exit_code, 2);
   EXPECT_THAT(changed.err, HasSubstr("it was changed since sextant wrote it; --overwrite"));
+}
+
+TEST(ResultFolder, NoRowsOfAnEarlierRunStayBesideANewReport) {
+  if (!KeepsMarks(TestFolder())) GTEST_SKIP() << "the file system keeps no attributes";
+  const std::string run =
+      "run " + WriteStudy("study.yaml", "", 200) + " --out " + TestPath("out") + " --fresh";
+  const std::string csv = TestPath("out") + "/rows.csv";
+  ASSERT_EQ(RunSextant(run).exit_code, 0);
+  ASSERT_TRUE(fs::exists(csv));
+  const ProgramRun without = RunSextant(run + " --trials 30 --no-csv");
+  EXPECT_EQ(without.exit_code, 0) << without.err;
+  EXPECT_FALSE(fs::exists(csv));
+  EXPECT_THAT(without.err, HasSubstr("rows.csv of an earlier run was removed"));
+  EXPECT_THAT(RunSextant(run + " --no-csv").err, Not(HasSubstr("rows.csv")));
+  // What somebody else wrote is kept, and said not to be of this run.
+  WriteText(csv, "mine");
+  const ProgramRun foreign = RunSextant(run + " --no-csv");
+  EXPECT_EQ(foreign.exit_code, 0) << foreign.err;
+  EXPECT_THAT(foreign.err, HasSubstr("rows.csv is not of this run"));
+  EXPECT_EQ(ReadText(csv), "mine");
+}
+
+TEST(ResultFolder, WhatAKilledExportLeftInItsFoldersIsRemoved) {
+  const std::string command =
+      "run " + WriteStudy("study.yaml", "", 2) + " --export-problems " + TestPath("problems");
+  ASSERT_EQ(RunSextant(command).exit_code, 0);
+  const fs::path left = TestFolder() / "problems/002/.1.yaml.0123456789abcdef.sxtmp";
+  WriteText(left, "half");
+  const ProgramRun again = RunSextant(command);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_FALSE(fs::exists(left));
 }
 
 TEST(ResultFolder, ASecondProcessIsRefusedWithTheNumberOfTheFirst) {

@@ -372,6 +372,17 @@ TEST(RigCommand, OptionsForRigFilesAreRefusedForTransforms) {
   test::ExpectRefused(RunSextant(command), "expected a rotation");
 }
 
+TEST(RigCommand, TransformsHaveTheLimitOfRigFiles) {
+  std::string matrices;
+  for (int i = 0; i < 99; ++i) matrices += "1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+  const std::string rts = TestPath("rts.txt");
+  const std::string command = "rig " + rts + " --overwrite --out " + TestPath("rig.json");
+  test::WriteText(rts, matrices);
+  EXPECT_EQ(RunSextant(command).exit_code, 0);
+  test::WriteText(rts, matrices + "1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  test::ExpectRefused(RunSextant(command), "sensors: expected at most 100 items, got 101");
+}
+
 TEST(RigCommand, ASessionWithoutBoardsIsWrongUse) {
   const std::string folder = SessionOfRig().string();
   test::WriteText(TestPath("session.yaml"),

@@ -2,6 +2,7 @@
 #include "eval/experiment/report/write_report.h"
 
 #include "eval/experiment/report/report.h"
+#include "io/output/file_mark.h"
 #include "io/output/output_file.h"
 #include "report/plot.h"
 
@@ -46,7 +47,12 @@ Expected<std::string> WriteReport(const Experiment& experiment,
   SEXTANT_ASSIGN_OR_RETURN(ReportData data, ReportData::Compute(experiment, reader));
   data.SetTiming(settings.timing);
   SEXTANT_ASSIGN_OR_RETURN(const std::string summary, FormatSummary(experiment, reader, data));
-  if (settings.csv) SEXTANT_RETURN_IF_ERROR(WriteRowsCsv(experiment, reader, folder / "rows.csv"));
+  if (settings.csv) {
+    SEXTANT_RETURN_IF_ERROR(WriteRowsCsv(experiment, reader, folder / "rows.csv"));
+  } else {
+    // Beside the new summary it would seem to be of these rows.
+    RemoveOwnFile(folder / "rows.csv");
+  }
   SEXTANT_RETURN_IF_ERROR(WriteFileAtomically(folder / "summary.json", summary));
   SEXTANT_RETURN_IF_ERROR(
       WriteFileAtomically(folder / "report.md", FormatMarkdown(experiment, data)));

@@ -11,7 +11,7 @@
 namespace sextant {
 
 struct ReportSettings {
-  bool csv = true;
+  bool csv = true;  ///< If not, an older rows.csv that sextant wrote is removed.
   bool plots = true;
   std::vector<TimingRow> timing{};  ///< For plots against time; those without it are left out.
 };

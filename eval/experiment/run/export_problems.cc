@@ -16,7 +16,7 @@ Expected<void> ExportProblems(const Experiment& experiment, const std::filesyste
   for (std::size_t c = 0; c < experiment.conditions.size(); ++c) {
     const Condition& condition = experiment.conditions[c];
     const std::string place = fmt::format("{:03}", c + 1);
-    SEXTANT_RETURN_IF_ERROR(MakeFolder(folder / place));
+    SEXTANT_RETURN_IF_ERROR(MakeSubfolder(folder / place));
     for (std::uint64_t trial = 0; trial < experiment.trials; ++trial) {
       SEXTANT_ASSIGN_OR_RETURN(
           CalibrationProblem problem,

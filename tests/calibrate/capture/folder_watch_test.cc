@@ -127,5 +127,23 @@ TEST_F(FolderWatchTest, AFolderThatIsNotThereIsAnError) {
   EXPECT_EQ(files.error().code, ErrorCode::kIo);
 }
 
+TEST_F(FolderWatchTest, KnowsWhichOutputsItWouldTake) {
+  Write("a.png", "a photo");
+  Write("scans/b.pcd", "a scan");
+  Write("scans/deeper/c.pcd", "not watched");
+  Look();
+  const std::filesystem::path at = folder_.path();
+  EXPECT_TRUE(watch_.WouldTake(at / "a.png"));
+  EXPECT_TRUE(watch_.WouldTake(at / "new.png"));
+  EXPECT_TRUE(watch_.WouldTake(at / "scans" / "." / "new.pcd"));
+  EXPECT_FALSE(watch_.WouldTake(at / "scans/deeper/new.pcd"));
+  EXPECT_FALSE(watch_.WouldTake(at / "result.yaml"));
+  EXPECT_FALSE(watch_.WouldTake(at / "nowhere/new.png"));
+  const test::ScratchFolder elsewhere;
+  EXPECT_FALSE(watch_.WouldTake(elsewhere.path() / "new.png"));
+  std::filesystem::create_hard_link(at / "a.png", elsewhere.path() / "linked");
+  EXPECT_TRUE(watch_.WouldTake(elsewhere.path() / "linked"));
+}
+
 }  // namespace
 }  // namespace sextant

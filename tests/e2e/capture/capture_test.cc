@@ -227,5 +227,20 @@ TEST(CaptureCommand, WhatIsMissingIsNamedBeforeItWaits) {
                       "cannot read the folder");
 }
 
+TEST(CaptureCommand, AnOutputIsNoPhotoOrScanOfTheFolder) {
+  const fs::path folder = TestFolder() / "watched";
+  fs::create_directories(folder / "scans");
+  WriteText(folder / "cam_000.png", "a photo");
+  const std::string command = "capture " + folder.string() + " --overwrite ";
+  test::ExpectRefused(test::RunSextant(command + "--out " + (folder / "cam_000.png").string()),
+                      "--out: cannot write");
+  // Such a file would be taken for a scan at the next start.
+  test::ExpectRefused(test::RunSextant(command + "--json " + (folder / "scans/new.pcd").string()),
+                      "it is taken for a photo or a scan");
+  EXPECT_EQ(ReadText(folder / "cam_000.png"), "a photo");
+  test::ExpectRefused(test::RunSextant(command + "--out " + (folder / "result.yaml").string()),
+                      "--board is missing");
+}
+
 }  // namespace
 }  // namespace sextant

@@ -92,6 +92,21 @@ TEST(OutputFolder, OnlyTheTemporariesOfTheDeadAreRemoved) {
   EXPECT_TRUE(OutputFolder::IsPassing(alive->temporary().filename().string()));
 }
 
+TEST(OutputFolder, OnlyTheTemporariesOfTheDeadAreRemovedFromASubfolder) {
+  const ScratchFolder scratch;
+  const fs::path sub = scratch.path() / "001";
+  ASSERT_TRUE(MakeSubfolder(sub));
+  const fs::path dead = sub / ".7.yaml.0123456789abcdef.sxtmp";
+  WriteText(dead, "half");
+  WriteText(sub / "7.yaml", "whole");
+  const Expected<OutputFile> alive = OutputFile::Open(sub / "8.yaml");
+  ASSERT_TRUE(alive);
+  ASSERT_TRUE(MakeSubfolder(sub));
+  EXPECT_FALSE(fs::exists(dead));
+  EXPECT_TRUE(fs::exists(sub / "7.yaml"));
+  EXPECT_TRUE(fs::exists(alive->temporary()));
+}
+
 TEST(OutputFolder, AFileInItsPlaceIsRefused) {
   const ScratchFolder scratch;
   WriteText(scratch.path() / "taken", "x");
