@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "eval/diagnostics/near_copies.h"
 #include "geometry/pair_noise.h"
 
 namespace sextant {
@@ -77,11 +78,12 @@ class RepeatMerger {
     if (pairs_.empty()) return;
     constexpr double kOfSpread = 0.02;
     max_apart_ = kOfSpread * SpreadOf(pairs_);
+    std::vector<bool> is_repeat(pairs_.size(), false);
+    MergeNearCopies(is_repeat);
     const auto sorted = SortedAlong(pairs_);
     std::vector<std::size_t> place(pairs_.size());
     for (std::size_t k = 0; k < sorted.size(); ++k) place[sorted[k].second] = k;
     const double same = SamePointDistance(pairs_);
-    std::vector<bool> is_repeat(pairs_.size(), false);
     std::vector<std::size_t> repeats;
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       if (is_repeat[i]) continue;
@@ -108,6 +110,42 @@ class RepeatMerger {
   }
 
  private:
+  // Each point that was measured several times remains as the mean, in place of its first pair.
+  void MergeNearCopies(std::vector<bool>& is_repeat) {
+    const auto count = static_cast<Eigen::Index>(pairs_.size());
+    Eigen::Matrix3Xd in_lidar(3, count);
+    Eigen::MatrixXd observed(ObservationOf(pairs_.front()).size(), count);
+    std::vector<PairId> ids;
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      in_lidar.col(static_cast<Eigen::Index>(i)) = pairs_[i].point_in_lidar;
+      observed.col(static_cast<Eigen::Index>(i)) = ObservationOf(pairs_[i]);
+      ids.push_back(pairs_[i].id);
+    }
+    const std::vector<int> points = PointsOfNearCopies(in_lidar, observed, ids);
+    std::vector<std::size_t> first;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto point = static_cast<std::size_t>(points[i]);
+      if (point == first.size()) {
+        first.push_back(i);
+        continue;
+      }
+      Pair& kept = pairs_[first[point]];
+      const auto place = static_cast<Eigen::Index>(first[point]);
+      const auto difference = (ObservationOf(pairs_[i]) - ObservationOf(kept)).eval();
+      const double share = 1.0 / static_cast<double>(++members_[first[point]]);
+      ObservationOf(kept) += share * difference;
+      kept.point_in_lidar += share * (pairs_[i].point_in_lidar - kept.point_in_lidar);
+      is_repeat[i] = true;
+      is_merged_[i] = true;
+      const double apart = (ObservationOf(pairs_[i]) - observed.col(place)).norm();
+      found_.merged.push_back(
+          {.first = static_cast<int>(first[point]), .repeat = static_cast<int>(i), .apart = apart});
+    }
+    if (points.empty()) return;
+    found_.measured = static_cast<int>(pairs_.size());
+    found_.points = static_cast<int>(first.size());
+  }
+
   void Compare(std::size_t first, std::size_t repeat) {
     constexpr double kSigmas = 5.0;
     auto& kept = ObservationOf(pairs_[first]);
@@ -154,8 +192,10 @@ std::string ListOf(const std::vector<RepeatedPair>& pairs) {
 }  // namespace
 
 std::vector<RepeatedPairs> MergeRepeatedPairs(CalibrationProblem& problem) {
-  RepeatedPairs points{.in_pixels = false, .merged = {}, .contradictory = {}};
-  RepeatedPairs pixels{.in_pixels = true, .merged = {}, .contradictory = {}};
+  RepeatedPairs points{
+      .in_pixels = false, .merged = {}, .contradictory = {}, .measured = 0, .points = 0};
+  RepeatedPairs pixels{
+      .in_pixels = true, .merged = {}, .contradictory = {}, .measured = 0, .points = 0};
   RepeatMerger(problem.pairs_3d3d, points).Run();
   RepeatMerger(problem.pairs_2d3d, pixels).Run();
   if (!points.merged.empty()) problem.point_sets = WithholdPairing(problem.pairs_3d3d);
@@ -170,7 +210,13 @@ std::vector<RepeatedPairs> MergeRepeatedPairs(CalibrationProblem& problem) {
 std::vector<std::string> Describe(const RepeatedPairs& repeated) {
   constexpr std::size_t kMaxLines = 5;
   std::vector<std::string> lines;
-  if (!repeated.merged.empty()) {
+  if (repeated.points > 0) {
+    lines.push_back(fmt::format(
+        "repeated: {} pairs were merged into {}, the means of those that measure one "
+        "point: they differ far less than the points, and alike measurements share "
+        "their errors",
+        repeated.measured, repeated.measured - static_cast<int>(repeated.merged.size())));
+  } else if (!repeated.merged.empty()) {
     lines.push_back(
         fmt::format("repeated: {} pairs repeat others and count once, because copies of a "
                     "measurement add no information (pair {})",

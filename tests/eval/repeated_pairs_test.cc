@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/Geometry>
+#include <random>
+
 #include "eval/diagnostics/facing.h"
 
 namespace sextant {
@@ -93,6 +96,117 @@ TEST(RepeatedPairs, PointsAreMergedInTheUnpairedSetsToo) {
   EXPECT_EQ(MergeRepeatedPairs(problem).at(0).merged.size(), 1U);
   EXPECT_EQ(problem.pairs_3d3d.size(), 4U);
   EXPECT_EQ(problem.point_sets.in_cam.size(), 4U);
+}
+
+class Scene {
+ public:
+  explicit Scene(unsigned seed) : random_(seed) {}
+
+  double Normal(double sigma) { return sigma * std::normal_distribution<double>()(random_); }
+  Eigen::Vector3d Noise(double sigma) { return {Normal(sigma), Normal(sigma), Normal(sigma)}; }
+
+  // Corners of boards of `size` [m], measured by both sensors with an error of `noise` [m].
+  std::vector<Pair3d3d> Corners(int boards, double size, double noise) {
+    std::uniform_real_distribution<double> within(-1.0, 1.0);
+    const Eigen::Quaterniond lidar_from_cam(0.5, 0.5, -0.5, 0.5);
+    std::vector<Pair3d3d> pairs;
+    for (int b = 0; b < boards; ++b) {
+      const Eigen::Vector3d centre(2.0 * within(random_), within(random_), 4.0 + within(random_));
+      const Eigen::Quaterniond turn(
+          Eigen::AngleAxisd(0.5, Eigen::Vector3d(Noise(1.0)).normalized()));
+      for (int k = 0; k < 4; ++k) {
+        const Eigen::Vector3d corner(k % 2 == 0 ? size : 0.0, k < 2 ? size : 0.0, 0.0);
+        const Eigen::Vector3d in_cam = centre + turn * corner;
+        pairs.push_back({.point_in_cam = in_cam + Noise(noise),
+                         .point_in_lidar = lidar_from_cam * in_cam + Noise(noise),
+                         .sigma_m = 0.0,
+                         .covariance_in_cam = {},
+                         .id = {.view = 0, .board = b, .corner = k}});
+      }
+    }
+    return pairs;
+  }
+
+  std::vector<Pair3d3d> Repeated(const std::vector<Pair3d3d>& pairs, int times, double jitter) {
+    std::vector<Pair3d3d> all;
+    for (int i = 0; i < times; ++i) {
+      for (Pair3d3d pair : pairs) {
+        pair.point_in_cam += Noise(jitter);
+        pair.point_in_lidar += Noise(jitter);
+        pair.id = {.view = 0, .board = static_cast<int>(all.size()), .corner = 0};
+        all.push_back(pair);
+      }
+    }
+    return all;
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+std::vector<Pair2d3d> InPixels(const std::vector<Pair3d3d>& pairs) {
+  std::vector<Pair2d3d> seen;
+  for (const Pair3d3d& pair : pairs) {
+    seen.push_back({.pixel = 1000.0 * pair.point_in_cam.hnormalized(),
+                    .point_in_lidar = pair.point_in_lidar,
+                    .sigma_px = 0.0,
+                    .id = pair.id});
+  }
+  return seen;
+}
+
+// A scene at rest, recorded ten times: its points count once, whatever the jitter.
+TEST(RepeatedPairs, ASceneMeasuredSeveralTimesCountsOnce) {
+  for (const double jitter : {1e-5, 1e-4, 3e-4, 1e-3, 3e-3}) {
+    Scene scene(11);
+    const std::vector<Pair3d3d> once = scene.Corners(3, 0.5, 0.01);
+    CalibrationProblem problem;
+    problem.pairs_3d3d = scene.Repeated(once, 10, jitter);
+    problem.pairs_2d3d = InPixels(scene.Repeated(once, 10, jitter));
+    const std::vector<RepeatedPairs> found = MergeRepeatedPairs(problem);
+    ASSERT_EQ(found.size(), 2U) << jitter;
+    ASSERT_EQ(problem.pairs_3d3d.size(), 12U) << jitter;
+    ASSERT_EQ(problem.pairs_2d3d.size(), 12U) << jitter;
+    EXPECT_EQ(problem.point_sets.in_cam.size(), 12U);
+    for (std::size_t i = 0; i < once.size(); ++i) {
+      const Pair3d3d& mean = problem.pairs_3d3d[i];
+      EXPECT_LT((mean.point_in_cam - once[i].point_in_cam).norm(), 2.0 * jitter);
+      EXPECT_LT((mean.point_in_lidar - once[i].point_in_lidar).norm(), 2.0 * jitter);
+    }
+    EXPECT_THAT(Describe(found[0]).at(0), HasSubstr("120 pairs were merged into 12"));
+    EXPECT_EQ(PlaceInFile(11, false, found), 12);
+  }
+}
+
+// Each small board is a tight group far from the others, and yet its corners are four points.
+TEST(RepeatedPairs, CornersOfSmallBoardsFarApartRemain) {
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    Scene scene(seed);
+    CalibrationProblem problem;
+    problem.pairs_3d3d = scene.Corners(6, 0.05, 0.003);
+    problem.pairs_2d3d = InPixels(problem.pairs_3d3d);
+    EXPECT_THAT(MergeRepeatedPairs(problem), IsEmpty()) << seed;
+  }
+}
+
+// A hand moved the board by two centimetres: both sensors saw it, so that the pairs are new.
+TEST(RepeatedPairs, PairsOfABoardThatMovedALittleRemain) {
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    Scene scene(seed);
+    const std::vector<Pair3d3d> still = scene.Corners(3, 0.5, 0.0);
+    CalibrationProblem problem;
+    for (int view = 0; view < 5; ++view) {
+      for (Pair3d3d pair : still) {
+        const Eigen::Vector3d moved = scene.Noise(0.02);
+        const Eigen::Quaterniond lidar_from_cam(0.5, 0.5, -0.5, 0.5);
+        pair.point_in_cam += moved + scene.Noise(0.003);
+        pair.point_in_lidar += lidar_from_cam * moved + scene.Noise(0.003);
+        pair.id.view = view;
+        problem.pairs_3d3d.push_back(pair);
+      }
+    }
+    EXPECT_THAT(MergeRepeatedPairs(problem), IsEmpty()) << seed;
+  }
 }
 
 TEST(Facing, TellsOppositeSidesOfABoardFromTheSame) {
