@@ -48,16 +48,16 @@ std::error_code FolderWatch::AddFiles(const fs::path& folder, State& found,
   fs::directory_iterator it(folder, error);
   for (const fs::directory_iterator end; !error && it != end; it.increment(error)) {
     if (it->path().filename().string().starts_with('.')) continue;
-    std::error_code gone;  // A file may disappear at any time; it is then no file of this look.
-    if (it->is_directory(gone)) {
+    std::error_code error;  // A file may disappear at any time; it is then no file of this look.
+    if (it->is_directory(error)) {
       folders.push_back(it->path());
       continue;
     }
-    if (!it->is_regular_file(gone) || (!IsImage(it->path()) && !IsCloud(it->path()))) continue;
-    WatchedFile file{.path = it->path(), .bytes = it->file_size(gone)};
-    if (gone) continue;
-    file.changed = it->last_write_time(gone);
-    if (!gone) found.emplace(file.path, file);
+    if (!it->is_regular_file(error) || (!IsImage(it->path()) && !IsCloud(it->path()))) continue;
+    WatchedFile file{.path = it->path(), .bytes = it->file_size(error)};
+    if (error) continue;
+    file.changed = it->last_write_time(error);
+    if (!error) found.emplace(file.path, file);
   }
   return error;
 }
@@ -97,16 +97,16 @@ bool FolderWatch::IsWatched(const fs::path& folder) const {
   if (fs::equivalent(folder, folder_, error)) return true;
   fs::directory_iterator it(folder_, error);
   for (const fs::directory_iterator end; !error && it != end; it.increment(error)) {
-    std::error_code gone;
-    if (it->is_directory(gone) && fs::equivalent(folder, it->path(), gone)) return true;
+    std::error_code error;
+    if (it->is_directory(error) && fs::equivalent(folder, it->path(), error)) return true;
   }
   return false;
 }
 
 bool FolderWatch::WouldTake(const fs::path& path) const {
   const auto is_it = [&path](const auto& file) {
-    std::error_code gone;
-    return fs::equivalent(file.first, path, gone);
+    std::error_code error;
+    return fs::equivalent(file.first, path, error);
   };
   if (std::ranges::any_of(last_, is_it)) return true;
   if (path.filename().string().starts_with('.') || (!IsImage(path) && !IsCloud(path))) return false;

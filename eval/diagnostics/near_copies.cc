@@ -141,7 +141,7 @@ Clusters ClustersWithin(const Eigen::MatrixXd& points, const SortedColumns& sort
   return clusters;
 }
 
-constexpr double kMost = 0.75;
+constexpr double kMinShare = 0.75;
 constexpr double kClear = 8.0;  // Clusters this many spreads apart are distinct.
 
 // Parts of one cluster may have become clusters of their own: those near to a cluster that is at
@@ -184,7 +184,7 @@ double ShareOfClear(const Clusters& clusters) {
   if (clusters.sizes.size() < kMinClusters) return 0.0;
   const auto repeated = std::ranges::count_if(clusters.sizes, [](int size) { return size > 1; });
   const auto count = static_cast<double>(clusters.sizes.size());
-  if (static_cast<double>(repeated) < kMost * count) return 0.0;
+  if (static_cast<double>(repeated) < kMinShare * count) return 0.0;
   const SortedColumns sorted(clusters.means);
   double clear = 0.0;
   for (Eigen::Index c = 0; c < clusters.means.cols(); ++c) {
@@ -296,7 +296,7 @@ std::vector<int> PointsOfNearCopies(const Eigen::Matrix3Xd& in_lidar,
     Clusters clusters = ClustersWithin(points, sorted, multiple * *nearest);
     for (int round = 0; round < 3; ++round) JoinFragments(points, clusters);
     const double clear = ShareOfClear(clusters);
-    if (clear < kMost || clear <= best) continue;
+    if (clear < kMinShare || clear <= best) continue;
     best = clear;
     chosen = std::move(clusters);
   }
