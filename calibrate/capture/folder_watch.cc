@@ -48,16 +48,18 @@ std::error_code FolderWatch::AddFiles(const fs::path& folder, State& found,
   fs::directory_iterator it(folder, error);
   for (const fs::directory_iterator end; !error && it != end; it.increment(error)) {
     if (it->path().filename().string().starts_with('.')) continue;
-    std::error_code error;  // A file may disappear at any time; it is then no file of this look.
-    if (it->is_directory(error)) {
+    // A file may disappear at any time; it is then no file of this look.
+    std::error_code file_error;
+    if (it->is_directory(file_error)) {
       folders.push_back(it->path());
       continue;
     }
-    if (!it->is_regular_file(error) || (!IsImage(it->path()) && !IsCloud(it->path()))) continue;
-    WatchedFile file{.path = it->path(), .bytes = it->file_size(error)};
-    if (error) continue;
-    file.changed = it->last_write_time(error);
-    if (!error) found.emplace(file.path, file);
+    if (!it->is_regular_file(file_error) || (!IsImage(it->path()) && !IsCloud(it->path())))
+      continue;
+    WatchedFile file{.path = it->path(), .bytes = it->file_size(file_error)};
+    if (file_error) continue;
+    file.changed = it->last_write_time(file_error);
+    if (!file_error) found.emplace(file.path, file);
   }
   return error;
 }
@@ -97,8 +99,8 @@ bool FolderWatch::IsWatched(const fs::path& folder) const {
   if (fs::equivalent(folder, folder_, error)) return true;
   fs::directory_iterator it(folder_, error);
   for (const fs::directory_iterator end; !error && it != end; it.increment(error)) {
-    std::error_code error;
-    if (it->is_directory(error) && fs::equivalent(folder, it->path(), error)) return true;
+    std::error_code file_error;
+    if (it->is_directory(file_error) && fs::equivalent(folder, it->path(), file_error)) return true;
   }
   return false;
 }
