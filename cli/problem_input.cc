@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -19,6 +20,7 @@
 #include "io/problems/read_problem.h"
 #include "report/wrapped_text.h"
 #include "solvers/all/all_solvers.h"
+#include "solvers/core/evaluation.h"
 
 namespace sextant::cli {
 namespace {
@@ -62,19 +64,71 @@ std::vector<std::string> AnswerDiagnostics(const LoadedProblem& input, const Sol
   return lines;
 }
 
+// The noise of a coordinate by the answer's median residual, which a few wrong pairs do not change;
+// 0 without one.
+double NoiseOf(const std::vector<ComparisonRow>& rows, bool in_pixels) {
+  if (rows.size() != 1 || !rows.front().report) return 0.0;
+  const Evaluation& evaluation = rows.front().report->evaluation;
+  std::vector<double> residuals = in_pixels ? evaluation.per_pair_px : evaluation.per_pair_m;
+  std::erase_if(residuals, [](double residual) { return !std::isfinite(residual); });
+  if (residuals.empty()) return 0.0;
+  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
+  std::ranges::nth_element(residuals, middle);
+  return *middle / (in_pixels ? 1.1774 : 1.5382);
+}
+
+// Whether the better order exchanges few pairs for each other, and every answer leaves these out
+// and explains them once they are exchanged back.
+bool LeaveOutExchanged(const LoadedProblem& input, const std::vector<ComparisonRow>& rows) {
+  constexpr double kAsLarge = 2.0;
+  const std::optional<OrderFinding>& better = input.diagnostics.order.better;
+  if (!better) return false;
+  const std::vector<std::array<int, 2>> exchanged = ExchangedPairs(*better);
+  const CalibrationProblem& problem = input.file.problem;
+  const bool has_both_kinds = !problem.pairs_3d3d.empty() && !problem.pairs_2d3d.empty();
+  if (exchanged.empty() || has_both_kinds) return false;
+  const CalibrationProblem back = Reordered(problem, *better);
+  for (const ComparisonRow& row : rows) {
+    if (!row.report) continue;
+    const std::vector<int>& used = row.report->inliers;
+    const auto residuals_of = [&](const CalibrationProblem& pairs) {
+      const Evaluation evaluation = Evaluate(pairs, row.report->cam_from_lidar);
+      return better->in_pixels ? evaluation.per_pair_px : evaluation.per_pair_m;
+    };
+    const std::vector<double> as_given = residuals_of(problem);
+    const std::vector<double> exchanged_back = residuals_of(back);
+    double largest = 0.0;
+    for (const int i : used) largest = std::max(largest, as_given[static_cast<std::size_t>(i)]);
+    for (const auto& both : exchanged) {
+      for (const int i : both) {
+        const bool is_used = std::binary_search(used.begin(), used.end(), i);
+        const double residual = exchanged_back[static_cast<std::size_t>(i)];
+        if (is_used || !(residual <= kAsLarge * largest)) return false;
+      }
+    }
+  }
+  return true;
+}
+
 std::string DiagnosticsText(const LoadedProblem& input, const std::vector<ComparisonRow>& rows,
                             bool reordered) {
   std::string text;
   for (const std::string& line : input.notes) text += "  " + line + "\n";
   for (const RepeatedPairs& repeated : input.repeated) {
-    for (const std::string& line : Describe(repeated)) text += "  " + line + "\n";
+    const double sigma = NoiseOf(rows, repeated.in_pixels);
+    for (const std::string& line : Describe(repeated, sigma)) text += "  " + line + "\n";
   }
-  for (const std::string& line : Describe(input.diagnostics)) text += "  " + line + "\n";
+  const bool has_one = rows.size() == 1 && rows.front().report;
+  const PairDiagnostics diagnostics =
+      has_one ? ForAnswer(input.diagnostics, input.file.problem, *rows.front().report)
+              : input.diagnostics;
+  for (const std::string& line : Describe(diagnostics, input.repeated)) text += "  " + line + "\n";
   if (input.rivals) text += "  " + Describe(*input.rivals, input.repeated) + "\n";
   const bool has_cause = !input.diagnostics.causes.empty();
-  const bool is_misordered = input.diagnostics.order.better && !reordered;
+  const bool is_misordered =
+      input.diagnostics.order.better && !reordered && !LeaveOutExchanged(input, rows);
   const bool is_judged = has_cause || is_misordered || input.rivals;
-  if (rows.size() == 1 && rows.front().report && !is_judged) {
+  if (has_one && !is_judged) {
     for (const std::string& line : AnswerDiagnostics(input, *rows.front().report)) {
       text += "  " + line + "\n";
     }
@@ -93,7 +147,10 @@ std::string ResultsJson(const LoadedProblem& input, const std::vector<Comparison
 // "" for answers of which one may be right.
 std::string RefutingVerdict(const ProblemInputOptions& options, const LoadedProblem& input,
                             const std::vector<ComparisonRow>& rows) {
-  if (RefutesPoses(input.diagnostics, options.reorder)) {
+  // Answers that leave exchanged pairs out are as good as any.
+  PairDiagnostics diagnostics = input.diagnostics;
+  if (!options.reorder && LeaveOutExchanged(input, rows)) diagnostics.order.better.reset();
+  if (RefutesPoses(diagnostics, options.reorder)) {
     return "NOT USABLE: the data diagnostics below name a fault that no solver corrects\n";
   }
   if (input.rivals) {

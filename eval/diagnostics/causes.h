@@ -46,9 +46,10 @@ std::vector<std::string> CausesInPixels(const CalibrationProblem& problem);
 /// has, and pixels outside its image.
 std::vector<std::string> CausesInCamera(const CalibrationProblem& problem);
 
-/// For at least twelve 3D-3D pairs: a factor between the sensors' lengths that noise hides from
+/// For at least eight 3D-3D pairs: a factor between the sensors' lengths that noise hides from
 /// CausesInPoints, by an F-test at 30, and at 8 with about the same factor in every second pair and
-/// in the others. The pose is then still near the truth.
+/// in the others; and not one that the sizes of complete boards contradict. The pose is then still
+/// near the truth.
 std::optional<std::string> SlightScale(const CalibrationProblem& problem);
 
 /// For at least ten 2D-3D pairs without outliers: whether focal length and principal point,

@@ -20,13 +20,22 @@ std::string CornerName(int corner) {
 }
 
 std::string Describe(const BoardContradiction& contradiction) {
+  const double scale = contradiction.in_pixels ? 1.0 : 1e3;
+  const char* unit = contradiction.in_pixels ? "px" : "mm";
+  const std::string apart =
+      contradiction.in_pixels
+          ? std::string()
+          : fmt::format(": a board is up to {:.0f} mm elsewhere by another one's pose",
+                        1e3 * contradiction.apart_m);
   return fmt::format(
-      "contradiction: the boards fit to RMSE {:.1f} mm one by one, but only to {:.1f} mm together "
-      "under one pose: a board is up to {:.0f} mm elsewhere by another one's pose. A board moved "
-      "between the sensors' measurements, or its corners are in a wrong order; a robust solver "
-      "keeps some boards against the others, so more boards or views must decide",
-      1e3 * contradiction.rmse_alone_m, 1e3 * contradiction.rmse_together_m,
-      1e3 * contradiction.apart_m);
+      "contradiction: the boards fit to RMSE {:.1f} {} one by one, but only to {:.1f} {} together "
+      "under one pose{}. A board moved between the sensors' measurements, {}or its corners are in "
+      "a "
+      "wrong order; {}more boards or views must decide",
+      scale * contradiction.rmse_alone, unit, scale * contradiction.rmse_together, unit, apart,
+      contradiction.in_pixels ? "its corners have an error in common, " : "",
+      contradiction.is_undecided ? "neither side outnumbers the other, so "
+                                 : "a robust solver keeps some boards against the others, so ");
 }
 
 std::string Describe(const EdgeFinding& edge) {
@@ -53,9 +62,12 @@ std::string Describe(const WeakDirection& weak) {
 
 }  // namespace
 
-std::vector<std::string> Describe(const PairDiagnostics& diagnostics) {
+std::vector<std::string> Describe(const PairDiagnostics& diagnostics,
+                                  std::span<const RepeatedPairs> repeated) {
   std::vector<std::string> lines = diagnostics.causes;
-  for (std::string& line : Describe(diagnostics.order)) lines.push_back(std::move(line));
+  for (std::string& line : Describe(diagnostics.order, repeated)) {
+    lines.push_back(std::move(line));
+  }
   if (diagnostics.contradiction) lines.push_back(Describe(*diagnostics.contradiction));
   if (diagnostics.mirrored_rmse_m) {
     lines.push_back(fmt::format(

@@ -9,6 +9,7 @@
 
 #include "eval/diagnostics/causes.h"
 #include "eval/diagnostics/complete_boards.h"
+#include "eval/diagnostics/unexplained_pairs.h"
 #include "geometry/pair_noise.h"
 #include "geometry/symmetric.h"
 #include "solvers/core/local_frame.h"
@@ -93,72 +94,36 @@ std::vector<EdgeFinding> DiagnoseEdges(const CalibrationProblem& problem) {
   return findings;
 }
 
-// The points of complete boards, board after board, with the pose of each board alone.
-struct BoardsAlone {
-  std::vector<Eigen::Vector3d> in_cam;
-  std::vector<Eigen::Vector3d> in_lidar;
-  std::vector<Rigid3d> poses;
-  double sum_squares = 0.0;
-  double mean_edge_m = 0.0;
-};
-
-BoardsAlone FitBoardsAlone(std::span<const Pair3d3d> pairs) {
-  BoardsAlone boards;
-  for (const BoardPairs& group : CompleteBoards(pairs)) {
-    std::array<Eigen::Vector3d, kCornersPerBoard> in_cam;
-    std::array<Eigen::Vector3d, kCornersPerBoard> in_lidar;
-    for (int i = 0; i < kCornersPerBoard; ++i) {
-      in_cam[static_cast<std::size_t>(i)] = pairs[group.pair(i)].point_in_cam;
-      in_lidar[static_cast<std::size_t>(i)] = pairs[group.pair(i)].point_in_lidar;
-    }
-    const Expected<KabschFit> fit = FitKabsch(in_cam, in_lidar);
-    if (!fit) continue;
-    boards.in_cam.insert(boards.in_cam.end(), in_cam.begin(), in_cam.end());
-    boards.in_lidar.insert(boards.in_lidar.end(), in_lidar.begin(), in_lidar.end());
-    boards.poses.push_back(fit->b_from_a);
-    boards.sum_squares += fit->sum_squares;
-    for (std::size_t i = 0; i < 4; ++i) {
-      boards.mean_edge_m += 0.25 * (in_cam[(i + 1) % 4] - in_cam[i]).norm();
-    }
-  }
-  boards.mean_edge_m /= std::max(1.0, static_cast<double>(boards.poses.size()));
-  return boards;
-}
-
-// The largest distance between a board's centres by its own pose and by that of the board before
-// or after it: all pairs of boards would be a quadratic number.
-double LargestDistance(const BoardsAlone& boards) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < boards.poses.size(); ++i) {
-    const std::size_t other = i + 1 < boards.poses.size() ? i + 1 : i - 1;
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();
-    for (std::size_t k = 0; k < 4; ++k) center += 0.25 * boards.in_lidar[4 * i + k];
-    largest = std::max(largest, (boards.poses[i] * center - boards.poses[other] * center).norm());
-  }
-  return largest;
-}
-
-std::optional<BoardContradiction> FindContradiction(std::span<const Pair3d3d> pairs) {
-  constexpr double kOfAlone = 3.0;
-  constexpr double kOfEdge = 0.1;
-  const BoardsAlone boards = FitBoardsAlone(pairs);
-  if (boards.poses.size() < 2) return std::nullopt;
-  const Expected<KabschFit> together = FitKabsch(boards.in_cam, boards.in_lidar);
-  if (!together) return std::nullopt;
-  const auto points = static_cast<double>(boards.in_cam.size());
-  const BoardContradiction found{.rmse_together_m = std::sqrt(together->sum_squares / points),
-                                 .rmse_alone_m = std::sqrt(boards.sum_squares / points),
-                                 .apart_m = LargestDistance(boards)};
-  const double least = std::max(kOfAlone * found.rmse_alone_m, kOfEdge * boards.mean_edge_m);
-  if (found.rmse_together_m < least) return std::nullopt;
-  return found;
-}
-
 std::optional<WeakDirection> Weakest(const Eigen::Matrix3d& covariance, bool is_rotation) {
   const SymmetricEigen<3> eigen = EigenOf(covariance);
   const Eigen::Vector3d sigma = eigen.values.cwiseMax(0.0).cwiseSqrt();
   if (sigma(2) <= kWeakRatio * sigma(0)) return std::nullopt;
   return WeakDirection{is_rotation, eigen.vectors.col(2), sigma(2), sigma(0)};
+}
+
+// Whether the RMS residual is a larger share of the spread than measurements leave.
+bool IsUnexplained(const std::vector<Eigen::Vector3d>& points, double sum_squares) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) mean += point / static_cast<double>(points.size());
+  double spread = 0.0;
+  for (const Eigen::Vector3d& point : points) spread += (point - mean).squaredNorm();
+  return sum_squares > kMaxUnexplainedShare * kMaxUnexplainedShare * spread;
+}
+
+void AddWeakDirections(const CalibrationProblem& problem, PairDiagnostics& diagnostics) {
+  // At a far origin every translation is weak, as the rotation's error moves it.
+  const auto frame = LocalFrame::For(problem, {.pairs_3d3d = 3});
+  const std::vector<Pair3d3d> pairs =
+      frame ? frame->Localised(problem).pairs_3d3d : problem.pairs_3d3d;
+  const std::vector<double> weights(pairs.size(), 1.0);
+  const PointSets points = PointsOf(pairs);
+  const Expected<KabschFit> fit = FitKabsch(points.in_cam, points.in_lidar, weights);
+  // The directions of a pose that does not fit mean nothing.
+  if (!fit || IsUnexplained(points.in_cam, fit->sum_squares)) return;
+  if (const auto covariance = PropagateCovariance(pairs, weights, fit->b_from_a)) {
+    diagnostics.weak_rotation = Weakest(covariance->topLeftCorner<3, 3>(), true);
+    diagnostics.weak_translation = Weakest(covariance->bottomRightCorner<3, 3>(), false);
+  }
 }
 
 void Append(const std::vector<std::string>& lines, std::vector<std::string>& all) {
@@ -175,40 +140,53 @@ PairDiagnostics DiagnosePairs(const CalibrationProblem& problem) {
   Append(in_pixels, diagnostics.causes);
   Append(in_points, diagnostics.causes);
   diagnostics.misread = !in_pixels.empty() || !in_points.empty();
+  const std::optional<std::string> scale =
+      diagnostics.misread ? std::nullopt : SlightScale(problem);
   if (!diagnostics.misread) {
-    for (auto& cause : {OtherIntrinsics(problem), SlightScale(problem)}) {
+    for (const auto& cause : {OtherIntrinsics(problem), scale}) {
       if (cause) diagnostics.causes.push_back(*cause);
     }
   }
   if (!in_points.empty()) return diagnostics;
   diagnostics.order = DiagnoseOrder(problem);
-  if (problem.pairs_3d3d.size() < 3) return diagnostics;
   const CalibrationProblem ordered =
       diagnostics.order.better ? Reordered(problem, *diagnostics.order.better) : problem;
-  diagnostics.edges = DiagnoseEdges(ordered);
-  diagnostics.contradiction = FindContradiction(ordered.pairs_3d3d);
+  const bool is_in_order = diagnostics.order.rivals.empty() &&
+                           (diagnostics.order.better || !diagnostics.order.faces_as_given);
+  if (is_in_order && !diagnostics.misread) diagnostics.contradiction = FindContradiction(ordered);
+  if (problem.pairs_3d3d.size() < 3) return diagnostics;
+  if (!scale) diagnostics.edges = DiagnoseEdges(ordered);
 
-  // At a far origin every translation is weak, as the rotation's error moves it.
-  const auto frame = LocalFrame::For(ordered, {.pairs_3d3d = 3});
-  const std::vector<Pair3d3d> pairs =
-      frame ? frame->Localised(ordered).pairs_3d3d : ordered.pairs_3d3d;
-  const std::vector<double> weights(pairs.size(), 1.0);
-  const PointSets points = PointsOf(pairs);
+  const PointSets points = PointsOf(ordered.pairs_3d3d);
   if (const auto reflection = FindReflection(points.in_cam, points.in_lidar)) {
     diagnostics.mirrored_rmse_m = reflection->rmse_m;
   }
-  const Expected<KabschFit> fit = FitKabsch(points.in_cam, points.in_lidar, weights);
-  if (!fit) return diagnostics;
-  if (const auto covariance = PropagateCovariance(pairs, weights, fit->b_from_a)) {
-    diagnostics.weak_rotation = Weakest(covariance->topLeftCorner<3, 3>(), true);
-    diagnostics.weak_translation = Weakest(covariance->bottomRightCorner<3, 3>(), false);
+  if (is_in_order) AddWeakDirections(ordered, diagnostics);
+  return diagnostics;
+}
+
+PairDiagnostics ForAnswer(PairDiagnostics diagnostics, const CalibrationProblem& problem,
+                          const SolveReport& report) {
+  const bool is_of_points = !problem.pairs_3d3d.empty() && problem.pairs_2d3d.empty();
+  const bool leaves_out =
+      !report.inliers.empty() && report.inliers.size() < problem.pairs_3d3d.size();
+  if (!is_of_points || !leaves_out || diagnostics.misread) return diagnostics;
+  diagnostics.weak_rotation.reset();
+  diagnostics.weak_translation.reset();
+  CalibrationProblem used = problem;
+  used.pairs_3d3d.clear();
+  for (const int i : report.inliers) {
+    used.pairs_3d3d.push_back(problem.pairs_3d3d[static_cast<std::size_t>(i)]);
   }
+  AddWeakDirections(used, diagnostics);
   return diagnostics;
 }
 
 bool RefutesPoses(const PairDiagnostics& diagnostics, bool reordered) {
   const OrderDiagnosis& order = diagnostics.order;
   if (diagnostics.misread || diagnostics.mirrored_rmse_m) return true;
+  const bool is_undecided = diagnostics.contradiction && diagnostics.contradiction->is_undecided;
+  if (is_undecided) return true;
   if (reordered && order.better) return false;
   return order.faces_as_given || order.better || !order.rivals.empty();
 }

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "eval/diagnostics/board_contradiction.h"
 #include "eval/diagnostics/order_diagnostics.h"
 #include "geometry/calibration_problem.h"
+#include "solvers/core/solver.h"
 
 namespace sextant {
 
@@ -30,14 +33,6 @@ struct WeakDirection {
   double best_sigma = 0.0;
 };
 
-/// Boards that fit well one by one, but not together under one pose.
-struct BoardContradiction {
-  double rmse_together_m = 0.0;
-  double rmse_alone_m = 0.0;  ///< Every board under its own pose.
-  /// Largest distance between the positions of a board by its own pose and by another board's.
-  double apart_m = 0.0;
-};
-
 /// Data diagnostics: properties of the pairs that make a pose from them unreliable.
 struct PairDiagnostics {
   std::vector<std::string> causes;  ///< See causes.h; one sentence each.
@@ -57,19 +52,27 @@ struct PairDiagnostics {
 /// directions; empty for a problem with too few pairs. O(n log n) time and O(n) memory in the
 /// number of pairs: 10^4 pairs take less than 0.3 s.
 ///
-/// Contradiction: the RMSE of all complete boards is more than three times their RMSE under poses
-/// of their own, and more than a tenth of the mean edge. Edges: reported if they differ by more
+/// Contradiction: see FindContradiction. Edges: reported if they differ by more
 /// than 5 percent of their length and, if the noise is stated, by more than one of all edges does
-/// by noise with a probability of 1 %. Weak direction: its standard deviation, for points about a
+/// by noise with a probability of 1 %; not where a common factor explains them. Weak direction: not
+/// where the pairs do not fit; its standard deviation, for points about a
 /// far origin that at their centre, is more than five times that of the best determined direction.
 PairDiagnostics DiagnosePairs(const CalibrationProblem& problem);
 
 /// Whether no pose of these pairs, in the order that is used, can be right: they are not what they
-/// are taken for, mirrored, or in an order that puts the sensors on opposite sides of the boards or
-/// fits far worse than another. `reordered`: the better order is used.
+/// are taken for, mirrored, in an order that puts the sensors on opposite sides of the boards or
+/// fits far worse than another, or of boards that contradict each other so that none can be told to
+/// be right. `reordered`: the better order is used.
 bool RefutesPoses(const PairDiagnostics& diagnostics, bool reordered);
 
-/// One line of text per finding, with the figures and advice.
-std::vector<std::string> Describe(const PairDiagnostics& diagnostics);
+/// The diagnostics for an answer that uses only some of the 3D-3D pairs, which determine its weak
+/// directions. Without 3D-3D pairs, and for an answer that uses all of them, as they are.
+PairDiagnostics ForAnswer(PairDiagnostics diagnostics, const CalibrationProblem& problem,
+                          const SolveReport& report);
+
+/// One line of text per finding, with the figures and advice; pairs by their place in the file,
+/// from which `repeated` ones have been removed.
+std::vector<std::string> Describe(const PairDiagnostics& diagnostics,
+                                  std::span<const RepeatedPairs> repeated = {});
 
 }  // namespace sextant

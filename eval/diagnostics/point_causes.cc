@@ -176,10 +176,43 @@ std::optional<std::string> FindExchangedSensors(const CalibrationProblem& proble
                 : "; the camera frame is x right, y down, z forward");
 }
 
+// Whether the boards' own sizes speak against a ratio between the lengths of all pairs, as where a
+// board moved: by four sigmas of the noise that boards under poses of their own leave.
+bool BoardsContradictRatio(const CalibrationProblem& problem, double ratio) {
+  constexpr double kSigmas = 4.0;
+  double in_cam_squares = 0.0;
+  double in_lidar_squares = 0.0;
+  double residual_squares = 0.0;
+  double freedom = 0.0;
+  for (const BoardPairs& group : CompleteBoards(problem.pairs_3d3d)) {
+    Points in_cam;
+    Points in_lidar;
+    for (int i = 0; i < kCornersPerBoard; ++i) {
+      in_cam.push_back(problem.pairs_3d3d[group.pair(i)].point_in_cam);
+      in_lidar.push_back(problem.pairs_3d3d[group.pair(i)].point_in_lidar);
+    }
+    const double of_lidar = SpreadOfPoints(in_lidar);
+    const double of_cam = SpreadOfPoints(in_cam);
+    Points scaled = in_lidar;
+    for (Eigen::Vector3d& point : scaled) point *= of_cam / of_lidar;
+    const Expected<KabschFit> fit = FitKabsch(in_cam, scaled);
+    if (!fit) continue;
+    in_cam_squares += kCornersPerBoard * of_cam * of_cam;
+    in_lidar_squares += kCornersPerBoard * of_lidar * of_lidar;
+    residual_squares += fit->sum_squares;
+    freedom += 3.0 * kCornersPerBoard - 7.0;
+  }
+  if (freedom < 1.0) return false;
+  const double of_boards = std::sqrt(in_lidar_squares / in_cam_squares);
+  const double sigma = std::sqrt(residual_squares / freedom / in_cam_squares);
+  return std::abs(of_boards - ratio) > kSigmas * sigma &&
+         std::abs(of_boards - ratio) > 0.5 * std::abs(ratio - 1.0);
+}
+
 }  // namespace
 
 std::optional<std::string> SlightScale(const CalibrationProblem& problem) {
-  constexpr std::size_t kMinPairs = 12;
+  constexpr std::size_t kMinPairs = 8;
   constexpr double kMinDeviation = 0.003;
   constexpr double kMinF = 30.0;
   constexpr double kMinHalfF = 8.0;
@@ -204,6 +237,7 @@ std::optional<std::string> SlightScale(const CalibrationProblem& problem) {
   if (all->f < kMinF || std::min(even->f, odd->f) < kMinHalfF || apart > kMaxApart) {
     return std::nullopt;
   }
+  if (BoardsContradictRatio(problem, all->ratio)) return std::nullopt;
   const bool lidar_is_longer = all->ratio > 1.0;
   return fmt::format(
       "scale: the {}'s lengths are {:.4g} times the {}'s (RMSE {:.3g} m as given, {:.3g} m without "

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -207,7 +208,7 @@ std::vector<RepeatedPairs> MergeRepeatedPairs(CalibrationProblem& problem) {
   return found;
 }
 
-std::vector<std::string> Describe(const RepeatedPairs& repeated) {
+std::vector<std::string> Describe(const RepeatedPairs& repeated, double sigma) {
   constexpr std::size_t kMaxLines = 5;
   std::vector<std::string> lines;
   if (repeated.points > 0) {
@@ -222,16 +223,31 @@ std::vector<std::string> Describe(const RepeatedPairs& repeated) {
                     "measurement add no information (pair {})",
                     repeated.merged.size(), ListOf(repeated.merged)));
   }
-  for (const RepeatedPair& pair : repeated.contradictory) {
+  std::vector<RepeatedPair> contradictory = repeated.contradictory;
+  const char* unit = repeated.in_pixels ? "px" : "m";
+  // What one of so many differences exceeds by noise with a probability of 1 %.
+  const auto count = static_cast<double>(std::max<std::size_t>(1, contradictory.size()));
+  const double by_noise =
+      std::numbers::sqrt2 * sigma * (std::sqrt(2.0 * std::log(100.0 * count)) + 0.5);
+  const std::size_t explained = std::erase_if(
+      contradictory, [&](const RepeatedPair& pair) { return pair.apart <= by_noise; });
+  if (explained > 0) {
+    lines.push_back(fmt::format(
+        "repeated: {} pairs have the LiDAR point of another one, but other points in the camera, "
+        "at most {:.2g} {} apart, as the noise of the pairs explains ({:.2g} {}): an error of that "
+        "LiDAR point counts several times, so that the stated uncertainty may be too small",
+        explained, by_noise, unit, sigma, unit));
+  }
+  for (const RepeatedPair& pair : contradictory) {
     if (lines.size() == kMaxLines) {
       lines.push_back(fmt::format("contradiction: {} pairs in all have another one's LiDAR point",
-                                  repeated.contradictory.size()));
+                                  contradictory.size()));
       break;
     }
     lines.push_back(fmt::format(
         "contradiction: pairs {} and {} have the same LiDAR point, but are {:.4g} {} apart in the "
         "camera: one of them is wrong; correct or remove it",
-        pair.first + 1, pair.repeat + 1, pair.apart, repeated.in_pixels ? "px" : "m"));
+        pair.first + 1, pair.repeat + 1, pair.apart, unit));
   }
   return lines;
 }

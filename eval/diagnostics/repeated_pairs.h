@@ -35,8 +35,9 @@ struct RepeatedPairs {
 /// the 3D-3D and in the 2D-3D pairs, if anything.
 std::vector<RepeatedPairs> MergeRepeatedPairs(CalibrationProblem& problem);
 
-/// One line each, with pairs counted from 1.
-std::vector<std::string> Describe(const RepeatedPairs& repeated);
+/// One line each, with pairs counted from 1. Pairs that are no farther apart than the noise of a
+/// coordinate `sigma` [m or px] explains do not contradict each other; 0 if it is unknown.
+std::vector<std::string> Describe(const RepeatedPairs& repeated, double sigma = 0.0);
 
 /// The place in the file, from 1 on, of the pair at `index` of those that are left after the merge.
 int PlaceInFile(int index, bool in_pixels, std::span<const RepeatedPairs> repeated);

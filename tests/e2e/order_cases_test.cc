@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs in a wrong order, repeated or contradictory, as people sent them.
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "base/random.h"
 #include "e2e/run_sextant.h"
+#include "geometry/rigid3d.h"
+#include "geometry/so3.h"
 #include "support/real_data.h"
+#include "support/run_program.h"
 
 namespace sextant::test {
 namespace {
@@ -88,6 +95,43 @@ TEST(OrderCases, RepeatedPairsDoNotLowerTheSigma) {
   const std::string text = Solve(repeated, "--solver kabsch");
   EXPECT_THAT(text, HasSubstr("6 pairs repeat others"));
   EXPECT_EQ(Sigmas(text), Sigmas(Solve(unique, "--solver kabsch")));
+}
+
+// Pairs in no particular place, as CSV without ids, of which two rows are exchanged.
+std::string PairsWithTwoRowsExchanged() {
+  Random random(5);
+  const Rigid3d cam_from_lidar{ExpSo3({0.3, -1.2, 0.4}), {0.1, -0.2, 0.3}};
+  std::vector<Eigen::Vector3d> in_cam;
+  std::vector<Eigen::Vector3d> in_lidar;
+  for (int i = 0; i < 12; ++i) {
+    const double x = random.Uniform(-2.0, 2.0);
+    const double y = random.Uniform(-1.0, 1.0);
+    const double z = random.Uniform(3.0, 7.0);
+    in_cam.emplace_back(x, y, z);
+    in_lidar.push_back(cam_from_lidar.Inverse() * in_cam.back());
+    in_lidar.back().x() += 0.01 * random.Normal();
+    in_lidar.back().y() += 0.01 * random.Normal();
+  }
+  std::swap(in_lidar[3], in_lidar[7]);
+  std::string text = "camx,camy,camz,lidarx,lidary,lidarz\n";
+  for (std::size_t i = 0; i < in_cam.size(); ++i) {
+    const Eigen::Vector3d& c = in_cam[i];
+    const Eigen::Vector3d& l = in_lidar[i];
+    text += fmt::format("{},{},{},{},{},{}\n", c.x(), c.y(), c.z(), l.x(), l.y(), l.z());
+  }
+  return text;
+}
+
+// A robust answer leaves both out, so that it is as good as that of the right order.
+TEST(OrderCases, TwoRowsThatAreExchangedAreNamedAndLeftOut) {
+  const std::string file = TestPath("pairs.csv");
+  WriteText(file, PairsWithTwoRowsExchanged());
+  const std::string text = Unbroken(Solve(file, ""));
+  EXPECT_THAT(text, HasSubstr("pairs 4 and 8 are exchanged"));
+  EXPECT_THAT(text, HasSubstr("outliers: 2 of 12 pairs"));
+  EXPECT_THAT(Solve(file, "--reorder"), HasSubstr("12 of 12 pairs"));
+  EXPECT_THAT(Unbroken(Solve(file, "--solver kabsch", kNotUsable)),
+              HasSubstr("pairs 4 and 8 are exchanged"));
 }
 
 }  // namespace

@@ -42,6 +42,19 @@ TEST(RepeatedPairs, CopiesCountOnce) {
   EXPECT_THAT(lines[0], HasSubstr("7 of 1, 8 of 1, 9 of 5"));
 }
 
+// Two rows of noisy points that rounded to one LiDAR point are not wrong.
+TEST(RepeatedPairs, NoiseIsNoContradiction) {
+  CalibrationProblem problem = PixelPairs();
+  problem.pairs_2d3d.push_back(problem.pairs_2d3d[4]);
+  problem.pairs_2d3d.back().pixel.x() += 60.0;
+  const std::vector<RepeatedPairs> found = MergeRepeatedPairs(problem);
+  ASSERT_EQ(found.size(), 1U);
+  ASSERT_EQ(found[0].contradictory.size(), 1U);
+  EXPECT_THAT(Describe(found[0]), testing::ElementsAre(HasSubstr("one of them is wrong")));
+  EXPECT_THAT(Describe(found[0], 4.0), testing::ElementsAre(HasSubstr("one of them is wrong")));
+  EXPECT_THAT(Describe(found[0], 20.0), testing::ElementsAre(HasSubstr("the noise of the pairs")));
+}
+
 TEST(RepeatedPairs, ObservationsThatAgreeAreAveraged) {
   CalibrationProblem problem = PixelPairs();
   problem.pairs_2d3d.push_back(problem.pairs_2d3d[2]);
