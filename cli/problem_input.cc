@@ -64,17 +64,12 @@ std::vector<std::string> AnswerDiagnostics(const LoadedProblem& input, const Sol
   return lines;
 }
 
-// The noise of a coordinate by the answer's median residual, which a few wrong pairs do not change;
-// 0 without one.
+// The noise of a coordinate by the only answer; 0 without one.
 double NoiseOf(const std::vector<ComparisonRow>& rows, bool in_pixels) {
   if (rows.size() != 1 || !rows.front().report) return 0.0;
   const Evaluation& evaluation = rows.front().report->evaluation;
-  std::vector<double> residuals = in_pixels ? evaluation.per_pair_px : evaluation.per_pair_m;
-  std::erase_if(residuals, [](double residual) { return !std::isfinite(residual); });
-  if (residuals.empty()) return 0.0;
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::ranges::nth_element(residuals, middle);
-  return *middle / (in_pixels ? 1.1774 : 1.5382);
+  return in_pixels ? SigmaByMedian(evaluation.per_pair_px, 2)
+                   : SigmaByMedian(evaluation.per_pair_m, 3);
 }
 
 // Whether the better order exchanges few pairs for each other, and every answer leaves these out
@@ -144,6 +139,32 @@ std::string ResultsJson(const LoadedProblem& input, const std::vector<Comparison
   return FormatResults(results);
 }
 
+// Several answers are judged by those that speak for a pose, or else by the best: pairs without a
+// pose let some solver fit five of twenty.
+std::vector<const SolveReport*> JudgedReports(const CalibrationProblem& problem,
+                                              const std::vector<ComparisonRow>& rows) {
+  std::vector<const SolveReport*> judged;
+  const SolveReport* best = nullptr;
+  for (const ComparisonRow& row : rows) {
+    if (!row.report || row.report->inliers.empty()) continue;
+    if (best == nullptr) best = &*row.report;
+    if (IsSupported(problem, *row.report)) judged.push_back(&*row.report);
+  }
+  if (best != nullptr && (rows.size() == 1 || judged.empty())) judged = {best};
+  return judged;
+}
+
+// Why the answer is not usable; none if it may be right.
+std::optional<std::string> WhyRefuted(const LoadedProblem& input, const SolveReport& report,
+                                      double share) {
+  std::optional<std::string> why = WhyUnusable(input.file.problem, report);
+  if (why || input.diagnostics.causes.empty() || share < kUsualUnexplainedShare) return why;
+  return fmt::format(
+      "the answer leaves {:.0f} percent of the spread of the measurements, and the data "
+      "diagnostics below name a cause",
+      100.0 * share);
+}
+
 // "" for answers of which one may be right.
 std::string RefutingVerdict(const ProblemInputOptions& options, const LoadedProblem& input,
                             const std::vector<ComparisonRow>& rows) {
@@ -157,36 +178,18 @@ std::string RefutingVerdict(const ProblemInputOptions& options, const LoadedProb
     return "NOT USABLE: two groups of pairs contradict each other, and the data does not determine "
            "which is right\n";
   }
-  // Several answers are judged by those that speak for a pose, or else by the best: pairs without a
-  // pose let some solver fit five of twenty.
-  std::vector<const SolveReport*> judged;
-  const SolveReport* best = nullptr;
-  for (const ComparisonRow& row : rows) {
-    if (!row.report || row.report->inliers.empty()) continue;
-    if (best == nullptr) best = &*row.report;
-    if (IsSupported(input.file.problem, *row.report)) judged.push_back(&*row.report);
-  }
-  if (best == nullptr) return "";
-  if (rows.size() == 1 || judged.empty()) judged = {best};
   std::string least;
   double least_share = std::numeric_limits<double>::infinity();
-  for (const SolveReport* report : judged) {
-    std::optional<std::string> why = WhyUnusable(input.file.problem, *report);
+  for (const SolveReport* report : JudgedReports(input.file.problem, rows)) {
     const double share = UnexplainedShare(input.file.problem, *report).value_or(0.0);
-    const bool has_cause = !input.diagnostics.causes.empty();
-    if (!why && has_cause && share >= kUsualUnexplainedShare) {
-      why = fmt::format(
-          "the answer leaves {:.0f} percent of the spread of the measurements, and the data "
-          "diagnostics below name a cause",
-          100.0 * share);
-    }
+    std::optional<std::string> why = WhyRefuted(input, *report, share);
     if (!why) return "";
     if (least.empty() || share < least_share) {
-      least = *why;
+      least = *std::move(why);
       least_share = share;
     }
   }
-  return "NOT USABLE: " + least + "\n";
+  return least.empty() ? "" : "NOT USABLE: " + least + "\n";
 }
 
 }  // namespace

@@ -10,17 +10,13 @@
 #include <optional>
 #include <utility>
 
+#include "base/median.h"
+
 namespace sextant {
 namespace {
 
 // Points closer than this part of the extent are equal up to rounding.
 constexpr double kRounding = 1e-9;
-
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 // Subtracts the median point and divides by the median distance from it, which a few far points do
 // not change. No answer for points without extent.
@@ -31,12 +27,12 @@ std::optional<Eigen::MatrixXd> Normalised(const Eigen::MatrixXd& points) {
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       values[static_cast<std::size_t>(i)] = points(axis, i);
     }
-    centred.row(axis).array() -= MedianOf(values);
+    centred.row(axis).array() -= UpperMedian(values);
   }
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     values[static_cast<std::size_t>(i)] = centred.col(i).norm();
   }
-  const double extent = MedianOf(values);
+  const double extent = UpperMedian(values);
   if (!(extent > 0.0) || !std::isfinite(extent)) return std::nullopt;
   return centred / extent;
 }
@@ -257,7 +253,7 @@ std::optional<double> NearestOfMost(const Eigen::MatrixXd& points, const SortedC
   for (Eigen::Index i = 0; i < points.cols(); i += step) {
     distances.push_back(sorted.NearestDistance(i));
   }
-  const double nearest = MedianOf(distances);
+  const double nearest = UpperMedian(distances);
   if (!std::isfinite(nearest)) return std::nullopt;
   if (step == 1) return nearest;
   std::array<double, kRadii.size()> within = {};

@@ -297,7 +297,7 @@ class OrderJudge {
   // Whether one of two right orders may well fit so much worse, by the F-test of their residuals.
   bool IsByChance(double rmse, double best) const {
     constexpr double kChance = 0.005;
-    if (std::isinf(rmse)) return false;
+    if (!std::isfinite(rmse)) return false;
     const double redundant = std::max(2.0, Redundant());
     return TailOfF(rmse * rmse / std::max(1e-300, best * best), redundant, redundant) > kChance;
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 
+#include "base/median.h"
 #include "base/units.h"
 
 namespace sextant {
@@ -135,6 +136,11 @@ std::vector<int> OutlyingAmongLeftOut(std::span<const double> residuals,
 
 }  // namespace
 
+double SigmaByMedian(std::vector<double> residuals, int dimension) {
+  std::erase_if(residuals, [](double residual) { return !std::isfinite(residual); });
+  return UpperMedian(residuals) / (dimension == 3 ? 1.5382 : 1.1774);
+}
+
 std::vector<int> OutlyingResiduals(std::span<const double> residuals, int dimension) {
   constexpr std::size_t kMinPairs = 8;
   constexpr double kOfLargest = 0.1;
@@ -146,7 +152,7 @@ std::vector<int> OutlyingResiduals(std::span<const double> residuals, int dimens
   if (sorted.size() < kMinPairs) return {};
   std::ranges::sort(sorted);
   const double tail = TailOf(sorted.size(), dimension);
-  double sigma = sorted[sorted.size() / 2] / (dimension == 3 ? 1.5382 : 1.1774);
+  double sigma = SigmaByMedian(sorted, dimension);
   double limit = 0.0;
   for (int round = 0; round < kMaxRounds; ++round) {
     limit = std::max(tail * sigma, kOfLargest * sorted.back());

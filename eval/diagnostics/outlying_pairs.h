@@ -10,6 +10,10 @@
 
 namespace sextant {
 
+/// The noise of a coordinate by the median of the residuals, which a few wrong pairs do not change;
+/// 0 without a finite one. `dimension`: 3 for points, 2 for pixels. O(n).
+double SigmaByMedian(std::vector<double> residuals, int dimension);
+
 /// Indices of the residuals [m or px] that noise does not explain, largest first: beyond the limit
 /// that one of all pairs exceeds with a probability of 1 %, where the noise is that of the
 /// others (at first the median's), and at least a tenth of the largest, because an outlier moves

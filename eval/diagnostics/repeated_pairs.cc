@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/median.h"
 #include "eval/diagnostics/near_copies.h"
 #include "geometry/pair_noise.h"
 
@@ -52,21 +53,16 @@ std::vector<std::pair<double, std::size_t>> SortedAlong(const std::vector<Pair>&
 template <class Pair>
 double SamePointDistance(const std::vector<Pair>& pairs) {
   constexpr double kSame = 5e-4;
-  const auto median_of = [](std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
-  };
   std::vector<double> values(pairs.size());
   Eigen::Vector3d centre;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < pairs.size(); ++i) values[i] = pairs[i].point_in_lidar[axis];
-    centre[axis] = median_of(values);
+    centre[axis] = UpperMedian(values);
   }
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     values[i] = (pairs[i].point_in_lidar - centre).norm();
   }
-  return kSame * median_of(values);
+  return kSame * UpperMedian(values);
 }
 
 template <class Pair>

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "base/log_choose.h"
 #include "eval/diagnostics/outlying_pairs.h"
 
 namespace sextant {
@@ -76,14 +77,6 @@ double ShareWithin(const std::vector<Eigen::Matrix<double, kSize, 1>>& points, d
   return ball / sides.prod();
 }
 
-double LogCombinations(std::size_t n, std::size_t k) {
-  double sum = 0.0;
-  for (std::size_t i = 1; i <= std::min(k, n - k); ++i) {
-    sum += std::log(static_cast<double>(n - i + 1) / static_cast<double>(i));
-  }
-  return sum;
-}
-
 std::optional<double> ShareOf(const CalibrationProblem& problem, const SolveReport& report,
                               const std::vector<int>& used) {
   if (!IsOfOneKind(problem)) return std::nullopt;
@@ -131,8 +124,9 @@ std::optional<double> LogChanceOfUsed(const CalibrationProblem& problem,
   }
   const double share = problem.pairs_2d3d.empty() ? ShareWithin(PointsOf(problem), largest)
                                                   : ShareWithin(PixelsOf(problem), largest);
-  return std::log(static_cast<double>(count - kAbsorbed)) + LogCombinations(count, used) +
-         LogCombinations(used, kAbsorbed) +
+  return std::log(static_cast<double>(count - kAbsorbed)) +
+         LogChoose(static_cast<int>(count), static_cast<int>(used)) +
+         LogChoose(static_cast<int>(used), static_cast<int>(kAbsorbed)) +
          static_cast<double>(used - kAbsorbed) * std::log(std::min(1.0, share));
 }
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <vector>
 
+#include "base/median.h"
 #include "geometry/coordinate_range.h"
 #include "io/clouds/scalar_type.h"
 
@@ -122,14 +123,13 @@ Expected<void> CheckMetres(const PointCloud& cloud) {
     if (point.allFinite() && !point.isZero()) ranges_m.push_back(point.norm());
   }
   if (ranges_m.empty()) return {};
-  const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
-  std::nth_element(ranges_m.begin(), middle, ranges_m.end());
-  if (*middle <= kFarthest_m) return {};
+  const double median_m = UpperMedian(ranges_m);
+  if (median_m <= kFarthest_m) return {};
   return MakeError(ErrorCode::kInvalidInput,
                    fmt::format("half of the points are {:.0f} m away and more; coordinates are in "
                                "metres and begin at the sensor. If these are millimetres, divide "
                                "by 1000",
-                               *middle));
+                               median_m));
 }
 
 void OrderRings(PointCloud& cloud) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "io/images/number_at.h"
 #include "io/images/stated_size.h"
 
 namespace sextant {
@@ -19,15 +20,6 @@ tl::unexpected<Error> CutOff(std::size_t byte, std::string_view missing) {
       ErrorCode::kParse,
       fmt::format("expected an image, but it is cut off: it ends at byte {}, and {} is missing",
                   byte, missing));
-}
-
-// A big-endian number.
-std::uint32_t NumberAt(std::string_view bytes, std::size_t at, std::size_t size) {
-  std::uint32_t number = 0;
-  for (std::size_t i = 0; i < size; ++i) {
-    number = number << 8U | static_cast<unsigned char>(bytes[at + i]);
-  }
-  return number;
 }
 
 Expected<void> CheckPixels(std::uint64_t width, std::uint64_t height, std::size_t bytes) {
@@ -72,11 +64,11 @@ Expected<void> CheckJpeg(std::string_view bytes) {
     ++at;
     if (marker == 0xd9) return {};
     if (marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd8)) continue;
-    const std::size_t length = at + 2 <= bytes.size() ? NumberAt(bytes, at, 2) : 0;
+    const std::size_t length = BigAt(bytes, at, 2).value_or(0);
     if (length < 2 || at + length > bytes.size()) return CutOff(bytes.size(), kEnd);
     if (StartsFrame(marker) && length >= 7) {
       SEXTANT_RETURN_IF_ERROR(
-          CheckPixels(NumberAt(bytes, at + 5, 2), NumberAt(bytes, at + 3, 2), bytes.size()));
+          CheckPixels(*BigAt(bytes, at + 5, 2), *BigAt(bytes, at + 3, 2), bytes.size()));
     }
     at += length;
     if (marker != 0xda) continue;
@@ -94,13 +86,13 @@ Expected<void> CheckPng(std::string_view bytes) {
   constexpr std::size_t kSignature = 8;
   constexpr std::size_t kAround = 12;  // Length, type and checksum of a chunk.
   for (std::size_t at = kSignature; at + kAround <= bytes.size();) {
-    const std::size_t length = NumberAt(bytes, at, 4);
+    const std::size_t length = *BigAt(bytes, at, 4);
     const std::string_view type = bytes.substr(at + 4, 4);
     if (length > bytes.size() - at - kAround) break;
     if (type == "IEND") return {};
     if (type == "IHDR" && length >= 8) {
       SEXTANT_RETURN_IF_ERROR(
-          CheckPixels(NumberAt(bytes, at + 8, 4), NumberAt(bytes, at + 12, 4), bytes.size()));
+          CheckPixels(*BigAt(bytes, at + 8, 4), *BigAt(bytes, at + 12, 4), bytes.size()));
     }
     at += kAround + length;
   }

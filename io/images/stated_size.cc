@@ -4,30 +4,12 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "io/images/number_at.h"
+
 namespace sextant {
 namespace {
 
 using std::string_view_literals::operator""sv;
-
-// The number of `size` bytes at `at`, the lowest byte first; none beyond the end.
-std::optional<std::uint32_t> LittleAt(std::string_view bytes, std::size_t at, std::size_t size) {
-  if (at > bytes.size() || bytes.size() - at < size) return {};
-  std::uint32_t number = 0;
-  for (std::size_t i = size; i-- > 0;) {
-    number = number << 8U | static_cast<unsigned char>(bytes[at + i]);
-  }
-  return number;
-}
-
-// The same with the highest byte first.
-std::optional<std::uint32_t> BigAt(std::string_view bytes, std::size_t at, std::size_t size) {
-  if (at > bytes.size() || bytes.size() - at < size) return {};
-  std::uint32_t number = 0;
-  for (std::size_t i = 0; i < size; ++i) {
-    number = number << 8U | static_cast<unsigned char>(bytes[at + i]);
-  }
-  return number;
-}
 
 std::optional<StatedSize> SizeOfBmp(std::string_view bytes) {
   const auto header = LittleAt(bytes, 14, 4);

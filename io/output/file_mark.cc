@@ -55,14 +55,6 @@ FileOrigin OriginOf(int folder, const std::string& name) {
   return found == MarkOf(status) ? FileOrigin::kSextant : FileOrigin::kChanged;
 }
 
-bool RemoveOwnFile(const std::filesystem::path& path) {
-  const std::filesystem::path parent = path.has_parent_path() ? path.parent_path() : ".";
-  const Descriptor folder(open(parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
-  const std::string name = path.filename().string();
-  return folder.is_open() && OriginOf(folder.get(), name) == FileOrigin::kSextant &&
-         unlinkat(folder.get(), name.c_str(), 0) == 0;
-}
-
 bool StatesOrigin(int folder, const std::string& name, std::string_view text) {
   if (OriginOf(folder, name) == FileOrigin::kChanged) return false;
   const Descriptor file = OpenRegular(folder, name);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -21,9 +20,6 @@ enum class FileOrigin {
 
 /// `folder`: an open folder; `name`: a file in it.
 FileOrigin OriginOf(int folder, const std::string& name);
-
-/// Removes a file that is kSextant. Whether it did so.
-bool RemoveOwnFile(const std::filesystem::path& path);
 
 /// Whether the text is among the first 4096 bytes of the file, which is not kChanged: for pages
 /// that state what wrote them.

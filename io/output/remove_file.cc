@@ -3,6 +3,7 @@
 
 #include <cerrno>
 
+#include "io/output/file_mark.h"
 #include "io/output/write_error.h"
 
 namespace sextant {
@@ -19,6 +20,13 @@ Expected<void> RemoveFile(const std::filesystem::path& path, Replace replace) {
   const bool gone = unlinkat(target.folder.get(), target.name.c_str(), 0) == 0 || errno == ENOENT;
   if (!gone) return WriteError(path);
   return {};
+}
+
+bool RemoveOwnFile(const std::filesystem::path& path) {
+  const Expected<OutputTarget> target = FindTarget(path);
+  return target && target->existing &&
+         OriginOf(target->folder.get(), target->name) == FileOrigin::kSextant &&
+         unlinkat(target->folder.get(), target->name.c_str(), 0) == 0;
 }
 
 }  // namespace sextant

@@ -16,4 +16,8 @@ Expected<void> CheckRemovable(const std::filesystem::path& path,
 /// Errors: kInvalidOption; kUnwritable.
 Expected<void> RemoveFile(const std::filesystem::path& path, Replace replace = Replace::kOwnFiles);
 
+/// Removes a file that sextant wrote and nobody changed, and no other, whatever may be replaced.
+/// Whether it did so.
+bool RemoveOwnFile(const std::filesystem::path& path);
+
 }  // namespace sextant

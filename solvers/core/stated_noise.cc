@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/median.h"
 #include "solvers/core/solver.h"
 #include "solvers/kernels/pair_terms.h"
 #include "solvers/least_squares/refine_pose.h"
@@ -52,12 +53,6 @@ void AppendSquares(const Terms& terms, const Camera* camera, const Rigid3d& pose
   }
 }
 
-double Median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // The square of k of the header; none where the stated noise or chance explains the residuals.
 std::optional<double> VarianceRatio(const PairTerms& terms, PairKind kind, const Rigid3d& answer) {
   constexpr double kMaxChance = 1e-4;
@@ -72,7 +67,7 @@ std::optional<double> VarianceRatio(const PairTerms& terms, PairKind kind, const
   AppendSquares<2>(terms.View().pixels, &terms.camera, there.cam_from_lidar, each);
   if (each.empty()) return std::nullopt;
   const double median_of_chi2 = 2.0 * boost::math::gamma_p_inv(0.5 * per_pair, 0.5);
-  const double of_most = Median(each) / (median_of_chi2 * freedom / residuals);
+  const double of_most = UpperMedian(each) / (median_of_chi2 * freedom / residuals);
   const double ratio = std::min(squares / freedom, of_most);
   if (!std::isfinite(ratio) || !(ratio > kNoticeable * kNoticeable)) return std::nullopt;
   if (boost::math::gamma_q(0.5 * freedom, 0.5 * squares) > kMaxChance) return std::nullopt;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/log_choose.h"
 #include "solvers/core/subset.h"
 #include "solvers/robust/term_scorer.h"
 
@@ -21,21 +22,6 @@ constexpr int kMaxConsensusRefits = 10;
 constexpr double kChiSquare2 = 9.210340371976184;
 constexpr double kChiSquare3 = 11.344866730144373;
 constexpr double kChiSquare3At9999 = 21.107513466204896;
-
-// log of (n over k), as a sum: std::lgamma writes a global variable, which is a data race.
-double LogChoose(int n, int k) {
-  constexpr double kLarge = 1e290;
-  const int smaller = std::min(k, n - k);
-  double sum = 0.0;
-  double product = 1.0;
-  for (int i = 1; i <= smaller; ++i) {
-    product *= static_cast<double>(n - smaller + i) / i;
-    if (product < kLarge) continue;
-    sum += std::log(product);
-    product = 1.0;
-  }
-  return sum + std::log(product);
-}
 
 // P(Binomial(trials, p) >= successes).
 double BinomialTail(int trials, int successes, double p) {

@@ -2,8 +2,8 @@
 #include "eval/experiment/report/write_report.h"
 
 #include "eval/experiment/report/report.h"
-#include "io/output/file_mark.h"
 #include "io/output/output_file.h"
+#include "io/output/remove_file.h"
 #include "report/plot.h"
 
 namespace sextant {
